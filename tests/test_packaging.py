@@ -1,0 +1,191 @@
+"""pip reads pyproject.toml, colcon setup.cfg, ROS package.xml: all three describe the tree that is there."""
+
+from __future__ import annotations
+
+import configparser
+import json
+import os
+import re
+import subprocess
+import tomllib
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import thymio_sim_ros
+
+ROOT = Path(__file__).parent.parent
+NAME = "thymio_sim_ros"
+EXECUTABLES = {"simulator", "aseba_runtime", "foxglove_bridge", "web_ui", "thymio"}
+
+pytestmark = pytest.mark.skipif(not (ROOT / "pyproject.toml").is_file(), reason="the tests lie outside a source tree")
+
+
+def _pyproject() -> dict[str, Any]:
+    return tomllib.loads((ROOT / "pyproject.toml").read_text())
+
+
+def _setup() -> configparser.ConfigParser:
+    parser = configparser.ConfigParser(delimiters=("=",))
+    parser.optionxform = str  # type: ignore[assignment,method-assign]  # paths are case-sensitive
+    parser.read(ROOT / "setup.cfg")
+    return parser
+
+
+def _manifest() -> ElementTree.Element:
+    return ElementTree.parse(ROOT / "package.xml").getroot()
+
+
+def _data_files() -> dict[str, list[str]]:
+    """setup.cfg's data files, destination folder → patterns."""
+    return {folder: patterns.split() for folder, patterns in _setup()["options.data_files"].items()}
+
+
+def test_name_is_the_same_everywhere() -> None:
+    assert _pyproject()["project"]["name"] == NAME
+    assert _setup()["metadata"]["name"] == NAME
+    assert _manifest().findtext("name") == NAME
+    assert (ROOT / "resource" / NAME).read_bytes() == b""
+
+
+def test_version_is_written_in_the_package_and_repeated_for_ros_alone() -> None:
+    assert _manifest().findtext("version") == thymio_sim_ros.__version__
+    assert _setup()["metadata"]["version"] == f"attr: {NAME}.__version__"
+    assert _pyproject()["project"]["dynamic"] == ["version"]
+
+
+def test_description_and_licence_agree() -> None:
+    assert _manifest().findtext("description") == _pyproject()["project"]["description"]
+    assert _manifest().findtext("license") == _pyproject()["project"]["license"]["text"] == "Apache-2.0"
+    assert "Apache License" in (ROOT / "LICENSE").read_text()
+
+
+def test_console_scripts_agree() -> None:
+    lines = _setup()["options.entry_points"]["console_scripts"].strip().splitlines()
+    assert dict(line.split(" = ") for line in lines) == _pyproject()["project"]["scripts"]
+
+
+@pytest.mark.parametrize("target", _pyproject()["project"]["scripts"].values())
+def test_a_console_script_leads_to_a_function(target: str) -> None:
+    module, function = target.split(":")
+    source = ROOT.joinpath(*module.split(".")).with_suffix(".py").read_text()
+    assert re.search(rf"^def {function}\(", source, re.MULTILINE) or f"import {function}" in source
+
+
+def test_every_executable_has_a_launcher_and_a_console_script() -> None:
+    assert {path.name for path in (ROOT / "resource" / "bin").iterdir()} == EXECUTABLES
+    scripts = _pyproject()["project"]["scripts"]
+    assert {f"thymio_{name}" for name in EXECUTABLES} == scripts.keys() - {"thymio-sim"}
+
+
+def test_launchers_are_one_text_and_executable() -> None:
+    launchers = [ROOT / "resource" / "bin" / name for name in EXECUTABLES]
+    assert len({path.read_text() for path in launchers}) == 1
+    assert all(os.access(path, os.X_OK) for path in launchers)
+
+
+def test_a_launcher_starts_the_console_script_of_its_own_installation(tmp_path: Path) -> None:
+    launcher = tmp_path / "lib" / NAME / "simulator"
+    script = tmp_path / "bin" / "thymio_simulator"
+    for path in (launcher, script):
+        path.parent.mkdir(parents=True)
+    launcher.symlink_to(ROOT / "resource" / "bin" / "simulator")
+    script.write_text('#!/bin/sh\necho "$@"\n')
+    script.chmod(0o755)
+    arguments = ["--ros-args", "-p", "text:=two words"]
+    answer = subprocess.run([launcher, *arguments], capture_output=True, text=True, check=True)
+    assert answer.stdout.strip() == " ".join(arguments)
+
+
+def test_both_installers_fill_the_same_folders() -> None:
+    shared = _pyproject()["tool"]["hatch"]["build"]["targets"]["wheel"]["shared-data"]
+    expected = {
+        target if (ROOT / source).is_dir() else str(Path(target).parent)
+        for source, target in shared.items()
+        if (ROOT / source).exists()
+    }
+    assert expected == {folder for folder in _data_files() if not folder.startswith(f"share/{NAME}/web_ui")}
+
+
+def test_no_file_of_a_shared_folder_is_missed_by_setup_cfg() -> None:
+    shared = _pyproject()["tool"]["hatch"]["build"]["targets"]["wheel"]["shared-data"]
+    wanted = {
+        file for source in shared for file in [ROOT / source, *(ROOT / source).rglob("*")] if file.is_file()
+    } - set(ROOT.rglob("__pycache__/*"))  # fmt: skip
+    taken = {file for patterns in _data_files().values() for pattern in patterns for file in ROOT.glob(pattern)}
+    assert {str(file.relative_to(ROOT)) for file in wanted - taken} == set()
+
+
+def test_setup_cfg_takes_every_file_of_a_built_page() -> None:
+    dist = ROOT / "web_ui" / "dist"
+    if not dist.is_dir():
+        pytest.skip("the page is not built")
+    taken = {file for patterns in _data_files().values() for pattern in patterns for file in ROOT.glob(pattern)}
+    files = {file for file in dist.rglob("*") if file.is_file() and not file.name.startswith(".")}
+    assert {str(file.relative_to(dist)) for file in files - taken} == set()
+
+
+def test_every_data_file_of_a_package_has_a_pattern() -> None:
+    patterns = _setup()["options.package_data"]["*"].replace(" ", "").split(",")
+    data = {
+        file
+        for package in ("aseba_vm", NAME)
+        for file in (ROOT / package).rglob("*")
+        if file.is_file() and file.suffix not in {".py", ".pyc"}
+    }
+    names = {file.name for file in data if not any(file.match(pattern) for pattern in patterns)}
+    assert names == set()
+
+
+def test_every_folder_with_modules_is_a_package_for_setuptools() -> None:
+    folders = {path.parent for package in ("aseba_vm", NAME) for path in (ROOT / package).rglob("*.py")}
+    folders.discard(ROOT / NAME / "launch")
+    assert {str(folder.relative_to(ROOT)) for folder in folders if not (folder / "__init__.py").is_file()} == set()
+
+
+def test_setup_py_holds_the_bare_call_that_colcon_looks_for() -> None:
+    lines = (ROOT / "setup.py").read_text().splitlines()
+    assert lines[-1] == "setup()"
+    assert _setup()["options.extras_require"]["test"] == "pytest"
+
+
+def test_package_xml_is_what_ros_expects() -> None:
+    manifest = _manifest()
+    assert manifest.get("format") == "3"
+    assert manifest.findtext("export/build_type") == "ament_python"
+    assert manifest.find("export/architecture_independent") is not None
+
+
+def test_every_ros_package_that_is_imported_is_declared() -> None:
+    depends = {element.text for tag in ("depend", "exec_depend") for element in _manifest().iter(tag)}
+    imported = {
+        module
+        for path in (ROOT / NAME).rglob("*.py")
+        for module in re.findall(r"^\s*(?:from|import) (\w+)", path.read_text(), re.MULTILINE)
+    }
+    ros = {name for name in imported if name.endswith("_msgs") or name in {"rclpy", "launch", "launch_ros"}}
+    assert ros <= depends
+
+
+def test_ros_wheels_are_never_a_plain_dependency() -> None:
+    project = _pyproject()["project"]
+    assert not any(requirement.startswith("ros") for requirement in project["dependencies"])
+    assert all("x86_64" in requirement for requirement in project["optional-dependencies"]["ros"])
+
+
+def test_no_requirement_has_an_upper_bound() -> None:
+    project = _pyproject()["project"]
+    extras = [item for extra in project["optional-dependencies"].values() for item in extra]
+    versions = [item.split(";")[0] for item in [*project["dependencies"], *extras]]
+    assert [version for version in versions if "<" in version or "==" in version] == []
+
+
+def test_lock_file_names_no_download_address() -> None:
+    lock = ROOT / "web_ui" / "package-lock.json"
+    packages = json.loads(lock.read_text())["packages"]
+    assert [name for name, entry in packages.items() if "resolved" in entry] == []
+    assert [name for name, entry in packages.items() if name and "integrity" not in entry] == []
+    assert "omit-lockfile-registry-resolved=true" in (ROOT / "web_ui" / ".npmrc").read_text()
+    assert not (ROOT / "uv.lock").exists()
