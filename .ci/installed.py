@@ -1,0 +1,132 @@
+"""Look at an installation as `ros2 pkg`, `ros2 run` and `ros2 launch` do, then run every executable.
+
+    python .ci/installed.py [--prefix FOLDER]    FOLDER: where the ament index must find the package
+
+Each executable has to appear in the graph as the node it is named after, and to end with exit code 0 on SIGINT.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import rclpy
+from ament_index_python.packages import get_package_prefix, get_package_share_directory
+from rclpy.context import Context
+from rclpy.node import Node
+
+PACKAGE = "thymio_sim_ros"
+# Executable → (arguments, nodes that must appear). Port 0 takes a free one.
+EXECUTABLES = {
+    "simulator": ([], {"simulator"}),
+    "aseba_runtime": ([], {"aseba_runtime"}),
+    "foxglove_bridge": (["-p", "port:=0"], {"foxglove_bridge"}),
+    "web_ui": (["-p", "port:=0"], {"web_ui"}),
+    "thymio": (
+        ["-p", "foxglove_bridge:port:=0", "-p", "web_ui:port:=0"],
+        {"simulator", "aseba_runtime", "foxglove_bridge"},
+    ),
+}
+SHARED = ["package.xml", "launch/thymio.launch.py", "playgrounds/line.json"]
+DEADLINE_S = 30.0
+
+
+def main() -> int:
+    """0 when everything is there and runs; else the first thing that is not, on stderr, and 1."""
+    parser = argparse.ArgumentParser(description="Check an installation of thymio_sim_ros.")
+    parser.add_argument("--prefix", type=Path, default=Path(sys.prefix))
+    wanted = parser.parse_args().prefix.resolve()
+    prefix = Path(get_package_prefix(PACKAGE))
+    if prefix.resolve() != wanted:
+        return fail(f"the package was found in {prefix}, wanted {wanted}")
+    share = Path(get_package_share_directory(PACKAGE))
+    missing = [name for name in SHARED if not (share / name).is_file()]
+    if missing:
+        return fail(f"missing in {share}: {', '.join(missing)}")
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    domain, held = reserve_domain()
+    os.environ["ROS_DOMAIN_ID"] = str(domain)
+    context = Context()
+    rclpy.init(args=[], context=context, domain_id=domain)
+    observer = Node("observer", context=context)
+    try:
+        for name, (arguments, nodes) in EXECUTABLES.items():
+            problem = run(prefix / "lib" / PACKAGE / name, arguments, nodes, observer)
+            if problem:
+                return fail(f"{name}: {problem}")
+            print(f"{name}: started and ended", flush=True)
+    finally:
+        observer.destroy_node()
+        context.try_shutdown()
+        held.close()
+    return 0
+
+
+def run(executable: Path, arguments: list[str], nodes: set[str], observer: Node) -> str | None:
+    """Start, wait for the nodes, interrupt; None or what went wrong."""
+    if not os.access(executable, os.X_OK):
+        return f"{executable} is not executable"
+    process = subprocess.Popen(
+        [executable, "--ros-args", *arguments],
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+    try:
+        problem = wait_for(nodes, observer, process)
+        if problem:
+            return problem
+        os.killpg(process.pid, signal.SIGINT)
+        code = process.wait(timeout=DEADLINE_S)
+        return f"exit code {code} after SIGINT" if code else None
+    except subprocess.TimeoutExpired:
+        return f"still there {DEADLINE_S} s after SIGINT"
+    finally:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+
+
+def wait_for(nodes: set[str], observer: Node, process: subprocess.Popen[bytes]) -> str | None:
+    """Until the graph shows the nodes; None or what went wrong."""
+    deadline = time.monotonic() + DEADLINE_S
+    while time.monotonic() < deadline:
+        if nodes <= set(observer.get_node_names()):
+            return None
+        if process.poll() is not None:
+            return f"ended with {process.returncode} before its node appeared"
+        rclpy_wait(observer)
+    return f"no {', '.join(nodes - set(observer.get_node_names()))} in the graph within {DEADLINE_S} s"
+
+
+def rclpy_wait(observer: Node) -> None:
+    """A short wait that ends with the next event of the observer's own."""
+    rclpy.spin_once(observer, timeout_sec=0.1)
+
+
+def reserve_domain() -> tuple[int, socket.socket]:
+    """A domain id that nobody else on this machine has, held by a loopback port."""
+    for domain in range(1, 101):
+        held = socket.socket()
+        try:
+            held.bind(("127.0.0.1", 22000 + domain))
+        except OSError:
+            held.close()
+        else:
+            return domain, held
+    raise SystemExit("no free domain id")
+
+
+def fail(problem: str) -> int:
+    """Say what is wrong."""
+    sys.stderr.write(f"installed.py: {problem}\n")
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
