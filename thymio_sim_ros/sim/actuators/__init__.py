@@ -1,0 +1,35 @@
+"""Actuators, one file each: the commands they accept, and what they do with them in every tick.
+
+A module exports ACTUATOR. Its state on one robot is an object made by `begin`; commands change it by `apply`,
+and `update`, if there is one, acts on the robot once per tick.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from thymio_sim_ros import registry
+from thymio_sim_ros.sim.aseba_face import NO_ACTUATOR_FACE, ActuatorFace
+from thymio_sim_ros.sim.view import ActuatorView
+
+__all__ = ["Actuator", "all_actuators"]
+
+
+@dataclass(frozen=True, slots=True)
+class Actuator:
+    """One actuator; `accepts` are the types of its commands. Times in ns, `update`'s last argument in s."""
+
+    name: str
+    accepts: tuple[type[Any], ...]
+    begin: Callable[[], Any]
+    apply: Callable[[Any, Any, int], None]
+    update: Callable[[Any, ActuatorView, float], None] | None = None
+    aseba: ActuatorFace = NO_ACTUATOR_FACE
+
+
+def all_actuators() -> tuple[Actuator, ...]:
+    """Every actuator of this folder, in name order."""
+    return registry.collect(sys.modules[__name__], "ACTUATOR", Actuator)

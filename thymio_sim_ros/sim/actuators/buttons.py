@@ -1,0 +1,26 @@
+"""Fingers on the five buttons, put there by an operator (thymio-robot.md section 7.4)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from thymio_sim_ros.sim.actuators import Actuator
+from thymio_sim_ros.sim.commands import BUTTONS, PressButton
+
+__all__ = ["ACTUATOR", "ButtonState"]
+
+
+@dataclass(slots=True)
+class ButtonState:
+    """Whether each button is held, in the order of `BUTTONS`."""
+
+    pressed: dict[str, bool] = field(default_factory=lambda: dict.fromkeys(BUTTONS, False))
+
+
+def _apply(state: ButtonState, command: PressButton, _now_ns: int) -> None:
+    if command.button not in state.pressed:
+        raise ValueError(f"PressButton: found {command.button!r}, expected one of {', '.join(BUTTONS)}")
+    state.pressed[command.button] = command.pressed
+
+
+ACTUATOR = Actuator(name="buttons", accepts=(PressButton,), begin=ButtonState, apply=_apply)

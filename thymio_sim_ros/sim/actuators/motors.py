@@ -1,0 +1,74 @@
+"""The two motors (thymio-robot.md section 2).
+
+Targets of a program persist. A ROS command holds until it times out, after which the targets hold again;
+newer targets end it at once. Motors follow without delay; each wheel slips by a new random factor every tick.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from thymio_sim_ros.sim import thymio2, units
+from thymio_sim_ros.sim.actuators import Actuator
+from thymio_sim_ros.sim.aseba_face import ActuatorFace, Output
+from thymio_sim_ros.sim.commands import BodyTwist, Command, MotorTargets, WheelVelocities
+from thymio_sim_ros.sim.view import ActuatorView
+
+__all__ = ["ACTUATOR", "MotorState"]
+
+_AT_REST = (0.0, 0.0)
+
+
+@dataclass(slots=True)
+class MotorState:
+    """Wheel speeds in m/s: those of the targets, and those in force."""
+
+    targets_m_s: tuple[float, float] = _AT_REST
+    speeds_m_s: tuple[float, float] = _AT_REST
+    ends_ns: int | None = None
+
+
+def wheel_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
+    """Left and right in m/s; both are scaled down together when one would be above the limit."""
+    if isinstance(command, BodyTwist):
+        turn = command.angular_rad_s * thymio2.WHEEL_TRACK_M / 2
+        left, right = command.linear_m_s - turn, command.linear_m_s + turn
+    else:
+        left, right = command.left_rad_s * thymio2.WHEEL_RADIUS_M, command.right_rad_s * thymio2.WHEEL_RADIUS_M
+    largest = max(abs(left), abs(right))
+    scale = thymio2.MAX_SPEED_M_S / largest if largest > thymio2.MAX_SPEED_M_S else 1.0
+    return (left * scale, right * scale)
+
+
+def _apply(state: MotorState, command: MotorTargets | WheelVelocities | BodyTwist, now_ns: int) -> None:
+    if isinstance(command, MotorTargets):
+        state.targets_m_s = (units.units_to_speed(command.left), units.units_to_speed(command.right))
+        state.speeds_m_s = state.targets_m_s
+        state.ends_ns = None
+    else:
+        state.speeds_m_s = wheel_speeds(command)
+        state.ends_ns = now_ns + command.timeout_ns if command.timeout_ns else None
+
+
+def _update(state: MotorState, view: ActuatorView, _dt_s: float) -> None:
+    if state.ends_ns is not None and view.now_ns >= state.ends_ns:
+        state.speeds_m_s = state.targets_m_s
+        state.ends_ns = None
+    noise = view.noise
+    slip = (noise.uniform(*thymio2.SLIP), noise.uniform(*thymio2.SLIP))
+    view.wheels.drive(state.speeds_m_s, slip, thymio2.MAX_SPEED_M_S)
+
+
+def _targets(words: Sequence[int]) -> Command:
+    return MotorTargets(words[0], words[1])
+
+
+ACTUATOR = Actuator(
+    name="motors",
+    accepts=(MotorTargets, WheelVelocities, BodyTwist),
+    begin=MotorState,
+    apply=_apply,
+    update=_update,
+    aseba=ActuatorFace(outputs=(Output((("motor.left.target", 1), ("motor.right.target", 1)), _targets),)),
+)

@@ -1,0 +1,97 @@
+"""Time: the world's own clock, the schedule of its sensors, and the one meeting with wall time.
+
+All times are integer nanoseconds. Simulated time is a count of ticks; `Pacer` alone sees readings of a
+wall clock, which its caller takes (architecture section 5).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["TICK_NS", "Pacer", "Schedule", "SimClock"]
+
+TICK_NS = 10_000_000
+"""One step of the world: 10 ms, the fastest event of the robot (thymio-robot.md section 3)."""
+
+_SECOND_NS = 1_000_000_000
+
+
+class SimClock:
+    """Simulated time. Invariant: `now_ns` is a whole number of ticks."""
+
+    __slots__ = ("now_ns",)
+
+    def __init__(self) -> None:
+        self.now_ns = 0
+
+    def advance(self) -> int:
+        """One tick later; the new time."""
+        self.now_ns += TICK_NS
+        return self.now_ns
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """What happens every `period_ns`, at the first tick not before each multiple; right for any period."""
+
+    period_ns: int
+    phase_ns: int = 0
+
+    def due(self, now_ns: int) -> bool:
+        """Whether a multiple of the period lies in the tick that ends now."""
+        return (now_ns - self.phase_ns) % self.period_ns < TICK_NS and now_ns >= self.phase_ns
+
+
+class Pacer:
+    """Wall time → ticks owed. Invariant: never owes more than `max_batch` ticks at once.
+
+    `real_time_factor` is simulated per wall seconds; 0 means as fast as possible, in batches. What can't
+    be caught up is dropped and counted; `achieved` is the factor over about the last second.
+    """
+
+    def __init__(self, real_time_factor: float, *, max_batch: int = 10) -> None:
+        if not 0.0 <= real_time_factor < float("inf"):
+            raise ValueError(f"real-time factor {real_time_factor}: expected a number from 0 up")
+        self.achieved = 0.0
+        self.dropped_ticks = 0
+        self._factor = real_time_factor
+        self._max_batch = max(max_batch, 2 * int(real_time_factor))
+        self._tick_wall_ns = TICK_NS / real_time_factor if real_time_factor else 0.0
+        self._next_due_ns: float | None = None
+        self._window_start_ns = 0
+        self._window_ticks = 0
+
+    def owed(self, monotonic_ns: int) -> int:
+        """Ticks to do now, for a reading of a monotonic wall clock."""
+        if self._next_due_ns is None:
+            self._next_due_ns = monotonic_ns + self._tick_wall_ns
+            self._window_start_ns = monotonic_ns
+            return 0 if self._factor else self._grant(self._max_batch)
+        if not self._factor:
+            self._measure(monotonic_ns)
+            return self._grant(self._max_batch)
+        late_ns = monotonic_ns - self._next_due_ns
+        ticks = int(late_ns // self._tick_wall_ns) + 1 if late_ns >= 0 else 0
+        self._next_due_ns += ticks * self._tick_wall_ns
+        if ticks > self._max_batch:
+            self.dropped_ticks += ticks - self._max_batch
+            ticks = self._max_batch
+        self._measure(monotonic_ns)
+        return self._grant(ticks)
+
+    def wait_ns(self, monotonic_ns: int) -> int:
+        """Wall time until the next tick is due; 0 when one is owed already."""
+        if self._next_due_ns is None or not self._factor:
+            return 0
+        return max(0, int(self._next_due_ns - monotonic_ns) + 1)
+
+    def _grant(self, ticks: int) -> int:
+        self._window_ticks += ticks
+        return ticks
+
+    def _measure(self, monotonic_ns: int) -> None:
+        elapsed_ns = monotonic_ns - self._window_start_ns
+        if elapsed_ns >= _SECOND_NS or (self.achieved == 0.0 and elapsed_ns >= _SECOND_NS // 10):
+            self.achieved = self._window_ticks * TICK_NS / elapsed_ns
+            self._window_start_ns = monotonic_ns
+            self._window_ticks = 0

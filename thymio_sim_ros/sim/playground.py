@@ -1,0 +1,239 @@
+"""Playground files: JSON text → a frozen `Playground`, or a `PlaygroundError` that says where and why.
+
+Format 1: `format`, `title`, `description`, `shapes` (each with `kind`, optional `name`, and the fields of its
+kind, see `sim/shapes`), `robots` (`name`, `x_m`, `y_m`, `yaw_rad`). Data only, SI units; unknown keys are refused.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import Any, NoReturn
+
+from thymio_sim_ros.sim import thymio2
+from thymio_sim_ros.sim.fields import Angle, Coordinate, FieldError, Name, Text, describe, json_schema, read
+from thymio_sim_ros.sim.geometry import Pose, convex_hulls_overlap, disc_overlaps_hull
+from thymio_sim_ros.sim.primitives import Disc, Floor, Paint, Primitive, Solid
+from thymio_sim_ros.sim.shapes import Shape, ShapeKind, all_shapes
+
+__all__ = ["NamedShape", "Playground", "PlaygroundError", "RobotStart", "load", "loads", "schema"]
+
+FORMAT = 1
+MAX_BYTES = 1_000_000
+MAX_SHAPES = 1000
+MAX_ROBOTS = 100
+MAX_PRIMITIVES = 10_000
+
+
+class PlaygroundError(Exception):
+    """A playground that is refused: file, path of the key, what was found there, what was expected."""
+
+    def __init__(self, path: str, key: str, found: str, expected: str) -> None:
+        where = f"{path}: {key}" if key else path
+        super().__init__(f"{where}: found {found}, expected {expected}")
+        self.path = path
+        self.key = key
+        self.found = found
+        self.expected = expected
+
+
+@dataclass(frozen=True, slots=True)
+class RobotStart:
+    """A robot and where it starts."""
+
+    name: Name
+    x_m: Coordinate
+    y_m: Coordinate
+    yaw_rad: Angle = 0.0
+
+    @property
+    def pose(self) -> Pose:
+        """The start as a pose."""
+        return Pose(self.x_m, self.y_m, self.yaw_rad)
+
+
+@dataclass(frozen=True, slots=True)
+class NamedShape:
+    """One shape of the file: its kind's name, its own name, its fields."""
+
+    kind: str
+    name: str
+    shape: Shape
+
+
+@dataclass(frozen=True, slots=True)
+class Playground:
+    """A checked playground. Invariant: names are unique, no robot starts inside a solid or another robot."""
+
+    name: str
+    title: str
+    description: str
+    shapes: tuple[NamedShape, ...]
+    robots: tuple[RobotStart, ...]
+    solids: tuple[Solid, ...]
+    floors: tuple[Floor, ...]
+    paints: tuple[Paint, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Titles:
+    title: Text
+    description: Text = ""
+
+
+def load(path: str | Path) -> Playground:
+    """The playground of a file, named after it; PlaygroundError also when it can't be read."""
+    path = Path(path)
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise PlaygroundError(str(path), "", error.strerror or "an error", "a readable file") from error
+    try:
+        text = data[: MAX_BYTES + 1].decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise PlaygroundError(str(path), "", f"a wrong byte at {error.start}", "UTF-8 text") from error
+    return _read(text, path.stem, str(path))
+
+
+def loads(text: str, name: str) -> Playground:
+    """The playground of a text; errors name it as `name`."""
+    return _read(text, name, name)
+
+
+def schema() -> dict[str, Any]:
+    """The JSON schema of a playground file, derived from the shapes; `description` tells units."""
+    kinds = all_shapes()
+    name = json_schema(RobotStart)["properties"]["name"]
+    shapes = []
+    for kind in kinds:
+        form = json_schema(kind.form, extra={"kind": {"const": kind.name}})
+        form["properties"]["name"] = name
+        shapes.append(form)
+    top = json_schema(_Titles, extra={"format": {"const": FORMAT}})
+    top["properties"]["shapes"] = {"type": "array", "maxItems": MAX_SHAPES, "items": {"oneOf": shapes}}
+    top["properties"]["robots"] = {"type": "array", "maxItems": MAX_ROBOTS, "items": json_schema(RobotStart)}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "Thymio playground", **top}
+
+
+def _read(text: str, name: str, path: str) -> Playground:
+    if len(text) > MAX_BYTES:
+        raise PlaygroundError(path, "", f"more than {MAX_BYTES} characters", "a smaller file")
+    try:
+        return _build(_parse(text), name)
+    except FieldError as error:
+        raise PlaygroundError(path, error.key, error.found, error.expected) from error
+
+
+def _parse(text: str) -> object:
+    def refuse(word: str) -> NoReturn:
+        raise FieldError("", word, "finite numbers")
+
+    def unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
+        members = dict(pairs)
+        if len(members) < len(pairs):
+            keys = [key for key, _ in pairs]
+            twice = next(key for key in keys if keys.count(key) > 1)
+            raise FieldError(twice, "the key twice", "every key once")
+        return members
+
+    try:
+        return json.loads(text, parse_constant=refuse, object_pairs_hook=unique)
+    except json.JSONDecodeError as error:
+        raise FieldError(f"line {error.lineno}, column {error.colno}", error.msg, "JSON") from error
+    except (RecursionError, ValueError) as error:
+        raise FieldError("", "numbers or nesting without measure", "a playground") from error
+
+
+def _build(data: object, name: str) -> Playground:
+    if not isinstance(data, Mapping):
+        raise FieldError("", describe(data), "an object")
+    members = dict(data)
+    version = members.pop("format", None)
+    if version != FORMAT or isinstance(version, bool):
+        raise FieldError("format", describe(version), str(FORMAT))
+    shape_items = _items(members.pop("shapes", []), "shapes", MAX_SHAPES)
+    robot_items = _items(members.pop("robots", []), "robots", MAX_ROBOTS)
+    titles = read(_Titles, members, "")
+    kinds = {kind.name: kind for kind in all_shapes()}
+    shapes = tuple(_shape(item, index, kinds) for index, item in enumerate(shape_items))
+    robots = tuple(read(RobotStart, item, f"robots[{index}]") for index, item in enumerate(robot_items))
+    _check_names(shapes, robots)
+    primitives = _primitives(shapes)
+    solids = tuple(primitive for primitive in primitives if isinstance(primitive, Solid))
+    _check_starts(robots, solids)
+    return Playground(
+        name=name,
+        title=titles.title,
+        description=titles.description,
+        shapes=shapes,
+        robots=robots,
+        solids=solids,
+        floors=tuple(primitive for primitive in primitives if isinstance(primitive, Floor)),
+        paints=tuple(primitive for primitive in primitives if isinstance(primitive, Paint)),
+    )
+
+
+def _items(value: object, key: str, most: int) -> list[object]:
+    if not isinstance(value, list):
+        raise FieldError(key, describe(value), "a list")
+    if len(value) > most:
+        raise FieldError(key, f"{len(value)} items", f"at most {most}")
+    return value
+
+
+def _shape(item: object, index: int, kinds: Mapping[str, ShapeKind]) -> NamedShape:
+    key = f"shapes[{index}]"
+    if not isinstance(item, Mapping):
+        raise FieldError(key, describe(item), "an object")
+    members = dict(item)
+    kind = members.pop("kind", None)
+    if not isinstance(kind, str) or kind not in kinds:
+        raise FieldError(f"{key}.kind", describe(kind), "one of " + ", ".join(kinds))
+    name = read(_Label, {"name": members.pop("name", f"{kind}_{index}")}, key).name
+    return NamedShape(kind, name, read(kinds[kind].form, members, key))
+
+
+@dataclass(frozen=True, slots=True)
+class _Label:
+    name: Name
+
+
+def _check_names(shapes: Iterable[NamedShape], robots: Iterable[RobotStart]) -> None:
+    seen: dict[str, str] = {}
+    named = [(f"shapes[{index}]", shape.name) for index, shape in enumerate(shapes)]
+    named += [(f"robots[{index}]", robot.name) for index, robot in enumerate(robots)]
+    for key, name in named:
+        if name in seen:
+            raise FieldError(f"{key}.name", f"'{name}' as in {seen[name]}", "a name of its own")
+        seen[name] = key
+
+
+def _primitives(shapes: tuple[NamedShape, ...]) -> list[Primitive]:
+    found: list[Primitive] = []
+    for index, named in enumerate(shapes):
+        try:
+            found.extend(named.shape.primitives(named.name))
+        except ValueError as error:
+            raise FieldError(f"shapes[{index}]", str(error), f"a {named.kind} that can be built") from error
+    if len(found) > MAX_PRIMITIVES:
+        raise FieldError("shapes", f"{len(found)} parts", f"at most {MAX_PRIMITIVES}")
+    return found
+
+
+def _check_starts(robots: tuple[RobotStart, ...], solids: tuple[Solid, ...]) -> None:
+    hulls = [robot.pose.place_all(thymio2.hull()) for robot in robots]
+    for index, (robot, hull) in enumerate(zip(robots, hulls, strict=True)):
+        for solid in solids:
+            if isinstance(solid.outline, Disc):
+                hit = disc_overlaps_hull((solid.pose.x_m, solid.pose.y_m), solid.outline.radius_m, hull)
+            else:
+                hit = convex_hulls_overlap(hull, solid.vertices)
+            if hit:
+                raise FieldError(f"robots[{index}]", f"'{robot.name}' inside '{solid.name}'", "a free place")
+    for one, other in combinations(range(len(robots)), 2):
+        if convex_hulls_overlap(hulls[one], hulls[other]):
+            found = f"'{robots[other].name}' inside '{robots[one].name}'"
+            raise FieldError(f"robots[{other}]", found, "a free place")

@@ -1,0 +1,83 @@
+"""What every shape is made of: solids that stop robots and reflect light, floors, and paint on floors.
+
+Shapes give primitives; physics, sensors, scene and editor know nothing else (architecture section 14).
+Colours are red, green, blue from 0 to 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from thymio_sim_ros.sim.geometry import Point, Pose
+
+__all__ = ["Box", "Colour", "Disc", "Floor", "Outline", "Paint", "Polygon", "Primitive", "Solid"]
+
+Colour = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """Outline: a rectangle centred on its pose."""
+
+    size_x_m: float
+    size_y_m: float
+
+    @property
+    def vertices(self) -> tuple[Point, ...]:
+        """Corners, counter-clockwise, in the solid's frame."""
+        x, y = self.size_x_m / 2, self.size_y_m / 2
+        return ((-x, -y), (x, -y), (x, y), (-x, y))
+
+
+@dataclass(frozen=True, slots=True)
+class Disc:
+    """Outline: a circle centred on its pose."""
+
+    radius_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Polygon:
+    """Outline: a convex polygon, counter-clockwise, in the solid's frame."""
+
+    vertices: tuple[Point, ...]
+
+
+Outline = Box | Disc | Polygon
+
+
+@dataclass(frozen=True, slots=True)
+class Solid:
+    """A thing that stands on the ground: outline, height, colour. `name` is its shape's, and may occur again."""
+
+    name: str
+    pose: Pose
+    outline: Outline
+    height_m: float
+    colour: Colour
+
+    @property
+    def vertices(self) -> tuple[Point, ...]:
+        """Corners in the world's frame; none for a disc."""
+        return () if isinstance(self.outline, Disc) else self.pose.place_all(self.outline.vertices)
+
+
+@dataclass(frozen=True, slots=True)
+class Floor:
+    """A convex piece of ground, counter-clockwise in the world's frame; where there is none a robot falls."""
+
+    name: str
+    vertices: tuple[Point, ...]
+    colour: Colour
+
+
+@dataclass(frozen=True, slots=True)
+class Paint:
+    """A convex patch of colour on the ground, in the world's frame; later paint covers earlier paint."""
+
+    name: str
+    vertices: tuple[Point, ...]
+    colour: Colour
+
+
+Primitive = Solid | Floor | Paint

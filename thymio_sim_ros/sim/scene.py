@@ -1,0 +1,44 @@
+"""What there is to draw: the playground's primitives once, and an immutable snapshot whenever asked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.primitives import Floor, Paint, Solid
+
+__all__ = ["RobotSnapshot", "Scene", "Snapshot"]
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """What does not change: solids stand on floors, paint lies on them, later paint covers earlier paint."""
+
+    solids: tuple[Solid, ...]
+    floors: tuple[Floor, ...]
+    paints: tuple[Paint, ...]
+
+    @classmethod
+    def of(cls, playground: Playground) -> Scene:
+        """The scene of a playground."""
+        return cls(playground.solids, playground.floors, playground.paints)
+
+
+@dataclass(frozen=True, slots=True)
+class RobotSnapshot:
+    """One robot: true pose, wheel angles left and right, levels 0…32 of its lights by group, buttons held."""
+
+    name: str
+    pose: Pose
+    wheel_angles_rad: tuple[float, float]
+    leds: tuple[tuple[str, tuple[int, ...]], ...]
+    pressed: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """The world at one moment."""
+
+    now_ns: int
+    robots: tuple[RobotSnapshot, ...]

@@ -1,0 +1,25 @@
+"""The five buttons, scanned at 50 Hz; each that changed also raises the event of its own name (section 5)."""
+
+from __future__ import annotations
+
+from thymio_sim_ros.sim.actuators.buttons import ButtonState
+from thymio_sim_ros.sim.aseba_face import AsebaFace
+from thymio_sim_ros.sim.commands import BUTTONS
+from thymio_sim_ros.sim.readings import ButtonsReading
+from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.view import SensorView
+
+__all__ = ["SENSOR"]
+
+
+def _measure(view: SensorView) -> ButtonsReading:
+    pressed = view.state(ButtonState).pressed
+    return ButtonsReading(view.now_ns, tuple(int(pressed[button]) for button in BUTTONS))
+
+
+SENSOR = Sensor(
+    name="buttons",
+    period_ns=20_000_000,
+    measure=_measure,
+    aseba=AsebaFace(variables=tuple((f"button.{button}", 1) for button in BUTTONS), event="buttons", edge_events=True),
+)

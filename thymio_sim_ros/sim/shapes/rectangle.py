@@ -1,0 +1,46 @@
+"""A rectangular piece of ground, with or without walls (playground-formats.md part 2: planes)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_colour
+from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.primitives import Box, Floor, Primitive, Solid
+from thymio_sim_ros.sim.shapes import ShapeKind
+from thymio_sim_ros.sim.shapes._border import Walls
+
+
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """Ground of a size, centred on its pose."""
+
+    size_x_m: Extent
+    size_y_m: Extent
+    colour: Shade
+    x_m: Coordinate = 0.0
+    y_m: Coordinate = 0.0
+    yaw_rad: Angle = 0.0
+    walls: Walls | None = None
+
+    def primitives(self, name: str) -> tuple[Primitive, ...]:
+        """One floor, and four walls that overlap at the corners."""
+        pose = Pose(self.x_m, self.y_m, self.yaw_rad)
+        corners = pose.place_all(Box(self.size_x_m, self.size_y_m).vertices)
+        floor = Floor(name, corners, as_colour(self.colour))
+        if self.walls is None:
+            return (floor,)
+        return (floor, *self._borders(name, pose, self.walls))
+
+    def _borders(self, name: str, pose: Pose, walls: Walls) -> tuple[Solid, ...]:
+        thick = walls.thickness_m
+        along_x, along_y = Box(self.size_x_m + thick, thick), Box(thick, self.size_y_m + thick)
+        x, y = self.size_x_m / 2, self.size_y_m / 2
+        colour = as_colour(walls.colour or self.colour)
+        return tuple(
+            Solid(name, Pose(*pose.place(middle), self.yaw_rad), box, walls.height_m, colour)
+            for middle, box in (((x, 0.0), along_y), ((0.0, y), along_x), ((-x, 0.0), along_y), ((0.0, -y), along_x))
+        )
+
+
+SHAPE = ShapeKind("rectangle", Rectangle)

@@ -1,0 +1,73 @@
+"""The Thymio II in numbers; every one names its source in thymio-robot.md (TR) or says where it comes from."""
+
+from __future__ import annotations
+
+import math
+
+HULL_RADIUS_M = 0.080
+"""Radius of the round front about the origin, which lies between the wheels (TR 1.1)."""
+HULL_WIDTH_M = 0.110
+"""Width of the collision outline (TR 1.1)."""
+HULL_REAR_X_M = -0.030
+"""Where the straight rear is (TR 1.1)."""
+HULL_HEIGHT_M = 0.051
+"""Height of the collision outline, which other robots see (TR 1, 1.1)."""
+BODY_HEIGHT_M = 0.053
+"""Height as drawn (TR 1)."""
+MASS_KG = 0.27
+"""Mass of the robot (TR 1)."""
+
+WHEEL_TRACK_M = 0.094
+"""Distance between the wheels' contact points (TR 1)."""
+WHEEL_RADIUS_M = 0.022
+"""Only turns ground speed into wheel angles (TR 1)."""
+WHEEL_WIDTH_M = 0.015
+"""Only drawn (TR 1)."""
+
+MAX_SPEED_M_S = 0.166
+"""Ground speed of a wheel at target 500, and its limit (TR 2)."""
+FULL_TARGET = 500
+"""The target that gives the full speed (TR 2)."""
+SLIP = (0.973, 1.027)
+"""Range of the uniform factor on each wheel's ground speed in each control step (TR 2)."""
+PWM_PER_SPEED_UNIT = -1.6
+"""motor.*.pwm for each unit of speed; the sign is opposite (TR 2)."""
+PWM_LIMIT = 801
+"""Limit of motor.*.pwm (TR 2.1)."""
+
+DRIVE_FORCE_N = 1.3
+"""Most force that both wheels give together: grip 0.5 of the weight. Own choice: TR 11 asks for a finite force."""
+
+PROXIMITY_POSES: tuple[tuple[float, float, float], ...] = (
+    (0.062, 0.0485, math.radians(40)),
+    (0.075, 0.0255, math.radians(20)),
+    (0.0795, 0.0, 0.0),
+    (0.075, -0.0255, math.radians(-20)),
+    (0.062, -0.0485, math.radians(-40)),
+    (-0.0295, 0.0295, math.pi),
+    (-0.0295, -0.0295, math.pi),
+)
+"""x, y, heading of the proximity sensors in Thymio's order 0…6: left to right, then rear left, rear right (TR 7.1)."""
+PROXIMITY_HEIGHT_M = 0.034
+"""Lower things are not seen (TR 7.1)."""
+PROXIMITY_RANGE_M = 0.14
+"""Nothing is seen beyond (TR 7.1)."""
+PROXIMITY_HALF_CONE_RAD = math.radians(15)
+"""The side rays of a sensor lie this far from its axis (TR 7.1)."""
+PROXIMITY_NOISE = 2.87
+"""Standard deviation of a count (TR 7.1)."""
+
+GROUND_SENSORS: tuple[tuple[float, float], ...] = ((0.072, 0.0115), (0.072, -0.0115))
+"""x, y of the ground sensors, left then right (TR 7.2)."""
+GROUND_NOISE = 10.0
+"""Standard deviation of a ground count (TR 7.2)."""
+
+
+def hull() -> tuple[tuple[float, float], ...]:
+    """The collision outline, counter-clockwise from the front right (TR 1.1)."""
+    corner = math.asin(HULL_WIDTH_M / 2 / HULL_RADIUS_M)
+    front = tuple(
+        (HULL_RADIUS_M * math.cos(angle), HULL_RADIUS_M * math.sin(angle))
+        for angle in (-corner + corner * step / 5 for step in range(11))
+    )
+    return (*front, (HULL_REAR_X_M, HULL_WIDTH_M / 2), (HULL_REAR_X_M, -HULL_WIDTH_M / 2))

@@ -1,0 +1,69 @@
+"""SI units ↔ Thymio integers: the only place where one becomes the other.
+
+Response curves: thymio-robot.md sections 2 (motors), 7.1 (proximity), 7.2 (ground), 8.1 (LEDs).
+"""
+
+from __future__ import annotations
+
+import math
+
+from thymio_sim_ros.sim.commands import LED_FULL
+from thymio_sim_ros.sim.thymio2 import FULL_TARGET, MAX_SPEED_M_S, PROXIMITY_RANGE_M, PWM_LIMIT, PWM_PER_SPEED_UNIT
+
+PROXIMITY_FULL = 4505
+"""The largest proximity count."""
+_PROXIMITY_X0_M = 0.0003
+_PROXIMITY_C_M2 = 0.0073
+_PROXIMITY_SCALE = PROXIMITY_FULL * (_PROXIMITY_C_M2 - _PROXIMITY_X0_M**2)
+
+GROUND_FULL = 1023
+"""The largest ground count (10 bits)."""
+_GROUND_BLACK = 60.0
+_GROUND_SPAN = 884.0
+_GROUND_SLOPE = 9.0
+_GROUND_MIDDLE = 0.44
+
+
+def speed_to_units(speed_m_s: float) -> int:
+    """Ground speed of a wheel as motor.*.speed, truncated as in the reference."""
+    return int(speed_m_s * (FULL_TARGET / MAX_SPEED_M_S) + math.copysign(1e-6, speed_m_s))
+
+
+def units_to_speed(target: int) -> float:
+    """motor.*.target as ground speed in m/s, limited to ±MAX_SPEED_M_S."""
+    return max(-MAX_SPEED_M_S, min(MAX_SPEED_M_S, target * (MAX_SPEED_M_S / FULL_TARGET)))
+
+
+def units_to_pwm(speed: int) -> int:
+    """motor.*.pwm for a speed in units."""
+    return max(-PWM_LIMIT, min(PWM_LIMIT, int(PWM_PER_SPEED_UNIT * speed)))
+
+
+def proximity_response(distance_m: float) -> float:
+    """Response F of one ray to something at a distance; 0 beyond the range.
+
+    F(x) = m (c - x0²) / (x² - 2 x0 x + c) with m = 4505, x0 = 0.3 mm, c = 73 cm²; F = m below x0.
+    """
+    if distance_m > PROXIMITY_RANGE_M:
+        return 0.0
+    if distance_m < _PROXIMITY_X0_M:
+        return float(PROXIMITY_FULL)
+    return _PROXIMITY_SCALE / (distance_m * distance_m - 2.0 * _PROXIMITY_X0_M * distance_m + _PROXIMITY_C_M2)
+
+
+def proximity_distance(count: float) -> float:
+    """Distance in m at which one ray, or a wall across the sensor's axis, gives a count above 0; at most the range."""
+    if count >= PROXIMITY_FULL:
+        return 0.0
+    square = _PROXIMITY_X0_M**2 - _PROXIMITY_C_M2 + _PROXIMITY_SCALE / count
+    return min(PROXIMITY_RANGE_M, _PROXIMITY_X0_M + math.sqrt(max(0.0, square)))
+
+
+def ground_response(reflectance: float) -> float:
+    """Count of a ground sensor over a grey 0…1: 60 + 884 / (1 + exp(-9 (g - 0.44)))."""
+    return _GROUND_BLACK + _GROUND_SPAN / (1.0 + math.exp(-_GROUND_SLOPE * (reflectance - _GROUND_MIDDLE)))
+
+
+def saturate_led(word: int) -> int:
+    """Brightness 0…32 of an Aseba word: the firmware keeps its low byte, and 32 and more is full (section 8.1)."""
+    return min(word & 0xFF, LED_FULL)

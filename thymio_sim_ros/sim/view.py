@@ -1,0 +1,95 @@
+"""What a plug-in sees of its robot and the world: sensors read, actuators also act."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol, TypeVar
+
+from thymio_sim_ros.sim.geometry import Pose, Twist
+from thymio_sim_ros.sim.ground import GroundSample
+from thymio_sim_ros.sim.noise import Noise
+from thymio_sim_ros.sim.physics import Contact
+from thymio_sim_ros.sim.rays import Surroundings
+from thymio_sim_ros.sim.wheels import Wheels
+
+__all__ = ["ActuatorView", "SensorView"]
+
+S = TypeVar("S")
+
+
+class SensorView(Protocol):
+    """A robot as one of its sensors sees it; nothing here can be changed but the sensor's own `memory`."""
+
+    @property
+    def now_ns(self) -> int:
+        """Simulated time."""
+        ...
+
+    @property
+    def pose(self) -> Pose:
+        """Where the robot really is."""
+        ...
+
+    @property
+    def twist(self) -> Twist:
+        """How its body really moves."""
+        ...
+
+    @property
+    def wheels(self) -> Wheels:
+        """Angles and speeds of the wheels, and the odometry."""
+        ...
+
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """What the robot touches."""
+        ...
+
+    @property
+    def noise(self) -> Noise:
+        """The sensor's own generator."""
+        ...
+
+    @property
+    def memory(self) -> dict[str, Any]:
+        """The sensor's own notes on this robot, empty at the start."""
+        ...
+
+    @property
+    def proximity_model(self) -> str:
+        """ "default" or "enki" (thymio-robot.md section 7.1)."""
+        ...
+
+    def surroundings(self, reach_m: float, height_m: float) -> Surroundings:
+        """What rays may meet within `reach_m` of the robot's origin, at least `height_m` high."""
+        ...
+
+    def ground_at(self, x_m: float, y_m: float) -> GroundSample:
+        """The ground under a point of the robot's frame."""
+        ...
+
+    def state(self, kind: type[S]) -> S:
+        """The state of the actuator whose state is a `kind`; KeyError when there is none."""
+        ...
+
+
+class ActuatorView(Protocol):
+    """A robot as one of its actuators sees it."""
+
+    @property
+    def now_ns(self) -> int:
+        """Simulated time."""
+        ...
+
+    @property
+    def noise(self) -> Noise:
+        """The actuator's own generator."""
+        ...
+
+    @property
+    def wheels(self) -> Wheels:
+        """The wheels, to be driven."""
+        ...
+
+    def place(self, pose: Pose) -> None:
+        """Put the robot somewhere, at rest."""
+        ...

@@ -1,0 +1,113 @@
+"""The world: owns clock, bodies, ground and robots, and alone lets time pass.
+
+Commands may be posted at any time and take effect in the next step. The same playground, seed and commands
+give the same readings bit for bit. One thread may use a world; nothing here locks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from thymio_sim_ros.sim.actuators import all_actuators
+from thymio_sim_ros.sim.clock import TICK_NS, SimClock
+from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.ground import Ground
+from thymio_sim_ros.sim.physics import Contact, Physics
+from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.readings import Reading
+from thymio_sim_ros.sim.robot import Robot, Shared
+from thymio_sim_ros.sim.scene import Scene, Snapshot
+from thymio_sim_ros.sim.sensors import all_sensors
+
+__all__ = ["TICK_NS", "StepResult", "World"]
+
+_TICK_S = TICK_NS * 1e-9
+PROXIMITY_MODELS = ("default", "enki")
+
+
+@dataclass(frozen=True, slots=True)
+class StepResult:
+    """What one step gave: readings as (robot, sensor, reading), by robot and then by sensor name; contacts."""
+
+    now_ns: int
+    readings: tuple[tuple[str, str, Reading], ...]
+    contacts: tuple[Contact, ...]
+
+
+class World:
+    """A playground that lives. Invariant: nothing in it changes but by `step` and `reset`."""
+
+    def __init__(
+        self, playground: Playground, *, seed: int = 0, noise: bool = True, proximity_model: str = "default"
+    ) -> None:
+        if proximity_model not in PROXIMITY_MODELS:
+            raise ValueError(f"proximity model {proximity_model!r}: expected one of {', '.join(PROXIMITY_MODELS)}")
+        self.playground = playground
+        self.scene = Scene.of(playground)
+        self._seed, self._noise, self._proximity_model = seed, noise, proximity_model
+        self._ground = Ground(playground.floors, playground.paints)
+        self.reset()
+
+    def reset(self) -> None:
+        """Everything as at the start: time 0, robots at their places, the same noise again, no command waiting."""
+        self._clock = SimClock()
+        self._physics = Physics(self.playground.solids)
+        shared = Shared(self._clock, self._ground, self._physics, self._proximity_model)
+        actuators, sensors = all_actuators(), all_sensors()
+        self._robots = {
+            start.name: Robot(start, shared, actuators, sensors, seed=self._seed, noise=self._noise)
+            for start in self.playground.robots
+        }
+        self._posted: list[tuple[Robot, Command]] = []
+
+    @property
+    def now_ns(self) -> int:
+        """Simulated time."""
+        return self._clock.now_ns
+
+    @property
+    def robots(self) -> Mapping[str, Robot]:
+        """The robots by name, in the order of the playground."""
+        return MappingProxyType(self._robots)
+
+    def post(self, robot: str, command: Command) -> None:
+        """Let a command take effect in the next step; KeyError for an unknown robot, TypeError for no command."""
+        found = self._robots[robot]
+        if not found.accepts(command):
+            raise TypeError(f"no actuator takes a {type(command).__name__}")
+        self._posted.append((found, command))
+
+    def step(self) -> StepResult:
+        """Let one tick pass."""
+        self._apply_commands()
+        self._run_actuators()
+        contacts = self._move_bodies()
+        now_ns = self._clock.advance()
+        return StepResult(now_ns, self._run_sensors(now_ns), contacts)
+
+    def snapshot(self) -> Snapshot:
+        """How the world looks now."""
+        return Snapshot(self._clock.now_ns, tuple(robot.snapshot() for robot in self._robots.values()))
+
+    def _apply_commands(self) -> None:
+        posted, self._posted = self._posted, []
+        for robot, command in posted:
+            robot.apply(command)
+
+    def _run_actuators(self) -> None:
+        for robot in self._robots.values():
+            robot.act(_TICK_S)
+
+    def _move_bodies(self) -> tuple[Contact, ...]:
+        contacts = self._physics.step()
+        for robot in self._robots.values():
+            robot.roll(_TICK_S)
+        return contacts
+
+    def _run_sensors(self, now_ns: int) -> tuple[tuple[str, str, Reading], ...]:
+        readings: list[tuple[str, str, Reading]] = []
+        for robot in self._robots.values():
+            readings.extend(robot.measure(now_ns))
+        return tuple(readings)
