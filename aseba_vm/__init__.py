@@ -1,0 +1,47 @@
+"""Aseba without a robot: compiler, virtual machine and .aesl files, in the standard library alone.
+
+>>> from aseba_vm import VirtualMachine, compile, targets
+>>> program = compile("var n = 2  n = n * 21", targets.THYMIO_II)
+>>> machine = VirtualMachine(targets.THYMIO_II)
+>>> machine.load(program)
+>>> machine.run()
+True
+>>> machine.variables[program.addresses["n"][0]]
+42
+"""
+
+from aseba_vm import aesl, outbox, targets
+from aseba_vm.bytecode import EventEntry, SubEntry
+from aseba_vm.compiler import Program, Stages, compile, compile_stages
+from aseba_vm.errors import AeslError, AsebaError, CompileError, SourcePos, TargetError
+from aseba_vm.nativecall import Native, NativeCall, NativeFault
+from aseba_vm.target import LocalEvent, NativeFunction, Parameter, TargetDescription, Variable
+from aseba_vm.tree import Memory
+from aseba_vm.vm import VirtualMachine
+
+__all__ = [
+    "AeslError",
+    "AsebaError",
+    "CompileError",
+    "EventEntry",
+    "LocalEvent",
+    "Memory",
+    "Native",
+    "NativeCall",
+    "NativeFault",
+    "NativeFunction",
+    "Parameter",
+    "Program",
+    "SourcePos",
+    "Stages",
+    "SubEntry",
+    "TargetDescription",
+    "TargetError",
+    "Variable",
+    "VirtualMachine",
+    "aesl",
+    "compile",
+    "compile_stages",
+    "outbox",
+    "targets",
+]

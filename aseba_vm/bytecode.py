@@ -1,0 +1,198 @@
+"""Instructions and words: the table of operations, encoding, linking and disassembly (VM spec, sections 1 and 2)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+
+
+class Op(IntEnum):
+    """The top 4 bits of an instruction."""
+
+    STOP = 0x0
+    PUSH = 0x1
+    PUSHL = 0x2
+    LOAD = 0x3
+    STORE = 0x4
+    LOADX = 0x5
+    STOREX = 0x6
+    UNARY = 0x7
+    BINARY = 0x8
+    JUMP = 0x9
+    BRANCH = 0xA
+    EMIT = 0xB
+    NATIVE = 0xC
+    CALL = 0xD
+    RET = 0xE
+    UNKNOWN = 0xF
+
+
+#: Words of each operation, by its number.
+LENGTH: Sequence[int] = (1, 1, 2, 1, 1, 2, 2, 1, 1, 1, 2, 3, 1, 1, 1, 1)
+
+BINARY_OPERATORS: Sequence[str] = (
+    *("<<", ">>", "+", "-", "*", "/", "%", "|", "^", "&"),
+    *("==", "!=", ">", ">=", "<", "<=", "or", "and"),
+)
+UNARY_OPERATORS: Sequence[str] = ("-", "abs", "~", "not")
+
+BINARY_NUMBER: Mapping[str, int] = {symbol: number for number, symbol in enumerate(BINARY_OPERATORS)}
+UNARY_NUMBER: Mapping[str, int] = {symbol: number for number, symbol in enumerate(UNARY_OPERATORS)}
+
+EDGE = 0x100
+"""Bit of a BRANCH: take the branch only when the condition becomes true."""
+WAS_TRUE = 0x200
+"""Bit of a BRANCH in bytecode memory: the condition was true at the last evaluation."""
+
+
+@dataclass(frozen=True, slots=True)
+class Instruction:
+    """An operation, its 12-bit operand, the words after it, and the source row of each word (None: undefined)."""
+
+    op: Op
+    operand: int
+    more: tuple[int, ...] = ()
+    row: int | None = 0
+
+    @property
+    def words(self) -> tuple[int, ...]:
+        """The instruction as unsigned words. The operand is or-ed without mask, as linking demands."""
+        return ((self.op << 12 | self.operand) & 0xFFFF, *(word & 0xFFFF for word in self.more))
+
+    def __str__(self) -> str:
+        return describe(self.words)
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """The code of an event or a subroutine.
+
+    ``number`` is that of the event or the index of the subroutine, ``depth`` the estimated depth of the stack,
+    ``row`` that of ``sub``. ``falls_through``: the last instruction may be skipped, so that the code runs on.
+    """
+
+    is_sub: bool
+    number: int
+    name: str
+    code: tuple[Instruction, ...]
+    depth: int
+    row: int
+    falls_through: bool = False
+
+    @property
+    def size(self) -> int:
+        """Number of words."""
+        return sum(LENGTH[instruction.op] for instruction in self.code)
+
+    def dump(self) -> str:
+        """Return a heading and one line per instruction, with the row counted from 1."""
+        heading = f"{'sub' if self.is_sub else 'event'} {self.name or 'init'} ({self.number}), stack {self.depth}"
+        rows = ("-" if code.row is None else code.row + 1 for code in self.code)
+        return "\n".join([heading, *(f"  {row:>4}  {code}" for row, code in zip(rows, self.code, strict=True))])
+
+
+@dataclass(frozen=True, slots=True)
+class EventEntry:
+    """An event of the table: number, address of its code, name (empty for the initialisation)."""
+
+    number: int
+    address: int
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class SubEntry:
+    """A subroutine: name, address of its code, row of its declaration."""
+
+    name: str
+    address: int
+    row: int
+
+
+@dataclass(frozen=True, slots=True)
+class Image:
+    """The linked program: words, the source row of each, and where events and subroutines begin."""
+
+    words: tuple[int, ...]
+    lines: tuple[int | None, ...]
+    events: tuple[EventEntry, ...]
+    subs: tuple[SubEntry, ...]
+
+
+def link(segments: Sequence[Segment]) -> Image:
+    """Lay out the segments, events by number and then subroutines, and resolve the calls."""
+    events = sorted((segment for segment in segments if not segment.is_sub), key=lambda segment: segment.number)
+    subs = [segment for segment in segments if segment.is_sub]
+    address = 2 * len(events) + 1
+    addresses: list[int] = []
+    for segment in (*events, *subs):
+        addresses.append(address)
+        address += segment.size
+    table = tuple(EventEntry(event.number, place, event.name) for event, place in zip(events, addresses, strict=False))
+    places = addresses[len(events) :]
+    entries = tuple(SubEntry(sub.name, place, sub.row) for sub, place in zip(subs, places, strict=True))
+    words: list[int] = [2 * len(events) + 1]
+    for entry in table:
+        words += (entry.number, entry.address)
+    lines: list[int | None] = [0] * len(words)
+    for segment in (*events, *subs):
+        for code in segment.code:
+            encoded = code.words
+            if code.op is Op.CALL:
+                encoded = ((Op.CALL << 12 | places[code.operand]) & 0xFFFF,)
+            words += encoded
+            lines += [code.row] * len(encoded)
+    return Image(tuple(words), tuple(lines), table, entries)
+
+
+def signed(word: int) -> int:
+    """Return a word as a signed number."""
+    return word - 0x10000 if word & 0x8000 else word
+
+
+def signed12(word: int) -> int:
+    """Return the low 12 bits of a word as a signed number."""
+    return ((word & 0xFFF) ^ 0x800) - 0x800
+
+
+def instructions(words: Sequence[int], start: int = 0) -> Iterator[tuple[int, tuple[int, ...]]]:
+    """Yield address and words of each instruction from ``start`` to the end; the last may be cut short."""
+    pc = start
+    while pc < len(words):
+        length = LENGTH[words[pc] >> 12 & 0xF]
+        yield pc, tuple(words[pc : pc + length])
+        pc += length
+
+
+def describe(words: Sequence[int]) -> str:
+    """Return one instruction as text; targets of jumps are relative."""
+    op, operand = Op(words[0] >> 12), words[0] & 0xFFF
+    more = [*words[1:], 0, 0]
+    match op:
+        case Op.PUSH:
+            return f"push {signed12(operand)}"
+        case Op.PUSHL:
+            return f"pushl {signed(more[0])}"
+        case Op.LOAD | Op.STORE:
+            return f"{op.name.lower()} {operand}"
+        case Op.LOADX | Op.STOREX:
+            return f"{op.name.lower()} {operand} size {more[0]}"
+        case Op.UNARY | Op.BINARY:
+            names = UNARY_OPERATORS if op is Op.UNARY else BINARY_OPERATORS
+            return f"{op.name.lower()} {names[operand] if operand < len(names) else operand}"
+        case Op.JUMP:
+            return f"jump {signed12(operand):+d}"
+        case Op.BRANCH:
+            number = operand & 0xFF
+            symbol = BINARY_OPERATORS[number] if number < len(BINARY_OPERATORS) else str(number)
+            kind = "when" if operand & EDGE else "if"
+            state = " (was true)" if operand & WAS_TRUE else ""
+            return f"branch {kind} {symbol} else {signed(more[0]):+d}{state}"
+        case Op.EMIT:
+            return f"emit {operand} from {more[0]} size {more[1]}"
+        case Op.NATIVE | Op.CALL:
+            return f"{op.name.lower()} {operand}"
+        case Op.UNKNOWN:
+            return f"unknown {words[0]:#06x}"
+    return op.name.lower()

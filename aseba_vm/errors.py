@@ -1,0 +1,69 @@
+"""Where and why a text is refused: source positions and the exceptions of the package.
+
+An error is data (kind, arguments, position); its wording comes from :mod:`aseba_vm.messages`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from aseba_vm.messages import wording
+
+Argument = int | str | tuple[int | str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SourcePos:
+    """A place in a text: index of the code point, row and column, all from 0 (language spec, section 2)."""
+
+    offset: int
+    row: int
+    col: int
+
+    def __str__(self) -> str:
+        return f"{self.row + 1}:{self.col + 1}"
+
+
+class AsebaError(Exception):
+    """Base of everything this package raises about other people's input."""
+
+
+class CompileError(AsebaError):
+    """A program that is refused: the first error met, in the order of the language spec, section 11.
+
+    ``kind`` is a stable identifier, ``arguments`` its ordered values, ``pos`` the place or None.
+    """
+
+    def __init__(self, kind: str, arguments: tuple[Argument, ...] = (), pos: SourcePos | None = None) -> None:
+        super().__init__(kind, arguments, pos)
+        self.kind = kind
+        self.arguments = arguments
+        self.pos = pos
+
+    def __str__(self) -> str:
+        return wording(self.kind, self.arguments)
+
+    def located(self, name: str) -> str:
+        """Return the message after the name of the file and the place, counted from 1."""
+        return f"{name}:{self}" if self.pos is None else f"{name}:{self.pos}: {self}"
+
+
+class AeslError(AsebaError):
+    """A text that is not an .aesl file. ``line`` and ``column`` count from 1."""
+
+    def __init__(self, reason: str, line: int, column: int) -> None:
+        super().__init__(reason, line, column)
+        self.reason = reason
+        self.line = line
+        self.column = column
+
+    def __str__(self) -> str:
+        return self.reason
+
+    def located(self, name: str) -> str:
+        """Return the message after the name of the file and the place."""
+        return f"{name}:{self.line}:{self.column}: {self.reason}"
+
+
+class TargetError(AsebaError):
+    """A target description that contradicts itself or lacks a field."""

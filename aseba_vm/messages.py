@@ -1,0 +1,117 @@
+"""The wording of every error and warning, in one place: translate this table and nothing else.
+
+In a template ``{0}`` is an argument, ``{t0}`` a token, ``{l0}`` a list of tokens, ``{v0}`` a token with its value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+MESSAGES: Mapping[str, str] = {
+    "target-too-small": "the target has less memory than its own variables need",
+    "stack-overflow": "the program could use more stack than the target has; look for recursion or very long expressions",
+    "bytecode-too-large": "the compiled program is larger than the bytecode memory of the target",
+    "unknown-variable": "no variable is called '{0}'",
+    "unknown-variable-hint": "no variable is called '{0}'; perhaps you meant '{1}'",
+    "unknown-function": "the target has no function called '{0}'",
+    "unknown-function-hint": "the target has no function called '{0}'; perhaps you meant '{1}'",
+    "unknown-constant": "no constant is called '{0}'",
+    "unknown-constant-hint": "no constant is called '{0}'; perhaps you meant '{1}'",
+    "unknown-event": "no event is called '{0}'",
+    "unknown-event-hint": "no event is called '{0}'; perhaps you meant '{1}'",
+    "emit-of-local-event": "'{0}' is raised by the robot itself and cannot be emitted",
+    "unknown-subroutine": "no subroutine is called '{0}'",
+    "unknown-subroutine-hint": "no subroutine is called '{0}'; perhaps you meant '{1}'",
+    "unterminated-comment": "this comment block is never closed",
+    "lone-exclamation": "'!' must be followed by '='",
+    "illegal-character": "character U+{0} cannot start a word",
+    "bad-hex-number": "this hexadecimal number has a wrong digit",
+    "bad-binary-number": "this binary number has a wrong digit",
+    "bad-number-base": "unknown number prefix",
+    "bad-number": "this number has a wrong digit",
+    "expected-token": "expected {t0} but found {t1}",
+    "int16-range": "{0} does not fit in 16 bits (-32768 to 32767)",
+    "constant-range": "constant '{0}' is {1}, which does not fit in 16 bits",
+    "expected-one-of": "expected one of {l0} but found {t1}",
+    "out-of-temporary-memory": "not enough memory left for a temporary value",
+    "misplaced-var": "variables must be declared before the first statement",
+    "expected-identifier": "expected a name but found {v0}",
+    "duplicate-constant": "constant '{0}' is declared twice",
+    "duplicate-variable": "variable '{0}' is declared twice",
+    "variable-constant-clash": "'{0}' is already the name of a constant",
+    "unknown-array-size": "the size of array '{0}' cannot be worked out",
+    "out-of-variable-memory": "no memory left for this variable",
+    "expected-assignment": "expected an assignment but found {v0}",
+    "for-zero-step": "the step of a loop cannot be zero",
+    "for-range-not-increasing": "with a positive step the range must go up",
+    "for-range-not-decreasing": "with a negative step the range must go down",
+    "for-end-32767": "a rising loop cannot end at 32767",
+    "for-end-minus-32768": "a falling loop cannot end at -32768",
+    "duplicate-event-handler": "event '{0}' already has a handler",
+    "event-argument-too-large": "event '{0}' takes at most {1} values, {2} given",
+    "event-argument-size": "event '{0}' takes {1} values, {2} given",
+    "duplicate-subroutine": "subroutine '{0}' is declared twice",
+    "slice-end-not-constant": "the end of a slice must be a constant",
+    "slice-reversed": "the end of a slice is before its start",
+    "negative-array-size": "an array cannot have {0} elements",
+    "zero-array-size": "an array must have at least one element",
+    "not-constant": "this expression is not constant",
+    "function-takes-no-argument": "function '{0}' takes no argument",
+    "too-few-arguments": "function '{0}' takes {1} arguments, only {2} given",
+    "argument-size": "argument {0} ({1}) of function '{2}' has size {3} instead of {4}",
+    "argument-size-template": "argument {0} ({1}) of function '{2}' has size {3}, but an earlier argument of the same kind has size {4}",
+    "too-many-arguments": "function '{0}' takes only {1} arguments",
+    "not-assignable": "cannot assign to this ({0})",
+    "index-out-of-bounds": "array '{0}' has no element {1}, its size is {2}",
+    "size-mismatch": "sizes differ: {0} and {1}",
+    "vector-condition-if": "a condition must be a single value",
+    "vector-condition-while": "a loop condition must be a single value",
+    "illegal-index": "an index has one value, or two for a slice",
+    "infinite-loop": "this loop never ends",
+    "division-by-zero": "division by zero",
+    "abs-of-minimum": "the absolute value of -32768 does not fit in 16 bits",
+    "static-read-out-of-bounds": "element {0} of array '{1}' does not exist, the size is {2}",
+    "static-write-out-of-bounds": "element {0} of array '{1}' does not exist, the size is {2}",
+    "type-mismatch": "expected type {0} but found type {1}",
+    # refused by us; the reference stops abnormally on these
+    "list-as-index": "a list cannot be an index unless its first element is constant",
+    "negated-number": "'not' needs a condition",
+    "constant-overflow": "the result does not fit in 32 bits",
+    # limits of this implementation
+    "too-many-tokens": "the program is too long: more than {0} words and symbols",
+    "too-many-elements": "the program is too large: more than {0} operations on single values",
+    # warnings
+    "warning-fall-through": "subroutine '{0}' may run on into the code after it: its last statement returns only sometimes",
+}
+
+TOKENS: Mapping[str, str] = {
+    "identifier": "a name",
+    "integer": "a number",
+    "end-of-input": "the end of the program",
+}
+
+VALUED_TOKENS: Mapping[str, str] = {"identifier": "name '{0}'", "integer": "number {0}"}
+
+
+def wording(kind: str, arguments: Sequence[object], messages: Mapping[str, str] = MESSAGES) -> str:
+    """Return the sentence for an error or a warning; an unknown kind is its own sentence."""
+    template = messages.get(kind)
+    if template is None:
+        return " ".join([kind, *map(str, arguments)])
+    words: dict[str, str] = {}
+    for index, argument in enumerate(arguments):
+        if isinstance(argument, tuple):
+            words[f"l{index}"] = ", ".join(map(_token, argument))
+            words[f"v{index}"] = _valued_token(*argument)
+        else:
+            words[f"t{index}"] = _token(argument)
+    return template.format(*arguments, **words)
+
+
+def _token(kind: object) -> str:
+    return TOKENS.get(str(kind), f"'{kind}'")
+
+
+def _valued_token(kind: object, value: object = None, *_: object) -> str:
+    template = VALUED_TOKENS.get(str(kind))
+    return _token(kind) if value is None or template is None else template.format(value)

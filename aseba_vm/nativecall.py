@@ -1,0 +1,111 @@
+"""What a native function is given, and how it refuses (VM spec, section 11)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from aseba_vm.outbox import NativeCalled
+from aseba_vm.target import NativeFunction
+
+
+def wrap(value: int) -> int:
+    """Cut a number to 16 bits, two's complement: the one place where that happens."""
+    return ((value + 0x8000) & 0xFFFF) - 0x8000
+
+
+def wrap32(value: int) -> int:
+    """Cut a number to 32 bits, two's complement."""
+    return ((value + 0x80000000) & 0xFFFFFFFF) - 0x80000000
+
+
+class NativeFault(Exception):  # noqa: N818  # a fault, in the words of the specification
+    """Raised by a native that cannot do its work; the event ends and the reason is told."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(reason)
+        self.reason = reason
+
+
+class DivisionFault(NativeFault):
+    """A division by zero inside a native."""
+
+    def __init__(self) -> None:
+        super().__init__("division by zero")
+
+
+class DequeFault(NativeFault):
+    """A deque was given a wrong index or too many values."""
+
+    def __init__(self) -> None:
+        super().__init__("a deque was given a wrong index or too many values")
+
+
+class Machine(Protocol):
+    """The part of the machine that natives may touch."""
+
+    variables: list[int]
+    random_state: int
+    node_id: int
+
+
+class NativeCall:
+    """One call: address and size of each argument, and access to the words.
+
+    ``memory`` is the whole variable memory, ``faults`` what was reported so far (a native may go on after a fault).
+    """
+
+    __slots__ = ("addresses", "faults", "machine", "memory", "native", "sizes")
+
+    def __init__(self, machine: Machine, native: NativeFunction, popped: Sequence[int]) -> None:
+        """``popped`` are the words of the stack from the top: addresses, then sizes in list order."""
+        self.machine = machine
+        self.memory = machine.variables
+        self.native = native
+        self.faults: list[NativeFault] = []
+        count = len(native.parameters)
+        self.addresses = tuple(word & 0xFFFF for word in popped[:count])
+        free = {}
+        for index, word in zip(native.free_sizes, popped[count:], strict=True):
+            declared = native.parameters[index].size
+            free[declared or -0x10000 - index] = word & 0xFFFF
+        self.sizes = tuple(
+            parameter.size if parameter.size > 0 else free[parameter.size or -0x10000 - index]
+            for index, parameter in enumerate(native.parameters)
+        )
+
+    @property
+    def is_inside_memory(self) -> bool:
+        """Tell whether every argument lies inside the variable memory."""
+        end = len(self.memory)
+        return all(address + size <= end for address, size in zip(self.addresses, self.sizes, strict=True))
+
+    def read(self, argument: int) -> list[int]:
+        """Return a copy of the words of an argument."""
+        address = self.addresses[argument]
+        return self.memory[address : address + self.sizes[argument]]
+
+    def value(self, argument: int) -> int:
+        """Return the first word of an argument."""
+        return self.memory[self.addresses[argument]]
+
+    def write(self, argument: int, values: Sequence[int]) -> None:
+        """Store values, cut to 16 bits, from the first word of an argument on; no more than it has."""
+        address, size = self.addresses[argument], self.sizes[argument]
+        words = [wrap(value) for value in values[:size]]
+        self.memory[address : address + len(words)] = words
+
+    def report(self, fault: NativeFault) -> None:
+        """Note a fault without ending the native."""
+        self.faults.append(fault)
+
+    def record(self, number: int) -> NativeCalled:
+        """Return the call as a value."""
+        arguments = tuple(
+            (address, size, tuple(self.memory[address : address + size]))
+            for address, size in zip(self.addresses, self.sizes, strict=True)
+        )
+        return NativeCalled(number, self.native.name, arguments)
+
+
+Native = Callable[[NativeCall], None]

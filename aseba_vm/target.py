@@ -1,0 +1,117 @@
+"""What a program is compiled for: memories, variables, local events and native functions of one kind of node."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from aseba_vm.errors import TargetError
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A named range of variable memory; its address follows from the order of declaration. Size in words."""
+
+    name: str
+    size: int
+
+
+@dataclass(frozen=True, slots=True)
+class LocalEvent:
+    """An event that the node raises itself."""
+
+    name: str
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of a native: size n > 0 exactly n words, n < 0 the same for equal n, 0 any size."""
+
+    name: str
+    size: int
+
+
+@dataclass(frozen=True, slots=True)
+class NativeFunction:
+    """A function of the node that programs may call."""
+
+    name: str
+    parameters: tuple[Parameter, ...] = ()
+    description: str = ""
+
+    @property
+    def argument_count(self) -> int:
+        """Words that the native pops: one address for each parameter, one size for each free size."""
+        return len(self.parameters) + len(self.free_sizes)
+
+    @property
+    def free_sizes(self) -> tuple[int, ...]:
+        """For each size pushed, in list order, the index of a parameter that has it (VM spec, section 6)."""
+        free = [index for index, parameter in enumerate(self.parameters) if parameter.size == 0]
+        lowest = min((parameter.size for parameter in self.parameters), default=0)
+        sizes = [parameter.size for parameter in self.parameters]
+        return (*free, *(sizes.index(size) for size in range(-1, lowest - 1, -1) if size in sizes))
+
+
+@dataclass(frozen=True, slots=True)
+class TargetDescription:
+    """A kind of node. Sizes in words; addresses of variables are sums of the sizes before them."""
+
+    name: str
+    variables_size: int
+    bytecode_size: int
+    stack_size: int
+    variables: tuple[Variable, ...] = ()
+    local_events: tuple[LocalEvent, ...] = ()
+    natives: tuple[NativeFunction, ...] = ()
+
+    @property
+    def variables_end(self) -> int:
+        """First address that no variable of the target uses."""
+        return sum(variable.size for variable in self.variables)
+
+    @property
+    def addresses(self) -> dict[str, tuple[int, int]]:
+        """Address and size of each variable by name; the last one wins where a name occurs twice."""
+        found: dict[str, tuple[int, int]] = {}
+        address = 0
+        for variable in self.variables:
+            found[variable.name] = (address, variable.size)
+            address += variable.size
+        return found
+
+    def local_event_number(self, name: str) -> int:
+        """Return the number of a local event, 0xFFFE downwards. Raises KeyError."""
+        for index in range(len(self.local_events) - 1, -1, -1):
+            if self.local_events[index].name == name:
+                return 0xFFFE - index
+        raise KeyError(name)
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> TargetDescription:
+        """Build from plain data as read from JSON: pairs for variables, names for events, params for natives.
+
+        Raises TargetError naming the field that is missing or has a wrong type.
+        """
+        try:
+            return cls(
+                name=str(data["name"]),
+                variables_size=int(data["variables_size"]),
+                bytecode_size=int(data["bytecode_size"]),
+                stack_size=int(data["stack_size"]),
+                variables=tuple(Variable(str(name), int(size)) for name, size in data["variables"]),
+                local_events=tuple(LocalEvent(str(name)) for name in data["local_events"]),
+                natives=tuple(
+                    NativeFunction(
+                        str(native["name"]),
+                        tuple(Parameter(str(name), int(size)) for name, size in native["params"]),
+                    )
+                    for native in data["natives"]
+                ),
+            )
+        except KeyError as err:
+            raise TargetError(f"target description: field {err} is missing") from err
+        except (TypeError, ValueError) as err:
+            raise TargetError(f"target description: {err}") from err

@@ -1,0 +1,555 @@
+"""The virtual machine (VM spec, section 10): one object of state, one loop, a budget of instructions.
+
+The machine never raises for what a program does: a fault stops it, is told in the outbox and kept in ``fault``.
+Words are decoded when they are written, so that the loop meets operations with their operands ready; a BRANCH that
+remembers its condition rewrites its own word. Arithmetic is exact in Python and cut to 16 bits in :func:`wrap`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from aseba_vm.bytecode import EDGE, LENGTH, WAS_TRUE, Op, signed, signed12
+from aseba_vm.compiler import Program
+from aseba_vm.nativecall import DequeFault, DivisionFault, Native, NativeCall, NativeFault, wrap
+from aseba_vm.natives import NATIVES
+from aseba_vm.outbox import (
+    BadCode,
+    BreakpointSet,
+    DivisionByZero,
+    Emitted,
+    EventKilled,
+    ExecutionState,
+    Fault,
+    Message,
+    NodeSpecific,
+    OutOfBounds,
+    VariablesRead,
+)
+from aseba_vm.symbols import INIT_EVENT
+from aseba_vm.target import TargetDescription
+
+ACTIVE = 1
+STEP_BY_STEP = 2
+RUNNING = 4
+
+MAX_BREAKPOINTS = 16
+MAX_EMITTED = 516
+
+_FOREVER = 1 << 62
+
+# Kinds of decoded operations, frequent ones first: the order in which the loop asks.
+_LOAD, _PUSH, _STORE, _BINARY, _IF_FALSE, _IF_TRUE, _JUMP, _LOADX, _STOREX = range(9)
+_WHEN_FALSE, _WHEN_TRUE, _UNARY, _STOP, _CALL, _RET, _EMIT, _NATIVE, _BAD = range(9, 18)
+
+_Decoded = tuple[int, Any, Any]
+
+
+def _divide(left: int, right: int) -> int:
+    quotient = abs(left) // abs(right)
+    return wrap(quotient if (left < 0) == (right < 0) else -quotient)
+
+
+def _remainder(left: int, right: int) -> int:
+    remainder = abs(left) % abs(right)
+    return -remainder if left < 0 else remainder
+
+
+#: In the order of the numbers of the operators.
+_BINARY_FUNCTIONS: Sequence[Callable[[int, int], int]] = (
+    lambda left, right: wrap(left << (right & 31)),
+    lambda left, right: left >> (right & 31),
+    lambda left, right: wrap(left + right),
+    lambda left, right: wrap(left - right),
+    lambda left, right: wrap(left * right),
+    _divide,
+    _remainder,
+    lambda left, right: left | right,
+    lambda left, right: left ^ right,
+    lambda left, right: left & right,
+    lambda left, right: 1 if left == right else 0,
+    lambda left, right: 1 if left != right else 0,
+    lambda left, right: 1 if left > right else 0,
+    lambda left, right: 1 if left >= right else 0,
+    lambda left, right: 1 if left < right else 0,
+    lambda left, right: 1 if left <= right else 0,
+    lambda left, right: 1 if left or right else 0,
+    lambda left, right: 1 if left and right else 0,
+)
+
+_UNARY_FUNCTIONS: Sequence[Callable[[int], int]] = (
+    lambda value: wrap(-value),
+    lambda value: wrap(abs(value)),
+    lambda value: ~value,
+)
+
+
+class VirtualMachine:
+    """A node's machine. ``variables`` are signed words that the node may read and write between runs."""
+
+    def __init__(
+        self,
+        target: TargetDescription,
+        natives: Mapping[str, Native] | None = None,
+        node_id: int = 1,
+        *,
+        on_reset: Callable[[VirtualMachine], None] | None = None,
+        kills_long_events: bool = False,
+    ) -> None:
+        """Build an idle machine with empty memories.
+
+        ``natives`` are functions by name, added to the standard ones or in their place; one that is missing pops its
+        arguments and leaves a NativeCalled. ``on_reset`` is the node's share in a reset. ``kills_long_events``: an event
+        that reaches the limit of ``run`` is abandoned, as in the 2.x fork, not continued.
+        """
+        self.target = target
+        self.node_id = node_id
+        self.variables: list[int] = [0] * target.variables_size
+        self.pc = 0
+        self.sp = -1
+        self.flags = 0
+        self.outbox: list[Message] = []
+        self.fault: Fault | None = None
+        self.instructions = 0
+        self.random_state = 0
+        self.tracer: Callable[[int], None] | None = None
+        self.stack: list[int] = [0] * target.stack_size
+        self._words: list[int] = [0] * target.bytecode_size
+        self._code: list[_Decoded] = [(_STOP, 0, 0)] * target.bytecode_size
+        self._breakpoints: list[int] = []
+        self._on_reset = on_reset
+        self._kills_long_events = kills_long_events
+        functions = {**NATIVES, **(natives or {})}
+        self._natives = [(native, functions.get(native.name)) for native in target.natives]
+
+    # -- state
+
+    @property
+    def bytecode(self) -> tuple[int, ...]:
+        """The bytecode memory, unsigned words."""
+        return tuple(self._words)
+
+    @property
+    def is_active(self) -> bool:
+        """Tell whether an event is being executed."""
+        return bool(self.flags & ACTIVE)
+
+    @property
+    def is_step_by_step(self) -> bool:
+        """Tell whether the machine waits for ``step`` or ``resume``."""
+        return bool(self.flags & STEP_BY_STEP)
+
+    @property
+    def breakpoints(self) -> tuple[int, ...]:
+        """Addresses in the order in which they were set."""
+        return tuple(self._breakpoints)
+
+    def take_messages(self) -> tuple[Message, ...]:
+        """Return what the machine has said since the last time, and forget it."""
+        messages = tuple(self.outbox)
+        self.outbox.clear()
+        return messages
+
+    # -- commands (VM spec, section 10.4)
+
+    def set_bytecode(self, words: Sequence[int], start: int = 0) -> None:
+        """Write words and reset. Raises ValueError if they do not fit the memory."""
+        if start < 0 or start + len(words) > len(self._words):
+            raise ValueError(f"{len(words)} words at {start} do not fit a bytecode memory of {len(self._words)}")
+        self._words[start : start + len(words)] = [word & 0xFFFF for word in words]
+        self._decode(start, start + len(words))
+        self.reset()
+
+    def load(self, program: Program) -> None:
+        """Write a compiled program and let it start: the next ``run`` executes its initialisation."""
+        self.set_bytecode(program.words)
+        self.resume()
+
+    def reset(self) -> None:
+        """Stop, forget what ``when`` remembers as far as the reference does, and start the initialisation, paused."""
+        self.flags = STEP_BY_STEP
+        self.fault = None
+        self._clear_edges()
+        if self._on_reset is not None:
+            self._on_reset(self)
+        if not self.setup(INIT_EVENT):
+            self.report_state()
+
+    def resume(self) -> None:
+        """The *run* command: let events run (again)."""
+        self.flags &= ~STEP_BY_STEP
+        self.fault = None
+        self.report_state()
+
+    def pause(self) -> None:
+        """Execute nothing until ``step`` or ``resume``."""
+        self.flags |= STEP_BY_STEP
+        self.report_state()
+
+    def stop(self) -> None:
+        """Abandon the event and pause."""
+        self.flags = STEP_BY_STEP
+        self.report_state()
+
+    def step(self) -> None:
+        """Execute one instruction of the active event."""
+        if self.flags & ACTIVE:
+            self._trace()
+            self._execute(1)
+            self.report_state()
+
+    def report_state(self) -> None:
+        """Say where the machine is."""
+        self.outbox.append(ExecutionState(self.pc, self.flags))
+
+    def set_breakpoint(self, pc: int) -> None:
+        """Add a breakpoint if there is room for it, and say so."""
+        if not 0 <= pc < len(self._words):
+            self._stop_on(BadCode(pc, "breakpoint-out-of-range"))
+            return
+        has_room = len(self._breakpoints) < MAX_BREAKPOINTS
+        if has_room:
+            self._breakpoints.append(pc)
+        self.outbox.append(BreakpointSet(pc, has_room))
+
+    def clear_breakpoint(self, pc: int) -> None:
+        """Remove the first breakpoint at an address, if any."""
+        if pc in self._breakpoints:
+            self._breakpoints.remove(pc)
+
+    def clear_breakpoints(self) -> None:
+        """Remove all breakpoints."""
+        self._breakpoints.clear()
+
+    def report_variables(self, start: int, count: int) -> None:
+        """Say the words of a part of the variable memory."""
+        self.outbox.append(VariablesRead(start, tuple(self.variables[start : start + count])))
+
+    def write_variables(self, start: int, values: Sequence[int]) -> None:
+        """Set words of the variable memory. Raises ValueError outside the memory."""
+        if start < 0 or start + len(values) > len(self.variables):
+            raise ValueError(f"{len(values)} words at {start} are outside a memory of {len(self.variables)}")
+        self.variables[start : start + len(values)] = [wrap(value) for value in values]
+
+    # -- events (VM spec, sections 10.2 and 10.5)
+
+    def address_of(self, event: int) -> int:
+        """Return the address of the code of an event, 0 if there is none."""
+        words = self._words
+        for index in range(1, min(words[0], len(words) - 1), 2) if words else ():
+            if words[index] == event:
+                return words[index + 1]
+        return 0
+
+    def setup(self, event: int) -> int:
+        """Start an event; return the address of its code, or 0 if the program does not handle it."""
+        address = self.address_of(event)
+        if address == 0:
+            return 0
+        if self.flags & ACTIVE:
+            self.outbox.append(EventKilled(self.pc))
+        self.pc = address
+        self.sp = -1
+        self.flags |= ACTIVE
+        if self.flags & STEP_BY_STEP:
+            self.report_state()
+        return address
+
+    def receive(self, event: int, source: int, arguments: Sequence[int]) -> None:
+        """Take a global event from the network: store source and arguments, then start it, killing a running one."""
+        if self.flags & STEP_BY_STEP and self.flags & ACTIVE:
+            return
+        declared = self.target.variables
+        if len(declared) > 1:
+            address = declared[1].size
+            capacity = declared[2].size if len(declared) > 2 else 0
+            words = [source, *arguments[:capacity]][: len(self.variables) - address]
+            self.write_variables(address, words)
+        self.setup(event)
+
+    def start_local(self, index: int) -> bool:
+        """Start local event ``index`` of the target if no event is active; tell whether it could be tried."""
+        if self.flags & ACTIVE:
+            return False
+        declared = self.target.variables
+        if len(declared) > 1:
+            self.write_variables(declared[1].size, [self.node_id][: len(self.variables) - declared[1].size])
+        self.setup(0xFFFE - index)
+        return True
+
+    # -- running (VM spec, section 10.3)
+
+    def run(self, limit: int = 0) -> bool:
+        """Execute the active event for at most ``limit`` instructions (0: to its end); tell whether it ran at all."""
+        if not self.flags & ACTIVE or self.flags & STEP_BY_STEP:
+            return False
+        self.flags |= RUNNING
+        if self._breakpoints or self.tracer is not None:
+            executed, stopped = self._run_watched(limit or _FOREVER)
+            if stopped:
+                return True
+        else:
+            executed = self._execute(limit or _FOREVER)
+        self.flags &= ~RUNNING
+        if self._kills_long_events and executed == limit:
+            self.flags &= ~ACTIVE
+            self.outbox.append(EventKilled(self.pc))
+        return True
+
+    def _run_watched(self, limit: int) -> tuple[int, bool]:
+        """Run one by one; return the number executed, and whether a breakpoint ended the run."""
+        executed = 0
+        running = ACTIVE | RUNNING
+        while executed < limit and self.flags & running == running:
+            if self.pc in self._breakpoints:
+                self.flags |= STEP_BY_STEP
+                self.report_state()
+                return executed, True
+            self._trace()
+            executed += self._execute(1)
+        return executed, False
+
+    def _trace(self) -> None:
+        if self.tracer is not None:
+            self.tracer(self.pc)
+
+    def _execute(self, limit: int) -> int:
+        """Execute at most ``limit`` instructions while the event is active; return how many were."""
+        code, variables, stack = self._code, self.variables, self.stack
+        size = len(code)
+        pc, sp = self.pc, self.sp
+        executed = 0
+        kind = _BAD
+        try:
+            for executed in range(limit):  # counts for the lines after the loop
+                kind, first, second = code[pc]
+                if kind == _LOAD:
+                    stack[sp + 1] = variables[first]
+                    sp += 1
+                    pc += 1
+                elif kind == _PUSH:
+                    stack[sp + 1] = first
+                    sp += 1
+                    pc += second
+                elif kind == _STORE:
+                    if sp < 0:
+                        return self._bad(pc, sp, executed, "stack-underflow")
+                    variables[first] = stack[sp]
+                    sp -= 1
+                    pc += 1
+                elif kind == _BINARY:
+                    if sp < 1:
+                        return self._bad(pc, sp, executed, "stack-underflow")
+                    right = stack[sp]
+                    sp -= 1
+                    stack[sp] = first(stack[sp], right)
+                    pc += 1
+                elif kind == _IF_FALSE or kind == _IF_TRUE:  # quicker than a tuple
+                    if sp < 1:
+                        return self._bad(pc, sp, executed, "stack-underflow")
+                    sp -= 2
+                    if first(stack[sp + 1], stack[sp + 2]):
+                        if kind == _IF_FALSE:
+                            self._remember(pc)
+                        pc += 2
+                    else:
+                        if kind == _IF_TRUE:
+                            self._remember(pc)
+                        pc += second
+                        if not 0 <= pc < size:
+                            return self._bad(pc - second, sp, executed, "jump-out-of-range")
+                elif kind == _JUMP:
+                    pc += first
+                    if not 0 <= pc < size:
+                        return self._bad(pc - first, sp, executed, "jump-out-of-range")
+                elif kind == _LOADX:
+                    if sp < 0:
+                        return self._bad(pc, sp, executed, "stack-underflow")
+                    index = stack[sp] & 0xFFFF
+                    if index >= second:
+                        self._stop_on(OutOfBounds(pc, second, index))
+                        break
+                    stack[sp] = variables[first + index]
+                    pc += 2
+                elif kind == _STOREX:
+                    if sp < 1:
+                        return self._bad(pc, sp, executed, "stack-underflow")
+                    index = stack[sp] & 0xFFFF
+                    if index >= second:
+                        self._stop_on(OutOfBounds(pc, second, index))
+                        break
+                    variables[first + index] = stack[sp - 1]
+                    sp -= 2
+                    pc += 2
+                elif kind == _WHEN_FALSE or kind == _WHEN_TRUE:  # quicker than a tuple
+                    if sp < 1:
+                        return self._bad(pc, sp, executed, "stack-underflow")
+                    sp -= 2
+                    is_true = bool(first(stack[sp + 1], stack[sp + 2]))
+                    if is_true != (kind == _WHEN_TRUE):
+                        self._remember(pc)
+                    if is_true and kind == _WHEN_FALSE:
+                        pc += 2
+                    else:
+                        pc += second
+                        if not 0 <= pc < size:
+                            return self._bad(pc - second, sp, executed, "jump-out-of-range")
+                elif kind == _UNARY:
+                    if sp < 0:
+                        return self._bad(pc, sp, executed, "stack-underflow")
+                    stack[sp] = first(stack[sp])
+                    pc += 1
+                elif kind == _STOP:
+                    self.flags &= ~ACTIVE
+                    break
+                elif kind == _CALL:
+                    stack[sp + 1] = pc + 1
+                    sp += 1
+                    if first >= size:
+                        return self._bad(pc, sp, executed, "jump-out-of-range")
+                    pc = first
+                elif kind == _RET:
+                    if sp < 0:
+                        return self._bad(pc, sp, executed, "stack-underflow")
+                    if not 0 <= stack[sp] < size:
+                        return self._bad(pc, sp, executed, "jump-out-of-range")
+                    pc = stack[sp]
+                    sp -= 1
+                elif kind == _EMIT:
+                    address, count = second
+                    if count > MAX_EMITTED:
+                        return self._bad(pc, sp, executed, "emit-too-long")
+                    if address + count > len(variables):
+                        return self._bad(pc, sp, executed, "variable-out-of-range")
+                    self.outbox.append(Emitted(first, tuple(variables[address : address + count])))
+                    pc += 3
+                elif kind == _NATIVE:
+                    reason, sp = self._call(first, pc, sp)
+                    if reason:
+                        return self._bad(pc, sp, executed, reason)
+                    pc += 1
+                    if not self.flags & ACTIVE:
+                        break
+                else:
+                    return self._bad(pc, sp, executed, first)
+        except ZeroDivisionError:
+            self._stop_on(DivisionByZero(pc))
+            if kind == _BINARY:
+                stack[sp] = 0
+                pc += 1
+            else:
+                pc += 2
+        except IndexError:
+            if not 0 <= pc < size:
+                return self._bad(pc, sp, executed, "jump-out-of-range")
+            is_full = sp + 1 >= len(stack) and kind in (_LOAD, _PUSH, _CALL)
+            return self._bad(pc, sp, executed, "stack-overflow" if is_full else "variable-out-of-range")
+        self.pc, self.sp = pc, sp
+        executed += 1
+        self.instructions += executed
+        return executed
+
+    def _call(self, number: int, pc: int, sp: int) -> tuple[str, int]:
+        """Call a native; return why it could not be, or an empty text, and the new index of the stack."""
+        if number >= len(self._natives):
+            return "unknown-native", sp
+        native, function = self._natives[number]
+        count = native.argument_count
+        if sp + 1 < count:
+            return "stack-underflow", sp
+        popped = self.stack[sp - count + 1 : sp + 1][::-1]
+        sp -= count
+        call = NativeCall(self, native, popped)
+        if not call.is_inside_memory:
+            return "variable-out-of-range", sp
+        if function is None:
+            self.outbox.append(call.record(number))
+            return "", sp
+        try:
+            function(call)
+        except NativeFault as fault:
+            call.report(fault)
+        for fault in call.faults:
+            if isinstance(fault, DivisionFault):
+                self._stop_on(DivisionByZero(pc))
+            elif isinstance(fault, DequeFault):
+                self._stop_on(OutOfBounds(pc))
+            else:
+                self._stop_on(NodeSpecific(pc, fault.reason))
+        return "", sp
+
+    def _bad(self, pc: int, sp: int, executed: int, reason: str) -> int:
+        self.pc, self.sp = pc, sp
+        self.instructions += executed
+        self._stop_on(BadCode(pc, reason))
+        return executed
+
+    def _stop_on(self, fault: Fault) -> None:
+        self.flags = STEP_BY_STEP
+        self.fault = fault
+        self.outbox.append(fault)
+
+    # -- bytecode memory
+
+    def _remember(self, pc: int) -> None:
+        """Turn the memory of the BRANCH at ``pc`` over."""
+        self._words[pc] ^= WAS_TRUE
+        self._decode(pc, pc + 1)
+
+    def _clear_edges(self) -> None:
+        """Clear the memory of branches from the word where the reference starts its scan (VM spec, section 10.4)."""
+        words = self._words
+        pc = 2 * words[0] + 1 if words else 0
+        while pc < len(words):
+            word = words[pc]
+            if word >> 12 == Op.BRANCH and word & WAS_TRUE:
+                self._remember(pc)
+            pc += LENGTH[word >> 12]
+
+    def _decode(self, start: int, end: int) -> None:
+        """Decode the operations that words start..end-1 belong to."""
+        words = [*self._words[max(start - 2, 0) : end], *self._words[end : end + 2], 0, 0]
+        for place, pc in enumerate(range(max(start - 2, 0), end)):
+            self._code[pc] = _decoded(words[place], words[place + 1], words[place + 2])
+
+
+def _decoded(word: int, second: int, third: int) -> _Decoded:
+    op, operand = word >> 12, word & 0xFFF
+    match op:
+        case Op.STOP:
+            return (_STOP, 0, 0)
+        case Op.PUSH:
+            return (_PUSH, signed12(word), 1)
+        case Op.PUSHL:
+            return (_PUSH, signed(second), 2)
+        case Op.LOAD:
+            return (_LOAD, operand, 0)
+        case Op.STORE:
+            return (_STORE, operand, 0)
+        case Op.LOADX:
+            return (_LOADX, operand, second)
+        case Op.STOREX:
+            return (_STOREX, operand, second)
+        case Op.UNARY if operand < len(_UNARY_FUNCTIONS):
+            return (_UNARY, _UNARY_FUNCTIONS[operand], 0)
+        case Op.UNARY:
+            return (_BAD, "unknown-unary-operator", 0)
+        case Op.BINARY if operand < len(_BINARY_FUNCTIONS):
+            return (_BINARY, _BINARY_FUNCTIONS[operand], 0)
+        case Op.BRANCH if operand & 0xFF < len(_BINARY_FUNCTIONS):
+            kind = _WHEN_FALSE if operand & EDGE else _IF_FALSE
+            return (kind + bool(operand & WAS_TRUE), _BINARY_FUNCTIONS[operand & 0xFF], signed(second))
+        case Op.BINARY | Op.BRANCH:
+            return (_BAD, "unknown-binary-operator", 0)
+        case Op.JUMP:
+            return (_JUMP, signed12(word), 0)
+        case Op.EMIT:
+            return (_EMIT, operand, (second, third))
+        case Op.NATIVE:
+            return (_NATIVE, operand, 0)
+        case Op.CALL:
+            return (_CALL, operand, 0)
+        case Op.RET:
+            return (_RET, 0, 0)
+    return (_BAD, "unknown-instruction", 0)
