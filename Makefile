@@ -30,8 +30,10 @@ INSTALL_NODE = { echo "No Node found that fits: installing one into $(VENV)." &&
 .PHONY: run test lint web web-test clean help platform
 
 run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NAME' goes to thymio-sim
-	@# With a terminal the program gets a process group of its own, so that Ctrl-C ends it and not make before it.
-	@if [ -t 0 ]; then set -m; $(VENV)/bin/thymio-sim $(ARGS); else exec $(VENV)/bin/thymio-sim $(ARGS); fi
+	@# In front of a terminal the program gets a process group of its own (set -m): Ctrl-C then ends it and lets make
+	@# end well, instead of interrupting both.
+	@read -r _ _ _ _ group _ _ front _ </proc/$$$$/stat; \
+	if [ "$$group" = "$$front" ]; then set -m; $(VENV)/bin/thymio-sim $(ARGS); else exec $(VENV)/bin/thymio-sim $(ARGS); fi
 
 test: platform $(VENV)/.ready-test web  ## run all tests; ARGS='-k name' goes to pytest
 	@$(PYTHON) -m pytest $(ARGS)
