@@ -1,0 +1,90 @@
+"""Where the files that travel with the code lie: playgrounds, behaviours, the built page.
+
+The same look-up serves a source tree, a wheel, an editable install and a colcon workspace: first the
+source tree, then `share/thymio_sim_ros` beside the installed code, then the ament prefixes, then the
+interpreter's prefix (ros-packaging.md section 1.1: the wheels leave AMENT_PREFIX_PATH unset).
+"""
+
+from __future__ import annotations
+
+import difflib
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+_PACKAGE = Path(__file__).resolve().parent
+_SHARE = Path("share") / "thymio_sim_ros"
+
+PAGE_BUILD_HINT = "The page is not built yet: run `make web` in the source folder, then start again."
+"""One sentence for a person who finds no built page (a colcon workspace has none)."""
+
+
+class ResourceError(Exception):
+    """A file that was asked for by name or path is not there; the text says what was looked for."""
+
+
+def _roots() -> Iterator[Path]:
+    """Folders that may hold `playgrounds/`, best first."""
+    yield _PACKAGE.parent
+    for parent in _PACKAGE.parents:
+        yield parent / _SHARE
+    for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
+        if prefix:
+            yield Path(prefix) / _SHARE
+    yield Path(sys.prefix) / _SHARE
+
+
+def _folder(*names: str) -> Path | None:
+    """The first folder of one of these names below a root, or None."""
+    for root in _roots():
+        for name in names:
+            folder = root / name
+            if folder.is_dir():
+                return folder
+    return None
+
+
+def playgrounds() -> dict[str, Path]:
+    """The shipped playgrounds, name → file, in name order."""
+    folder = _folder("playgrounds")
+    if folder is None:
+        return {}
+    return {path.stem: path for path in sorted(folder.glob("*.json")) if not path.name.endswith(".schema.json")}
+
+
+def behaviours() -> dict[str, Path]:
+    """The built-in behaviours, name → `.aesl` file, in name order."""
+    return {path.stem: path for path in sorted((_PACKAGE / "device" / "behaviours").glob("*.aesl"))}
+
+
+def find_playground(name: str) -> Path:
+    """The file of a shipped playground or of a path; ResourceError when there is neither."""
+    return _find(name, playgrounds(), "playground")
+
+
+def find_program(name: str) -> Path:
+    """The file of a built-in behaviour or of a path; ResourceError when there is neither."""
+    return _find(name, behaviours(), "program")
+
+
+def page() -> Path | None:
+    """The folder of the built web page, or None where it has not been built."""
+    for root in _roots():
+        for folder in (root / "web_ui" / "dist", root / "web_ui"):
+            if (folder / "index.html").is_file() and (folder / "assets").is_dir():
+                return folder
+    return None
+
+
+def _find(name: str, shipped: dict[str, Path], kind: str) -> Path:
+    if name in shipped:
+        return shipped[name]
+    path = Path(name).expanduser()
+    if path.is_file():
+        return path
+    if path.is_dir():
+        raise ResourceError(f"{kind} '{name}' is a folder; expected a file")
+    near = difflib.get_close_matches(name, shipped, 1)
+    hint = f"; did you mean '{near[0]}'?" if near else ""
+    raise ResourceError(f"no {kind} '{name}': neither a file nor one of {', '.join(shipped)}{hint}")

@@ -1,0 +1,29 @@
+"""What one start of the whole suite is: values only, shared by the command line and the nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+HTTP_PORT = 8080
+FOXGLOVE_PORT = 8765
+ADDRESS = "127.0.0.1"
+"""Loopback: whoever wants the network asks for it."""
+
+
+@dataclass(frozen=True)
+class Suite:
+    """One start of simulator, Aseba runtime, Foxglove bridge and page.
+
+    `playground`: shipped name, path or JSON text; `program`: behaviour or path. `cmd_vel_timeout_s`: browser
+    teleop sends nothing on release, hence half a second (ros-interface.md section 13).
+    """
+
+    playground: str = "line"
+    program: str = "line_follower"
+    port: int = HTTP_PORT
+    foxglove_port: int = FOXGLOVE_PORT
+    web: bool = True
+    foxglove: bool = True
+    seed: int = 0
+    real_time_factor: float = 1.0
+    cmd_vel_timeout_s: float = 0.5
