@@ -1,8 +1,11 @@
-"""What holds for every test: no test is judged by how long it took."""
+"""Fixtures of all tests; those that need ROS come from the package itself, as a teacher would use them."""
 
-from __future__ import annotations
+import importlib.util
 
 import hypothesis
 
-hypothesis.settings.register_profile("thymio", deadline=None)
+hypothesis.settings.register_profile("thymio", deadline=None)  # a loaded machine is no defect
 hypothesis.settings.load_profile("thymio")
+
+if importlib.util.find_spec("rclpy") is not None:
+    pytest_plugins = ["thymio_sim_ros.testing"]

@@ -1,0 +1,266 @@
+"""Readings → messages and messages → commands, one row per topic; nothing else knows what a Range is.
+
+Names, units, frames and QoS are those of ros-interface.md sections 4, 6.3 and 9.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import Point, Quaternion, TwistWithCovariance
+from geometry_msgs.msg import Pose as PoseMsg
+from geometry_msgs.msg import Twist as TwistMsg
+from nav_msgs.msg import Odometry
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import JointState, Joy, LaserScan, Range
+from std_msgs.msg import Bool, Float32MultiArray, Int16MultiArray, MultiArrayDimension, MultiArrayLayout
+
+from thymio_sim_ros.nodes import qos
+from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
+from thymio_sim_ros.sim import commands, readings
+from thymio_sim_ros.sim.geometry import Pose, Twist
+from thymio_sim_ros.sim.sensors import Sensor
+
+SECOND_NS = 1_000_000_000
+
+# The driver's constants of a Range (ros-interface.md section 3).
+PROXIMITY_MIN_M, PROXIMITY_MAX_M, PROXIMITY_FOV_RAD = 0.0215, 0.14, 0.3
+GROUND_MIN_M, GROUND_MAX_M, GROUND_FOV_RAD = 0.009, 0.03, 0.3
+LASER_STEP_RAD, LASER_ANGLE_RAD, LASER_OFFSET_M = 0.32, 0.64, 0.08
+
+
+@dataclass(frozen=True, slots=True)
+class ConvertOptions:
+    """What a user may choose about the content of messages.
+
+    `driver_ranges`: −1 and minimum instead of ±inf (ros-interface.md section 4.3). `ground_threshold`: count.
+    Covariance diagonals: x y z roll pitch yaw.
+    """
+
+    driver_ranges: bool = False
+    ground_threshold: int = 200
+    pose_covariance: tuple[float, ...] = (1e-4, 1e-4, 0.0, 0.0, 0.0, 1e-3)
+    twist_covariance: tuple[float, ...] = (1e-5, 1e-5, 0.0, 0.0, 0.0, 1e-4)
+
+
+Encode = Callable[[Any, RobotNames, ConvertOptions], Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One topic made from one sensor: `encode` gives the message, or None for nothing new.
+
+    `every_ns`: only readings whose stamp is a multiple; 0 all. `always`: published also when nobody listens.
+    `on_change`: only when the message differs from the last one.
+    """
+
+    topic: str
+    type: type
+    encode: Encode
+    profile: QoSProfile = field(default_factory=lambda: qos.SENSOR)
+    every_ns: int = 0
+    always: bool = False
+    on_change: bool = False
+
+
+def stamp(ns: int) -> Time:
+    """Simulated nanoseconds as a message."""
+    return Time(sec=ns // SECOND_NS, nanosec=ns % SECOND_NS)
+
+
+def quaternion(yaw_rad: float) -> Quaternion:
+    """A turn about z."""
+    return Quaternion(z=math.sin(yaw_rad / 2), w=math.cos(yaw_rad / 2))
+
+
+def yaw_of(rotation: Quaternion) -> float:
+    """Yaw in rad of any unit quaternion."""
+    return math.atan2(2 * (rotation.w * rotation.z + rotation.x * rotation.y), 1 - 2 * (rotation.y**2 + rotation.z**2))
+
+
+def _range(reading: readings.ProximityReading, names: RobotNames, options: ConvertOptions, *, index: int) -> Range:
+    value = reading.ranges_m[index]
+    if options.driver_ranges:
+        value = -1.0 if math.isinf(value) else max(value, PROXIMITY_MIN_M)
+    elif value < PROXIMITY_MIN_M:
+        value = -math.inf
+    message = Range(
+        radiation_type=Range.INFRARED,
+        field_of_view=PROXIMITY_FOV_RAD,
+        min_range=PROXIMITY_MIN_M,
+        max_range=PROXIMITY_MAX_M,
+        range=value,
+    )
+    return _stamped(message, reading.stamp_ns, names.frame(f"proximity_{PROXIMITY[index]}_link"))
+
+
+def _laser(reading: readings.ProximityReading, names: RobotNames, _options: ConvertOptions) -> LaserScan:
+    front = range(4, -1, -1)  # right to left, as LaserScan counts angles upwards
+    ranges = (reading.ranges_m[i] for i in front)
+    message = LaserScan(
+        angle_min=-LASER_ANGLE_RAD,
+        angle_max=LASER_ANGLE_RAD,
+        angle_increment=LASER_STEP_RAD,
+        range_min=PROXIMITY_MIN_M + LASER_OFFSET_M,
+        range_max=PROXIMITY_MAX_M + LASER_OFFSET_M,
+        ranges=[math.inf if math.isinf(r) else max(r, PROXIMITY_MIN_M) + LASER_OFFSET_M for r in ranges],
+        intensities=[float(reading.words[i]) for i in front],
+    )
+    return _stamped(message, reading.stamp_ns, names.frame("laser_link"))
+
+
+def _ground(reading: readings.GroundReading, names: RobotNames, options: ConvertOptions, *, index: int) -> Range:
+    dark = reading.words[4 + index] < options.ground_threshold
+    not_reflecting, reflecting = (1.0, 0.0) if options.driver_ranges else (math.inf, -math.inf)
+    message = Range(
+        radiation_type=Range.INFRARED,
+        field_of_view=GROUND_FOV_RAD,
+        min_range=GROUND_MIN_M,
+        max_range=GROUND_MAX_M,
+        range=not_reflecting if dark else reflecting,
+    )
+    return _stamped(message, reading.stamp_ns, names.frame(f"ground_{SIDES[index]}_link"))
+
+
+def _button(reading: readings.ButtonsReading, _names: RobotNames, _options: ConvertOptions, *, index: int) -> Bool:
+    return Bool(data=bool(reading.words[index]))
+
+
+def _joy(reading: readings.ButtonsReading, names: RobotNames, _options: ConvertOptions) -> Joy:
+    return _stamped(Joy(buttons=list(reading.words)), reading.stamp_ns, names.frame("base_link"))
+
+
+def _joints(reading: readings.MotorReading, names: RobotNames, _options: ConvertOptions) -> JointState:
+    message = JointState(
+        name=[names.frame(f"{side}_wheel_joint") for side in SIDES],
+        position=list(reading.angles_rad),
+        velocity=list(reading.velocities_rad_s),
+    )
+    return _stamped(message, reading.stamp_ns, "")
+
+
+def _odometry(reading: readings.PoseReading, names: RobotNames, options: ConvertOptions) -> Odometry:
+    message = _odometry_message(reading.odometry, reading.odometry_twist, options.pose_covariance, options)
+    message.child_frame_id = names.frame("base_link")
+    return _stamped(message, reading.stamp_ns, names.frame("odom"))
+
+
+def _truth(reading: readings.PoseReading, names: RobotNames, options: ConvertOptions) -> Odometry:
+    message = _odometry_message(reading.truth, reading.truth_twist, (0.0,) * 6, options)
+    message.child_frame_id = names.frame("base_link")
+    return _stamped(message, reading.stamp_ns, MAP_FRAME)
+
+
+def _odometry_message(pose: Pose, twist: Twist, covariance: tuple[float, ...], options: ConvertOptions) -> Odometry:
+    message = Odometry()
+    message.pose.pose = PoseMsg(position=Point(x=pose.x_m, y=pose.y_m), orientation=quaternion(pose.yaw_rad))
+    message.pose.covariance[::7] = covariance
+    message.twist = TwistWithCovariance()
+    message.twist.twist.linear.x = twist.linear_m_s
+    message.twist.twist.angular.z = twist.angular_rad_s
+    message.twist.covariance[::7] = options.twist_covariance if any(covariance) else covariance
+    return message
+
+
+def _leds(reading: readings.LedReading, _names: RobotNames, _options: ConvertOptions) -> Float32MultiArray:
+    return Float32MultiArray(
+        layout=layout((group, len(levels)) for group, levels in reading.groups),
+        data=[level / commands.LED_FULL for _, levels in reading.groups for level in levels],
+    )
+
+
+def _words(reading: Any, _names: RobotNames, _options: ConvertOptions) -> Int16MultiArray:
+    return Int16MultiArray(data=list(reading.words))
+
+
+def layout(dimensions: Iterable[tuple[str, int]]) -> MultiArrayLayout:
+    """Labelled parts of one flat array, one after the other."""
+    return MultiArrayLayout(
+        dim=[MultiArrayDimension(label=label, size=size, stride=size) for label, size in dimensions]
+    )
+
+
+def _stamped(message: Any, ns: int, frame: str) -> Any:
+    message.header.stamp = stamp(ns)
+    message.header.frame_id = frame
+    return message
+
+
+ROWS: dict[str, tuple[Row, ...]] = {
+    "ground": (*(Row(f"ground/{side}", Range, partial(_ground, index=i)) for i, side in enumerate(SIDES)),),
+    "proximity": (
+        *(Row(f"proximity/{name}", Range, partial(_range, index=i)) for i, name in enumerate(PROXIMITY)),
+        Row("proximity/laser", LaserScan, _laser),
+    ),
+    "buttons": (
+        *(
+            Row(f"buttons/{name}", Bool, partial(_button, index=i), on_change=True, always=True)
+            for i, name in enumerate(commands.BUTTONS)
+        ),
+        Row("buttons", Joy, _joy, every_ns=SECOND_NS // 10),
+    ),
+    "motor": (Row("joint_states", JointState, _joints, every_ns=SECOND_NS // 20),),
+    "pose": (
+        Row("odom", Odometry, _odometry, always=True),
+        Row("ground_truth/odom", Odometry, _truth),
+    ),
+    "leds": (Row("led/state", Float32MultiArray, _leds, profile=qos.LATCHED, always=True),),
+}
+"""Sensor name → topics in SI units. Besides, every sensor that Aseba sees has `raw/<sensor>`."""
+
+
+def rows_of(sensor: Sensor) -> tuple[Row, ...]:
+    """Topics of a sensor; one added by a plug-in has those of its words."""
+    raw = (Row(f"raw/{sensor.name}", Int16MultiArray, _words),) if sensor.aseba.variables else ()
+    return ROWS.get(sensor.name, ()) + raw
+
+
+class CommandError(ValueError):
+    """A message that is refused; the text says what was found and what was expected."""
+
+
+def body_twist(message: TwistMsg, timeout_ns: int) -> commands.BodyTwist:
+    """geometry_msgs/Twist → command; linear.x and angular.z count. NaN and inf are refused."""
+    _finite(message.linear.x, "linear.x")
+    _finite(message.angular.z, "angular.z")
+    return commands.BodyTwist(message.linear.x, message.angular.z, timeout_ns)
+
+
+def wheel_velocities(data: Any, timeout_ns: int) -> commands.WheelVelocities:
+    """[left, right] in rad/s → command."""
+    values = _sized(data, 2, "[left, right] in rad/s")
+    for value in values:
+        _finite(value, "wheel speed")
+    return commands.WheelVelocities(float(values[0]), float(values[1]), timeout_ns)
+
+
+def motor_targets(data: Any) -> commands.MotorTargets:
+    """[left, right] in Thymio units → command."""
+    left, right = _sized(data, 2, "[left, right] in Thymio units")
+    return commands.MotorTargets(int(left), int(right))
+
+
+def led_levels(group: str, intensities: Any) -> commands.SetLeds:
+    """Intensities 0…1 → command with levels 0…32; clamped; fewer than the group has are refused."""
+    size = commands.LED_GROUPS[group]
+    values = _sized(intensities, size, f"{size} intensities 0…1")
+    for value in values:
+        _finite(value, "intensity")
+    return commands.SetLeds(group, tuple(round(min(max(v, 0.0), 1.0) * commands.LED_FULL) for v in values))
+
+
+def _sized(data: Any, size: int, what: str) -> list[Any]:
+    values = list(data)
+    if len(values) != size:
+        raise CommandError(f"{len(values)} values found, expected {what}")
+    return values
+
+
+def _finite(value: float, what: str) -> None:
+    if not math.isfinite(value):
+        raise CommandError(f"{what} is {value}, expected a finite number")

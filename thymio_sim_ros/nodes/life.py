@@ -1,0 +1,147 @@
+"""How our nodes live: one executor each, driven by one thread, ended in order.
+
+A `Life` owns one rclpy node and what belongs to it. `run_main` gives it a process of its own
+(`ros2 run`); `thymio` gives several of them a thread each in one process. Same behaviour both ways.
+The shutdown pattern is the one of ros-packaging.md section 5 that always exits cleanly.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+import traceback
+from collections.abc import Callable, Iterable, Sequence
+from types import FrameType
+from typing import Protocol
+
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import Executor, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+SPIN_SLICE_S = 0.1
+"""Longest wait in one spin: the events executor needs finite time-outs (ros-packaging.md section 3)."""
+
+
+class StartError(Exception):
+    """A node cannot start for a reason that the user can mend; the text is one line."""
+
+
+class Life(Protocol):
+    """Something that owns a node: it is turned until it shall end, then closed."""
+
+    @property
+    def node(self) -> Node:
+        """The ROS node."""
+
+    def turn(self, executor: Executor) -> None:
+        """Handle what is due; returns after `SPIN_SLICE_S` at the latest."""
+
+    def close(self) -> None:
+        """End everything that was opened, last opened first."""
+
+
+def make_executor(context: Context) -> Executor:
+    """The events executor where this rclpy has it, else the standard one (performance.md section 7)."""
+    try:
+        from rclpy.experimental.events_executor import EventsExecutor
+    except ImportError:
+        return SingleThreadedExecutor(context=context)
+    return EventsExecutor(context=context)
+
+
+def drive(life: Life, context: Context, stop: Callable[[], bool]) -> None:
+    """Turn a life on an executor of its own until `stop` says so or the context ends."""
+    executor = make_executor(context)
+    executor.add_node(life.node)
+    try:
+        while not stop() and context.ok():
+            life.turn(executor)
+    finally:
+        executor.remove_node(life.node)
+        executor.shutdown()
+
+
+class Threads:
+    """Lives of one process, a thread each; the first failure ends all."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._ended = threading.Event()
+        self._stop = threading.Event()
+        self._running: list[tuple[Life, threading.Thread]] = []
+        self.failure: BaseException | None = None
+
+    def start(self, life: Life) -> None:
+        """Give the life a thread."""
+        thread = threading.Thread(target=self._drive, args=(life,), name=life.node.get_name())
+        self._running.append((life, thread))
+        thread.start()
+
+    def wait(self) -> None:
+        """Block until a life ends by itself or `request_end` is called."""
+        while not self._ended.wait(SPIN_SLICE_S):
+            pass
+
+    def request_end(self) -> None:
+        """Let `wait` return; safe in a signal handler."""
+        self._ended.set()
+
+    def close(self) -> None:
+        """Stop all threads, then close the lives, last started first."""
+        self._stop.set()
+        for _, thread in self._running:
+            thread.join()
+        for life, _ in reversed(self._running):
+            life.close()
+        self._running.clear()
+
+    def _drive(self, life: Life) -> None:
+        try:
+            drive(life, self._context, self._stop.is_set)
+        except Exception as error:
+            self.failure = error
+            life.node.get_logger().fatal(f"ended by {error!r}")
+            traceback.print_exc()
+        finally:
+            self._ended.set()
+
+
+def run_main(
+    build: Callable[[Context], Iterable[Life]],
+    args: Sequence[str] | None = None,
+    *,
+    on_ready: Callable[[], None] = lambda: None,
+) -> int:
+    """Run the lives that `build` gives until SIGINT or SIGTERM; the exit code.
+
+    Each life gets its thread as soon as it is built; `on_ready` is called when all run. A `StartError` is one
+    line on stderr and exit code 2, with nothing left running.
+    """
+    context = Context()
+    threads = Threads(context)
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        threads.request_end()
+
+    signal.signal(signal.SIGINT, end)
+    signal.signal(signal.SIGTERM, end)
+    try:
+        rclpy.init(
+            args=None if args is None else list(args), context=context, signal_handler_options=SignalHandlerOptions.NO
+        )
+        for life in build(context):
+            threads.start(life)
+        on_ready()
+        threads.wait()
+        return 1 if threads.failure else 0
+    except StartError as error:
+        print(f"thymio-sim: {error}", file=sys.stderr)
+        return 2
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        threads.close()
+        context.try_shutdown()

@@ -1,0 +1,103 @@
+"""The playground as visualization_msgs/MarkerArray in the frame `map`: solids, floors and paint.
+
+Namespaces are the kinds of primitive, ids their order, so that both are stable; DELETEALL comes first
+(ros-interface.md section 5).
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
+
+from geometry_msgs.msg import Point as PointMsg
+from geometry_msgs.msg import Vector3
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker, MarkerArray
+
+from thymio_sim_ros.nodes.convert import quaternion
+from thymio_sim_ros.nodes.names import MAP_FRAME
+from thymio_sim_ros.sim.geometry import Point
+from thymio_sim_ros.sim.primitives import Box, Colour, Disc, Paint, Primitive, Solid
+
+LAYER_M = 0.0002
+"""Each paint lies this much above the one before, so that a viewer need not guess which covers which."""
+
+
+def playground_markers(primitives: Iterable[Primitive]) -> MarkerArray:
+    """Markers of all primitives, in their order; neighbouring paint of one shape and colour is one marker."""
+    markers = [Marker(action=Marker.DELETEALL)]
+    layer = 0
+    for (kind, name, colour), group in itertools.groupby(primitives, key=_sort_of):
+        outlines = []
+        for primitive in group:
+            if isinstance(primitive, Solid):
+                markers.append(_solid(primitive, len(markers)))
+            else:
+                outlines.append(primitive.vertices)
+        if not outlines:
+            continue
+        layer += kind is Paint
+        namespace = "paint" if kind is Paint else "floor"
+        markers.append(_patches(f"{namespace}/{name}", len(markers), outlines, colour, layer * LAYER_M))
+    return MarkerArray(markers=markers)
+
+
+def _sort_of(primitive: Primitive) -> tuple[type, str, Colour]:
+    return type(primitive), primitive.name, primitive.colour
+
+
+def _solid(solid: Solid, number: int) -> Marker:
+    marker = _marker(f"solid/{solid.name}", number, solid.colour)
+    marker.pose.position = PointMsg(x=solid.pose.x_m, y=solid.pose.y_m, z=solid.height_m / 2)
+    marker.pose.orientation = quaternion(solid.pose.yaw_rad)
+    outline = solid.outline
+    if isinstance(outline, Box):
+        marker.type = Marker.CUBE
+        marker.scale = Vector3(x=outline.size_x_m, y=outline.size_y_m, z=solid.height_m)
+    elif isinstance(outline, Disc):
+        marker.type = Marker.CYLINDER
+        marker.scale = Vector3(x=2 * outline.radius_m, y=2 * outline.radius_m, z=solid.height_m)
+    else:
+        marker.type = Marker.TRIANGLE_LIST
+        marker.scale = Vector3(x=1.0, y=1.0, z=1.0)
+        marker.points = _prism(outline.vertices, solid.height_m / 2)
+    return marker
+
+
+def _patches(
+    namespace: str, number: int, outlines: Sequence[Sequence[Point]], colour: Colour, height_m: float
+) -> Marker:
+    marker = _marker(namespace, number, colour)
+    marker.type = Marker.TRIANGLE_LIST
+    marker.scale = Vector3(x=1.0, y=1.0, z=1.0)
+    marker.pose.position.z = height_m
+    marker.points = [_point(corner, 0.0) for outline in outlines for corner in _fan(outline)]
+    return marker
+
+
+def _marker(namespace: str, number: int, colour: Colour) -> Marker:
+    red, green, blue = colour
+    marker = Marker(ns=namespace, id=number, action=Marker.ADD, color=ColorRGBA(r=red, g=green, b=blue, a=1.0))
+    marker.header.frame_id = MAP_FRAME
+    return marker
+
+
+def _fan(outline: Sequence[Point]) -> Iterator[Point]:
+    """Corners of the triangles of a convex polygon, three by three, counter-clockwise."""
+    for second, third in itertools.pairwise(outline[1:]):
+        yield from (outline[0], second, third)
+
+
+def _prism(outline: Sequence[Point], half_height_m: float) -> list[PointMsg]:
+    """Triangles of the sides and the top of an upright prism about height zero."""
+    points = [_point(corner, half_height_m) for corner in _fan(outline)]
+    for index, end in enumerate(outline):
+        begin = outline[index - 1]
+        low_begin, low_end = _point(begin, -half_height_m), _point(end, -half_height_m)
+        high_begin, high_end = _point(begin, half_height_m), _point(end, half_height_m)
+        points += [low_begin, low_end, high_end, low_begin, high_end, high_begin]
+    return points
+
+
+def _point(point: Point, z_m: float) -> PointMsg:
+    return PointMsg(x=point[0], y=point[1], z=z_m)

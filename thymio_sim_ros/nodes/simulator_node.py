@@ -1,0 +1,247 @@
+"""The simulator as a ROS node: owns the world, steps it, publishes readings, posts commands.
+
+One thread does all of it: between ticks the executor delivers messages, whose callbacks only convert and
+post. The world is paced by absolute deadlines, never by a ROS timer (architecture section 15). Topics,
+services and parameters: ros-interface.md sections 4, 5 and 10.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.context import Context
+from rclpy.executors import Executor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from std_srvs.srv import SetBool, Trigger
+
+from thymio_sim_ros import resources
+from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.nodes import params
+from thymio_sim_ros.nodes.convert import SECOND_NS, ConvertOptions
+from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, run_main
+from thymio_sim_ros.nodes.names import ros_names
+from thymio_sim_ros.nodes.params import param
+from thymio_sim_ros.nodes.robot_ports import RobotPorts
+from thymio_sim_ros.nodes.transforms import Transforms
+from thymio_sim_ros.nodes.world_ports import WorldPorts, WorldState
+from thymio_sim_ros.sim.clock import Pacer
+from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.playground import Playground, PlaygroundError
+from thymio_sim_ros.sim.world import World
+
+HEARTBEAT_NS = SECOND_NS
+"""While paused the clock is repeated at 1 Hz, so that late nodes get it."""
+
+
+@dataclass(frozen=True)
+class SimulatorParams:
+    """Parameters of the simulator node."""
+
+    playground: str = param("line", "Playground: a shipped name, a file, or the JSON text itself")
+    seed: int = param(0, "Seed of all noise; the same seed gives the same run", fixed=True)
+    noise: bool = param(True, "Whether wheels and sensors are noisy as on the robot", fixed=True)
+    real_time_factor: float = param(1.0, "Simulated seconds per second; 0 is as fast as possible", low=0.0, high=1000.0)
+    start_paused: bool = param(False, "Whether the world waits for ~/pause or ~/step", fixed=True)
+    step_ticks: int = param(1, "Ticks of 10 ms that ~/step does", low=1, high=100_000)
+    publish_clock: bool = param(True, "Whether /clock is published", fixed=True)
+    out_of_range: str = param(
+        "rep117", "Range of nothing and too close: rep117 (+inf, -inf) or driver (-1, minimum)", fixed=True
+    )
+    ground_threshold: int = param(
+        200, "Ground counts below are «not reflecting»", name="ground.threshold", low=0, high=1023, fixed=True
+    )
+    cmd_vel_timeout: float = param(0.0, "Seconds after which a velocity command ends; 0 is never", low=0.0, high=3600.0)
+
+
+class Simulator:
+    """The simulator node and its world. Invariant: only `turn`, `advance` and callbacks of `node` touch the world."""
+
+    def __init__(self, context: Context, defaults: SimulatorParams | None = None) -> None:
+        self.node = Node("simulator", context=context)
+        self.params = params.declare(self.node, defaults or SimulatorParams())
+        if self.params.out_of_range not in ("rep117", "driver"):
+            raise StartError(f"out_of_range is '{self.params.out_of_range}', expected rep117 or driver")
+        try:
+            self.playground_name, playground = load_playground(self.params.playground)
+        except (PlaygroundError, resources.ResourceError, OSError) as error:
+            self.node.destroy_node()
+            raise StartError(str(error)) from error
+        self.paused = self.params.start_paused
+        self._pacer = Pacer(self.params.real_time_factor)
+        self._last_beat_ns = 0
+        self._world_ports = WorldPorts(self.node, publish_clock=self.params.publish_clock)
+        self._transforms = Transforms(self.node)
+        self._robots: dict[str, RobotPorts] = {}
+        self._set_world(playground)
+        self._services = [
+            self.node.create_service(SetBool, "~/pause", self._on_pause),
+            self.node.create_service(Trigger, "~/step", self._on_step),
+            self.node.create_service(Trigger, "~/reset", self._on_reset),
+        ]
+        self._accepted: tuple[str, Playground] | None = None
+        self.node.add_on_set_parameters_callback(self._check_parameters)
+        self.node.add_post_set_parameters_callback(self._apply_parameters)
+
+    def turn(self, executor: Executor) -> None:
+        """Ticks that are owed, then messages until the next tick is due."""
+        now = time.monotonic_ns()
+        if self.paused:
+            if now - self._last_beat_ns >= HEARTBEAT_NS:
+                self._beat(now)
+            executor.spin_once(timeout_sec=SPIN_SLICE_S)
+            return
+        self._guard(self._run_owed)
+        if now - self._last_beat_ns >= HEARTBEAT_NS:
+            self._beat(now)
+        wait_s = self._pacer.wait_ns(time.monotonic_ns()) / SECOND_NS
+        executor.spin_once(timeout_sec=min(max(wait_s, 0.0), SPIN_SLICE_S))
+
+    def advance(self, ticks: int) -> None:
+        """Step the world by ticks of 10 ms at once, also while paused, and publish what they give."""
+        for _ in range(ticks):
+            result = self.world.step()
+            for robot, sensor, reading in result.readings:
+                ports = self._robots[robot]
+                ports.publish(sensor, reading)
+                self._transforms.take(ports.names, sensor, reading)
+            self._world_ports.publish_clock(result.now_ns, last=False)
+
+    def reset(self) -> None:
+        """World, time and noise as at the start."""
+        self.world.reset()
+        self._begin()
+
+    def close(self) -> None:
+        """Destroy the node; the world goes with it."""
+        self.node.destroy_node()
+
+    def _run_owed(self) -> None:
+        self.advance(self._pacer.owed(time.monotonic_ns()))
+
+    def _guard(self, act: Callable[[], None]) -> None:
+        """Our own bug in the core: log it, pause, stay alive for inspection (architecture section 12)."""
+        try:
+            act()
+        except Exception:
+            self.node.get_logger().error(f"the world stopped at {self.world.now_ns} ns", exc_info=sys.exc_info())
+            self.paused = True
+            self._publish_state()
+
+    def _set_world(self, playground: Playground) -> None:
+        self.world = World(playground, seed=self.params.seed, noise=self.params.noise)
+        names = ros_names(tuple(self.world.robots))
+        if {robot: ports.names for robot, ports in self._robots.items()} != names:
+            for ports in self._robots.values():
+                ports.close()
+            options = ConvertOptions(
+                driver_ranges=self.params.out_of_range == "driver", ground_threshold=self.params.ground_threshold
+            )
+            self._robots = {
+                robot: RobotPorts(
+                    self.node,
+                    name,
+                    self._poster(robot),
+                    options=options,
+                    now_ns=lambda: self.world.now_ns,
+                    timeout_ns=self._timeout_ns,
+                )
+                for robot, name in names.items()
+            }
+        self._begin()
+
+    def _begin(self) -> None:
+        """Order at a start: latched topics, then the clock at zero; the first readings follow (section 7)."""
+        self._pacer = Pacer(self.params.real_time_factor)
+        for ports in self._robots.values():
+            ports.forget()
+        self._transforms.begin([ports.names for ports in self._robots.values()])
+        self._world_ports.publish_scene(self.world.playground)
+        self._publish_state()
+        self._world_ports.publish_clock(0, last=True)
+
+    def _poster(self, robot: str) -> Callable[[Command], None]:
+        return lambda command: self.world.post(robot, command)
+
+    def _timeout_ns(self) -> int:
+        return round(self.params.cmd_vel_timeout * SECOND_NS)
+
+    def _beat(self, now_ns: int) -> None:
+        self._last_beat_ns = now_ns
+        if self.paused:
+            self._world_ports.publish_clock(self.world.now_ns, last=True)
+        self._publish_state()
+        self._world_ports.publish_diagnostics(self._state(), self._pacer.dropped_ticks)
+
+    def _state(self) -> WorldState:
+        return WorldState(
+            playground=self.playground_name,
+            title=self.world.playground.title,
+            paused=self.paused,
+            real_time_factor=self.params.real_time_factor,
+            achieved=0.0 if self.paused else self._pacer.achieved,
+            seed=self.params.seed,
+            now_ns=self.world.now_ns,
+            robots=tuple(ports.names for ports in self._robots.values()),
+        )
+
+    def _publish_state(self) -> None:
+        self._world_ports.publish_state(self._state())
+
+    def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        self.paused = bool(request.data)
+        self._pacer = Pacer(self.params.real_time_factor)
+        self._world_ports.publish_clock(self.world.now_ns, last=True)
+        self._publish_state()
+        response.success = True
+        response.message = "paused" if self.paused else "running"
+        return response
+
+    def _on_step(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        if not self.paused:
+            response.success, response.message = False, "the world is running: pause it first"
+            return response
+        self._guard(lambda: self.advance(self.params.step_ticks))
+        self._world_ports.publish_clock(self.world.now_ns, last=True)
+        self._publish_state()
+        response.success, response.message = True, f"now {self.world.now_ns / SECOND_NS:.3f} s"
+        return response
+
+    def _on_reset(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self.reset()
+        response.success, response.message = True, "world, time and noise are as at the start"
+        return response
+
+    def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        value = params.changes(parameters).get("playground")
+        if value is not None:
+            try:
+                self._accepted = load_playground(value)
+                World(self._accepted[1], seed=self.params.seed, noise=self.params.noise)
+            except (PlaygroundError, resources.ResourceError, OSError) as error:
+                return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _apply_parameters(self, parameters: list[Parameter]) -> None:
+        changed: dict[str, Any] = params.changes(parameters)
+        known = {
+            name: changed[name] for name in ("real_time_factor", "step_ticks", "cmd_vel_timeout") if name in changed
+        }
+        self.params = replace(self.params, **known)
+        if "real_time_factor" in changed:
+            self._pacer = Pacer(self.params.real_time_factor)
+        if "playground" in changed and self._accepted is not None:
+            self.playground_name, playground = self._accepted
+            self._accepted = None
+            self._set_world(playground)
+        self._publish_state()
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """The executable `simulator`."""
+    return run_main(lambda context: [Simulator(context)], args)
