@@ -1,0 +1,141 @@
+"""The web page as a ROS node: static files over HTTP from a thread that shares nothing.
+
+The page speaks the Foxglove protocol to the bridge; this server only gives it its files and `/config.json`,
+which names the bridge's port. Loopback by default; nothing is written, nothing outside the page is served.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+from rclpy.context import Context
+from rclpy.executors import Executor
+from rclpy.node import Node
+
+import thymio_sim_ros
+from thymio_sim_ros import resources
+from thymio_sim_ros.nodes import params
+from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, run_main
+from thymio_sim_ros.nodes.params import param
+from thymio_sim_ros.suite import ADDRESS, FOXGLOVE_PORT, HTTP_PORT
+
+# The platform's own table may be wrong (web-ui-features.md section 5.4).
+TYPES = {
+    "": "application/octet-stream",
+    ".html": "text/html; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".mjs": "text/javascript; charset=utf-8",
+    ".json": "application/json",
+    ".svg": "image/svg+xml",
+    ".png": "image/png",
+    ".ico": "image/x-icon",
+    ".wasm": "application/wasm",
+    ".woff2": "font/woff2",
+    ".mp3": "audio/mpeg",
+}
+
+
+@dataclass(frozen=True)
+class WebParams:
+    """Parameters of the web node."""
+
+    port: int = param(HTTP_PORT, "TCP port of the page; 0 takes a free one", low=0, high=65535, fixed=True)
+    address: str = param(ADDRESS, "Address to listen on; 0.0.0.0 for the whole network", fixed=True)
+    foxglove_port: int = param(
+        FOXGLOVE_PORT, "Port of the Foxglove bridge on the same host", low=1, high=65535, fixed=True
+    )
+
+
+class _Handler(SimpleHTTPRequestHandler):
+    """Serves the page's folder, never cached, and the configuration."""
+
+    extensions_map = TYPES
+
+    def __init__(self, *args: Any, config: bytes, page: Path | None, **kwargs: Any) -> None:
+        self._config = config
+        self._page = page
+        super().__init__(*args, directory=str(page or Path("/nonexistent")), **kwargs)
+
+    def do_GET(self) -> None:
+        """Configuration, a file of the page, or the sentence that tells how to build it."""
+        path = self.path.partition("?")[0]
+        if path == "/config.json":
+            self._answer(200, "application/json", self._config)
+        elif self._page is None:
+            text = f"<!doctype html><meta charset=utf-8><title>Thymio</title><p>{resources.PAGE_BUILD_HINT}</p>"
+            self._answer(503, TYPES[".html"], text.encode())
+        else:
+            super().do_GET()
+
+    def list_directory(self, path: Any) -> None:
+        """Folders are not listed."""
+        self.send_error(404)
+
+    def end_headers(self) -> None:
+        """Every answer: fresh, and of the type it says."""
+        self.send_header("Cache-Control", "no-cache")
+        self.send_header("X-Content-Type-Options", "nosniff")
+        super().end_headers()
+
+    def log_message(self, *_args: Any) -> None:
+        """A page view is no news."""
+
+    def _answer(self, status: int, kind: str, body: bytes) -> None:
+        self.send_response(status)
+        self.send_header("Content-Type", kind)
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
+
+
+class _Server(ThreadingHTTPServer):
+    daemon_threads = True
+    allow_reuse_address = True
+
+
+class WebPage:
+    """The web node and its HTTP server. `port` is the one really taken."""
+
+    def __init__(self, context: Context, defaults: WebParams | None = None) -> None:
+        self.node = Node("web_ui", context=context)
+        self.params = params.declare(self.node, defaults or WebParams())
+        config = {"foxglove_port": self.params.foxglove_port, "version": thymio_sim_ros.__version__}
+        page = resources.page()
+        if page is None:
+            self.node.get_logger().warning(resources.PAGE_BUILD_HINT)
+        handler = partial(_Handler, config=json.dumps(config).encode(), page=page)
+        try:
+            self._server = _Server((self.params.address, self.params.port), handler)
+        except OSError as error:
+            self.node.destroy_node()
+            where = f"{self.params.address}:{self.params.port}"
+            raise StartError(
+                f"the page's port {where} cannot be used: {error.strerror}; choose another with --port"
+            ) from error
+        self.port = int(self._server.server_address[1])
+        self._thread = threading.Thread(target=self._server.serve_forever, args=(0.1,), name="http", daemon=True)
+        self._thread.start()
+
+    def turn(self, executor: Executor) -> None:
+        """Nothing but parameters to answer."""
+        executor.spin_once(timeout_sec=SPIN_SLICE_S)
+
+    def close(self) -> None:
+        """Close the port, end the thread, destroy the node."""
+        self._server.shutdown()
+        self._server.server_close()
+        self._thread.join()
+        self.node.destroy_node()
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """The executable `web_ui`."""
+    return run_main(lambda context: [WebPage(context)], args)
