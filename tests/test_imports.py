@@ -1,0 +1,135 @@
+"""Who may import whom (docs/architecture.md): every import of every module, read from its syntax tree."""
+
+from __future__ import annotations
+
+import ast
+import graphlib
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PACKAGES = ("aseba_vm", "thymio_sim_ros")
+OURS = "thymio_sim_ros"
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What the modules below a name may import: of ours, of others; and what of the standard library they may not."""
+
+    ours: frozenset[str]
+    others: frozenset[str] = frozenset()
+    never: frozenset[str] = frozenset()
+
+
+def _names(*names: str) -> frozenset[str]:
+    return frozenset(f"{OURS}.{name}" if name != "aseba_vm" else name for name in names)
+
+
+NO_WALL_CLOCK = frozenset({"asyncio", "threading", "time", "socket", "selectors", "multiprocessing"})
+MESSAGES = frozenset({
+    "builtin_interfaces", "diagnostic_msgs", "geometry_msgs", "nav_msgs", "rcl_interfaces", "rosgraph_msgs",
+    "sensor_msgs", "std_msgs", "std_srvs", "tf2_msgs", "visualization_msgs",
+})  # fmt: skip
+ROS = MESSAGES | {"rclpy", "ament_index_python", "rosidl_parser", "rosidl_runtime_py"}
+ALL_OF_OURS = frozenset(PACKAGES)
+DECLARATIONS = _names("sim.commands", "sim.readings", "sim.units", "sim.sensors", "sim.actuators", "sim.aseba_face")
+
+# The longest name that fits a module decides.
+RULES = {
+    "aseba_vm": Rule(_names("aseba_vm"), never=NO_WALL_CLOCK),
+    f"{OURS}.sim": Rule(_names("sim", "registry"), frozenset({"numpy"}), NO_WALL_CLOCK),
+    f"{OURS}.sim.physics": Rule(_names("sim"), frozenset({"numpy", "pymunk"}), NO_WALL_CLOCK),
+    f"{OURS}.device": Rule(_names("aseba_vm", "device", "registry") | DECLARATIONS, never=NO_WALL_CLOCK),
+    f"{OURS}.registry": Rule(frozenset(), never=NO_WALL_CLOCK),
+    f"{OURS}.runner": Rule(_names("aseba_vm", "sim", "device", "registry"), never=NO_WALL_CLOCK - {"time"}),
+    f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"websockets"})),
+    f"{OURS}.nodes": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
+    f"{OURS}.launch": Rule(frozenset(), frozenset({"launch", "launch_ros"})),
+    f"{OURS}.testing": Rule(ALL_OF_OURS, ROS | {"pytest"}),
+    f"{OURS}.cli": Rule(ALL_OF_OURS),
+    # resources, loading, suite, webbuild: helpers of the commands, without ROS
+    OURS: Rule(ALL_OF_OURS),
+}
+STARTERS = {f"{OURS}.cli", f"{OURS}.testing", f"{OURS}.nodes"}
+
+
+def _sources() -> dict[str, Path]:
+    """Every module of ours, dotted name → file."""
+    paths = [path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]
+    return {".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path for path in paths}
+
+
+SOURCES = _sources()
+
+
+def _imports(module: str) -> Iterator[str]:
+    """Dotted names that a module imports anywhere; `from package import module` counts as the module."""
+    tree = ast.parse(SOURCES[module].read_text(), SOURCES[module].name)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{module}: imports are absolute"
+            for alias in node.names:
+                name = f"{node.module}.{alias.name}"
+                yield name if name in SOURCES else str(node.module)
+
+
+def _below(name: str, package: str) -> bool:
+    return name == package or name.startswith(f"{package}.")
+
+
+def _rule(module: str) -> Rule:
+    return RULES[max((name for name in RULES if _below(module, name)), key=len)]
+
+
+def _is_refused(name: str, rule: Rule) -> bool:
+    top = name.split(".")[0]
+    if top in PACKAGES:
+        # The package itself holds nothing but the version.
+        return name != OURS and not any(_below(name, allowed) for allowed in rule.ours)
+    if top in sys.stdlib_module_names:
+        return top in rule.never
+    return top not in rule.others
+
+
+@pytest.mark.parametrize("module", SOURCES)
+def test_a_module_imports_only_what_its_package_may(module: str) -> None:
+    rule = _rule(module)
+    assert sorted({name for name in _imports(module) if _is_refused(name, rule)}) == []
+
+
+def test_only_the_commands_and_the_fixtures_import_the_nodes() -> None:
+    nodes = f"{OURS}.nodes"
+    importers = {module for module in SOURCES if any(_below(name, nodes) for name in _imports(module))}
+    assert {module for module in importers if not any(_below(module, starter) for starter in STARTERS)} == set()
+
+
+def test_no_module_imports_itself_by_a_detour() -> None:
+    graph = {module: {name for name in _imports(module) if name in SOURCES} - {OURS} for module in SOURCES}
+    graphlib.TopologicalSorter(graph).prepare()
+
+
+def test_everything_without_ros_can_be_imported_where_rclpy_cannot() -> None:
+    with_ros = (f"{OURS}.nodes", f"{OURS}.testing", f"{OURS}.launch")
+    pure = [module for module in SOURCES if not any(_below(module, name) for name in with_ros)]
+    pure = [module for module in pure if not module.endswith("__main__")]
+    program = (
+        "import importlib, sys\n"
+        "sys.modules.update(dict.fromkeys(['rclpy', 'std_msgs', 'rcl_interfaces']))\n"
+        "for name in sys.argv[1:]: importlib.import_module(name)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program, *pure], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.stderr == ""
+    assert done.returncode == 0
+
+
+def test_the_language_needs_nothing_but_the_standard_library() -> None:
+    """aseba_vm is useful without a robot: -S hides every installed package."""
+    program = f"import sys; sys.path.insert(0, {str(ROOT)!r}); import aseba_vm"
+    subprocess.run([sys.executable, "-I", "-S", "-c", program], check=True, capture_output=True)
