@@ -1,0 +1,101 @@
+// What a person can do, as the messages, calls and parameters that do it. No document, no scene.
+
+import { PARAMETERS, robotTopic } from "./state/names.js";
+
+/** @typedef {import("./protocol/client.js").Client} Client */
+/** @typedef {import("./state/store.js").Store} Store */
+
+/** A file larger than this is no program and no playground. */
+export const LARGEST_FILE = 1_000_000;
+
+export class Actions {
+  /** @param {object} options @param {Client} options.client @param {Store} options.store @param {(key: string, values?: Record<string, any>) => string} options.t */
+  constructor({ client, store, t }) {
+    this.client = client;
+    this.store = store;
+    this.t = t;
+  }
+
+  /** A finger on or off one of a robot's buttons. @param {string} robot @param {string} button @param {boolean} pressed */
+  press(robot, button, pressed) {
+    this.client.publish(robotTopic(robot, `press/${button}`), "std_msgs/msg/Bool", { data: pressed });
+  }
+
+  /** Everything stands still: every program stopped, every wheel told zero. */
+  async stop() {
+    const { services, robots } = this.store.state;
+    const stops = services.filter((name) => name.endsWith("/aseba/stop"));
+    await Promise.all(stops.map((name) => this.call(name)));
+    for (const robot of Object.keys(robots)) {
+      this.client.publish(robotTopic(robot, "cmd_vel"), "geometry_msgs/msg/Twist", {});
+    }
+  }
+
+  /** run, stop or reset the selected robot's program. @param {"run" | "stop" | "reset"} verb */
+  program(verb) {
+    return this.call(this.programService(verb));
+  }
+
+  /** The service that does this for the selected robot. @param {"run" | "stop" | "reset"} verb */
+  programService(verb) {
+    const { services, selected } = this.store.state;
+    const own = robotTopic(selected, `aseba/${verb}`);
+    return services.includes(own) ? own : `/aseba/${verb}`;
+  }
+
+  /** @param {boolean} paused */
+  pause(paused) {
+    return this.call("/simulator/pause", { data: paused });
+  }
+
+  step() {
+    return this.call("/simulator/step");
+  }
+
+  reset() {
+    return this.call("/simulator/reset");
+  }
+
+  /** @param {number} factor  1: real time */
+  async setFactor(factor) {
+    const answer = await this.client.setParameters([{ name: PARAMETERS.factor, value: factor, type: "float64" }]);
+    if (!answer.ok) this.store.dispatch({ type: "notice", level: "error", text: answer.message });
+  }
+
+  /** @param {string} name @param {string} text */
+  async loadProgram(name, text) {
+    this.store.dispatch({ type: "upload", what: "program", name, text });
+    const answer = await this.client.setParameters([
+      { name: PARAMETERS.programName, value: name },
+      { name: PARAMETERS.source, value: text },
+    ]);
+    this.store.dispatch({ type: "uploaded", what: "program", message: answer.ok ? null : answer.message });
+  }
+
+  /** @param {string} name @param {string} [text]  the JSON text, else `name` is one of the list */
+  async loadPlayground(name, text) {
+    this.store.dispatch({ type: "upload", what: "playground", name, text: text ?? "" });
+    const answer = await this.client.setParameters([{ name: PARAMETERS.playground, value: text ?? name }]);
+    this.store.dispatch({ type: "uploaded", what: "playground", message: answer.ok ? null : answer.message });
+  }
+
+  /** A file chosen or dropped: its ending says what it is. @param {File} file */
+  async loadFile(file) {
+    const kind = /\.(aesl|aseba|txt)$/i.test(file.name) ? "program" : /\.json$/i.test(file.name) ? "playground" : null;
+    if (kind === null) return this.refuse("file.unknown", file);
+    if (file.size > LARGEST_FILE) return this.refuse("file.tooLarge", file);
+    const text = await file.text();
+    await (kind === "program" ? this.loadProgram(file.name, text) : this.loadPlayground(file.name, text));
+  }
+
+  /** @param {string} key @param {File} file */
+  refuse(key, { name }) {
+    this.store.dispatch({ type: "notice", level: "error", text: this.t(key, { name }) });
+  }
+
+  /** @param {string} service @param {Record<string, any>} [request] */
+  async call(service, request) {
+    const answer = await this.client.call(service, request);
+    if (!answer.ok) this.store.dispatch({ type: "notice", level: "error", text: answer.message });
+  }
+}

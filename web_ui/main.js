@@ -1,0 +1,116 @@
+// The page's start: connects protocol, state, scene and panels, and lets each do its own work.
+
+import { Actions } from "./actions.js";
+import { watchDrops } from "./drop.js";
+import { chooseLanguage, translator } from "./i18n/index.js";
+import { watchKeyboard } from "./keyboard.js";
+import { PANELS } from "./panels/index.js";
+import { Client } from "./protocol/client.js";
+import { SceneView } from "./scene/index.js";
+import { PARAMETERS, splitTopic } from "./state/names.js";
+import { Store } from "./state/store.js";
+
+const DEFAULT_PORT = 8765;
+const LANGUAGE_KEY = "language";
+
+/** @param {string} selector @returns {HTMLElement} */
+function element(selector) {
+  const found = document.querySelector(selector);
+  if (found === null) throw new Error(`index.html has no ${selector}`);
+  return /** @type {HTMLElement} */ (found);
+}
+
+/** Where the bridge listens: told by the server of this page, on the host the page came from. */
+async function bridgeAddress() {
+  const answer = await fetch("config.json").catch(() => null);
+  const config = answer?.ok ? await answer.json().catch(() => ({})) : {};
+  return `ws://${location.hostname || "localhost"}:${config.foxglove_port ?? DEFAULT_PORT}`;
+}
+
+async function main() {
+  const address = await bridgeAddress();
+  const store = new Store();
+  let language = chooseLanguage([localStorage.getItem(LANGUAGE_KEY) ?? "", ...navigator.languages]);
+  let t = translator(language);
+  /** @type {import("./panels/index.js").Panel[]} */ let panels = [];
+
+  const client = new Client({
+    address,
+    emit: (event) => store.dispatch(event.type === "message" ? { ...event, nowMs: performance.now() } : event),
+    wants: (topic) => splitTopic(topic) !== null,
+    parameters: [PARAMETERS.playground, PARAMETERS.factor],
+  });
+  const actions = new Actions({ client, store, t: (key, values) => t(key, values) });
+  const canvas = /** @type {HTMLCanvasElement} */ (element("#view"));
+  const trouble = element("#trouble");
+
+  const scene = new SceneView({
+    canvas,
+    labels: element("#labels"),
+    state: () => store.state,
+    beforeDraw: () => panels.forEach((panel) => panel.render?.(store.state)),
+    press: ({ robot, button }, pressed) => {
+      store.dispatch({ type: "select", robot });
+      actions.press(robot, button, pressed);
+    },
+    robotTitle: (name) => name || t("app.robot"),
+    contextLost: (lost) => {
+      trouble.textContent = lost ? t("app.contextLost") : "";
+      trouble.hidden = !lost;
+    },
+  });
+
+  const live = element("#live");
+  /** @param {string} text */
+  const announce = (text) => {
+    live.textContent = text;
+  };
+
+  const build = () => {
+    t = translator(language);
+    document.documentElement.lang = language;
+    document.title = t("app.title");
+    element("#title").textContent = t("app.title");
+    element("#drop").textContent = t("app.drop");
+    element("aside").setAttribute("aria-label", t("app.panels"));
+    canvas.setAttribute("aria-label", t("view.canvas"));
+    if (scene.renderer === null) trouble.textContent = t("app.noWebgl");
+    trouble.hidden = scene.renderer !== null;
+    document.querySelectorAll(".banner").forEach((banner) => banner.remove());
+    for (const panel of panels) panel.element.remove();
+    const context = { t, language, setLanguage, actions, store, scene, address, announce };
+    panels = PANELS.map((create) => create(context));
+    for (const panel of panels) element(`[data-slot="${panel.slot}"]`).append(panel.element);
+    scene.invalidate();
+  };
+  /** @param {string} chosen */
+  const setLanguage = (chosen) => {
+    language = chosen;
+    localStorage.setItem(LANGUAGE_KEY, chosen);
+    build();
+  };
+
+  build();
+  store.subscribe(() => scene.invalidate());
+  watchKeyboard(canvas, scene, (button, pressed) => actions.press(store.state.selected, button, pressed));
+  watchDrops(element("#drop"), (file) => actions.loadFile(file));
+  window.addEventListener("keydown", ({ key }) => {
+    if (key === "Escape") actions.stop();
+  });
+  client.start();
+
+  // Read-only, for tests: what the page knows, what it has drawn, and where a part is on the screen.
+  Object.defineProperty(window, "thymio", {
+    value: Object.freeze({
+      state: () => ({ ...store.state, markers: store.state.markers.size }),
+      frames: () => scene.frames,
+      /** @param {string} part @param {string} [robot] */
+      partPosition: (part, robot) => scene.partPosition(part, robot),
+      get connected() {
+        return store.state.connection === "connected";
+      },
+    }),
+  });
+}
+
+main();

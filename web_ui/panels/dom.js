@@ -1,0 +1,108 @@
+// Small tools to build and change elements; a panel writes the document only where a value changed.
+
+/**
+ * @template {keyof HTMLElementTagNameMap} Tag
+ * @param {Tag} tag
+ * @param {Record<string, any>} attributes  `class`, `onclick` and the like, `aria-…`; null or false: left out
+ * @param {...(Node | string)} children
+ * @returns {HTMLElementTagNameMap[Tag]}
+ */
+export function h(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === null || value === false) continue;
+    if (typeof value === "function") element.addEventListener(name.slice(2), value);
+    else element.setAttribute(name, value === true ? "" : String(value));
+  }
+  element.append(...children);
+  return element;
+}
+
+/** A picture from one path of a 24×24 grid; the button around it has the label. @param {string} path */
+export function icon(path) {
+  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  svg.setAttribute("viewBox", "0 0 24 24");
+  svg.setAttribute("aria-hidden", "true");
+  svg.setAttribute("class", "icon");
+  const shape = document.createElementNS("http://www.w3.org/2000/svg", "path");
+  shape.setAttribute("d", path);
+  svg.append(shape);
+  return svg;
+}
+
+export const ICONS = {
+  play: "M7 4.500v15l12-7.500z",
+  pause: "M6 4.500h4.200v15H6zM13.800 4.500H18v15h-4.200z",
+  step: "M5 4.500v15l9-7.500zM16 4.500h3.200v15H16z",
+  stop: "M6 6h12v12H6z",
+  restart: "M12 5V1.500L6.500 6 12 10.500V7.200a5.300 5.300 0 1 1-5.300 5.300H4.500A7.500 7.500 0 1 0 12 5z",
+  open: "M3 5h6l2 2.500h10V10H6.800L4.500 18.500 3 18zM7.800 11.500H22L19.700 19H5.500z",
+  close: "M6.200 4.800 12 10.600l5.800-5.800 1.400 1.400L13.400 12l5.800 5.800-1.400 1.400L12 13.400l-5.800 5.800-1.400-1.400L10.600 12 4.800 6.200z",
+  arrow: "M12 5.500 19.500 17h-15z",
+  dot: "M12 6a6 6 0 1 0 0 12 6 6 0 0 0 0-12z",
+  home: "M12 3 2.500 11H5v9h5.200v-5.500h3.600V20H19v-9h2.500z",
+  top: "M4 4h16v16H4zM6.200 6.200v11.600h11.600V6.200zM10 10h4v4h-4z",
+  follow: "M12 2.500a9.500 9.500 0 1 0 0 19 9.500 9.500 0 0 0 0-19zm0 2.200a7.300 7.300 0 1 1 0 14.600 7.300 7.300 0 0 1 0-14.600zM12 8a4 4 0 1 0 0 8 4 4 0 0 0 0-8z",
+  beams: "M3 10.500h4v3H3zM9 11l12-6v2.500l-9.500 4zM9 13l12 6v-2.500l-9.500-4zM11 11.200h10v1.600H11z",
+};
+
+/** @param {Element} element @param {string} text */
+export function setText(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+/** @param {Element} element @param {string} name @param {string} value */
+export function setAttribute(element, name, value) {
+  if (element.getAttribute(name) !== value) element.setAttribute(name, value);
+}
+
+/**
+ * A control that is held: down by pointer, Enter or Space, up again when let go or left.
+ *
+ * @param {HTMLElement} element
+ * @param {(pressed: boolean) => void} hold
+ */
+export function holdable(element, hold) {
+  /** @type {Set<string | number>} */ const holders = new Set();
+  /** @param {string | number} who */
+  const down = (who) => {
+    if (holders.size === 0) hold(true);
+    holders.add(who);
+  };
+  /** @param {string | number} who */
+  const up = (who) => {
+    if (holders.delete(who) && holders.size === 0) hold(false);
+  };
+  element.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    element.setPointerCapture(event.pointerId);
+    down(event.pointerId);
+  });
+  for (const name of /** @type {const} */ (["pointerup", "pointercancel", "lostpointercapture"])) {
+    element.addEventListener(name, (event) => up(event.pointerId));
+  }
+  element.addEventListener("keydown", (event) => {
+    if (event.key !== "Enter" && event.key !== " ") return;
+    event.preventDefault();
+    if (!event.repeat) down(event.key);
+  });
+  element.addEventListener("keyup", (event) => up(event.key));
+  element.addEventListener("blur", () => ["Enter", " "].forEach(up));
+  element.addEventListener("contextmenu", (event) => event.preventDefault());
+}
+
+/**
+ * A button that opens a file; the browser's own file field stays hidden behind it.
+ *
+ * @param {{ label: string, help: string, accept: string, open: (file: File) => void }} options
+ */
+export function fileButton({ label, help, accept, open }) {
+  const input = h("input", { type: "file", accept, hidden: true, "aria-label": help });
+  input.addEventListener("change", () => {
+    const file = input.files?.[0];
+    if (file !== undefined) open(file);
+    input.value = ""; // so that the same file can be opened again
+  });
+  const button = h("button", { type: "button", title: help, onclick: () => input.click() }, icon(ICONS.open), label);
+  return h("span", { class: "file" }, button, input);
+}

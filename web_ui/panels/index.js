@@ -1,0 +1,48 @@
+// The panels, in the order in which they stand on the page. To add one: a file, and a line here.
+
+import { connectionPanel } from "./connection.js";
+import { dpadPanel } from "./dpad.js";
+import { languagePanel } from "./language.js";
+import { noticesPanel } from "./notices.js";
+import { playgroundPanel } from "./playground.js";
+import { programPanel } from "./program.js";
+import { robotsPanel } from "./robots.js";
+import { sensorsPanel } from "./sensors.js";
+import { stopPanel } from "./stop.js";
+import { timePanel } from "./time.js";
+import { viewsPanel } from "./views.js";
+
+/** @typedef {import("../state/index.js").State} State */
+/** @typedef {import("../i18n/index.js").Translate} Translate */
+/**
+ * @typedef {object} Context
+ * @property {Translate} t
+ * @property {string} language
+ * @property {(language: string) => void} setLanguage
+ * @property {import("../actions.js").Actions} actions
+ * @property {import("../state/store.js").Store} store
+ * @property {import("../scene/index.js").SceneView} scene
+ * @property {string} address   of the simulator, for people
+ * @property {(text: string) => void} announce   to the live region
+ */
+/**
+ * @typedef {object} Panel
+ * @property {"header" | "stage" | "side" | "footer"} slot
+ * @property {HTMLElement} element
+ * @property {(state: State) => void} [render]
+ */
+
+/** @type {((context: Context) => Panel)[]} */
+export const PANELS = [
+  connectionPanel,
+  languagePanel,
+  stopPanel,
+  noticesPanel,
+  viewsPanel,
+  dpadPanel,
+  robotsPanel,
+  programPanel,
+  playgroundPanel,
+  sensorsPanel,
+  timePanel,
+];

@@ -1,0 +1,72 @@
+// The program in the robot: its name and state, open another, run, stop, restart. What the compiler
+// refuses is shown in its own text, at its place, while the old program goes on.
+
+import { programOf } from "../state/index.js";
+import { card } from "./card.js";
+import { fileButton, h, icon, ICONS, setAttribute, setText } from "./dom.js";
+import { sourceView } from "./source.js";
+
+const KNOWN_STATES = ["running", "paused", "stopped", "fault"];
+const VERBS = /** @type {const} */ ([["run", ICONS.play], ["stop", ICONS.stop], ["reset", ICONS.restart]]);
+
+/** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
+export function programPanel({ t, actions, store, announce }) {
+  const name = h("strong", { class: "name" });
+  const lamp = h("span", { class: "state" });
+  const message = h("p", { class: "message", hidden: true });
+  const verbs = VERBS.map(([verb, path]) => ({
+    verb,
+    button: h("button", { type: "button", title: t(`program.${verb}`), onclick: () => actions.program(verb) }, icon(path), t(`program.${verb}`)),
+  }));
+  const upload = h("div", { class: "upload", hidden: true });
+  const element = card("program", t("program"),
+    h("div", { class: "current" }, name, lamp),
+    message,
+    h("div", { class: "row" }, ...verbs.map(({ button }) => button)),
+    h("div", { class: "row" }, fileButton({ label: t("program.open"), help: t("program.openHelp"), accept: ".aesl,.aseba,.txt", open: (file) => actions.loadFile(file) }), h("small", {}, t("program.dropHint"))),
+    upload,
+  );
+  /** @type {import("../state/index.js").Upload | null} */ let shown = null;
+  let told = "";
+
+  /** @param {import("../state/index.js").Upload | null} now */
+  const showUpload = (now) => {
+    if (now === shown) return;
+    shown = now;
+    upload.hidden = now === null;
+    if (now === null) return upload.replaceChildren();
+    upload.className = `upload ${now.phase}`;
+    const { fault } = now;
+    const placed = fault !== null && fault.line !== null;
+    const headline = now.phase === "refused" && placed
+      ? t("program.refusedAt", { name: now.name, line: fault.line ?? 0, column: fault.column ?? 0 })
+      : t(`program.${now.phase}`, { name: now.name });
+    const close = h("button", { type: "button", class: "plain", "aria-label": t("program.close"), onclick: () => store.dispatch({ type: "forget", what: "program" }) }, icon(ICONS.close));
+    upload.replaceChildren(h("p", { class: "headline" }, headline, close));
+    if (fault !== null) {
+      upload.append(placed ? sourceView(now.text, fault, t("program.source")) : h("p", { class: "fault" }, fault.text), h("small", {}, t("program.keeps")));
+    }
+    announce(fault === null ? headline : `${headline}: ${fault.text}`);
+  };
+
+  return {
+    slot: "side",
+    element,
+    render(state) {
+      const program = programOf(state);
+      const known = program !== null && KNOWN_STATES.includes(program.state);
+      const word = program === null ? "" : t(known ? `state.${program.state}` : "state.unknown");
+      setText(name, program?.name || t("program.none"));
+      setText(lamp, word);
+      setAttribute(lamp, "data-state", program?.state ?? "");
+      const line = program?.line && program.state !== "running" ? ` (${t("state.line", { line: program.line })})` : "";
+      setText(message, program !== null && program.level > 0 ? program.message + line : "");
+      message.hidden = message.textContent === "";
+      for (const { verb, button } of verbs) button.disabled = !state.services.includes(actions.programService(verb));
+      const news = program === null ? "" : `${program.name}: ${word}`;
+      if (news !== told && news !== "") announce(news);
+      told = news;
+      showUpload(state.program);
+    },
+  };
+}

@@ -1,0 +1,24 @@
+// Which robot the panels show; there only when there are several.
+
+import { h, setAttribute } from "./dom.js";
+
+/** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
+export function robotsPanel({ t, store }) {
+  const element = h("div", { class: "robots", role: "group", "aria-label": t("robot") });
+  let shown = "";
+  return {
+    slot: "side",
+    element,
+    render({ robots, selected }) {
+      const names = Object.keys(robots);
+      if (names.join() !== shown) {
+        shown = names.join();
+        element.hidden = names.length < 2;
+        element.replaceChildren(
+          ...names.map((name) => h("button", { type: "button", "data-robot": name, onclick: () => store.dispatch({ type: "select", robot: name }) }, name || t("app.robot"))),
+        );
+      }
+      for (const button of element.children) setAttribute(button, "aria-pressed", String(button.getAttribute("data-robot") === selected));
+    },
+  };
+}

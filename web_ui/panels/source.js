@@ -1,0 +1,26 @@
+// A source text with line numbers and one fault marked: the line, the column, and the words below it.
+
+import { h } from "./dom.js";
+
+const TAB = 8;
+
+/** @param {string} text @param {import("../state/index.js").Fault} fault @param {string} label */
+export function sourceView(text, fault, label) {
+  const lines = text.split(/\r\n|\r|\n/);
+  const rows = lines.map((line, index) => {
+    const marked = index + 1 === fault.line;
+    const row = h("div", { class: marked ? "line marked" : "line" }, h("span", { class: "gutter" }, String(index + 1)), h("code", {}, line || " "));
+    if (!marked) return row;
+    const before = line.slice(0, Math.max(0, (fault.column ?? 1) - 1));
+    const caret = h("div", { class: "caret" }, h("span", { class: "gutter", "aria-hidden": "true" }), h("code", { "aria-hidden": "true" }, `${before.replace(/[^\t]/g, " ")}▲`));
+    const words = h("div", { class: "words" }, h("span", { class: "gutter", "aria-hidden": "true" }), h("span", {}, fault.text));
+    return h("div", { class: "fault" }, row, caret, words);
+  });
+  const element = h("div", { class: "source", tabindex: "0", role: "region", "aria-label": label, style: `tab-size: ${TAB}` }, ...rows);
+  // The marked line in the middle, once the element has a size.
+  requestAnimationFrame(() => {
+    const marked = /** @type {HTMLElement | null} */ (element.querySelector(".fault"));
+    if (marked !== null) element.scrollTop = marked.offsetTop - element.clientHeight / 2 + marked.offsetHeight / 2;
+  });
+  return element;
+}

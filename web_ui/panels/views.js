@@ -1,0 +1,22 @@
+// How to look: overview, from above, following; and whether the sensor beams are shown.
+
+import { VIEWS } from "../scene/camera.js";
+import { h, icon, ICONS, setAttribute } from "./dom.js";
+
+/** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
+export function viewsPanel({ t, scene }) {
+  const buttons = VIEWS.map((view) => ({
+    view,
+    button: h("button", { type: "button", title: t(`view.${view}`), "aria-label": t(`view.${view}`), onclick: () => scene.look(view) }, icon(ICONS[view])),
+  }));
+  const beams = h("button", { type: "button", title: t("view.sensors"), "aria-label": t("view.sensors"), onclick: () => scene.setSensors(!scene.showSensors) }, icon(ICONS.beams));
+  const element = h("div", { class: "views", role: "toolbar", "aria-label": t("view") }, ...buttons.map(({ button }) => button), beams);
+  return {
+    slot: "stage",
+    element,
+    render() {
+      for (const { view, button } of buttons) setAttribute(button, "aria-pressed", String(scene.camera.view === view));
+      setAttribute(beams, "aria-pressed", String(scene.showSensors));
+    },
+  };
+}

@@ -1,0 +1,65 @@
+// The socket around a `Session`: connects, tries again every second, and says so.
+
+import { Session, SUBPROTOCOLS } from "./session.js";
+
+/** @typedef {import("./session.js").SessionEvent} SessionEvent */
+/** @typedef {import("./session.js").ServiceAnswer} ServiceAnswer */
+/** @typedef {import("./session.js").ParameterAnswer} ParameterAnswer */
+/** @typedef {SessionEvent | { type: "connecting", address: string } | { type: "connected" } | { type: "disconnected" }} ClientEvent */
+
+const RETRY_MS = 1000;
+
+export class Client {
+  /**
+   * @param {object} options
+   * @param {string} options.address                 ws://host:port
+   * @param {(event: ClientEvent) => void} options.emit
+   * @param {(topic: string) => boolean} options.wants
+   * @param {string[]} options.parameters
+   */
+  constructor({ address, emit, wants, parameters }) {
+    this.address = address;
+    this.emit = emit;
+    this.wants = wants;
+    this.parameters = parameters;
+    /** @type {Session | null} */ this.session = null;
+  }
+
+  /** Connect, and stay connected for as long as the page lives. */
+  start() {
+    this.emit({ type: "connecting", address: this.address });
+    const socket = new WebSocket(this.address, SUBPROTOCOLS);
+    socket.binaryType = "arraybuffer";
+    socket.addEventListener("open", () => {
+      this.session = new Session({
+        send: (data) => socket.send(/** @type {string | BufferSource} */ (data)),
+        emit: this.emit,
+        wants: this.wants,
+        parameters: this.parameters,
+      });
+      this.emit({ type: "connected" });
+    });
+    socket.addEventListener("message", ({ data }) => this.session?.receive(data));
+    socket.addEventListener("close", () => {
+      this.session?.close();
+      this.session = null;
+      this.emit({ type: "disconnected" });
+      setTimeout(() => this.start(), RETRY_MS);
+    });
+  }
+
+  /** @param {string} topic @param {string} schemaName @param {Record<string, any>} value */
+  publish(topic, schemaName, value) {
+    this.session?.publish(topic, schemaName, value);
+  }
+
+  /** @param {string} name @param {Record<string, any>} [request] @returns {Promise<ServiceAnswer>} */
+  call(name, request) {
+    return this.session?.call(name, request) ?? Promise.resolve({ ok: false, message: "not connected" });
+  }
+
+  /** @param {import("./session.js").Parameter[]} parameters @returns {Promise<ParameterAnswer>} */
+  setParameters(parameters) {
+    return this.session?.setParameters(parameters) ?? Promise.resolve({ ok: false, value: undefined, message: "not connected" });
+  }
+}

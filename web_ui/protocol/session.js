@@ -1,0 +1,230 @@
+// One connection of the Foxglove protocol without a socket: what comes in becomes events, what
+// must go out is handed to `send`. `client.js` gives it a WebSocket, a test gives it a list.
+
+import { decode, encode } from "./cdr.js";
+import { messageFrame, parseFrame, serviceRequestFrame } from "./frames.js";
+import { parseSchema } from "./ros2msg.js";
+
+/** @typedef {import("./ros2msg.js").Definition} Definition */
+/** @typedef {{ id: number, topic: string, encoding: string, schemaName: string, schema: string }} Channel */
+/** @typedef {{ encoding: string, schemaName: string, schemaEncoding: string, schema: string }} Half */
+/** @typedef {{ id: number, name: string, type: string, request: Half, response: Half }} Service */
+/** @typedef {{ name: string, value?: any, type?: string }} Parameter */
+/** @typedef {{ level: number, message: string, id?: string }} Status */
+
+/**
+ * @typedef {{ type: "serverInfo", name: string, sessionId: string, capabilities: string[] }
+ *   | { type: "channels", topics: string[] }
+ *   | { type: "services", names: string[] }
+ *   | { type: "message", topic: string, value: any, timeNs: bigint }
+ *   | { type: "time", timeNs: bigint }
+ *   | { type: "parameters", parameters: Parameter[] }
+ *   | { type: "status", status: Status }
+ *   | { type: "removeStatus", ids: string[] }
+ *   | { type: "fault", what: string }} SessionEvent
+ */
+
+/** @typedef {{ ok: boolean, value: any, message: string }} ParameterAnswer */
+/** @typedef {{ ok: boolean, message: string }} ServiceAnswer */
+
+/** The names under which the same wire format is offered; the order is ours, the server chooses. */
+export const SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
+
+export const STATUS_ERROR = 2;
+
+/** Definitions of what the page publishes; a server that knows the topic advertises the same. */
+const OWN_SCHEMAS = /** @type {Record<string, string>} */ ({
+  "std_msgs/msg/Bool": "bool data",
+  "geometry_msgs/msg/Twist": [
+    "Vector3 linear", "Vector3 angular", "=".repeat(80), "MSG: geometry_msgs/Vector3", "float64 x", "float64 y", "float64 z",
+  ].join("\n"),
+});
+
+export class Session {
+  /**
+   * @param {object} options
+   * @param {(data: string | Uint8Array) => void} options.send
+   * @param {(event: SessionEvent) => void} options.emit
+   * @param {(topic: string) => boolean} options.wants  tells which topics to subscribe to
+   * @param {string[]} [options.parameters]             parameters to watch
+   */
+  constructor({ send, emit, wants, parameters = [] }) {
+    this.send = send;
+    this.emit = emit;
+    this.wants = wants;
+    this.watched = parameters;
+    /** @type {Map<number, Channel>} */ this.channels = new Map();
+    /** @type {Map<number, { channel: Channel, definition: Definition }>} */ this.subscriptions = new Map();
+    /** @type {Map<string, Service>} */ this.services = new Map();
+    /** @type {Map<string, { id: number, definition: Definition }>} */ this.published = new Map();
+    /** @type {Map<number, { service: Service, settle: (answer: ServiceAnswer) => void }>} */ this.calls = new Map();
+    /** @type {Map<string, { name: string, refusal: string | null, settle: (answer: ParameterAnswer) => void }>} */
+    this.requests = new Map();
+    this.nextId = 1;
+  }
+
+  /** Take one frame from the server: a string or a buffer. @param {string | ArrayBuffer} data */
+  receive(data) {
+    try {
+      if (typeof data === "string") this.#receiveText(JSON.parse(data));
+      else this.#receiveBinary(data);
+    } catch (error) {
+      this.emit({ type: "fault", what: error instanceof Error ? error.message : String(error) });
+    }
+  }
+
+  /** Publish a message; the channel is advertised on first use. @param {string} topic @param {string} schemaName @param {Record<string, any>} value */
+  publish(topic, schemaName, value) {
+    let channel = this.published.get(topic);
+    if (channel === undefined) {
+      const schema = OWN_SCHEMAS[schemaName];
+      channel = { id: this.nextId++, definition: parseSchema(schemaName, schema) };
+      this.published.set(topic, channel);
+      this.#sendJson({
+        op: "advertise",
+        channels: [{ id: channel.id, topic, encoding: "cdr", schemaName, schema, schemaEncoding: "ros2msg" }],
+      });
+    }
+    this.send(messageFrame(channel.id, encode(channel.definition, value)));
+  }
+
+  /** Call a service whose answer has `success` and `message`. @param {string} name @param {Record<string, any>} request @returns {Promise<ServiceAnswer>} */
+  call(name, request = {}) {
+    const service = this.services.get(name);
+    if (service === undefined) return Promise.resolve({ ok: false, message: `${name} is not available` });
+    const definition = parseSchema(service.request.schemaName, service.request.schema);
+    const callId = this.nextId++;
+    return new Promise((settle) => {
+      this.calls.set(callId, { service, settle });
+      this.send(serviceRequestFrame(service.id, callId, "cdr", encode(definition, request)));
+    });
+  }
+
+  /**
+   * Set parameters. A refusal is an error status named `parameter:<name>` before the answer; the
+   * answer is about the last one of the list.
+   *
+   * @param {Parameter[]} parameters
+   * @returns {Promise<ParameterAnswer>}
+   */
+  setParameters(parameters) {
+    const id = `set-${this.nextId++}`;
+    return new Promise((settle) => {
+      const { name } = parameters[parameters.length - 1];
+      this.requests.set(id, { name, refusal: null, settle });
+      this.#sendJson({ op: "setParameters", parameters, id });
+    });
+  }
+
+  /** The connection is gone: nothing pending will be answered. */
+  close() {
+    for (const { settle } of this.calls.values()) settle({ ok: false, message: "connection lost" });
+    for (const { settle } of this.requests.values()) settle({ ok: false, value: undefined, message: "connection lost" });
+    this.calls.clear();
+    this.requests.clear();
+  }
+
+  /** @param {any} message */
+  #receiveText(message) {
+    const handler = TEXT_HANDLERS[message.op];
+    if (handler !== undefined) handler(this, message);
+  }
+
+  /** @param {ArrayBuffer} data */
+  #receiveBinary(data) {
+    const frame = parseFrame(data);
+    if (frame.op === "time") this.emit({ type: "time", timeNs: frame.timeNs });
+    else if (frame.op === "message") {
+      const subscription = this.subscriptions.get(frame.subscriptionId);
+      if (subscription === undefined) return; // still on its way when we unsubscribed
+      const value = decode(subscription.definition, frame.payload);
+      this.emit({ type: "message", topic: subscription.channel.topic, value, timeNs: frame.timeNs });
+    } else if (frame.op === "serviceResponse") {
+      const call = this.calls.get(frame.callId);
+      if (call === undefined) return;
+      this.calls.delete(frame.callId);
+      const { schemaName, schema } = call.service.response;
+      const answer = decode(parseSchema(schemaName, schema), frame.payload);
+      call.settle({ ok: answer.success ?? true, message: answer.message ?? "" });
+    }
+  }
+
+  /** @param {Channel[]} channels */
+  advertise(channels) {
+    const subscriptions = [];
+    for (const channel of channels) {
+      this.channels.set(channel.id, channel);
+      if (channel.encoding !== "cdr" || !this.wants(channel.topic)) continue;
+      const id = this.nextId++;
+      this.subscriptions.set(id, { channel, definition: parseSchema(channel.schemaName, channel.schema) });
+      subscriptions.push({ id, channelId: channel.id });
+    }
+    if (subscriptions.length > 0) this.#sendJson({ op: "subscribe", subscriptions });
+    this.#emitChannels();
+  }
+
+  /** @param {number[]} ids */
+  unadvertise(ids) {
+    for (const id of ids) this.channels.delete(id);
+    for (const [id, { channel }] of this.subscriptions) {
+      if (ids.includes(channel.id)) this.subscriptions.delete(id);
+    }
+    this.#emitChannels();
+  }
+
+  /** Ask for the watched parameters and for news of them. */
+  watchParameters() {
+    if (this.watched.length === 0) return;
+    this.#sendJson({ op: "subscribeParameterUpdates", parameterNames: this.watched });
+    this.#sendJson({ op: "getParameters", parameterNames: this.watched, id: "watched" });
+  }
+
+  #emitChannels() {
+    this.emit({ type: "channels", topics: [...this.channels.values()].map((channel) => channel.topic).sort() });
+  }
+
+  /** @param {object} message */
+  #sendJson(message) {
+    this.send(JSON.stringify(message));
+  }
+}
+
+/** What to do with each JSON message of the server; unknown ones are passed over. */
+const TEXT_HANDLERS = /** @type {Record<string, (session: Session, message: any) => void>} */ ({
+  serverInfo(session, { name, sessionId = "", capabilities = [] }) {
+    session.emit({ type: "serverInfo", name, sessionId, capabilities });
+    if (capabilities.includes("parameters")) session.watchParameters();
+  },
+  advertise: (session, { channels }) => session.advertise(channels),
+  unadvertise: (session, { channelIds }) => session.unadvertise(channelIds),
+  advertiseServices(session, { services }) {
+    for (const service of services) session.services.set(service.name, service);
+    session.emit({ type: "services", names: [...session.services.keys()].sort() });
+  },
+  unadvertiseServices(session, { serviceIds }) {
+    for (const [name, service] of session.services) {
+      if (serviceIds.includes(service.id)) session.services.delete(name);
+    }
+    session.emit({ type: "services", names: [...session.services.keys()].sort() });
+  },
+  parameterValues(session, { parameters, id }) {
+    session.emit({ type: "parameters", parameters });
+    const request = session.requests.get(id);
+    if (request === undefined) return;
+    session.requests.delete(id);
+    const value = parameters.find((/** @type {Parameter} */ parameter) => parameter.name === request.name)?.value;
+    request.settle({ ok: request.refusal === null, value, message: request.refusal ?? "" });
+  },
+  status(session, { level, message, id }) {
+    session.emit({ type: "status", status: id === undefined ? { level, message } : { level, message, id } });
+    if (level < STATUS_ERROR) return;
+    for (const request of session.requests.values()) {
+      if (id === `parameter:${request.name}`) request.refusal = message;
+    }
+  },
+  removeStatus: (session, { statusIds }) => session.emit({ type: "removeStatus", ids: statusIds }),
+  serviceCallFailure(session, { callId, message }) {
+    session.calls.get(callId)?.settle({ ok: false, message });
+    session.calls.delete(callId);
+  },
+});

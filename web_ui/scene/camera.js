@@ -1,0 +1,129 @@
+// The camera: orbit, pan and zoom by mouse, touch and keys; three ways to look; z is up.
+
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+/** @typedef {"home" | "top" | "follow"} ViewName */
+
+export const VIEWS = /** @type {readonly ViewName[]} */ (["home", "top", "follow"]);
+
+const FOLLOW = { back: 0.42, up: 0.3 };
+const TURN_STEP = Math.PI / 24;
+const ZOOM_STEP = 1.15;
+
+export class Camera {
+  /** @param {HTMLElement} element  where the pointer works @param {() => void} changed */
+  constructor(element, changed) {
+    this.camera = new THREE.PerspectiveCamera(42, 1, 0.02, 30);
+    this.camera.up.set(0, 0, 1);
+    this.camera.position.set(-1, -0.8, 0.9);
+    this.controls = new OrbitControls(this.camera, element);
+    this.controls.maxPolarAngle = Math.PI / 2 - 0.03; // never below ground
+    this.controls.minDistance = 0.12;
+    this.controls.maxDistance = 12;
+    this.controls.zoomToCursor = false;
+    this.controls.addEventListener("change", changed);
+    this.controls.addEventListener("start", () => (this.touched = true));
+    this.changed = changed;
+    /** @type {ViewName} */ this.view = "home";
+    /** Whether the person has moved the camera since the view was chosen. */
+    this.touched = false;
+    this.bounds = new THREE.Box3(new THREE.Vector3(-0.5, -0.5, 0), new THREE.Vector3(0.5, 0.5, 0.1));
+    this.target = new THREE.Vector3();
+  }
+
+  /** @param {number} width @param {number} height */
+  resize(width, height) {
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    if (!this.touched && this.view !== "follow") this.look(this.view);
+  }
+
+  /** A new world to fit in. @param {THREE.Box3} bounds */
+  frame(bounds) {
+    if (bounds.isEmpty()) return;
+    this.bounds = bounds;
+    if (this.view !== "follow") this.look(this.view);
+  }
+
+  /** Choose a view, from its start. @param {ViewName} view @param {{ x: number, y: number, yaw: number } | null} [robot] */
+  look(view, robot = null) {
+    this.view = view;
+    this.touched = false;
+    if (view === "follow") {
+      const { x, y, yaw } = robot ?? { x: 0, y: 0, yaw: 0 };
+      this.target.set(x, y, 0.03);
+      this.#place(this.target, new THREE.Vector3(x - FOLLOW.back * Math.cos(yaw), y - FOLLOW.back * Math.sin(yaw), FOLLOW.up));
+      return;
+    }
+    const centre = this.bounds.getCenter(new THREE.Vector3()).setZ(0);
+    // Seen from straight above there is no "up"; a hair beside it, x points to the right.
+    const from = view === "top" ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.28, -0.9, 0.8);
+    this.#place(centre, from.normalize().multiplyScalar(this.#distance(from)).add(centre));
+  }
+
+  /** Keep up with the robot in the view "follow"; the person may still orbit. @param {{ x: number, y: number }} robot */
+  follow({ x, y }) {
+    if (this.view !== "follow") return;
+    const moved = new THREE.Vector3(x - this.target.x, y - this.target.y, 0);
+    if (moved.lengthSq() === 0) return;
+    this.target.add(moved);
+    this.controls.target.add(moved);
+    this.camera.position.add(moved);
+    this.controls.update();
+  }
+
+  /** Turn about the target. @param {number} sideways steps @param {number} upwards steps */
+  turn(sideways, upwards) {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const sphere = new THREE.Spherical().setFromVector3(offset.clone().applyAxisAngle(new THREE.Vector3(1, 0, 0), -Math.PI / 2));
+    sphere.theta += sideways * TURN_STEP;
+    sphere.phi = Math.min(this.controls.maxPolarAngle, Math.max(0.001, sphere.phi - upwards * TURN_STEP));
+    offset.setFromSpherical(sphere).applyAxisAngle(new THREE.Vector3(1, 0, 0), Math.PI / 2);
+    this.#moveTo(offset);
+  }
+
+  /** @param {number} steps  positive: nearer */
+  zoom(steps) {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const length = offset.length() * ZOOM_STEP ** -steps;
+    this.#moveTo(offset.setLength(Math.min(this.controls.maxDistance, Math.max(this.controls.minDistance, length))));
+  }
+
+  /** @param {THREE.Vector3} offset */
+  #moveTo(offset) {
+    this.touched = true;
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.changed();
+  }
+
+  /** @param {THREE.Vector3} target @param {THREE.Vector3} position */
+  #place(target, position) {
+    this.controls.target.copy(target);
+    this.camera.position.copy(position);
+    this.controls.update();
+    this.changed();
+  }
+
+  /** How far to stand along `from` so that all corners of the bounds are in the picture. @param {THREE.Vector3} from */
+  #distance(from) {
+    const centre = this.bounds.getCenter(new THREE.Vector3()).setZ(0);
+    const forward = from.clone().normalize();
+    const right = new THREE.Vector3(0, 0, 1).cross(forward).normalize();
+    const up = forward.clone().cross(right);
+    const vertical = Math.tan((this.camera.fov * Math.PI) / 360);
+    const horizontal = vertical * this.camera.aspect;
+    let distance = 0.3;
+    for (let corner = 0; corner < 8; corner++) {
+      const at = new THREE.Vector3(
+        corner & 1 ? this.bounds.max.x : this.bounds.min.x,
+        corner & 2 ? this.bounds.max.y : this.bounds.min.y,
+        corner & 4 ? this.bounds.max.z : 0,
+      ).sub(centre);
+      const depth = at.dot(forward);
+      distance = Math.max(distance, depth + Math.abs(at.dot(right)) / horizontal, depth + Math.abs(at.dot(up)) / vertical);
+    }
+    return distance * 1.06;
+  }
+}

@@ -1,0 +1,206 @@
+// The 3D view: draws the state when something changed, in one animation loop. It never decides.
+
+import * as THREE from "three";
+
+import { Camera } from "./camera.js";
+import { PlaygroundModel } from "./playground.js";
+import { watchPointer } from "./pointer.js";
+import { Quality } from "./quality.js";
+import { RobotModel } from "./robot.js";
+
+/** @typedef {import("../state/index.js").State} State */
+/** @typedef {import("./camera.js").ViewName} ViewName */
+/** @typedef {import("./pointer.js").Target} Target */
+
+const SKY = 0xdfecf6;
+const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
+
+export class SceneView {
+  /**
+   * @param {object} options
+   * @param {HTMLCanvasElement} options.canvas
+   * @param {HTMLElement} options.labels       layer for the robots' names
+   * @param {() => State} options.state
+   * @param {(nowMs: number) => void} options.beforeDraw   the panels' turn in the same frame
+   * @param {(target: Target, pressed: boolean) => void} options.press
+   * @param {(name: string) => string} options.robotTitle
+   * @param {(lost: boolean) => void} options.contextLost
+   */
+  constructor({ canvas, labels, state, beforeDraw, press, robotTitle, contextLost }) {
+    this.canvas = canvas;
+    this.labels = labels;
+    this.state = state;
+    this.beforeDraw = beforeDraw;
+    this.robotTitle = robotTitle;
+    this.frames = 0;
+    this.requested = false;
+    this.showSensors = true;
+    /** @type {Target | null} */ this.hovered = null;
+    /** @type {Map<string, { model: RobotModel, label: HTMLElement }>} */ this.robots = new Map();
+    this.scene = new THREE.Scene();
+    this.scene.background = new THREE.Color(SKY);
+    this.playground = new PlaygroundModel();
+    const sun = new THREE.DirectionalLight(0xffffff, 1.7);
+    sun.position.set(-1.2, -1.6, 3);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xb9c4cf, 1.75), sun, this.playground.group);
+    this.camera = new Camera(canvas, () => this.invalidate());
+    this.renderer = createRenderer(canvas);
+    const software = this.renderer !== null && SOFTWARE.test(graphicsName(this.renderer));
+    this.quality = new Quality(software ? 1 : 0);
+    canvas.addEventListener("webglcontextlost", () => contextLost(true));
+    canvas.addEventListener("webglcontextrestored", () => {
+      contextLost(false);
+      this.invalidate();
+    });
+    watchPointer({
+      element: canvas,
+      camera: this.camera.camera,
+      targets: () => [...this.robots.values()].flatMap(({ model }) => (model.group.visible ? model.buttons.targets : [])),
+      press,
+      hover: (target) => {
+        if (target?.robot === this.hovered?.robot && target?.button === this.hovered?.button) return;
+        this.hovered = target;
+        canvas.style.cursor = target === null ? "" : "pointer";
+        this.invalidate();
+      },
+    });
+    new ResizeObserver(() => this.#resize()).observe(canvas);
+    this.#resize();
+  }
+
+  /** Ask for one frame; any number of calls before it are one. */
+  invalidate() {
+    if (this.requested) return;
+    this.requested = true;
+    requestAnimationFrame((nowMs) => this.#frame(nowMs));
+  }
+
+  /** @param {ViewName} view */
+  look(view) {
+    this.camera.look(view, this.#selectedPose());
+  }
+
+  /** @param {boolean} shown */
+  setSensors(shown) {
+    this.showSensors = shown;
+    this.invalidate();
+  }
+
+  /** A part's place in CSS pixels of the window; null while it is not drawn. @param {string} part @param {string} [robot] */
+  partPosition(part, robot = this.state().selected) {
+    const model = this.robots.get(robot)?.model;
+    const place = model?.group.visible ? model.partPosition(part) : null;
+    return place == null ? null : this.#toWindow(place);
+  }
+
+  /** @param {number} nowMs */
+  #frame(nowMs) {
+    this.requested = false;
+    const state = this.state();
+    this.beforeDraw(nowMs);
+    if (this.playground.update(state.markers)) this.camera.frame(this.playground.bounds());
+    const moving = this.#updateRobots(state, nowMs);
+    const pose = this.#selectedPose();
+    if (pose !== null) this.camera.follow(pose);
+    this.renderer?.render(this.scene, this.camera.camera);
+    this.frames += 1;
+    this.#placeLabels();
+    if (moving) this.invalidate();
+    if (this.quality.note(nowMs, moving)) this.#resize();
+  }
+
+  /** @param {State} state @param {number} nowMs */
+  #updateRobots(state, nowMs) {
+    for (const [name, { model, label }] of [...this.robots]) {
+      if (name in state.robots) continue;
+      this.scene.remove(model.group);
+      model.dispose();
+      label.remove();
+      this.robots.delete(name);
+    }
+    let moving = false;
+    for (const [name, robot] of Object.entries(state.robots)) {
+      let entry = this.robots.get(name);
+      if (entry === undefined) {
+        entry = { model: new RobotModel(name), label: document.createElement("span") };
+        entry.label.className = "robot-label";
+        this.labels.append(entry.label);
+        this.scene.add(entry.model.group);
+        this.robots.set(name, entry);
+      }
+      const hovered = this.hovered?.robot === name ? this.hovered.button : null;
+      moving = entry.model.update(robot, hovered, nowMs) || moving;
+      for (const { group } of entry.model.sensing) group.visible = this.showSensors;
+      entry.label.textContent = this.robotTitle(name);
+    }
+    return moving;
+  }
+
+  #placeLabels() {
+    for (const { model, label } of this.robots.values()) {
+      const place = model.group.visible ? this.#project(model.group.position.clone().setZ(0.095)) : null;
+      label.hidden = place === null;
+      if (place !== null) label.style.transform = `translate(${place.x}px, ${place.y}px) translate(-50%, -100%)`;
+    }
+  }
+
+  #selectedPose() {
+    const { robots, selected } = this.state();
+    const pose = robots[selected]?.latest?.pose ?? null;
+    const group = this.robots.get(selected)?.model.group;
+    return pose === null || group === undefined ? pose : { x: group.position.x, y: group.position.y, yaw: group.rotation.z };
+  }
+
+  /** World → CSS pixels of the canvas. @param {THREE.Vector3} place */
+  #project(place) {
+    const { x, y, z } = place.project(this.camera.camera);
+    if (z > 1) return null;
+    return { x: ((x + 1) / 2) * this.canvas.clientWidth, y: ((1 - y) / 2) * this.canvas.clientHeight };
+  }
+
+  /** @param {THREE.Vector3} place */
+  #toWindow(place) {
+    const inside = this.#project(place);
+    const { left, top } = this.canvas.getBoundingClientRect();
+    return inside === null ? null : { x: left + inside.x, y: top + inside.y };
+  }
+
+  #resize() {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer?.setPixelRatio(Math.min(window.devicePixelRatio, this.quality.settings.pixelRatio));
+    this.renderer?.setSize(clientWidth, clientHeight, false);
+    this.camera.resize(clientWidth, clientHeight);
+    this.invalidate();
+  }
+}
+
+/** Null where the browser has no WebGL: panels and d-pad still work. @param {HTMLCanvasElement} canvas */
+function createRenderer(canvas) {
+  try {
+    const renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftware(), powerPreference: "low-power" });
+    renderer.outputColorSpace = THREE.SRGBColorSpace;
+    return renderer;
+  } catch {
+    return null;
+  }
+}
+
+/** Software drawing pays for every sample: asked on a canvas of its own, before the real one is made. */
+function isSoftware() {
+  const probe = document.createElement("canvas").getContext("webgl2");
+  const name = probe === null ? "" : nameOf(probe);
+  probe?.getExtension("WEBGL_lose_context")?.loseContext();
+  return SOFTWARE.test(name);
+}
+
+/** @param {THREE.WebGLRenderer} renderer */
+function graphicsName(renderer) {
+  return nameOf(renderer.getContext());
+}
+
+/** @param {WebGLRenderingContext | WebGL2RenderingContext} gl */
+function nameOf(gl) {
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  return info === null ? "" : String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+}

@@ -1,0 +1,113 @@
+// The playground from its markers: one mesh each, kept by namespace and id, replaced when it changes.
+
+import * as THREE from "three";
+
+import { MARKER } from "../state/markers.js";
+
+/** @typedef {import("../state/markers.js").Marker} Marker */
+
+/** One row per kind of marker: its geometry in its own frame, already scaled. */
+const GEOMETRIES = /** @type {Record<number, (marker: Marker) => THREE.BufferGeometry>} */ ({
+  [MARKER.CUBE]: ({ scale }) => new THREE.BoxGeometry(scale.x, scale.y, scale.z),
+  [MARKER.SPHERE]: ({ scale }) => new THREE.SphereGeometry(0.5, 24, 16).rotateX(Math.PI / 2).scale(scale.x, scale.y, scale.z),
+  [MARKER.CYLINDER]: ({ scale }) => new THREE.CylinderGeometry(0.5, 0.5, 1, 28).rotateX(Math.PI / 2).scale(scale.x, scale.y, scale.z),
+  [MARKER.LINE_STRIP]: ribbon,
+  [MARKER.TRIANGLE_LIST]: triangles,
+});
+
+export class PlaygroundModel {
+  constructor() {
+    this.group = new THREE.Group();
+    /** @type {Map<string, { marker: Marker, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshLambertMaterial> }>} */
+    this.meshes = new Map();
+    /** @type {ReadonlyMap<string, Marker> | null} */ this.shown = null;
+  }
+
+  /** Take over the markers; true when something changed. @param {ReadonlyMap<string, Marker>} markers */
+  update(markers) {
+    if (markers === this.shown) return false;
+    this.shown = markers;
+    for (const [key, { marker }] of [...this.meshes]) {
+      if (markers.get(key) !== marker) this.#remove(key);
+    }
+    for (const [key, marker] of markers) {
+      if (!this.meshes.has(key) && marker.type in GEOMETRIES) this.#add(key, marker);
+    }
+    return true;
+  }
+
+  /** The box around everything, metres. */
+  bounds() {
+    return new THREE.Box3().setFromObject(this.group);
+  }
+
+  dispose() {
+    for (const key of [...this.meshes.keys()]) this.#remove(key);
+  }
+
+  /** @param {string} key @param {Marker} marker */
+  #add(key, marker) {
+    const { r, g, b, a } = marker.color;
+    const perPoint = marker.colors.length > 0;
+    const material = new THREE.MeshLambertMaterial({
+      color: perPoint ? new THREE.Color(0xffffff) : new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace),
+      vertexColors: perPoint,
+      transparent: a < 1,
+      opacity: a,
+      side: marker.type === MARKER.TRIANGLE_LIST || marker.type === MARKER.LINE_STRIP ? THREE.DoubleSide : THREE.FrontSide,
+    });
+    const mesh = new THREE.Mesh(GEOMETRIES[marker.type](marker), material);
+    const { position, orientation } = marker.pose;
+    mesh.position.set(position.x, position.y, position.z);
+    mesh.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w).normalize();
+    this.meshes.set(key, { marker, mesh });
+    this.group.add(mesh);
+  }
+
+  /** @param {string} key */
+  #remove(key) {
+    const entry = this.meshes.get(key);
+    if (entry === undefined) return;
+    this.group.remove(entry.mesh);
+    entry.mesh.geometry.dispose();
+    entry.mesh.material.dispose();
+    this.meshes.delete(key);
+  }
+}
+
+/** @param {Marker} marker */
+function triangles({ points, colors, scale }) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(points.flatMap(({ x, y, z }) => [x * scale.x, y * scale.y, z * scale.z]), 3));
+  if (colors.length > 0) {
+    const colour = new THREE.Color();
+    const values = colors.flatMap(({ r, g, b }) => colour.setRGB(r, g, b, THREE.SRGBColorSpace).toArray());
+    geometry.setAttribute("color", new THREE.Float32BufferAttribute(values, 3));
+  }
+  geometry.computeVertexNormals();
+  return geometry;
+}
+
+/** A strip of the marker's width (scale.x) lying flat, with round joints: WebGL's own lines are one pixel wide. @param {Marker} marker */
+function ribbon({ points, scale }) {
+  const half = scale.x / 2;
+  /** @type {number[]} */ const corners = [];
+  for (let index = 1; index < points.length; index++) {
+    const [a, b] = [points[index - 1], points[index]];
+    const length = Math.hypot(b.x - a.x, b.y - a.y) || 1;
+    const [nx, ny] = [(-(b.y - a.y) / length) * half, ((b.x - a.x) / length) * half];
+    corners.push(a.x - nx, a.y - ny, a.z, b.x - nx, b.y - ny, b.z, b.x + nx, b.y + ny, b.z);
+    corners.push(a.x - nx, a.y - ny, a.z, b.x + nx, b.y + ny, b.z, a.x + nx, a.y + ny, a.z);
+  }
+  const sides = 10;
+  for (const { x, y, z } of points) {
+    for (let side = 0; side < sides; side++) {
+      const [from, to] = [side, side + 1].map((step) => (2 * Math.PI * step) / sides);
+      corners.push(x, y, z, x + half * Math.cos(from), y + half * Math.sin(from), z, x + half * Math.cos(to), y + half * Math.sin(to), z);
+    }
+  }
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(corners, 3));
+  geometry.computeVertexNormals();
+  return geometry;
+}

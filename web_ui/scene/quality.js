@@ -1,0 +1,38 @@
+// Chooses how finely to draw: goes one level down when frames come too slowly, never up by itself
+// (a picture that keeps changing its sharpness is worse than a plain one). Pure.
+
+/** @typedef {{ pixelRatio: number }} Level */
+
+/** From fine to simple; the pixel ratio costs most (web-ui-features.md section 5.1). */
+export const LEVELS = /** @type {readonly Level[]} */ ([{ pixelRatio: 2 }, { pixelRatio: 1 }, { pixelRatio: 0.7 }, { pixelRatio: 0.5 }]);
+
+const SLOWEST_FPS = 15;
+const WINDOW = 24;
+/** A longer gap means that nothing had to be drawn. */
+const IDLE_MS = 1500;
+
+export class Quality {
+  /** @param {number} level index in `LEVELS` to begin with */
+  constructor(level) {
+    this.level = level;
+    /** @type {number[]} */ this.intervals = [];
+    /** @type {number | null} */ this.lastMs = null;
+  }
+
+  /** The level's settings. */
+  get settings() {
+    return LEVELS[this.level];
+  }
+
+  /** Note a drawn frame; true when the level has just changed. `ongoing`: another frame follows at once. @param {number} nowMs @param {boolean} ongoing */
+  note(nowMs, ongoing) {
+    if (this.lastMs !== null && nowMs - this.lastMs < IDLE_MS) this.intervals.push(nowMs - this.lastMs);
+    this.lastMs = ongoing ? nowMs : null;
+    if (this.intervals.length < WINDOW) return false;
+    const mean = this.intervals.reduce((sum, value) => sum + value, 0) / this.intervals.length;
+    this.intervals = [];
+    if (mean <= 1000 / SLOWEST_FPS || this.level === LEVELS.length - 1) return false;
+    this.level += 1;
+    return true;
+  }
+}

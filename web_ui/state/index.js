@@ -1,0 +1,208 @@
+// The page's state and the one function that changes it: `state = reduce(state, message)`.
+// Pure: no clock, no socket, no document; a message carries what it needs.
+
+import { applyMarkers } from "./markers.js";
+import { PARAMETERS, splitTopic } from "./names.js";
+import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
+
+/** @typedef {import("./robot.js").Robot} Robot */
+/** @typedef {import("./robot.js").Program} Program */
+/** @typedef {import("./markers.js").Marker} Marker */
+/** @typedef {{ text: string, line: number | null, column: number | null }} Fault  1-based place, where known */
+/**
+ * @typedef {object} Upload   something given to the simulator, and what came of it
+ * @property {string} name
+ * @property {string} text
+ * @property {"sending" | "accepted" | "refused"} phase
+ * @property {Fault | null} fault
+ */
+/** @typedef {{ name: string, title: string, description: string }} PlaygroundInfo */
+/**
+ * @typedef {object} Simulator
+ * @property {string} playground
+ * @property {string} title
+ * @property {boolean} paused
+ * @property {number} factor     wanted
+ * @property {number} achieved
+ */
+/** @typedef {{ id: number, level: "info" | "warning" | "error", text: string }} Notice */
+/**
+ * @typedef {object} State
+ * @property {"connecting" | "connected" | "lost"} connection
+ * @property {string} server
+ * @property {string} sessionId
+ * @property {string[]} topics
+ * @property {string[]} services
+ * @property {Readonly<Record<string, any>>} parameters
+ * @property {Simulator | null} simulator
+ * @property {PlaygroundInfo[]} playgrounds
+ * @property {ReadonlyMap<string, Marker>} markers
+ * @property {Readonly<Record<string, Robot>>} robots
+ * @property {Readonly<Record<string, Program>>} programs  by namespace of the runtime that says so
+ * @property {string} selected     name of the robot the panels show
+ * @property {number} timeNs       simulated time
+ * @property {Upload | null} program
+ * @property {Upload | null} playground
+ * @property {Notice[]} notices
+ */
+
+/**
+ * @typedef {{ type: "connecting", address: string } | { type: "connected" } | { type: "disconnected" }
+ *   | { type: "serverInfo", name: string, sessionId: string, capabilities: string[] }
+ *   | { type: "channels", topics: string[] }
+ *   | { type: "services", names: string[] }
+ *   | { type: "message", topic: string, value: any, timeNs: bigint, nowMs?: number }
+ *   | { type: "time", timeNs: bigint }
+ *   | { type: "parameters", parameters: { name: string, value?: any }[] }
+ *   | { type: "status", status: { level: number, message: string, id?: string } }
+ *   | { type: "removeStatus", ids: string[] }
+ *   | { type: "fault", what: string }
+ *   | { type: "select", robot: string }
+ *   | { type: "upload", what: "program" | "playground", name: string, text: string }
+ *   | { type: "uploaded", what: "program" | "playground", message: string | null }
+ *   | { type: "forget", what: "program" | "playground" }
+ *   | { type: "notice", level: Notice["level"], text: string }
+ *   | { type: "dismiss", id: number }} Message
+ */
+
+const KEPT_NOTICES = 4;
+
+/** @type {State} */
+export const INITIAL = {
+  connection: "connecting",
+  server: "",
+  sessionId: "",
+  topics: [],
+  services: [],
+  parameters: {},
+  simulator: null,
+  playgrounds: [],
+  markers: new Map(),
+  robots: {},
+  programs: {},
+  selected: "",
+  timeNs: 0,
+  program: null,
+  playground: null,
+  notices: [],
+};
+
+/**
+ * @param {State} state
+ * @param {Message} message
+ * @returns {State}
+ */
+export function reduce(state, message) {
+  const step = /** @type {((state: State, message: any) => State) | undefined} */ (STEPS[message.type]);
+  return step === undefined ? state : step(state, message);
+}
+
+/** One row per kind of message. */
+const STEPS = /** @type {Record<string, (state: State, message: any) => State>} */ ({
+  connecting: (state) => ({ ...state, connection: state.connection === "lost" ? "lost" : "connecting" }),
+  connected: (state) => ({ ...state, connection: "connected", services: [], topics: [] }),
+  disconnected: (state) => ({ ...state, connection: "lost" }),
+  serverInfo(state, { name, sessionId }) {
+    if (sessionId === state.sessionId && sessionId !== "") return { ...state, server: name };
+    // Another session: what was known belongs to a simulation that is no more.
+    return { ...INITIAL, connection: state.connection, notices: state.notices, selected: state.selected, server: name, sessionId };
+  },
+  channels: withChannels,
+  services: (state, { names }) => ({ ...state, services: names }),
+  message: withTopic,
+  time: (state, { timeNs }) => ({ ...state, timeNs: Number(timeNs) }),
+  parameters: (state, { parameters }) => ({
+    ...state,
+    parameters: { ...state.parameters, ...Object.fromEntries(parameters.map((/** @type {any} */ p) => [p.name, p.value])) },
+  }),
+  status(state, { status }) {
+    if (typeof status.id === "string" && status.id.startsWith("parameter:")) return state; // told where it was asked
+    return withNotice(state, (/** @type {const} */ (["info", "warning", "error"]))[status.level] ?? "error", status.message);
+  },
+  fault: (state, { what }) => withNotice(state, "error", what),
+  select: (state, { robot }) => ({ ...state, selected: robot }),
+  upload: (state, { what, name, text }) => ({ ...state, [what]: { name, text, phase: "sending", fault: null } }),
+  uploaded(state, { what, message }) {
+    const upload = state[/** @type {"program" | "playground"} */ (what)];
+    if (upload === null) return state;
+    return {
+      ...state,
+      [what]: { ...upload, phase: message === null ? "accepted" : "refused", fault: message === null ? null : locate(message) },
+    };
+  },
+  forget: (state, { what }) => ({ ...state, [what]: null }),
+  notice: (state, { level, text }) => withNotice(state, level, text),
+  dismiss: (state, { id }) => ({ ...state, notices: state.notices.filter((notice) => notice.id !== id) }),
+});
+
+/** @param {State} state @param {{ topics: string[] }} message @returns {State} */
+function withChannels(state, { topics }) {
+  const names = new Set();
+  for (const topic of topics) {
+    const part = splitTopic(topic);
+    if (part?.name === "ground_truth/odom") names.add(part.robot);
+  }
+  const robots = Object.fromEntries([...names].map((name) => [name, state.robots[name] ?? NEW_ROBOT]));
+  return { ...state, topics, robots, selected: selection(state.selected, robots) };
+}
+
+/** @param {State} state @param {Extract<Message, { type: "message" }>} message @returns {State} */
+function withTopic(state, { topic, value, nowMs = 0 }) {
+  const part = splitTopic(topic);
+  if (part === null) return state;
+  if (part.robot === null) return GLOBAL_STEPS[part.name](state, value);
+  if (part.name === "aseba/status") return { ...state, programs: { ...state.programs, [part.robot]: readStatus(value) } };
+  const robot = reduceRobot(state.robots[part.robot] ?? NEW_ROBOT, part.name, value, nowMs);
+  return { ...state, robots: { ...state.robots, [part.robot]: robot } };
+}
+
+const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any) => State>} */ ({
+  "/markers": (state, value) => ({ ...state, markers: applyMarkers(state.markers, value.markers) }),
+  "/simulator/state"(state, value) {
+    const told = JSON.parse(value.data);
+    return {
+      ...state,
+      simulator: {
+        playground: told.playground ?? "",
+        title: told.title ?? told.playground ?? "",
+        paused: told.paused ?? false,
+        factor: told.real_time_factor ?? 1,
+        achieved: told.achieved ?? 0,
+      },
+    };
+  },
+  "/simulator/playgrounds": (state, value) => ({
+    ...state,
+    playgrounds: JSON.parse(value.data).map((/** @type {any} */ { name, title = name, description = "" }) => ({ name, title, description })),
+  }),
+});
+
+/** @param {string} wanted @param {Record<string, Robot>} robots */
+function selection(wanted, robots) {
+  return wanted in robots ? wanted : (Object.keys(robots)[0] ?? "");
+}
+
+/** @param {State} state @param {Notice["level"]} level @param {string} text @returns {State} */
+function withNotice(state, level, text) {
+  if (state.notices.some((notice) => notice.text === text)) return state;
+  const id = 1 + Math.max(0, ...state.notices.map((notice) => notice.id));
+  return { ...state, notices: [...state.notices, { id, level, text }].slice(-KEPT_NOTICES) };
+}
+
+/**
+ * The place and the words of a refusal: "/node.parameter: line 3, column 5: words".
+ *
+ * @param {string} message
+ * @returns {Fault}
+ */
+export function locate(message) {
+  const text = message.replace(new RegExp(`^(${Object.values(PARAMETERS).join("|").replaceAll(".", "\\.")}):\\s*`), "");
+  const match = /line (\d+), column (\d+):?\s*/.exec(text);
+  if (match === null) return { text, line: null, column: null };
+  return { text: text.replace(match[0], ""), line: Number(match[1]), column: Number(match[2]) };
+}
+
+/** The program state of the selected robot, else of the runtime they share. @param {State} state */
+export function programOf(state) {
+  return state.programs[state.selected] ?? state.programs[""] ?? null;
+}

@@ -1,0 +1,37 @@
+// The playground as markers by namespace and id, the way RViz keeps them.
+
+/** @typedef {{ x: number, y: number, z: number }} Vector */
+/** @typedef {{ r: number, g: number, b: number, a: number }} Colour */
+/**
+ * @typedef {object} Marker
+ * @property {string} ns
+ * @property {number} id
+ * @property {number} type
+ * @property {number} action
+ * @property {{ position: Vector, orientation: { x: number, y: number, z: number, w: number } }} pose
+ * @property {Vector} scale
+ * @property {Colour} color
+ * @property {Vector[]} points
+ * @property {Colour[]} colors
+ */
+
+export const MARKER = { CUBE: 1, SPHERE: 2, CYLINDER: 3, LINE_STRIP: 4, TRIANGLE_LIST: 11 };
+const ACTION = { DELETE: 2, DELETE_ALL: 3 };
+
+/**
+ * Apply an array of markers; returns a new map.
+ *
+ * @param {ReadonlyMap<string, Marker>} markers
+ * @param {Marker[]} changes
+ * @returns {ReadonlyMap<string, Marker>}
+ */
+export function applyMarkers(markers, changes) {
+  const next = new Map(markers);
+  for (const marker of changes) {
+    const key = `${marker.ns}/${marker.id}`;
+    if (marker.action === ACTION.DELETE_ALL) next.clear();
+    else if (marker.action === ACTION.DELETE) next.delete(key);
+    else next.set(key, marker);
+  }
+  return next;
+}

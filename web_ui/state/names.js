@@ -1,0 +1,43 @@
+// Topic names: which belong to the simulator, which to a robot, and which the page watches.
+// A robot alone has no namespace; of several each has its own (ros-interface.md section 2).
+
+/** The sensors in Thymio's order 0…6. */
+export const PROXIMITY = ["left", "center_left", "center", "center_right", "right", "rear_left", "rear_right"];
+export const GROUND = ["left", "right"];
+export const BUTTONS = ["forward", "left", "center", "right", "backward"];
+
+export const GLOBAL_TOPICS = ["/markers", "/simulator/state", "/simulator/playgrounds"];
+
+/** Topics of one robot, relative to its namespace. */
+export const ROBOT_TOPICS = [
+  "ground_truth/odom", "joint_states", "led/state", "raw/proximity", "raw/ground", "raw/motor", "aseba/status",
+  ...PROXIMITY.map((name) => `proximity/${name}`),
+  ...GROUND.map((name) => `ground/${name}`),
+  ...BUTTONS.map((name) => `buttons/${name}`),
+];
+
+export const PARAMETERS = /** @type {const} */ ({
+  playground: "/simulator.playground",
+  factor: "/simulator.real_time_factor",
+  source: "/aseba_runtime.script.source",
+  programName: "/aseba_runtime.script.name",
+});
+
+/**
+ * Split a topic into robot and relative name; null for what the page does not watch.
+ *
+ * @param {string} topic
+ * @returns {{ robot: string | null, name: string } | null}
+ */
+export function splitTopic(topic) {
+  if (GLOBAL_TOPICS.includes(topic)) return { robot: null, name: topic };
+  const name = ROBOT_TOPICS.find((relative) => topic.endsWith(`/${relative}`));
+  if (name === undefined) return null;
+  const robot = topic.slice(1, -(name.length + 1));
+  return robot.includes("/") ? null : { robot, name };
+}
+
+/** @param {string} robot @param {string} name */
+export function robotTopic(robot, name) {
+  return robot === "" ? `/${name}` : `/${robot}/${name}`;
+}

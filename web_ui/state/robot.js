@@ -1,0 +1,109 @@
+// What the page knows of one robot, and how each of its topics changes that.
+
+import { BUTTONS } from "./names.js";
+
+/** @typedef {{ x: number, y: number, z: number, yaw: number }} Pose  metres and radians, map frame */
+/** @typedef {{ pose: Pose, stampNs: number, arrivedMs: number }} PoseSample */
+/**
+ * @typedef {object} Program
+ * @property {string} state      running, paused, stopped, fault, or ""
+ * @property {string} name
+ * @property {string} message
+ * @property {number} level      0 good, 1 warning, 2 error
+ * @property {string} line
+ */
+/**
+ * @typedef {object} Robot
+ * @property {PoseSample | null} previous
+ * @property {PoseSample | null} latest
+ * @property {{ left: number, right: number }} wheels            rad
+ * @property {{ left: number, right: number }} wheelSpeeds       rad/s
+ * @property {Record<string, number[]>} leds                     levels 0…1 by group
+ * @property {Record<string, number>} proximity                  metres, Infinity: nothing
+ * @property {Record<string, number>} ground                     Range: ±Infinity
+ * @property {Record<string, number[]>} raw                      Thymio integers by sensor
+ * @property {Record<string, boolean>} buttons
+ */
+
+/** @type {Robot} */
+export const NEW_ROBOT = {
+  previous: null,
+  latest: null,
+  wheels: { left: 0, right: 0 },
+  wheelSpeeds: { left: 0, right: 0 },
+  leds: {},
+  proximity: {},
+  ground: {},
+  raw: {},
+  buttons: Object.fromEntries(BUTTONS.map((name) => [name, false])),
+};
+
+/** One row per topic, or per folder of topics (then `leaf` is the rest of the name). */
+const READERS = /** @type {Record<string, (robot: Robot, value: any, leaf: string, nowMs: number) => Robot>} */ ({
+  "ground_truth/odom": (robot, value, _leaf, nowMs) => ({ ...robot, previous: robot.latest, latest: poseSample(value, nowMs) }),
+  joint_states: readJoints,
+  "led/state": (robot, value) => ({ ...robot, leds: splitGroups(value) }),
+  proximity: (robot, value, leaf) => ({ ...robot, proximity: { ...robot.proximity, [leaf]: value.range } }),
+  ground: (robot, value, leaf) => ({ ...robot, ground: { ...robot.ground, [leaf]: value.range } }),
+  buttons: (robot, value, leaf) => ({ ...robot, buttons: { ...robot.buttons, [leaf]: value.data } }),
+  raw: (robot, value, leaf) => ({ ...robot, raw: { ...robot.raw, [leaf]: value.data } }),
+});
+
+/**
+ * @param {Robot} robot
+ * @param {string} name   topic relative to the robot
+ * @param {any} value
+ * @param {number} nowMs  wall time of arrival, for drawing only
+ */
+export function reduceRobot(robot, name, value, nowMs) {
+  const [folder, leaf = ""] = name.split("/");
+  const read = READERS[name] ?? READERS[folder];
+  return read === undefined ? robot : read(robot, value, leaf, nowMs);
+}
+
+/** @param {any} odometry @param {number} nowMs @returns {PoseSample} */
+function poseSample(odometry, nowMs) {
+  const { position, orientation: q } = odometry.pose.pose;
+  const yaw = Math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
+  const { sec, nanosec } = odometry.header.stamp;
+  return { pose: { x: position.x, y: position.y, z: position.z, yaw }, stampNs: sec * 1e9 + nanosec, arrivedMs: nowMs };
+}
+
+/** @param {Robot} robot @param {any} value */
+function readJoints(robot, value) {
+  /** @param {number[]} values @param {string} side @param {number} otherwise */
+  const pick = (values, side, otherwise) => {
+    const index = value.name.findIndex((/** @type {string} */ name) => name.endsWith(`${side}_wheel_joint`));
+    return values[index] ?? otherwise;
+  };
+  const { wheels, wheelSpeeds } = robot;
+  return {
+    ...robot,
+    wheels: { left: pick(value.position, "left", wheels.left), right: pick(value.position, "right", wheels.right) },
+    wheelSpeeds: { left: pick(value.velocity, "left", wheelSpeeds.left), right: pick(value.velocity, "right", wheelSpeeds.right) },
+  };
+}
+
+/** All LED levels in one array, cut by the labelled dimensions. @param {any} value */
+function splitGroups(value) {
+  /** @type {Record<string, number[]>} */
+  const groups = {};
+  let start = 0;
+  for (const { label, size } of value.layout.dim) {
+    groups[label] = value.data.slice(start, start + size);
+    start += size;
+  }
+  return groups;
+}
+
+/** What a runtime says of its program. @param {any} status @returns {Program} */
+export function readStatus(status) {
+  const values = Object.fromEntries(status.values.map((/** @type {any} */ { key, value }) => [key, value]));
+  return {
+    state: values.state ?? "",
+    name: values.program ?? "",
+    message: status.message,
+    level: status.level,
+    line: values.line ?? "",
+  };
+}

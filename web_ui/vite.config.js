@@ -1,0 +1,14 @@
+// Bundles the page into dist/ with relative addresses, so that it can be served from any path.
+
+import { defineConfig } from "vite";
+
+export default defineConfig({
+  base: "./",
+  build: {
+    outDir: "dist",
+    emptyOutDir: true,
+    target: "es2022",
+    // three alone is about 0.6 MB (web-ui-features.md section 5.2); warn only beyond the page's budget.
+    chunkSizeWarningLimit: 800,
+  },
+});
