@@ -13,7 +13,7 @@ import math
 import re
 import types
 import typing
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeVar, cast
 
@@ -98,7 +98,7 @@ def read(kind: type[T], data: object, key: str) -> T:
     """A `kind` from the members of a JSON object; FieldError with the path of the key that is wrong."""
     if not isinstance(data, Mapping):
         raise FieldError(key, describe(data), "an object")
-    rules = _rules(kind)
+    rules = _rules(cast("Any", kind))
     for name in data:
         if name not in rules:
             raise FieldError(join(key, str(name)), "an unknown key", "one of " + ", ".join(rules))
@@ -113,7 +113,7 @@ def read(kind: type[T], data: object, key: str) -> T:
 
 def json_schema(kind: type[Any], *, extra: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """The JSON schema of `read(kind, …)`; `extra` members are added and required."""
-    rules = _rules(kind)
+    rules = _rules(cast("Any", kind))
     properties = dict(extra or {}) | {name: rule.schema for name, rule in rules.items()}
     required = [*(extra or {}), *(name for name, rule in rules.items() if rule.required)]
     schema: dict[str, Any] = {"type": "object", "properties": properties, "additionalProperties": False}
@@ -140,11 +140,10 @@ class _Rule:
 
 
 @functools.cache
-def _rules(kind: Hashable) -> dict[str, _Rule]:
-    form = cast("type[Any]", kind)
-    hints = typing.get_type_hints(form, include_extras=True)
+def _rules(kind: Any) -> dict[str, _Rule]:
+    hints = typing.get_type_hints(kind, include_extras=True)
     found = {}
-    for field in dataclasses.fields(form):
+    for field in dataclasses.fields(kind):
         hint = hints[field.name]
         default = field.default
         required = default is dataclasses.MISSING

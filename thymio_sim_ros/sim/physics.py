@@ -1,12 +1,10 @@
 """Bodies, contacts and what rays meet: the only module that knows pymunk.
 
-Robots are dynamic bodies. Before every sub-step a robot is pushed so that it has the speed of its wheels
-when the sub-step ends; while it touches something that push is limited, so that walls stop it. Contacts are
-without bounce and without friction along the wall (thymio-robot.md section 11).
-
-pymunk moves bodies first, with the velocities that the sub-step before has left, and solves contacts
-and forces afterwards. Thus a push is aimed along the heading that the body will have in the middle of its
-next movement; with that, free motion follows arcs to the third order.
+Robots are dynamic bodies. A free robot has the speed of its wheels; its velocity points along the heading in the
+middle of the sub-step, so that its path follows arcs to the third order. pymunk moves bodies first and solves
+contacts and forces afterwards; a robot that touches something is therefore pushed by a force, which that
+solution takes into account, and which is limited so that walls and heavy things stop it. Contacts are without
+bounce and without friction along the wall (thymio-robot.md section 11).
 """
 
 from __future__ import annotations
@@ -108,21 +106,28 @@ class RobotBody:
             body.space.reindex_shapes_for_body(body)
 
     def _push(self) -> float:
-        """Apply the force of the wheels; the heading in the middle of the next movement."""
+        """Take the speed of the wheels, as far as contacts let; the heading in the middle of the movement."""
         body = self._body
         speed = (self._left_m_s + self._right_m_s) / 2
         spin = (self._right_m_s - self._left_m_s) / thymio2.WHEEL_TRACK_M
+        if self.touching:
+            return self._press(speed, spin)
+        heading = body.angle + spin / 2 * _DT
+        body.velocity = (speed * math.cos(heading), speed * math.sin(heading))
+        body.angular_velocity = spin
+        return heading
+
+    def _press(self, speed: float, spin: float) -> float:
+        """Push against what is touched, with limited force."""
+        body = self._body
         heading = body.angle + (body.angular_velocity + spin / 2) * _DT
         vx, vy = body.velocity
         push_x = (speed * math.cos(heading) - vx) * (thymio2.MASS_KG / _DT)
         push_y = (speed * math.sin(heading) - vy) * (thymio2.MASS_KG / _DT)
-        if self.touching:
-            limit = thymio2.DRIVE_FORCE_N if self._left_m_s or self._right_m_s else _HOLD_FORCE_N
-            push = math.hypot(push_x, push_y)
-            if push > limit:
-                push_x *= limit / push
-                push_y *= limit / push
-        body.force = (push_x, push_y)
+        push = math.hypot(push_x, push_y)
+        limit = thymio2.DRIVE_FORCE_N if self._left_m_s or self._right_m_s else _HOLD_FORCE_N
+        scale = limit / push if push > limit else 1.0
+        body.force = (push_x * scale, push_y * scale)
         body.torque = (spin - body.angular_velocity) * (_MOMENT_KG_M2 / _DT)
         return heading
 

@@ -1,0 +1,74 @@
+"""Simulated time, schedules of sensors, and the pace against wall time."""
+
+from __future__ import annotations
+
+import pytest
+
+from thymio_sim_ros.sim.clock import TICK_NS, Pacer, Schedule, SimClock
+
+SECOND_NS = 1_000_000_000
+
+
+def times_due(schedule: Schedule, ticks: int) -> list[int]:
+    return [tick for tick in range(1, ticks + 1) if schedule.due(tick * TICK_NS)]
+
+
+def test_the_clock_counts_ticks_of_ten_milliseconds() -> None:
+    clock = SimClock()
+    assert [clock.advance(), clock.advance()] == [10_000_000, 20_000_000]
+
+
+def test_a_schedule_is_due_at_every_multiple_of_its_period() -> None:
+    assert times_due(Schedule(50_000_000), 15) == [5, 10, 15]
+
+
+def test_a_phase_shifts_a_schedule_and_nothing_is_due_before_it() -> None:
+    assert times_due(Schedule(50_000_000, phase_ns=10_000_000), 15) == [1, 6, 11]
+
+
+def test_a_period_that_is_no_whole_number_of_ticks_keeps_its_rate() -> None:
+    assert len(times_due(Schedule(62_500_000), 1600)) == 16 * 16
+
+
+def test_the_pacer_owes_one_tick_for_each_period_of_wall_time() -> None:
+    pacer = Pacer(1.0)
+    assert [pacer.owed(now * 5_000_000) for now in range(7)] == [0, 0, 1, 0, 1, 0, 1]
+
+
+def test_a_factor_of_two_owes_twice_as_many_ticks() -> None:
+    pacer = Pacer(2.0)
+    assert sum(pacer.owed(now * TICK_NS) for now in range(101)) == 200
+
+
+def test_what_cannot_be_caught_up_is_dropped_and_counted() -> None:
+    pacer = Pacer(1.0, max_batch=10)
+    pacer.owed(0)
+    assert pacer.owed(SECOND_NS) == 10
+    assert pacer.dropped_ticks == 90
+    assert pacer.owed(SECOND_NS + TICK_NS) == 1
+
+
+def test_the_achieved_factor_tells_what_was_dropped() -> None:
+    pacer = Pacer(1.0, max_batch=10)
+    for now in range(0, 5 * SECOND_NS, SECOND_NS // 5):
+        pacer.owed(now)
+    assert pacer.achieved == pytest.approx(0.5)
+
+
+def test_factor_zero_owes_a_full_batch_at_once_and_never_waits() -> None:
+    pacer = Pacer(0.0, max_batch=10)
+    assert [pacer.owed(0), pacer.owed(1), pacer.owed(2)] == [10, 10, 10]
+    assert pacer.wait_ns(3) == 0
+
+
+def test_the_wait_ends_when_a_tick_is_owed() -> None:
+    pacer = Pacer(1.0)
+    pacer.owed(0)
+    wait = pacer.wait_ns(4_000_000)
+    assert pacer.owed(4_000_000 + wait) == 1
+
+
+@pytest.mark.parametrize("factor", [-1.0, float("inf"), float("nan")])
+def test_a_factor_that_is_no_pace_is_refused(factor: float) -> None:
+    with pytest.raises(ValueError, match="real-time factor"):
+        Pacer(factor)
