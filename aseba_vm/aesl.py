@@ -1,7 +1,7 @@
 """The .aesl file: definitions and code of the nodes of one network (language spec, section 13).
 
-Reading keeps what a compiler and an editor need: events, constants, the keyword flag, the code of each node, the data of
-its editor plug-ins, and elements that we do not know. Declared entities are refused, since they could grow without limit.
+Reading keeps what a compiler and an editor need: events, constants, the keyword flag, the code of each node, the data
+of its editor plug-ins, and elements that we do not know. Declared entities are refused, as they can grow without limit.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Network:
-    """A whole file: global events (name, words), constants (name, value), keyword flag, nodes, other elements as XML."""
+    """A whole file: global events (name, words), constants (name, value), keyword flag, nodes, other elements (XML)."""
 
     events: tuple[tuple[str, int], ...] = ()
     constants: tuple[tuple[str, int], ...] = ()
@@ -178,7 +178,7 @@ class _Reader:
 
 
 def dumps(network: Network) -> str:
-    """Return the text of a file: events, constants, keywords, nodes, in the order and with the comments of the editors."""
+    """Return the text of a file: events, constants, keywords, nodes, with the comments that editors write."""
     lines = ["<!DOCTYPE aesl-source>", "<network>", "", "", "<!--list of global events-->"]
     lines += [f"<event size={quoteattr(str(size))} name={_quoted(name)}/>" for name, size in network.events]
     lines += ["", "", "<!--list of constants-->"]

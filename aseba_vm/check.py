@@ -1,4 +1,4 @@
-"""Third pass: sizes of the vectors; sixth pass: types and subroutines of the scalars (language spec, sections 8 and 11)."""
+"""Third pass: sizes of vectors; sixth pass: types and subroutines of scalars (language spec, sections 8 and 11)."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ def compile_stages(
     return Stages(tokens, tree, expanded, optimised, segments)
 
 
-def compile(
+def compile(  # noqa: A001  # the word of the field; hides the built-in one in this module only
     source: str,
     target: TargetDescription,
     events: Sequence[tuple[str, int]] = (),

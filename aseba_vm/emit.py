@@ -148,12 +148,13 @@ class _Builder:
     # -- statements
 
     def statement(self, statement: Statement) -> Task[int]:
-        depth = 0
+        depth: int
         match statement:
             case Block(statements):
+                depths: list[int] = []
                 for inner in statements:
-                    depth = max(depth, (yield self.statement(inner)))
-                return depth
+                    depths += [(yield self.statement(inner))]
+                return max(depths, default=0)
             case Assignment():
                 depth = yield self.assignment(statement)
                 return depth
@@ -164,8 +165,7 @@ class _Builder:
                 depth = yield self.loop(statement)
                 return depth
             case Emit(number, address, size, setup, pos):
-                for assignment in setup:
-                    depth = max(depth, (yield self.assignment(assignment)))
+                depth = yield self.setup(setup)
                 self.add(Op.EMIT, number, pos.row, address, size)
                 return depth
             case Call():
@@ -177,13 +177,21 @@ class _Builder:
                 self.add(Op.STOP, 0, pos.row)
         return 0
 
+    def setup(self, setup: tuple[Assignment, ...]) -> Task[int]:
+        depths: list[int] = []
+        for assignment in setup:
+            depths += [(yield self.assignment(assignment))]
+        return max(depths, default=0)
+
     def assignment(self, assignment: Assignment) -> Task[int]:
         depth: int = yield self.expression(assignment.right)
+        index_depth: int
         match assignment.left:
             case Word(address, pos):
                 self.add(Op.STORE, address, pos.row)
             case Element(variable, index, pos):
-                depth = max(depth, (yield self.expression(index)))
+                index_depth = yield self.expression(index)
+                depth = max(depth, index_depth)
                 self.add(Op.STOREX, variable.address, pos.row, variable.size)
         return depth
 
@@ -197,6 +205,8 @@ class _Builder:
 
     def conditional(self, statement: If) -> Task[int]:
         row = statement.pos.row
+        depth: int
+        branch: int
         depth, branch = yield self.condition(statement.condition, EDGE if statement.is_edge else 0, row)
         start = self.size - 2
         then_depth: int = yield self.statement(statement.then)
@@ -205,7 +215,8 @@ class _Builder:
             jump, jump_at = len(self.code), self.size
             self.add(Op.JUMP, 0, self.code[-1].row if jump > branch + 1 else row)
             self.code[branch] = replace(self.code[branch], more=(self.size - start,))
-            depth = max(depth, (yield self.statement(statement.otherwise)))
+            otherwise_depth: int = yield self.statement(statement.otherwise)
+            depth = max(depth, otherwise_depth)
             self.code[jump] = replace(self.code[jump], operand=self.size - jump_at)
         else:
             self.code[branch] = replace(self.code[branch], more=(self.size - start,))
@@ -216,6 +227,8 @@ class _Builder:
     def loop(self, loop: While) -> Task[int]:
         row = loop.pos.row
         begin = self.size
+        depth: int
+        branch: int
         depth, branch = yield self.condition(loop.condition, 0, row)
         start = self.size - 2
         body_depth: int = yield self.statement(loop.body)
@@ -251,8 +264,6 @@ class _Builder:
             self.constant(argument.variable.address, row)
             self.add(Op.BINARY, BINARY_NUMBER["+"], row)
             return max(depth, 2)
-        depth = 1
-        for assignment in argument.setup:
-            depth = max(depth, (yield self.assignment(assignment)))
+        depth = yield self.setup(argument.setup)
         self.constant(argument.address, row)
-        return depth
+        return max(depth, 1)

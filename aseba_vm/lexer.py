@@ -1,7 +1,7 @@
 """First pass: text to tokens (language spec, sections 2 and 3).
 
-One regular expression finds the longest next token; comments and white space are matched by it too. The column is kept
-as the offset minus ``base``, the offset that column 0 would have, which makes the odd columns of the spec one assignment.
+One regular expression finds the longest next token, comments and white space too. The column is the offset minus
+``base``, the offset that column 0 would have, which makes each of the odd columns of the spec one assignment.
 """
 
 from __future__ import annotations
@@ -13,32 +13,13 @@ from aseba_vm.errors import CompileError, SourcePos
 from aseba_vm.identifiers import LETTER_OR_DIGIT
 
 KEYWORDS = frozenset(
-    [
-        "when",
-        "emit",
-        "_emit",
-        "for",
-        "in",
-        "step",
-        "while",
-        "do",
-        "if",
-        "then",
-        "else",
-        "elseif",
-        "end",
-        "var",
-        "const",
-        "call",
-        "sub",
-        "callsub",
-        "onevent",
-        "abs",
-        "return",
-        "or",
-        "and",
-        "not",
-    ]
+    re.findall(
+        r"\w+",
+        """
+        when emit _emit for in step while do if then else elseif end
+        var const call sub callsub onevent abs return or and not
+        """,
+    )
 )
 
 SYMBOLS = (

@@ -9,7 +9,8 @@ from collections.abc import Mapping, Sequence
 
 MESSAGES: Mapping[str, str] = {
     "target-too-small": "the target has less memory than its own variables need",
-    "stack-overflow": "the program could use more stack than the target has; look for recursion or very long expressions",
+    "stack-overflow": "the program could use more stack than the target has;"
+    " look for recursion or very long expressions",
     "bytecode-too-large": "the compiled program is larger than the bytecode memory of the target",
     "unknown-variable": "no variable is called '{0}'",
     "unknown-variable-hint": "no variable is called '{0}'; perhaps you meant '{1}'",
@@ -59,7 +60,8 @@ MESSAGES: Mapping[str, str] = {
     "function-takes-no-argument": "function '{0}' takes no argument",
     "too-few-arguments": "function '{0}' takes {1} arguments, only {2} given",
     "argument-size": "argument {0} ({1}) of function '{2}' has size {3} instead of {4}",
-    "argument-size-template": "argument {0} ({1}) of function '{2}' has size {3}, but an earlier argument of the same kind has size {4}",
+    "argument-size-template": "argument {0} ({1}) of function '{2}' has size {3},"
+    " but an earlier argument of the same kind has size {4}",
     "too-many-arguments": "function '{0}' takes only {1} arguments",
     "not-assignable": "cannot assign to this ({0})",
     "index-out-of-bounds": "array '{0}' has no element {1}, its size is {2}",
@@ -81,7 +83,8 @@ MESSAGES: Mapping[str, str] = {
     "too-many-tokens": "the program is too long: more than {0} words and symbols",
     "too-many-elements": "the program is too large: more than {0} operations on single values",
     # warnings
-    "warning-fall-through": "subroutine '{0}' may run on into the code after it: its last statement returns only sometimes",
+    "warning-fall-through": "subroutine '{0}' may run on into the code after it,"
+    " as its last statement does not always return",
 }
 
 TOKENS: Mapping[str, str] = {

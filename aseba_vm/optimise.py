@@ -224,7 +224,7 @@ def _statement(statement: Statement) -> Task[Statement | None]:
 def _setup(setup: tuple[Assignment, ...]) -> Task[tuple[Assignment, ...]]:
     simpler: list[Assignment] = []
     for assignment in setup:
-        simpler.append((yield _assignment(assignment)))
+        simpler += [(yield _assignment(assignment))]
     return tuple(simpler)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from aseba_vm.errors import CompileError
+from aseba_vm.errors import CompileError, SourcePos
 from aseba_vm.recursion import Task, run
 from aseba_vm.tree import Access, Binary, Element, Expression, Listing, Subscript, Unary, Word
 
@@ -120,14 +120,7 @@ def _elements(expression: Expression, count: int) -> Task[list[Scalar]]:
         case Binary(operator, left, right, pos):
             lefts: list[Scalar] = yield _elements(left, count)
             rights: list[Scalar] = yield _elements(right, count)
-            return [
-                one
-                if isinstance(one, Missing)
-                else two
-                if isinstance(two, Missing)
-                else Binary(operator, one, two, pos)
-                for one, two in zip(lefts, rights, strict=False)
-            ]
+            return [_paired(operator, one, two, pos) for one, two in zip(lefts, rights, strict=False)]
         case Listing(items):
             gathered: list[Scalar] = []
             for item in items:
@@ -136,3 +129,9 @@ def _elements(expression: Expression, count: int) -> Task[list[Scalar]]:
                     break
             return gathered
     return [expression]
+
+
+def _paired(operator: str, left: Scalar, right: Scalar, pos: SourcePos) -> Scalar:
+    if isinstance(left, Missing):
+        return left
+    return right if isinstance(right, Missing) else Binary(operator, left, right, pos)

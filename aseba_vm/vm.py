@@ -8,12 +8,35 @@ remembers its condition rewrites its own word. Arithmetic is exact in Python and
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
-from aseba_vm.bytecode import EDGE, LENGTH, WAS_TRUE, Op, signed, signed12
+from aseba_vm.bytecode import LENGTH, WAS_TRUE, Op
 from aseba_vm.compiler import Program
 from aseba_vm.nativecall import DequeFault, DivisionFault, Native, NativeCall, NativeFault, wrap
 from aseba_vm.natives import NATIVES
+from aseba_vm.operations import (
+    BAD,
+    BINARY,
+    CALL,
+    EMIT,
+    IF,
+    IF_FALSE,
+    IF_TRUE,
+    JUMP,
+    LOAD,
+    LOADX,
+    NATIVE,
+    PUSH,
+    RET,
+    STOP,
+    STORE,
+    STOREX,
+    UNARY,
+    WHEN,
+    WHEN_FALSE,
+    WHEN_TRUE,
+    Decoded,
+    decoded,
+)
 from aseba_vm.outbox import (
     BadCode,
     BreakpointSet,
@@ -39,51 +62,6 @@ MAX_EMITTED = 516
 
 _FOREVER = 1 << 62
 
-# Kinds of decoded operations, frequent ones first: the order in which the loop asks.
-_LOAD, _PUSH, _STORE, _BINARY, _IF_FALSE, _IF_TRUE, _JUMP, _LOADX, _STOREX = range(9)
-_WHEN_FALSE, _WHEN_TRUE, _UNARY, _STOP, _CALL, _RET, _EMIT, _NATIVE, _BAD = range(9, 18)
-
-_Decoded = tuple[int, Any, Any]
-
-
-def _divide(left: int, right: int) -> int:
-    quotient = abs(left) // abs(right)
-    return wrap(quotient if (left < 0) == (right < 0) else -quotient)
-
-
-def _remainder(left: int, right: int) -> int:
-    remainder = abs(left) % abs(right)
-    return -remainder if left < 0 else remainder
-
-
-#: In the order of the numbers of the operators.
-_BINARY_FUNCTIONS: Sequence[Callable[[int, int], int]] = (
-    lambda left, right: wrap(left << (right & 31)),
-    lambda left, right: left >> (right & 31),
-    lambda left, right: wrap(left + right),
-    lambda left, right: wrap(left - right),
-    lambda left, right: wrap(left * right),
-    _divide,
-    _remainder,
-    lambda left, right: left | right,
-    lambda left, right: left ^ right,
-    lambda left, right: left & right,
-    lambda left, right: 1 if left == right else 0,
-    lambda left, right: 1 if left != right else 0,
-    lambda left, right: 1 if left > right else 0,
-    lambda left, right: 1 if left >= right else 0,
-    lambda left, right: 1 if left < right else 0,
-    lambda left, right: 1 if left <= right else 0,
-    lambda left, right: 1 if left or right else 0,
-    lambda left, right: 1 if left and right else 0,
-)
-
-_UNARY_FUNCTIONS: Sequence[Callable[[int], int]] = (
-    lambda value: wrap(-value),
-    lambda value: wrap(abs(value)),
-    lambda value: ~value,
-)
-
 
 class VirtualMachine:
     """A node's machine. ``variables`` are signed words that the node may read and write between runs."""
@@ -100,8 +78,8 @@ class VirtualMachine:
         """Build an idle machine with empty memories.
 
         ``natives`` are functions by name, added to the standard ones or in their place; one that is missing pops its
-        arguments and leaves a NativeCalled. ``on_reset`` is the node's share in a reset. ``kills_long_events``: an event
-        that reaches the limit of ``run`` is abandoned, as in the 2.x fork, not continued.
+        arguments and leaves a NativeCalled. ``on_reset`` is the node's share in a reset. ``kills_long_events``: an
+        event that reaches the limit of ``run`` is abandoned, as in the 2.x fork, not continued.
         """
         self.target = target
         self.node_id = node_id
@@ -116,7 +94,7 @@ class VirtualMachine:
         self.tracer: Callable[[int], None] | None = None
         self.stack: list[int] = [0] * target.stack_size
         self._words: list[int] = [0] * target.bytecode_size
-        self._code: list[_Decoded] = [(_STOP, 0, 0)] * target.bytecode_size
+        self._code: list[Decoded] = [(STOP, 0, 0)] * target.bytecode_size
         self._breakpoints: list[int] = []
         self._on_reset = on_reset
         self._kills_long_events = kills_long_events
@@ -320,50 +298,50 @@ class VirtualMachine:
         size = len(code)
         pc, sp = self.pc, self.sp
         executed = 0
-        kind = _BAD
+        kind = BAD
         try:
             for executed in range(limit):  # counts for the lines after the loop
                 kind, first, second = code[pc]
-                if kind == _LOAD:
+                if kind == LOAD:
                     stack[sp + 1] = variables[first]
                     sp += 1
                     pc += 1
-                elif kind == _PUSH:
+                elif kind == PUSH:
                     stack[sp + 1] = first
                     sp += 1
                     pc += second
-                elif kind == _STORE:
+                elif kind == STORE:
                     if sp < 0:
                         return self._bad(pc, sp, executed, "stack-underflow")
                     variables[first] = stack[sp]
                     sp -= 1
                     pc += 1
-                elif kind == _BINARY:
+                elif kind == BINARY:
                     if sp < 1:
                         return self._bad(pc, sp, executed, "stack-underflow")
                     right = stack[sp]
                     sp -= 1
                     stack[sp] = first(stack[sp], right)
                     pc += 1
-                elif kind == _IF_FALSE or kind == _IF_TRUE:  # quicker than a tuple
+                elif kind in IF:
                     if sp < 1:
                         return self._bad(pc, sp, executed, "stack-underflow")
                     sp -= 2
                     if first(stack[sp + 1], stack[sp + 2]):
-                        if kind == _IF_FALSE:
+                        if kind == IF_FALSE:
                             self._remember(pc)
                         pc += 2
                     else:
-                        if kind == _IF_TRUE:
+                        if kind == IF_TRUE:
                             self._remember(pc)
                         pc += second
                         if not 0 <= pc < size:
                             return self._bad(pc - second, sp, executed, "jump-out-of-range")
-                elif kind == _JUMP:
+                elif kind == JUMP:
                     pc += first
                     if not 0 <= pc < size:
                         return self._bad(pc - first, sp, executed, "jump-out-of-range")
-                elif kind == _LOADX:
+                elif kind == LOADX:
                     if sp < 0:
                         return self._bad(pc, sp, executed, "stack-underflow")
                     index = stack[sp] & 0xFFFF
@@ -372,7 +350,7 @@ class VirtualMachine:
                         break
                     stack[sp] = variables[first + index]
                     pc += 2
-                elif kind == _STOREX:
+                elif kind == STOREX:
                     if sp < 1:
                         return self._bad(pc, sp, executed, "stack-underflow")
                     index = stack[sp] & 0xFFFF
@@ -382,41 +360,41 @@ class VirtualMachine:
                     variables[first + index] = stack[sp - 1]
                     sp -= 2
                     pc += 2
-                elif kind == _WHEN_FALSE or kind == _WHEN_TRUE:  # quicker than a tuple
+                elif kind in WHEN:
                     if sp < 1:
                         return self._bad(pc, sp, executed, "stack-underflow")
                     sp -= 2
                     is_true = bool(first(stack[sp + 1], stack[sp + 2]))
-                    if is_true != (kind == _WHEN_TRUE):
+                    if is_true != (kind == WHEN_TRUE):
                         self._remember(pc)
-                    if is_true and kind == _WHEN_FALSE:
+                    if is_true and kind == WHEN_FALSE:
                         pc += 2
                     else:
                         pc += second
                         if not 0 <= pc < size:
                             return self._bad(pc - second, sp, executed, "jump-out-of-range")
-                elif kind == _UNARY:
+                elif kind == UNARY:
                     if sp < 0:
                         return self._bad(pc, sp, executed, "stack-underflow")
                     stack[sp] = first(stack[sp])
                     pc += 1
-                elif kind == _STOP:
+                elif kind == STOP:
                     self.flags &= ~ACTIVE
                     break
-                elif kind == _CALL:
+                elif kind == CALL:
                     stack[sp + 1] = pc + 1
                     sp += 1
                     if first >= size:
                         return self._bad(pc, sp, executed, "jump-out-of-range")
                     pc = first
-                elif kind == _RET:
+                elif kind == RET:
                     if sp < 0:
                         return self._bad(pc, sp, executed, "stack-underflow")
                     if not 0 <= stack[sp] < size:
                         return self._bad(pc, sp, executed, "jump-out-of-range")
                     pc = stack[sp]
                     sp -= 1
-                elif kind == _EMIT:
+                elif kind == EMIT:
                     address, count = second
                     if count > MAX_EMITTED:
                         return self._bad(pc, sp, executed, "emit-too-long")
@@ -424,7 +402,7 @@ class VirtualMachine:
                         return self._bad(pc, sp, executed, "variable-out-of-range")
                     self.outbox.append(Emitted(first, tuple(variables[address : address + count])))
                     pc += 3
-                elif kind == _NATIVE:
+                elif kind == NATIVE:
                     reason, sp = self._call(first, pc, sp)
                     if reason:
                         return self._bad(pc, sp, executed, reason)
@@ -435,7 +413,7 @@ class VirtualMachine:
                     return self._bad(pc, sp, executed, first)
         except ZeroDivisionError:
             self._stop_on(DivisionByZero(pc))
-            if kind == _BINARY:
+            if kind == BINARY:
                 stack[sp] = 0
                 pc += 1
             else:
@@ -443,7 +421,7 @@ class VirtualMachine:
         except IndexError:
             if not 0 <= pc < size:
                 return self._bad(pc, sp, executed, "jump-out-of-range")
-            is_full = sp + 1 >= len(stack) and kind in (_LOAD, _PUSH, _CALL)
+            is_full = sp + 1 >= len(stack) and kind in (LOAD, PUSH, CALL)
             return self._bad(pc, sp, executed, "stack-overflow" if is_full else "variable-out-of-range")
         self.pc, self.sp = pc, sp
         executed += 1
@@ -468,8 +446,8 @@ class VirtualMachine:
             return "", sp
         try:
             function(call)
-        except NativeFault as fault:
-            call.report(fault)
+        except NativeFault as refusal:
+            call.report(refusal)
         for fault in call.faults:
             if isinstance(fault, DivisionFault):
                 self._stop_on(DivisionByZero(pc))
@@ -511,45 +489,4 @@ class VirtualMachine:
         """Decode the operations that words start..end-1 belong to."""
         words = [*self._words[max(start - 2, 0) : end], *self._words[end : end + 2], 0, 0]
         for place, pc in enumerate(range(max(start - 2, 0), end)):
-            self._code[pc] = _decoded(words[place], words[place + 1], words[place + 2])
-
-
-def _decoded(word: int, second: int, third: int) -> _Decoded:
-    op, operand = word >> 12, word & 0xFFF
-    match op:
-        case Op.STOP:
-            return (_STOP, 0, 0)
-        case Op.PUSH:
-            return (_PUSH, signed12(word), 1)
-        case Op.PUSHL:
-            return (_PUSH, signed(second), 2)
-        case Op.LOAD:
-            return (_LOAD, operand, 0)
-        case Op.STORE:
-            return (_STORE, operand, 0)
-        case Op.LOADX:
-            return (_LOADX, operand, second)
-        case Op.STOREX:
-            return (_STOREX, operand, second)
-        case Op.UNARY if operand < len(_UNARY_FUNCTIONS):
-            return (_UNARY, _UNARY_FUNCTIONS[operand], 0)
-        case Op.UNARY:
-            return (_BAD, "unknown-unary-operator", 0)
-        case Op.BINARY if operand < len(_BINARY_FUNCTIONS):
-            return (_BINARY, _BINARY_FUNCTIONS[operand], 0)
-        case Op.BRANCH if operand & 0xFF < len(_BINARY_FUNCTIONS):
-            kind = _WHEN_FALSE if operand & EDGE else _IF_FALSE
-            return (kind + bool(operand & WAS_TRUE), _BINARY_FUNCTIONS[operand & 0xFF], signed(second))
-        case Op.BINARY | Op.BRANCH:
-            return (_BAD, "unknown-binary-operator", 0)
-        case Op.JUMP:
-            return (_JUMP, signed12(word), 0)
-        case Op.EMIT:
-            return (_EMIT, operand, (second, third))
-        case Op.NATIVE:
-            return (_NATIVE, operand, 0)
-        case Op.CALL:
-            return (_CALL, operand, 0)
-        case Op.RET:
-            return (_RET, 0, 0)
-    return (_BAD, "unknown-instruction", 0)
+            self._code[pc] = decoded(words[place], words[place + 1], words[place + 2])
