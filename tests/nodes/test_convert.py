@@ -1,0 +1,139 @@
+"""Readings ↔ messages as plain functions."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from geometry_msgs.msg import Quaternion, Twist, Vector3
+from sensor_msgs.msg import JointState, LaserScan, Range
+
+from thymio_sim_ros.nodes import convert
+from thymio_sim_ros.nodes.convert import CommandError, ConvertOptions
+from thymio_sim_ros.nodes.names import RobotNames, ros_names, topic_word
+from thymio_sim_ros.sim import commands, readings
+from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.geometry import Twist as BodyMotion
+from thymio_sim_ros.sim.sensors import all_sensors
+
+ALONE = RobotNames("")
+SECOND = RobotNames("thymio_2")
+ROWS = {row.topic: row for sensor in all_sensors() for row in convert.rows_of(sensor)}
+
+PROXIMITY = readings.ProximityReading(
+    1_500_000_000,
+    (0, 1000, 4505, 0, 0, 0, 2000),
+    (math.inf, 0.12, 0.005, math.inf, math.inf, math.inf, 0.08),
+)
+
+
+def encode(topic, reading, names=ALONE, options=None):
+    return ROWS[topic].encode(reading, names, options or ConvertOptions())
+
+
+@pytest.mark.parametrize(
+    ("topic", "expected", "driver"),
+    [
+        ("proximity/left", math.inf, -1.0),
+        ("proximity/center_left", 0.12, 0.12),
+        ("proximity/center", -math.inf, 0.0215),
+        ("proximity/rear_right", 0.08, 0.08),
+    ],
+)
+def test_ranges_out_of_range_follow_rep_117_or_the_driver(topic, expected, driver):
+    message = encode(topic, PROXIMITY)
+    assert isinstance(message, Range)
+    assert message.range == pytest.approx(expected)
+    assert encode(topic, PROXIMITY, options=ConvertOptions(driver_ranges=True)).range == pytest.approx(driver)
+    assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1, 500_000_000)
+
+
+def test_frames_have_the_robot_s_prefix():
+    assert encode("proximity/center", PROXIMITY, SECOND).header.frame_id == "thymio_2/proximity_center_link"
+
+
+def test_the_laser_goes_from_right_to_left_and_nothing_is_inf():
+    scan = encode("proximity/laser", PROXIMITY)
+    assert isinstance(scan, LaserScan)
+    assert list(scan.ranges) == pytest.approx([math.inf, math.inf, 0.1015, 0.2, math.inf])
+    assert list(scan.intensities) == [0.0, 0.0, 4505.0, 1000.0, 0.0]
+    assert len(scan.ranges) == round((scan.angle_max - scan.angle_min) / scan.angle_increment) + 1
+
+
+@pytest.mark.parametrize(("count", "expected", "driver"), [(100, math.inf, 1.0), (900, -math.inf, 0.0)])
+def test_the_ground_reflects_or_not(count, expected, driver):
+    reading = readings.GroundReading(0, (0, 0, count, 900, count, 900), (0.0, 1.0))
+    assert encode("ground/left", reading).range == expected
+    assert encode("ground/left", reading, options=ConvertOptions(driver_ranges=True)).range == driver
+    assert encode("ground/right", reading).range == -math.inf
+
+
+def test_joints_carry_angles_and_speeds():
+    message = encode("joint_states", readings.MotorReading(0, (1, 2, 3, 4), (0.5, 7.0), (1.0, 2.0)), SECOND)
+    assert isinstance(message, JointState)
+    assert message.name == ["thymio_2/left_wheel_joint", "thymio_2/right_wheel_joint"]
+    assert (list(message.position), list(message.velocity)) == ([0.5, 7.0], [1.0, 2.0])
+
+
+def test_odometry_and_truth_have_their_frames_and_covariances():
+    reading = readings.PoseReading(
+        0, (), Pose(1.0, 2.0, math.pi / 2), BodyMotion(0.1, 0.2), Pose(3.0, 4.0, 0.0), BodyMotion(0.3, 0.4)
+    )
+    odometry, truth = encode("odom", reading), encode("ground_truth/odom", reading)
+    assert (odometry.header.frame_id, truth.header.frame_id) == ("odom", "map")
+    assert convert.yaw_of(odometry.pose.pose.orientation) == pytest.approx(math.pi / 2)
+    assert (odometry.twist.twist.linear.x, truth.twist.twist.angular.z) == (0.1, 0.4)
+    assert min(odometry.pose.covariance) >= 0.0
+    assert sum(truth.pose.covariance) == 0.0
+
+
+def test_leds_are_labelled_parts_of_one_array():
+    message = encode("led/state", readings.LedReading(0, (), (("top", (32, 16, 0)), ("ground", (0, 32)))))
+    assert [(dim.label, dim.size) for dim in message.layout.dim] == [("top", 3), ("ground", 2)]
+    assert list(message.data) == [1.0, 0.5, 0.0, 0.0, 1.0]
+
+
+@pytest.mark.parametrize("level", range(33))
+def test_a_level_survives_the_way_over_a_topic(level):
+    assert convert.led_levels("remote", [level / commands.LED_FULL]).levels == (level,)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_numbers_that_are_not_finite_are_refused(value):
+    with pytest.raises(CommandError, match=r"linear\.x"):
+        convert.body_twist(Twist(linear=Vector3(x=value)), 0)
+    with pytest.raises(CommandError, match="finite"):
+        convert.wheel_velocities([0.0, value], 0)
+    with pytest.raises(CommandError, match="finite"):
+        convert.led_levels("remote", [value])
+
+
+def test_arrays_of_the_wrong_length_are_refused():
+    with pytest.raises(CommandError, match="3 values found, expected 8 intensities"):
+        convert.led_levels("circle", [1.0, 1.0, 1.0])
+    with pytest.raises(CommandError, match="left, right"):
+        convert.motor_targets([1])
+
+
+def test_intensities_are_clamped():
+    assert convert.led_levels("ground", [-3.0, 7.0]).levels == (0, 32)
+
+
+@pytest.mark.parametrize("yaw", [-3.0, -0.5, 0.0, 1.0, 3.1])
+def test_yaw_survives_as_quaternion(yaw):
+    assert convert.yaw_of(convert.quaternion(yaw)) == pytest.approx(yaw)
+    assert isinstance(convert.quaternion(yaw), Quaternion)
+
+
+def test_one_robot_has_no_name_and_several_have_theirs():
+    assert ros_names(("thymio",))["thymio"].topic("odom") == "/odom"
+    names = ros_names(("anna", "bert"))
+    assert names["bert"].topic("odom") == "/bert/odom"
+    assert names["bert"].frame("base_link") == "bert/base_link"
+
+
+@pytest.mark.parametrize(
+    ("event", "word"), [("ping", "ping"), ("my.event", "my_event"), ("1st", "_1st"), ("été", "_t_")]
+)
+def test_events_become_words_of_a_topic(event, word):
+    assert topic_word(event) == word
