@@ -1,0 +1,353 @@
+"""The switchboard: all state of the bridge and every decision, without sockets, clocks or threads.
+
+Clients' messages and the owner's commands go in; letters for clients and events for the owner come out. The server
+delivers both. Unknown ids and refused wishes become a status for the client concerned; nobody else notices.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from thymio_sim_ros.bridge import events as ev
+from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.client_state import ClientState
+from thymio_sim_ros.bridge.graph import ConnectionGraph
+from thymio_sim_ros.bridge.vocabulary import Capability, StatusLevel
+
+MAX_CLIENT_CHANNELS = 256
+"""Channels that one client may open: each may cost a publisher."""
+
+MAX_SUBSCRIPTIONS = 4096
+"""Subscriptions that one client may hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Letter:
+    """A message and the clients that get it."""
+
+    clients: tuple[int, ...]
+    message: ms.ServerMessage
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What follows from one step, in order."""
+
+    letters: list[Letter] = field(default_factory=list)
+    events: list[ev.Event] = field(default_factory=list)
+
+    def tell(self, client: int, message: ms.ServerMessage) -> None:
+        """Add a letter to one client."""
+        self.letters.append(Letter((client,), message))
+
+    def refuse(self, client: int, text: str, level: StatusLevel = StatusLevel.ERROR) -> None:
+        """Add a status that says why something was not done."""
+        self.tell(client, ms.Status(level, text))
+
+
+class Switchboard:
+    """State of one server. Invariant: `routes` lists exactly the subscriptions found in the clients' states."""
+
+    def __init__(self, info: ms.ServerInfo) -> None:
+        self._info = info
+        self._clients: dict[int, ClientState] = {}
+        self._channels: dict[int, ms.Channel] = {}
+        self._services: dict[int, ms.Service] = {}
+        self._parameters: dict[str, ms.Parameter] = {}
+        self._graph = ConnectionGraph()
+        self._kept: dict[int, deque[ev.Data]] = {}
+        self._routes: dict[int, tuple[tuple[int, int], ...]] = {}
+        self._time_ns = 0
+
+    # --- what the server asks ---
+
+    def routes(self, channel_id: int) -> tuple[tuple[int, int], ...]:
+        """(client, subscription id) of everybody who gets the channel's messages."""
+        return self._routes.get(channel_id, ())
+
+    def keep(self, data: ev.Data) -> None:
+        """Remember a message for newcomers where its channel is kept; repetitions once."""
+        kept = self._kept.get(data.channel_id)
+        if kept is not None and all(data.payload != old.payload for old in kept):
+            kept.append(data)
+
+    def join(self, client: int) -> list[ms.ServerMessage]:
+        """A new client; returns its greeting."""
+        self._clients[client] = ClientState()
+        greeting: list[ms.ServerMessage] = [self._info]
+        if Capability.TIME in self._info.capabilities:
+            greeting.append(ms.Time(self._time_ns))
+        if self._channels:
+            greeting.append(ms.Advertise(tuple(self._channels.values())))
+        if self._services:
+            greeting.append(ms.AdvertiseServices(tuple(self._services.values())))
+        return greeting
+
+    def leave(self, client: int) -> list[ev.Event]:
+        """A client is gone with all it had."""
+        state = self._clients.pop(client)
+        outcome = Outcome()
+        for channel_id in dict.fromkeys(state.subscriptions.values()):
+            self._reroute(channel_id, outcome)
+        outcome.events += (ev.ClientChannelClosed(client, channel_id) for channel_id in state.channels)
+        if state.graph is not None:
+            self._graph_left(outcome)
+        return outcome.events
+
+    def receive(self, client: int, message: ms.ClientMessage) -> Outcome:
+        """What follows from a client's message."""
+        outcome = Outcome()
+        capability, handle = _FROM_CLIENT[type(message)]
+        if capability is not None and capability not in self._info.capabilities:
+            outcome.refuse(client, f"this server does not offer {capability}")
+        else:
+            handle(self, client, message, outcome)
+        return outcome
+
+    def apply(self, command: ev.Command) -> list[Letter]:
+        """What follows from a command; `Data` is the server's own business (`routes`, `keep`)."""
+        letters: list[Letter] = []
+        _FROM_OWNER[type(command)](self, command, letters)
+        return letters
+
+    # --- clients' messages ---
+
+    def _subscribe(self, client: int, message: ms.Subscribe, outcome: Outcome) -> None:
+        for subscription in message.subscriptions:
+            state = self._clients[client]
+            where = f"subscription {subscription.id}"
+            if subscription.id in state.subscriptions:
+                outcome.refuse(client, f"{where} exists already")
+            elif subscription.channel_id not in self._channels:
+                outcome.refuse(client, f"{where}: no channel {subscription.channel_id}", StatusLevel.WARNING)
+            elif len(state.subscriptions) >= MAX_SUBSCRIPTIONS:
+                outcome.refuse(client, f"{where}: more than {MAX_SUBSCRIPTIONS} subscriptions")
+            else:
+                subscriptions = {**state.subscriptions, subscription.id: subscription.channel_id}
+                self._clients[client] = replace(state, subscriptions=subscriptions)
+                self._reroute(subscription.channel_id, outcome)
+                for data in self._kept.get(subscription.channel_id, ()):
+                    outcome.tell(client, ms.MessageData(subscription.id, data.time_ns, data.payload))
+
+    def _unsubscribe(self, client: int, message: ms.Unsubscribe, outcome: Outcome) -> None:
+        for subscription_id in message.subscription_ids:
+            state = self._clients[client]
+            channel_id = state.subscriptions.get(subscription_id)
+            if channel_id is None:
+                outcome.refuse(client, f"no subscription {subscription_id}", StatusLevel.WARNING)
+                continue
+            self._clients[client] = replace(state, subscriptions=_without(state.subscriptions, [subscription_id]))
+            self._reroute(channel_id, outcome)
+
+    def _open(self, client: int, message: ms.ClientAdvertise, outcome: Outcome) -> None:
+        for channel in message.channels:
+            state = self._clients[client]
+            where = f"channel {channel.id} for {channel.topic}"
+            if channel.id in state.channels:
+                outcome.refuse(client, f"{where}: the id is in use for {state.channels[channel.id].topic}")
+            elif channel.encoding not in self._info.supported_encodings:
+                expected = " or ".join(self._info.supported_encodings)
+                outcome.refuse(client, f"{where}: expected encoding {expected}, found {channel.encoding}")
+            elif len(state.channels) >= MAX_CLIENT_CHANNELS:
+                outcome.refuse(client, f"{where}: more than {MAX_CLIENT_CHANNELS} channels")
+            else:
+                self._clients[client] = replace(state, channels={**state.channels, channel.id: channel})
+                outcome.events.append(ev.ClientChannelOpened(client, channel))
+
+    def _close(self, client: int, message: ms.ClientUnadvertise, outcome: Outcome) -> None:
+        for channel_id in message.channel_ids:
+            state = self._clients[client]
+            if channel_id not in state.channels:
+                outcome.refuse(client, f"no client channel {channel_id}", StatusLevel.WARNING)
+                continue
+            self._clients[client] = replace(state, channels=_without(state.channels, [channel_id]))
+            outcome.events.append(ev.ClientChannelClosed(client, channel_id))
+
+    def _client_data(self, client: int, message: ms.ClientMessageData, outcome: Outcome) -> None:
+        if message.channel_id in self._clients[client].channels:
+            outcome.events.append(ev.ClientSent(client, message.channel_id, message.payload))
+        else:
+            outcome.refuse(client, f"message on client channel {message.channel_id}, which is not advertised")
+
+    def _call(self, client: int, message: ms.ServiceRequest, outcome: Outcome) -> None:
+        if message.service_id in self._services:
+            outcome.events.append(ev.ServiceCalled(client, message))
+            return
+        text = f"no service {message.service_id}"
+        outcome.tell(client, ms.ServiceCallFailure(message.service_id, message.call_id, text))
+        outcome.refuse(client, text)
+
+    def _get_parameters(self, client: int, message: ms.GetParameters, outcome: Outcome) -> None:
+        outcome.tell(client, self._values(message.parameter_names or self._parameters, message.id))
+
+    def _set_parameters(self, client: int, message: ms.SetParameters, outcome: Outcome) -> None:
+        outcome.events.append(ev.ParametersSet(client, message.parameters, message.id))
+
+    def _watch_parameters(self, client: int, message: ms.SubscribeParameterUpdates, outcome: Outcome) -> None:
+        state = self._clients[client]
+        self._clients[client] = replace(state, parameters=state.parameters.union(message.parameter_names))
+
+    def _unwatch_parameters(self, client: int, message: ms.UnsubscribeParameterUpdates, outcome: Outcome) -> None:
+        state = self._clients[client]
+        self._clients[client] = replace(state, parameters=state.parameters.difference(message.parameter_names))
+
+    def _watch_graph(self, client: int, message: ms.SubscribeConnectionGraph, outcome: Outcome) -> None:
+        state = self._clients[client]
+        if state.graph is not None:
+            return
+        if all(other.graph is None for other in self._clients.values()):
+            outcome.events.append(ev.GraphWanted(True))
+        update = self._graph.since(ConnectionGraph())
+        if update is not None:
+            outcome.tell(client, update)
+        self._clients[client] = replace(state, graph=self._graph)
+
+    def _unwatch_graph(self, client: int, message: ms.UnsubscribeConnectionGraph, outcome: Outcome) -> None:
+        state = self._clients[client]
+        if state.graph is not None:
+            self._clients[client] = replace(state, graph=None)
+            self._graph_left(outcome)
+
+    def _fetch_asset(self, client: int, message: ms.FetchAsset, outcome: Outcome) -> None:
+        outcome.events.append(ev.AssetWanted(client, message.uri, message.request_id))
+
+    # --- the owner's commands ---
+
+    def _add_channels(self, command: ev.AddChannels, letters: list[Letter]) -> None:
+        self._channels.update((channel.id, channel) for channel in command.channels)
+        self._tell_all(ms.Advertise(command.channels), letters)
+
+    def _remove_channels(self, command: ev.RemoveChannels, letters: list[Letter]) -> None:
+        for channel_id in command.channel_ids:
+            self._channels.pop(channel_id, None)
+            self._kept.pop(channel_id, None)
+            for client, subscription_id in self._routes.pop(channel_id, ()):
+                state = self._clients[client]
+                self._clients[client] = replace(state, subscriptions=_without(state.subscriptions, [subscription_id]))
+        self._tell_all(ms.Unadvertise(command.channel_ids), letters)
+
+    def _keep_last(self, command: ev.KeepLast, letters: list[Letter]) -> None:
+        if command.depth and command.channel_id in self._routes:
+            kept = self._kept.get(command.channel_id, ())
+            self._kept[command.channel_id] = deque(kept, maxlen=command.depth)
+        else:
+            self._kept.pop(command.channel_id, None)
+
+    def _add_services(self, command: ev.AddServices, letters: list[Letter]) -> None:
+        self._services.update((service.id, service) for service in command.services)
+        self._tell_all(ms.AdvertiseServices(command.services), letters)
+
+    def _remove_services(self, command: ev.RemoveServices, letters: list[Letter]) -> None:
+        for service_id in command.service_ids:
+            self._services.pop(service_id, None)
+        self._tell_all(ms.UnadvertiseServices(command.service_ids), letters)
+
+    def _parameters_changed(self, command: ev.ParametersChanged, letters: list[Letter]) -> None:
+        changed = {item.name: item for item in command.parameters if self._parameters.get(item.name) != item}
+        self._parameters.update(changed)
+        for name in command.removed:
+            if self._parameters.pop(name, None) is not None:
+                changed[name] = ms.Parameter(name)
+        for client, state in self._clients.items():
+            wanted = tuple(item for name, item in changed.items() if name in state.parameters)
+            if wanted:
+                letters.append(Letter((client,), ms.ParameterValues(wanted)))
+
+    def _show_parameters(self, command: ev.ShowParameters, letters: list[Letter]) -> None:
+        if command.client in self._clients:
+            letters.append(Letter((command.client,), self._values(command.names, command.request_id)))
+
+    def _set_graph(self, command: ev.SetGraph, letters: list[Letter]) -> None:
+        self._graph = command.graph
+        for client, state in list(self._clients.items()):
+            update = None if state.graph is None else command.graph.since(state.graph)
+            if update is not None:
+                self._clients[client] = replace(state, graph=command.graph)
+                letters.append(Letter((client,), update))
+
+    def _set_time(self, command: ev.SetTime, letters: list[Letter]) -> None:
+        self._time_ns = command.time_ns
+        self._tell_all(ms.Time(command.time_ns), letters)
+
+    def _new_session(self, command: ev.NewSession, letters: list[Letter]) -> None:
+        self._info = replace(self._info, session_id=command.session_id)
+        self._tell_all(self._info, letters)
+        for client, state in list(self._clients.items()):
+            if state.graph is not None:  # the client forgot it: the next update is complete again
+                self._clients[client] = replace(state, graph=ConnectionGraph())
+        self._set_graph(ev.SetGraph(self._graph), letters)
+
+    def _tell(self, command: ev.Tell, letters: list[Letter]) -> None:
+        if command.client in self._clients:
+            letters.append(Letter((command.client,), command.message))
+
+    # --- helpers ---
+
+    def _tell_all(self, message: ms.ServerMessage, letters: list[Letter]) -> None:
+        if self._clients:
+            letters.append(Letter(tuple(self._clients), message))
+
+    def _values(self, names: Iterable[str], request_id: str | None) -> ms.ParameterValues:
+        known = (self._parameters[name] for name in names if name in self._parameters)
+        return ms.ParameterValues(tuple(known), request_id)
+
+    def _reroute(self, channel_id: int, outcome: Outcome) -> None:
+        """Set `routes` of a channel anew and tell the owner of its first and last subscriber."""
+        routes = tuple(
+            (client, subscription_id)
+            for client, state in self._clients.items()
+            for subscription_id, subscribed in state.subscriptions.items()
+            if subscribed == channel_id
+        )
+        was_wanted = channel_id in self._routes
+        if routes:
+            self._routes[channel_id] = routes
+            if not was_wanted:
+                outcome.events.append(ev.ChannelWanted(channel_id))
+        elif was_wanted:
+            del self._routes[channel_id]
+            self._kept.pop(channel_id, None)
+            outcome.events.append(ev.ChannelUnwanted(channel_id))
+
+    def _graph_left(self, outcome: Outcome) -> None:
+        if all(state.graph is None for state in self._clients.values()):
+            outcome.events.append(ev.GraphWanted(False))
+
+
+def _without(items: Mapping[int, Any], gone: Iterable[int]) -> dict[int, Any]:
+    left = set(gone)
+    return {key: value for key, value in items.items() if key not in left}
+
+
+_FROM_CLIENT: dict[type, tuple[Capability | None, Callable[[Switchboard, int, Any, Outcome], None]]] = {
+    ms.Subscribe: (None, Switchboard._subscribe),
+    ms.Unsubscribe: (None, Switchboard._unsubscribe),
+    ms.ClientAdvertise: (Capability.CLIENT_PUBLISH, Switchboard._open),
+    ms.ClientUnadvertise: (Capability.CLIENT_PUBLISH, Switchboard._close),
+    ms.ClientMessageData: (Capability.CLIENT_PUBLISH, Switchboard._client_data),
+    ms.ServiceRequest: (Capability.SERVICES, Switchboard._call),
+    ms.GetParameters: (Capability.PARAMETERS, Switchboard._get_parameters),
+    ms.SetParameters: (Capability.PARAMETERS, Switchboard._set_parameters),
+    ms.SubscribeParameterUpdates: (Capability.PARAMETERS_SUBSCRIBE, Switchboard._watch_parameters),
+    ms.UnsubscribeParameterUpdates: (Capability.PARAMETERS_SUBSCRIBE, Switchboard._unwatch_parameters),
+    ms.SubscribeConnectionGraph: (Capability.CONNECTION_GRAPH, Switchboard._watch_graph),
+    ms.UnsubscribeConnectionGraph: (Capability.CONNECTION_GRAPH, Switchboard._unwatch_graph),
+    ms.FetchAsset: (Capability.ASSETS, Switchboard._fetch_asset),
+}
+
+_FROM_OWNER: dict[type, Callable[[Switchboard, Any, list[Letter]], None]] = {
+    ev.AddChannels: Switchboard._add_channels,
+    ev.RemoveChannels: Switchboard._remove_channels,
+    ev.KeepLast: Switchboard._keep_last,
+    ev.AddServices: Switchboard._add_services,
+    ev.RemoveServices: Switchboard._remove_services,
+    ev.ParametersChanged: Switchboard._parameters_changed,
+    ev.ShowParameters: Switchboard._show_parameters,
+    ev.SetGraph: Switchboard._set_graph,
+    ev.SetTime: Switchboard._set_time,
+    ev.NewSession: Switchboard._new_session,
+    ev.Tell: Switchboard._tell,
+}

@@ -1,0 +1,20 @@
+"""What one client has asked for: an immutable value that is replaced, never edited."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from thymio_sim_ros.bridge.graph import ConnectionGraph
+from thymio_sim_ros.bridge.messages import ClientChannel
+
+
+@dataclass(frozen=True, slots=True)
+class ClientState:
+    """Ids are the client's own; `graph` is the connection graph it has been told, None: it did not ask."""
+
+    subscriptions: Mapping[int, int] = field(default_factory=dict)
+    """Subscription id → channel id."""
+    channels: Mapping[int, ClientChannel] = field(default_factory=dict)
+    parameters: frozenset[str] = frozenset()
+    graph: ConnectionGraph | None = None

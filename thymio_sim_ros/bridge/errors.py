@@ -1,0 +1,19 @@
+"""What can go wrong at the bridge's border."""
+
+from __future__ import annotations
+
+__all__ = ["BridgeError", "FrameError"]
+
+
+class BridgeError(Exception):
+    """Base of the bridge's errors."""
+
+
+class FrameError(BridgeError):
+    """A frame that breaks the protocol: `where` in it, what was `expected` and what was `found`."""
+
+    def __init__(self, where: str, expected: str, found: str) -> None:
+        super().__init__(f"{where}: expected {expected}, found {found}")
+        self.where = where
+        self.expected = expected
+        self.found = found

@@ -1,0 +1,37 @@
+"""Who talks to whom, as a value; the protocol sends one whole and then differences."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+
+from thymio_sim_ros.bridge.messages import AdvertisedService, ConnectionGraphUpdate, PublishedTopic, SubscribedTopic
+
+Names = Mapping[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class ConnectionGraph:
+    """Topic or service → sorted node names (/ns/node); a name without nodes is left out."""
+
+    published: Names = field(default_factory=dict)
+    subscribed: Names = field(default_factory=dict)
+    services: Names = field(default_factory=dict)
+
+    def since(self, earlier: ConnectionGraph) -> ConnectionGraphUpdate | None:
+        """What a client that knows `earlier` has to be told; None: nothing."""
+        topics = self.published.keys() | self.subscribed.keys()
+        update = ConnectionGraphUpdate(
+            tuple(PublishedTopic(*item) for item in _changed(earlier.published, self.published, topics)),
+            tuple(SubscribedTopic(*item) for item in _changed(earlier.subscribed, self.subscribed, topics)),
+            tuple(AdvertisedService(*item) for item in _changed(earlier.services, self.services, self.services.keys())),
+            tuple(sorted((earlier.published.keys() | earlier.subscribed.keys()) - topics)),
+            tuple(sorted(earlier.services.keys() - self.services.keys())),
+        )
+        return None if update == ConnectionGraphUpdate() else update
+
+
+def _changed(before: Names, after: Names, alive: Collection[str]) -> list[tuple[str, tuple[str, ...]]]:
+    """Rows that differ; one that lost its last node while the name lives on is told with no nodes."""
+    names = sorted(name for name in before.keys() | after.keys() if before.get(name, ()) != after.get(name, ()))
+    return [(name, after.get(name, ())) for name in names if name in alive]

@@ -1,0 +1,47 @@
+"""Which web pages may connect: any page a browser shows can open a WebSocket to this machine.
+
+A native client sends no Origin and is welcome. A page is welcome when it comes from this machine, from the Foxglove
+app, from a numeric address equal to the one it connects to (a robot on the network serving its own page; a number
+cannot be rebound to another host), or when the user has allowed its origin. `*` allows all.
+"""
+
+from __future__ import annotations
+
+import ipaddress
+from collections.abc import Collection
+from urllib.parse import SplitResult, urlsplit
+
+__all__ = ["is_allowed"]
+
+_FOXGLOVE_APPS = frozenset({"https://app.foxglove.dev", "https://studio.foxglove.dev", "file://"})
+"""The hosted app, under both of its names, and desktop applications, whose pages are files."""
+
+_THIS_MACHINE = frozenset({"localhost", "127.0.0.1", "::1"})
+
+
+def is_allowed(origin: str | None, host: str | None, allowed: Collection[str] = ()) -> bool:
+    """Whether a page from `origin` may connect to a server addressed as `host` (header values, None: not sent)."""
+    if origin is None or "*" in allowed or origin in allowed or origin in _FOXGLOVE_APPS:
+        return True
+    page = _split(origin)
+    if page is None or page.scheme not in ("http", "https") or not page.hostname:
+        return False
+    if page.hostname in _THIS_MACHINE:
+        return True
+    server = _split(f"http://{host}")
+    return server is not None and page.hostname == server.hostname and _is_number(page.hostname)
+
+
+def _split(url: str) -> SplitResult | None:
+    try:
+        return urlsplit(url)
+    except ValueError:
+        return None
+
+
+def _is_number(host: str) -> bool:
+    try:
+        ipaddress.ip_address(host)
+    except ValueError:
+        return False
+    return True

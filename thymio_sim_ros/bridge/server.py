@@ -1,0 +1,218 @@
+"""The asyncio side: sockets around the switchboard, on the current API of `websockets`.
+
+Everything here runs in one event loop. Nothing waits for a client: each has its `Outlet`; reading pauses for a client
+while the owner of the data is behind, which slows that client only.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import logging
+import ssl
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from http import HTTPStatus
+from socket import socket
+from typing import Protocol
+
+from websockets.asyncio.server import Server, ServerConnection, serve
+from websockets.datastructures import Headers
+from websockets.exceptions import ConnectionClosed, NegotiationError
+from websockets.http11 import Request, Response
+from websockets.typing import Subprotocol
+
+from thymio_sim_ros.bridge.channels import Letter, Switchboard
+from thymio_sim_ros.bridge.errors import FrameError
+from thymio_sim_ros.bridge.events import Command, Data, Event
+from thymio_sim_ros.bridge.messages import ServerMessage, Status, Time, Unsubscribe
+from thymio_sim_ros.bridge.origins import is_allowed
+from thymio_sim_ros.bridge.outlet import Outlet
+from thymio_sim_ros.bridge.vocabulary import SUBPROTOCOLS, StatusLevel
+from thymio_sim_ros.bridge.wire import decode_client, encode_server, message_data
+
+__all__ = ["BridgeServer", "EventSink", "ServerSettings"]
+
+_FLUSH_PERIOD_S = 0.01
+_FULL_PAUSE_S = 0.005
+_CLOSE_S = 0.3
+_TIME_SLOT = -1
+"""Where an outlet keeps the newest time; no subscription has this id."""
+
+
+class EventSink(Protocol):
+    """Where events go; called in the event loop, must not block."""
+
+    @property
+    def is_full(self) -> bool:
+        """Whether events pile up, so that clients should be read more slowly."""
+
+    def post(self, event: Event) -> None:
+        """Take an event."""
+
+
+@dataclass(frozen=True, slots=True)
+class ServerSettings:
+    """Limits and manners of a server."""
+
+    allowed_origins: tuple[str, ...] = ()
+    """Origins of web pages beside those of `origins`; `*`: all."""
+    buffer_limit: int = 1 << 20
+    """Bytes that may wait for a client before data is thinned out."""
+    max_message_size: int = 16 << 20
+    """Longest frame accepted from a client, bytes."""
+    ping_interval_s: float = 10.0
+    ping_timeout_s: float = 20.0
+    tls: ssl.SSLContext | None = None
+
+
+class BridgeServer:
+    """A Foxglove server on one listening socket. All methods belong to the event loop's thread."""
+
+    def __init__(self, board: Switchboard, sink: EventSink, settings: ServerSettings | None = None) -> None:
+        self._board = board
+        self._sink = sink
+        self._settings = settings or ServerSettings()
+        self._log = logging.getLogger(__name__)
+        self._outlets: dict[int, Outlet] = {}
+        self._client_ids = itertools.count(1)
+        self._flushing: asyncio.TimerHandle | None = None
+        self._server: Server | None = None
+
+    async def start(self, listener: socket) -> None:
+        """Serve on a bound socket, which becomes the server's own."""
+        settings = self._settings
+        # Refused handshakes are answered with their reason; websockets would log each with a traceback.
+        log = logging.getLogger(f"{__name__}.websockets")
+        log.setLevel(logging.CRITICAL)
+        self._server = await serve(
+            self._serve_client,
+            sock=listener,
+            ssl=settings.tls,
+            select_subprotocol=_select_subprotocol,
+            process_request=self._check_origin,
+            compression=None,
+            server_header=None,
+            max_size=settings.max_message_size,
+            ping_interval=settings.ping_interval_s,
+            ping_timeout=settings.ping_timeout_s,
+            close_timeout=_CLOSE_S,
+            logger=log,
+        )
+
+    async def close(self) -> None:
+        """Say goodbye to all clients; those that do not listen are cut off after `_CLOSE_S`."""
+        if self._flushing is not None:
+            self._flushing.cancel()
+        if self._server is None:
+            return
+        self._server.close()
+        closed = asyncio.ensure_future(self._server.wait_closed())
+        await asyncio.wait([closed], timeout=_CLOSE_S)
+        for outlet in self._outlets.values():
+            outlet.abort()
+        await closed
+
+    @property
+    def client_count(self) -> int:
+        """Connected clients."""
+        return len(self._outlets)
+
+    def apply(self, commands: Iterable[Command]) -> None:
+        """Carry out commands in order."""
+        for command in commands:
+            if isinstance(command, Data):
+                self._publish(command)
+            else:
+                self._deliver(self._board.apply(command))
+
+    def _publish(self, data: Data) -> None:
+        """Hot path: one frame per distinct subscription id."""
+        self._board.keep(data)
+        now_s = asyncio.get_running_loop().time()
+        frames: dict[int, bytes] = {}
+        for client, subscription_id in self._board.routes(data.channel_id):
+            frame = frames.get(subscription_id)
+            if frame is None:
+                frame = frames[subscription_id] = message_data(subscription_id, data.time_ns, data.payload)
+            outlet = self._outlets[client]
+            outlet.data(subscription_id, frame, now_s)
+            if outlet.is_behind:
+                self._flush_soon()
+
+    def _deliver(self, letters: Sequence[Letter]) -> None:
+        for letter in letters:
+            frame = encode_server(letter.message)
+            for client in letter.clients:
+                self._send(client, letter.message, frame)
+
+    def _send(self, client: int, message: ServerMessage, frame: str | bytes) -> None:
+        outlet = self._outlets[client]
+        if isinstance(message, Time) and isinstance(frame, bytes):
+            outlet.data(_TIME_SLOT, frame, asyncio.get_running_loop().time())
+            if outlet.is_behind:
+                self._flush_soon()
+        else:
+            outlet.control(frame)
+
+    def _flush_soon(self) -> None:
+        if self._flushing is None:
+            self._flushing = asyncio.get_running_loop().call_later(_FLUSH_PERIOD_S, self._flush)
+
+    def _flush(self) -> None:
+        self._flushing = None
+        for outlet in self._outlets.values():
+            outlet.flush()
+        if any(outlet.is_behind for outlet in self._outlets.values()):
+            self._flush_soon()
+
+    async def _serve_client(self, connection: ServerConnection) -> None:
+        client = next(self._client_ids)
+        outlet = self._outlets[client] = Outlet(connection, self._settings.buffer_limit)
+        for message in self._board.join(client):
+            outlet.control(encode_server(message))
+        try:
+            async for frame in connection:
+                self._receive(client, frame)
+                while self._sink.is_full:
+                    await asyncio.sleep(_FULL_PAUSE_S)
+        except ConnectionClosed:
+            pass  # a lost connection ends like a closed one
+        finally:
+            del self._outlets[client]
+            for event in self._board.leave(client):
+                self._sink.post(event)
+
+    def _receive(self, client: int, frame: str | bytes) -> None:
+        try:
+            message = decode_client(frame)
+        except FrameError as error:
+            self._outlets[client].control(encode_server(Status(StatusLevel.ERROR, str(error))))
+            return
+        outcome = self._board.receive(client, message)
+        if isinstance(message, Unsubscribe):
+            for subscription_id in message.subscription_ids:
+                self._outlets[client].forget(subscription_id)
+        self._deliver(outcome.letters)
+        for event in outcome.events:
+            self._sink.post(event)
+
+    def _check_origin(self, connection: ServerConnection, request: Request) -> Response | None:
+        origin, host = _header(request.headers, "Origin"), _header(request.headers, "Host")
+        if is_allowed(origin, host, self._settings.allowed_origins):
+            return None
+        self._log.warning("refused a web page from %s: add it to allowed_origins if it is yours", origin)
+        return connection.respond(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.\n")
+
+
+def _header(headers: Headers, name: str) -> str | None:
+    """The header's value, the last one if it is repeated."""
+    values = headers.get_all(name)
+    return values[-1] if values else None
+
+
+def _select_subprotocol(_connection: ServerConnection, offered: Sequence[Subprotocol]) -> Subprotocol:
+    for name in SUBPROTOCOLS:
+        if name in offered:
+            return Subprotocol(name)
+    raise NegotiationError(f"offer one of the sub-protocols {', '.join(SUBPROTOCOLS)}")
