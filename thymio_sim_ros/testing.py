@@ -20,7 +20,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import rclpy
@@ -28,10 +28,12 @@ from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from thymio_sim_ros.nodes.aseba_node import AsebaRuntime, RuntimeParams
 from thymio_sim_ros.nodes.life import Life, make_executor
-from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
 from thymio_sim_ros.sim.clock import TICK_NS
+
+if TYPE_CHECKING:  # the nodes are imported by the test that wants them
+    from thymio_sim_ros.nodes.aseba_node import AsebaRuntime
+    from thymio_sim_ros.nodes.simulator_node import Simulator
 
 DEADLINE_S = 20.0
 SLICE_S = 0.02
@@ -188,6 +190,8 @@ def ros(ros_domain: int) -> Iterator[Ros]:
 def simulation(ros: Ros) -> Callable[..., SimulationInTest]:
     """Make a simulator node in this process, stepped by the test; keyword arguments are its parameters."""
 
+    from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
+
     def make(**parameters: Any) -> SimulationInTest:
         defaults = replace(SimulatorParams(playground="base", start_paused=True), **parameters)
         return SimulationInTest(ros, ros.live(Simulator(ros.context, defaults)))
@@ -198,6 +202,8 @@ def simulation(ros: Ros) -> Callable[..., SimulationInTest]:
 @pytest.fixture
 def runtime(ros: Ros) -> Callable[..., AsebaRuntime]:
     """Make an Aseba runtime node in this process: `runtime("onevent …")` or `runtime(path="line_follower")`."""
+
+    from thymio_sim_ros.nodes.aseba_node import AsebaRuntime, RuntimeParams
 
     def make(source: str = "", *, path: str = "", **parameters: Any) -> AsebaRuntime:
         defaults = RuntimeParams(source=source, path=path, **parameters)
