@@ -49,7 +49,9 @@ def readings(steps: Sequence[StepResult], sensor: str) -> list[Any]:
     return found
 
 
-def box(x_m: float, y_m: float, size_x_m: float, size_y_m: float, *, yaw_rad: float = 0.0, height_m: float = 0.1) -> dict[str, Any]:
+def box(
+    x_m: float, y_m: float, size_x_m: float, size_y_m: float, *, yaw_rad: float = 0.0, height_m: float = 0.1
+) -> dict[str, Any]:
     """A grey box."""
     return {
         "kind": "box", "x_m": x_m, "y_m": y_m, "yaw_rad": yaw_rad,
@@ -89,14 +91,26 @@ def enki_world(entry: Mapping[str, Any], **options: Any) -> World:
         width, height = entry["world"]["width"], entry["world"]["height"]
         shapes.append(
             {
-                "kind": "rectangle", "x_m": width / 2, "y_m": height / 2, "size_x_m": width + 0.02, "size_y_m": height + 0.02,
-                "colour": GREY, "walls": {"height_m": 1.0},
-            }  # fmt: skip
+                "kind": "rectangle",
+                "x_m": width / 2,
+                "y_m": height / 2,
+                "size_x_m": width + 0.02,
+                "size_y_m": height + 0.02,
+                "colour": GREY,
+                "walls": {"height_m": 1.0},
+            }
         )
     for thing in entry["objects"]:
         if thing["kind"] == "box":
             shapes.append(
-                box(thing["x"], thing["y"], thing["size_x"], thing["size_y"], yaw_rad=thing["theta"], height_m=thing["height"])
+                box(
+                    thing["x"],
+                    thing["y"],
+                    thing["size_x"],
+                    thing["size_y"],
+                    yaw_rad=thing["theta"],
+                    height_m=thing["height"],
+                )
             )
         else:
             place = {"x_m": thing["x"], "y_m": thing["y"], "radius_m": thing["radius"], "height_m": thing["height"]}
@@ -111,6 +125,5 @@ def enki_world(entry: Mapping[str, Any], **options: Any) -> World:
 def pose_close(one: Pose, other: Pose, tolerance: float = 1e-9) -> bool:
     """Whether two poses differ by less than a tolerance in each part."""
     return all(
-        abs(a - b) < tolerance
-        for a, b in ((one.x_m, other.x_m), (one.y_m, other.y_m), (one.yaw_rad, other.yaw_rad))
+        abs(a - b) < tolerance for a, b in ((one.x_m, other.x_m), (one.y_m, other.y_m), (one.yaw_rad, other.yaw_rad))
     )

@@ -50,6 +50,8 @@ def test_the_ground_responds_as_the_table_says(grey: float, count: int) -> None:
     assert units.ground_response(grey) == pytest.approx(count, abs=0.6)
 
 
-@pytest.mark.parametrize(("word", "level"), [(0, 0), (31, 31), (32, 32), (33, 32), (-1, 32), (256, 0), (257, 1), (288, 32)])
+@pytest.mark.parametrize(
+    ("word", "level"), [(0, 0), (31, 31), (32, 32), (33, 32), (-1, 32), (256, 0), (257, 1), (288, 32)]
+)
 def test_a_led_word_keeps_its_low_byte_and_saturates(word: int, level: int) -> None:
     assert units.saturate_led(word) == level

@@ -3,7 +3,7 @@
 Robots are dynamic bodies. A free robot has the speed of its wheels; its velocity points along the heading in the
 middle of the sub-step, so that its path follows arcs to the third order. pymunk moves bodies first and solves
 contacts and forces afterwards; a robot that touches something is therefore pushed by a force, which that
-solution takes into account, and which is limited so that walls and heavy things stop it. Contacts are without
+solution takes into account, and which is small enough that walls and heavy things stop it. Contacts are without
 bounce and without friction along the wall (thymio-robot.md section 11).
 """
 
@@ -30,8 +30,8 @@ _SLOP_M = 0.0002
 """Overlap that is left between touching bodies."""
 _MOMENT_KG_M2 = 1.0
 """Far above the real one: wheels hold the heading of a robot that hits a wall (thymio-robot.md section 11)."""
-_HOLD_FORCE_N = 0.5
-"""Force against being pushed with wheels at rest, less than `DRIVE_FORCE_N`: an idle robot can be pushed away."""
+_PUSH_N_S_M = thymio2.DRIVE_FORCE_N / thymio2.MAX_SPEED_M_S
+"""Force for each m/s that a robot in contact lacks; wheels at rest resist a push in the same way."""
 _ROBOT, _SOLID = 1, 2
 _HULL = thymio2.hull()
 _HULL_REACH_M = thymio2.HULL_RADIUS_M
@@ -118,16 +118,14 @@ class RobotBody:
         return heading
 
     def _press(self, speed: float, spin: float) -> float:
-        """Push against what is touched, with limited force."""
+        """Push against what is touched: the more speed is missing, the harder."""
         body = self._body
         heading = body.angle + (body.angular_velocity + spin / 2) * _DT
         vx, vy = body.velocity
-        push_x = (speed * math.cos(heading) - vx) * (thymio2.MASS_KG / _DT)
-        push_y = (speed * math.sin(heading) - vy) * (thymio2.MASS_KG / _DT)
-        push = math.hypot(push_x, push_y)
-        limit = thymio2.DRIVE_FORCE_N if self._left_m_s or self._right_m_s else _HOLD_FORCE_N
-        scale = limit / push if push > limit else 1.0
-        body.force = (push_x * scale, push_y * scale)
+        body.force = (
+            (speed * math.cos(heading) - vx) * _PUSH_N_S_M,
+            (speed * math.sin(heading) - vy) * _PUSH_N_S_M,
+        )
         body.torque = (spin - body.angular_velocity) * (_MOMENT_KG_M2 / _DT)
         return heading
 

@@ -36,7 +36,7 @@ PWM_LIMIT = 801
 """Limit of motor.*.pwm (TR 2.1)."""
 
 DRIVE_FORCE_N = 1.3
-"""Most force that both wheels give together: grip 0.5 of the weight. Own choice: TR 11 asks for a finite force."""
+"""Force of both wheels at full target and standstill: half the weight. Own choice: TR 11 asks for a finite one."""
 
 PROXIMITY_POSES: tuple[tuple[float, float, float], ...] = (
     (0.062, 0.0485, math.radians(40)),

@@ -1,0 +1,106 @@
+"""Targets, commands that end, limits, slip."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from tests.sim.builders import FLOOR, make, readings, run, send
+from tests.sim.fake_view import FakeView
+from thymio_sim_ros.sim.actuators.motors import ACTUATOR, MotorState, wheel_speeds
+from thymio_sim_ros.sim.commands import BodyTwist, MotorTargets, WheelVelocities
+from thymio_sim_ros.sim.noise import Noise
+from thymio_sim_ros.sim.world import World
+
+SECOND_NS = 1_000_000_000
+
+
+@pytest.fixture
+def world() -> World:
+    return World(make([FLOOR]), noise=False)
+
+
+def speeds(world: World, seconds: float) -> list[tuple[int, int]]:
+    return [reading.words[:2] for reading in readings(run(world, seconds), "motor")]
+
+
+def test_targets_persist(world: World) -> None:
+    send(world, MotorTargets(100, -200))
+    assert set(speeds(world, 20.0)) == {(100, -200)}
+
+
+def test_a_command_ends_with_its_timeout_and_the_wheels_stop(world: World) -> None:
+    send(world, WheelVelocities(1.0, 1.0, timeout_ns=SECOND_NS // 2))
+    seen = speeds(world, 1.0)
+    assert [pair != (0, 0) for pair in seen] == [True] * 50 + [False] * 50
+
+
+def test_after_a_timeout_the_last_targets_hold_again(world: World) -> None:
+    send(world, MotorTargets(150, 150))
+    run(world, 0.1)
+    send(world, BodyTwist(0.0, 0.0, timeout_ns=SECOND_NS // 10))
+    assert speeds(world, 0.2) == [(0, 0)] * 10 + [(150, 150)] * 10
+
+
+def test_newer_targets_end_a_command_at_once(world: World) -> None:
+    send(world, BodyTwist(0.1, 0.0))
+    run(world, 0.1)
+    send(world, MotorTargets(0, 0))
+    assert set(speeds(world, 0.1)) == {(0, 0)}
+
+
+def test_a_command_without_timeout_never_ends(world: World) -> None:
+    send(world, WheelVelocities(1.0, 1.0))
+    assert len(set(speeds(world, 20.0))) == 1
+
+
+def test_the_last_of_several_commands_in_a_tick_counts(world: World) -> None:
+    send(world, MotorTargets(100, 100))
+    send(world, MotorTargets(200, 200))
+    assert speeds(world, 0.01) == [(200, 200)]
+
+
+def test_a_twist_becomes_wheel_speeds() -> None:
+    assert wheel_speeds(BodyTwist(0.1, 1.0)) == pytest.approx((0.1 - 0.047, 0.1 + 0.047))
+
+
+@pytest.mark.parametrize(("linear", "angular"), [(0.3, 0.0), (0.1, 3.0), (-0.2, -1.0), (0.0, 10.0)])
+def test_a_twist_above_the_limit_keeps_its_curve(linear: float, angular: float) -> None:
+    left, right = wheel_speeds(BodyTwist(linear, angular))
+    assert max(abs(left), abs(right)) == pytest.approx(0.166)
+    assert math.atan2((right - left) / 0.094, (left + right) / 2) == pytest.approx(math.atan2(angular, linear))
+
+
+def test_wheel_velocities_are_radians_of_a_22_mm_wheel() -> None:
+    assert wheel_speeds(WheelVelocities(1.0, -2.0)) == pytest.approx((0.022, -0.044))
+
+
+def test_slip_is_even_between_its_limits_and_independent_for_each_wheel() -> None:
+    state, view = MotorState(), FakeView(noise=Noise(1, "thymio", "motors"))
+    ACTUATOR.apply(state, MotorTargets(100, 100), 0)
+    factors = []
+    for _ in range(2000):
+        assert ACTUATOR.update is not None
+        ACTUATOR.update(state, view, 0.01)
+        factors.append((view.wheels.ground[0] / 0.0332, view.wheels.ground[1] / 0.0332))
+    left = [factor for factor, _ in factors]
+    assert min(left) == pytest.approx(0.973, abs=1e-3)
+    assert max(left) == pytest.approx(1.027, abs=1e-3)
+    assert sum(left) / len(left) == pytest.approx(1.0, abs=1e-3)
+    assert all(one != other for one, other in factors)
+
+
+def test_slip_never_exceeds_the_limit() -> None:
+    state, view = MotorState(), FakeView(noise=Noise(1, "thymio", "motors"))
+    ACTUATOR.apply(state, MotorTargets(600, 600), 0)
+    for _ in range(200):
+        assert ACTUATOR.update is not None
+        ACTUATOR.update(state, view, 0.01)
+        assert max(view.wheels.ground) <= 0.166
+
+
+def test_a_program_drives_by_two_variables() -> None:
+    (output,) = ACTUATOR.aseba.outputs
+    assert output.variables == (("motor.left.target", 1), ("motor.right.target", 1))
+    assert output.command([100, -100]) == MotorTargets(100, -100)

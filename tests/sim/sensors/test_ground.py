@@ -1,0 +1,61 @@
+"""Ground sensors: order, faces, floor, noise."""
+
+from __future__ import annotations
+
+import statistics
+
+import pytest
+
+from tests.sim.builders import FLOOR, ROBOT, make, sense
+from tests.sim.fake_view import FakeView
+from thymio_sim_ros.sim.ground import GroundSample
+from thymio_sim_ros.sim.noise import Noise
+from thymio_sim_ros.sim.readings import GroundReading
+from thymio_sim_ros.sim.sensors.ground import SENSOR
+from thymio_sim_ros.sim.world import World
+
+WHITE, BLACK = GroundSample(1.0, 1.0), GroundSample(0.0, 1.0)
+
+
+def measure(left: GroundSample, right: GroundSample, noise: Noise | None = None) -> GroundReading:
+    view = FakeView(grounds={0.0115: left, -0.0115: right})
+    if noise is not None:
+        view.noise = noise
+    reading = SENSOR.measure(view)
+    assert isinstance(reading, GroundReading)
+    return reading
+
+
+def test_words_are_ambient_reflected_and_delta_left_then_right() -> None:
+    assert measure(WHITE, BLACK).words == (0, 0, 938, 77, 938, 77)
+
+
+def test_reflectances_are_greys() -> None:
+    assert measure(WHITE, BLACK).reflectances == (1.0, 0.0)
+
+
+def test_without_floor_a_sensor_reads_nothing_in_spite_of_noise() -> None:
+    reading = measure(GroundSample(0.0, 0.0), WHITE, Noise(1, "thymio", "ground"))
+    assert reading.words[2] == 0
+    assert reading.words[3] > 800
+
+
+def test_noise_spreads_counts_as_measured() -> None:
+    noise = Noise(1, "thymio", "ground")
+    counts = [measure(GroundSample(0.44, 1.0), WHITE, noise).words[2] for _ in range(2000)]
+    assert statistics.mean(counts) == pytest.approx(502, abs=1)
+    assert statistics.stdev(counts) == pytest.approx(10, rel=0.1)
+
+
+def test_a_robot_at_the_edge_of_a_table_reads_zero() -> None:
+    world = World(make([{**FLOOR, "size_x_m": 0.1}]), noise=False)
+    assert sense(world, "ground").words == (0,) * 6
+
+
+def test_a_robot_astride_an_edge_of_colours_reads_both() -> None:
+    halves = [
+        {**FLOOR, "y_m": 2.0, "name": "north"},
+        {**FLOOR, "y_m": -2.0, "name": "south", "colour": "#000000"},
+    ]
+    world = World(make(halves, [ROBOT]), noise=False)
+    assert sense(world, "ground").words[4:] == pytest.approx((938, 77), abs=3)

@@ -1,0 +1,116 @@
+"""Horizontal proximity: measured scenes, seven distances, thin things, noise."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from typing import Any
+
+import pytest
+
+from tests.sim.builders import FLOOR, ROBOT, box, enki, enki_world, make, post_wall, sense
+from tests.sim.fake_view import FakeView
+from thymio_sim_ros.sim import thymio2
+from thymio_sim_ros.sim.noise import Noise
+from thymio_sim_ros.sim.rays import ConvexObstacle, DiscObstacle
+from thymio_sim_ros.sim.readings import ProximityReading
+from thymio_sim_ros.sim.sensors.proximity import SENSOR, response
+from thymio_sim_ros.sim.world import World
+
+SCENES = [(family, entry) for family, entries in enki("prox").items() for entry in entries]
+FRONT = 2
+
+
+def measure(view: FakeView) -> ProximityReading:
+    reading = SENSOR.measure(view)
+    assert isinstance(reading, ProximityReading)
+    return reading
+
+
+def wall_ahead(distance_m: float, *, height_m: float = 0.1) -> ConvexObstacle:
+    near = 0.0795 + distance_m
+    return ConvexObstacle(((near, -1.0), (near + 0.1, -1.0), (near + 0.1, 1.0), (near, 1.0)), height_m)
+
+
+@pytest.mark.parametrize(("family", "entry"), SCENES, ids=[entry["id"] for _, entry in SCENES])
+def test_a_measured_scene_reads_as_measured_in_enki_mode(family: str, entry: dict[str, Any]) -> None:
+    world = enki_world(entry, noise=False, proximity_model="enki")
+    assert sense(world, "proximity").words == pytest.approx(entry["noiseless"], abs=2)
+
+
+@pytest.mark.parametrize(
+    ("distance_cm", "count"), [(1, 4448), (2, 4278), (4, 3705), (6, 3027), (8, 2409), (10, 1908), (12, 1521)]
+)
+@pytest.mark.parametrize("model", ["default", "enki"])
+def test_a_wall_across_the_axis_reads_as_the_table_says(distance_cm: float, count: int, model: str) -> None:
+    reading = measure(FakeView(obstacles=(wall_ahead(distance_cm / 100),), proximity_model=model))
+    assert reading.words[FRONT] == pytest.approx(count, abs=1)
+    assert reading.ranges_m[FRONT] == pytest.approx(distance_cm / 100, abs=1e-4)
+
+
+def test_nothing_in_range_is_exactly_zero_and_infinitely_far() -> None:
+    reading = measure(FakeView(obstacles=(wall_ahead(0.145),), noise=Noise(1, "thymio", "proximity")))
+    assert reading.words[FRONT] == 0
+    assert reading.ranges_m[FRONT] == math.inf
+
+
+def test_an_empty_world_reads_zero_everywhere() -> None:
+    reading = measure(FakeView(noise=Noise(1, "thymio", "proximity")))
+    assert (reading.words, reading.ranges_m) == ((0,) * 7, (math.inf,) * 7)
+
+
+@pytest.mark.parametrize(("height_m", "seen"), [(0.033, False), (0.034, True)])
+def test_things_lower_than_the_sensor_are_not_seen(height_m: float, seen: bool) -> None:
+    assert (measure(FakeView(obstacles=(wall_ahead(0.05, height_m=height_m),))).words[FRONT] > 0) is seen
+
+
+@pytest.mark.parametrize(("radius_m", "distance_m"), [(0.01, 0.03), (0.02, 0.06)])
+def test_a_thin_post_ahead_is_seen_by_default_and_missed_as_the_reference_does(
+    radius_m: float, distance_m: float
+) -> None:
+    post = (DiscObstacle(0.0795 + distance_m + radius_m, 0.0, radius_m, 0.1),)
+    assert measure(FakeView(obstacles=post, proximity_model="enki")).words[FRONT] == 0
+    assert measure(FakeView(obstacles=post)).ranges_m[FRONT] == pytest.approx(distance_m, abs=1e-4)
+
+
+def test_a_missing_side_ray_counts_as_the_slanted_centre_ray() -> None:
+    slanted = 0.05 / math.cos(math.radians(15))
+    assert response((math.inf, 0.05, math.inf), "default") == pytest.approx(response((slanted, 0.05, slanted), "enki"))
+
+
+def test_the_sensors_stand_in_the_order_of_the_firmware() -> None:
+    left = measure(FakeView(obstacles=(DiscObstacle(0.12, 0.12, 0.04, 0.1),))).words
+    assert left[0] > 0
+    assert left[2:] == (0, 0, 0, 0, 0)
+    rear_right = measure(FakeView(obstacles=(DiscObstacle(-0.1, -0.05, 0.02, 0.1),))).words
+    assert [index for index, count in enumerate(rear_right) if count] == [6]
+
+
+def test_noise_spreads_counts_as_measured() -> None:
+    noise = Noise(1, "thymio", "proximity")
+    counts = [measure(FakeView(obstacles=(wall_ahead(0.05),), noise=noise)).words[FRONT] for _ in range(2000)]
+    assert statistics.mean(counts) == pytest.approx(3366, abs=0.5)
+    assert statistics.stdev(counts) == pytest.approx(thymio2.PROXIMITY_NOISE, rel=0.1)
+
+
+def test_noise_never_leaves_the_limits() -> None:
+    noise = Noise(1, "thymio", "proximity")
+    counts = [measure(FakeView(obstacles=(wall_ahead(0.0004),), noise=noise)).words[FRONT] for _ in range(200)]
+    assert max(counts) == 4505
+
+
+def test_a_robot_sees_the_hull_of_another() -> None:
+    world = World(make([FLOOR], [ROBOT, {**ROBOT, "name": "other", "x_m": 0.2}]), noise=False)
+    assert sense(world, "proximity", "thymio").ranges_m[FRONT] == pytest.approx(0.17 - 0.0795, abs=1e-3)
+    assert [count > 0 for count in sense(world, "proximity", "other").words] == [False] * 5 + [True] * 2
+
+
+def test_a_robot_stands_before_a_wall_in_the_world() -> None:
+    world = World(make([FLOOR, post_wall(0.06)]), noise=False)
+    assert sense(world, "proximity").ranges_m[FRONT] == pytest.approx(0.06, abs=1e-4)
+
+
+def test_a_near_thing_hides_a_far_one() -> None:
+    far, near = post_wall(0.1), box(0.0795 + 0.05 + 0.01, 0.0, 0.02, 0.5)
+    world = World(make([FLOOR, {**far, "name": "far"}, {**near, "name": "near"}]), noise=False)
+    assert sense(world, "proximity").ranges_m[FRONT] == pytest.approx(0.05, abs=1e-4)

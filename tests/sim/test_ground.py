@@ -1,0 +1,129 @@
+"""The painted ground under a sensor's footprint, against measured scenes and known answers."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import pytest
+
+from tests.sim.builders import ENKI, enki
+from thymio_sim_ros.sim import thymio2
+from thymio_sim_ros.sim.geometry import Point, Pose
+from thymio_sim_ros.sim.ground import Ground, GroundSample
+from thymio_sim_ros.sim.primitives import Floor, Paint
+from thymio_sim_ros.sim.sensors.ground import response
+
+WHITE, BLACK, RED = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
+SCENES = [(family, entry) for family, entries in enki("ground").items() for entry in entries]
+
+
+def area(left: float, bottom: float, right: float, top: float) -> tuple[Point, ...]:
+    return ((left, bottom), (right, bottom), (right, top), (left, top))
+
+
+def floor(grey8: float, left: float, bottom: float, right: float, top: float) -> Floor:
+    return Floor("floor", area(left, bottom, right, top), (grey8 / 255,) * 3)
+
+
+def tiles() -> Ground:
+    data = json.loads((ENKI / "tiles.json").read_text())
+    size = data["tile"]
+    floors = [
+        floor(grey, column * size, row * size, (column + 1) * size, (row + 1) * size)
+        for row, greys in enumerate(data["rows_from_y0"])
+        for column, grey in enumerate(greys)
+    ]
+    return Ground(floors, [])
+
+
+def measured_ground(pattern: dict[str, Any] | None) -> Ground:
+    """The ground of a scene, half a metre square (uniform ones 0.4 m)."""
+    match pattern:
+        case None:
+            return tiles()
+        case {"kind": "uniform", "grey8": grey}:
+            return Ground([floor(grey, 0.0, 0.0, 0.4, 0.4)], [])
+        case {"kind": "half_plane", "along": along, "edge": edge, "below": below, "above": above}:
+            low, high = ((edge, 0.5), (edge, 0.0)) if along == "x" else ((0.5, edge), (0.0, edge))
+            return Ground([floor(below, 0.0, 0.0, *low), floor(above, *high, 0.5, 0.5)], [])
+        case {"kind": "stripe", "centre_y": centre, "width": width, "stripe": stripe, "outside": outside}:
+            half = width / 2 - 1e-9
+            stripe_area = area(0.0, centre - half, 0.5, centre + half)
+            paint = Paint("stripe", stripe_area, (stripe / 255,) * 3)
+            return Ground([floor(outside, 0.0, 0.0, 0.5, 0.5)], [paint])
+    raise AssertionError(pattern)
+
+
+@pytest.mark.parametrize(("family", "entry"), SCENES, ids=[entry["id"] for _, entry in SCENES])
+def test_a_measured_scene_reads_as_measured(family: str, entry: dict[str, Any]) -> None:
+    ground = measured_ground(entry.get("ground"))
+    start = entry["robots"][0]
+    pose = Pose(start["x"], start["y"], start["theta"])
+    counts = [response(ground.sample(*pose.place(place))) for place in thymio2.GROUND_SENSORS]
+    assert counts == pytest.approx(entry["noiseless"], abs=2)
+
+
+def test_there_is_no_floor_outside_the_ground() -> None:
+    ground = Ground([floor(255, 0.0, 0.0, 1.0, 1.0)], [])
+    assert ground.sample(2.0, 0.5) == GroundSample(0.0, 0.0)
+    assert ground.colour_at(2.0, 0.5) is None
+    assert ground.colour_at(0.5, -0.5) is None
+
+
+def test_a_world_without_ground_has_no_floor_anywhere() -> None:
+    assert Ground([], []).sample(0.0, 0.0).floor == 0.0
+
+
+def test_half_the_footprint_is_floor_at_an_edge() -> None:
+    ground = Ground([floor(255, 0.0, 0.0, 1.0, 1.0)], [])
+    inner, outer = ground.sample(0.9999, 0.5), ground.sample(1.0001, 0.5)
+    assert inner.reflectance == pytest.approx(1.0)
+    assert (inner.floor + outer.floor) / 2 == pytest.approx(0.5)
+
+
+def test_the_count_falls_steadily_towards_an_edge() -> None:
+    ground = Ground([floor(255, 0.0, 0.0, 1.0, 1.0)], [])
+    counts = [response(ground.sample(0.98 + step * 0.001, 0.5)) for step in range(40)]
+    assert counts == sorted(counts, reverse=True)
+    assert (round(counts[0]), counts[-1]) == (938, 0.0)
+
+
+def test_paint_covers_floor_and_later_paint_covers_earlier_paint() -> None:
+    ground = Ground(
+        [floor(255, -1.0, -1.0, 1.0, 1.0)],
+        [Paint("a", area(-0.5, -0.5, 0.5, 0.5), BLACK), Paint("b", area(0.0, -0.1, 0.1, 0.1), RED)],
+    )
+    assert ground.colour_at(0.8, 0.0) == WHITE
+    assert ground.colour_at(-0.3, 0.0) == BLACK
+    assert ground.colour_at(0.05, 0.0) == RED
+    assert ground.sample(0.05, 0.0).reflectance == pytest.approx(1 / 3)
+
+
+def test_paint_beyond_the_floor_makes_no_floor() -> None:
+    ground = Ground([floor(255, 0.0, 0.0, 1.0, 1.0)], [Paint("a", area(0.5, 0.4, 2.0, 0.6), BLACK)])
+    assert ground.colour_at(0.99, 0.5) == BLACK
+    assert ground.sample(1.2, 0.5).floor == 0.0
+
+
+def test_a_tilted_strip_of_paint_is_as_wide_as_it_should_be() -> None:
+    along = Pose(0.0, 0.0, math.radians(30))
+    strip = Paint("a", along.place_all(area(-0.5, -0.02, 0.5, 0.02)), BLACK)
+    ground = Ground([floor(255, -1.0, -1.0, 1.0, 1.0)], [strip])
+    black = [ground.colour_at(*along.place((0.1, step * 0.0005))) == BLACK for step in range(-60, 61)]
+    assert black.count(True) * 0.0005 == pytest.approx(0.04, abs=0.0015)
+
+
+def test_a_very_large_ground_gets_coarser_pixels() -> None:
+    ground = Ground([floor(255, -100.0, -100.0, 100.0, 100.0)], [])
+    assert ground.pixel_m == pytest.approx(0.04)
+    assert ground.sample(50.0, 50.0) == GroundSample(1.0, 1.0)
+
+
+def test_more_colours_than_the_palette_holds_fall_back_to_the_nearest_grey() -> None:
+    paints = [Paint(f"p{i}", area(i * 0.01, 0.0, (i + 1) * 0.01, 0.1), (i / 400,) * 3) for i in range(400)]
+    ground = Ground([floor(255, 0.0, 0.0, 4.0, 0.1)], paints)
+    colour = ground.colour_at(3.995, 0.05)
+    assert colour is not None
+    assert colour[0] == pytest.approx(1.0, abs=0.01)

@@ -1,0 +1,152 @@
+"""Bodies: known motions, walls, contacts; measured motions and collisions of the reference."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from tests.sim.builders import FLOOR, ROBOT, box, enki, enki_world, make, pose_close, run, send
+from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
+from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.world import World
+
+MOTION = [(family, entry) for family, entries in enki("motion").items() for entry in entries]
+COLLISION = [entry for entries in enki("collision").values() for entry in entries]
+SEEDS = range(8)
+
+
+def drive(entry: dict[str, Any], *, seed: int) -> Pose:
+    """Run a measured scene to its end. The reference lets a target move the robot two of its steps later."""
+    world = enki_world({"world": {"kind": "open"}, "objects": [], **entry}, seed=seed)
+    ticks = round(entry["dt"] / 0.01)
+    commands = {ticks * (command["step"] + 2): command for command in entry["commands"]}
+    for tick in range(ticks * entry["steps"]):
+        if tick in commands:
+            targets = commands[tick]
+            send(world, MotorTargets(int(targets["left_target"]), int(targets["right_target"])))
+        world.step()
+    (robot,) = world.robots.values()
+    return robot.pose
+
+
+def mean_end(entry: dict[str, Any]) -> tuple[float, float, float]:
+    """Where the noisy runs end on average."""
+    ends = [drive(entry, seed=seed) for seed in SEEDS]
+    count = len(ends)
+    return (sum(p.x_m for p in ends) / count, sum(p.y_m for p in ends) / count, sum(p.yaw_rad for p in ends) / count)
+
+
+@pytest.mark.parametrize(("family", "entry"), MOTION, ids=[entry["id"] for _, entry in MOTION])
+def test_a_measured_motion_ends_where_it_was_measured(family: str, entry: dict[str, Any]) -> None:
+    x, y, yaw = mean_end(entry)
+    way = entry["steps"] * entry["dt"] * 0.166
+    assert math.dist((x, y), entry["last"][:2]) < 0.002 * way + 0.0005
+    assert yaw == pytest.approx(entry["last"][2], rel=0.005, abs=0.01)
+
+
+@pytest.mark.parametrize("entry", COLLISION, ids=[entry["id"] for entry in COLLISION])
+def test_a_robot_rests_at_a_wall_or_slides_along_it_as_measured(entry: dict[str, Any]) -> None:
+    """Within 3 mm and what the noise leaves open: `error` is the standard error of the measured mean."""
+    x, y, yaw = mean_end(entry)
+    for found, expected, error in zip((x, y, yaw), entry["last"], entry["error"], strict=True):
+        assert found == pytest.approx(expected, abs=0.003 + 3 * error)
+
+
+def quiet(*shapes: dict[str, Any], robots: tuple[dict[str, Any], ...] = (ROBOT,)) -> World:
+    return World(make([FLOOR, *shapes], robots), noise=False)
+
+
+def test_equal_targets_drive_straight() -> None:
+    world = quiet()
+    send(world, MotorTargets(500, 500))
+    run(world, 2.0)
+    pose = world.robots["thymio"].pose
+    assert (pose.x_m, pose.y_m, pose.yaw_rad) == pytest.approx((0.332, 0.0, 0.0), abs=1e-9)
+
+
+def test_opposite_targets_turn_on_the_spot() -> None:
+    world = quiet()
+    send(world, MotorTargets(-100, 100))
+    run(world, 3.0)
+    pose = world.robots["thymio"].pose
+    assert (pose.x_m, pose.y_m) == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert pose.yaw_rad == pytest.approx(3.0 * 2 * 0.0332 / 0.094)
+
+
+def test_unequal_targets_drive_a_circle() -> None:
+    world = quiet()
+    send(world, MotorTargets(200, 300))
+    run(world, 5.0)
+    radius, turn = 0.094 / 2 * 5, 5.0 * 0.0332 / 0.094
+    pose = world.robots["thymio"].pose
+    expected = (radius * math.sin(turn), radius * (1 - math.cos(turn)), turn)
+    assert (pose.x_m, pose.y_m, pose.yaw_rad) == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_wall_stops_the_robot_and_the_contact_is_told_once_as_new() -> None:
+    world = quiet({**box(0.31, 0.0, 0.02, 1.0), "name": "wall"})
+    send(world, MotorTargets(400, 400))
+    contacts = [contact for step in run(world, 4.0) for contact in step.contacts]
+    assert world.robots["thymio"].pose.x_m == pytest.approx(0.22, abs=0.001)
+    assert {(contact.robot, contact.other) for contact in contacts} == {("thymio", "wall")}
+    assert [contact.is_new for contact in contacts].count(True) == 1
+    assert contacts[0].speed_m_s == pytest.approx(400 * 0.000332, rel=0.01)
+    assert (contacts[0].x_m, contacts[0].y_m) == pytest.approx((0.3, 0.0), abs=0.03)
+
+
+def test_a_robot_leaves_a_wall_backwards_at_once() -> None:
+    world = quiet(box(0.31, 0.0, 0.02, 1.0))
+    send(world, MotorTargets(500, 500))
+    run(world, 2.0)
+    send(world, MotorTargets(-500, -500))
+    steps = run(world, 1.0)
+    assert steps[-1].contacts == ()
+    assert world.robots["thymio"].pose.x_m == pytest.approx(0.22 - 0.166, abs=0.004)
+
+
+def test_wheels_stand_still_at_a_wall_and_odometry_does_not_run_on() -> None:
+    world = quiet(box(0.31, 0.0, 0.02, 1.0))
+    send(world, MotorTargets(500, 500))
+    run(world, 4.0)
+    wheels = world.robots["thymio"].wheels
+    assert wheels.speeds_m_s == pytest.approx((0.0, 0.0), abs=1e-3)
+    assert wheels.odometry.x_m == pytest.approx(0.22, abs=0.002)
+
+
+def test_nothing_moves_through_a_thin_wall_or_a_post() -> None:
+    post = {"kind": "cylinder", "x_m": 0.2, "y_m": 0.01, "radius_m": 0.005, "height_m": 0.1, "colour": "#808080"}
+    for obstacle in (box(0.2, 0.0, 0.002, 1.0), post):
+        world = quiet(obstacle)
+        send(world, MotorTargets(500, 500))
+        largest = max(abs(world.step() and world.robots["thymio"].body.speed_m_s) for _ in range(300))
+        assert largest < 0.17
+        assert world.robots["thymio"].pose.x_m < 0.2 or abs(world.robots["thymio"].pose.y_m) > 0.04
+
+
+def test_a_robot_pushes_an_idle_one_away_and_both_feel_it() -> None:
+    world = quiet(robots=(ROBOT, {**ROBOT, "name": "idle", "x_m": 0.2}))
+    send(world, MotorTargets(300, 300))
+    contacts = [contact for step in run(world, 4.0) for contact in step.contacts]
+    assert world.robots["idle"].pose.x_m > 0.25
+    assert {(contact.robot, contact.other) for contact in contacts} == {("thymio", "idle"), ("idle", "thymio")}
+
+
+def test_two_equal_robots_head_on_stop_each_other() -> None:
+    world = quiet(robots=(ROBOT, {**ROBOT, "name": "other", "x_m": 0.3, "yaw_rad": math.pi}))
+    send(world, MotorTargets(300, 300))
+    world.post("other", MotorTargets(300, 300))
+    run(world, 1.2)
+    assert world.robots["thymio"].pose.x_m == pytest.approx(0.07, abs=0.005)
+
+
+def test_a_moved_robot_is_where_it_was_put_at_rest_and_touches_nothing() -> None:
+    world = quiet(box(0.31, 0.0, 0.02, 1.0))
+    send(world, MotorTargets(500, 500))
+    run(world, 2.0)
+    send(world, MotorTargets(0, 0))
+    send(world, MoveRobot(-0.5, 0.25, 1.0))
+    step = world.step()
+    assert pose_close(world.robots["thymio"].pose, Pose(-0.5, 0.25, 1.0), 1e-5)
+    assert (step.contacts, world.robots["thymio"].twist.linear_m_s) == ((), pytest.approx(0.0, abs=1e-4))

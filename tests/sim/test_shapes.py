@@ -1,0 +1,140 @@
+"""Every kind of shape, as the primitives it becomes."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from tests.sim.builders import GREY, make
+from thymio_sim_ros.sim.geometry import Point, Pose, is_convex
+from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.primitives import Box, Disc, Solid
+from thymio_sim_ros.sim.shapes import all_shapes
+
+WALLS = {"height_m": 0.12, "thickness_m": 0.02}
+KINDS: dict[str, dict[str, Any]] = {
+    "box": {"x_m": 1, "y_m": 2, "size_x_m": 0.3, "size_y_m": 0.2, "height_m": 0.1, "colour": GREY, "yaw_rad": 0.5},
+    "cylinder": {"x_m": 1, "y_m": 2, "radius_m": 0.1, "height_m": 0.1, "colour": GREY},
+    "octagon": {"side_m": 1.0, "colour": GREY, "walls": WALLS},
+    "rectangle": {"size_x_m": 1.0, "size_y_m": 0.5, "colour": GREY, "walls": WALLS},
+    "track": {"points_m": [[0, 0], [1, 0], [1, 1]], "width_m": 0.04, "colour": GREY, "corner_radius_m": 0.2},
+    "u_figure": {"unit_m": 0.06, "height_m": 0.12, "colour": GREY},
+    "wall": {"start_x_m": 0, "start_y_m": 0, "end_x_m": 1, "end_y_m": 1, "colour": GREY},
+}
+
+
+def built(kind: str, **changes: Any) -> Playground:
+    return make([{"kind": kind, **KINDS[kind], **changes}], [])
+
+
+def extent(solids: tuple[Solid, ...], axis: int) -> tuple[float, float]:
+    values = [vertex[axis] for solid in solids for vertex in solid.vertices]
+    return (min(values), max(values))
+
+
+def flat(vertices: tuple[Point, ...]) -> list[float]:
+    return [value for vertex in vertices for value in vertex]
+
+
+def test_every_kind_has_an_example_here() -> None:
+    assert [kind.name for kind in all_shapes()] == list(KINDS)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_all_parts_are_convex_and_counter_clockwise(kind: str) -> None:
+    playground = built(kind)
+    parts: list[tuple[Point, ...]] = [part.vertices for part in (*playground.floors, *playground.paints)]
+    parts += [solid.vertices for solid in playground.solids if not isinstance(solid.outline, Disc)]
+    assert all(is_convex(part) for part in parts)
+
+
+def test_a_box_is_one_solid_at_its_pose() -> None:
+    (solid,) = built("box").solids
+    assert (solid.pose, solid.outline, solid.height_m) == (Pose(1.0, 2.0, 0.5), Box(0.3, 0.2), 0.1)
+
+
+def test_a_cylinder_is_one_disc() -> None:
+    (solid,) = built("cylinder").solids
+    assert (solid.pose, solid.outline) == (Pose(1.0, 2.0, 0.0), Disc(0.1))
+
+
+def test_the_walls_of_a_rectangle_stand_half_inside_its_border() -> None:
+    walls = built("rectangle").solids
+    assert extent(walls, 0) == pytest.approx((-0.51, 0.51))
+    assert extent(walls, 1) == pytest.approx((-0.26, 0.26))
+    assert {wall.outline for wall in walls} == {Box(0.02, 0.52), Box(1.02, 0.02)}
+
+
+def test_a_turned_rectangle_turns_its_walls() -> None:
+    walls = built("rectangle", yaw_rad=math.pi / 2).solids
+    assert extent(walls, 0) == pytest.approx((-0.26, 0.26))
+
+
+def test_walls_have_the_colour_of_their_ground_unless_they_have_their_own() -> None:
+    assert built("rectangle").solids[0].colour == pytest.approx((128 / 255,) * 3)
+    assert built("rectangle", walls={"colour": "#ff0000"}).solids[0].colour == (1.0, 0.0, 0.0)
+
+
+def test_an_octagon_is_as_wide_as_its_side_demands() -> None:
+    (floor,) = built("octagon").floors
+    assert max(x for x, _ in floor.vertices) == pytest.approx((1 + math.sqrt(2)) / 2)
+    assert math.dist(floor.vertices[0], floor.vertices[1]) == pytest.approx(1.0)
+
+
+def test_the_walls_of_an_octagon_leave_its_inside_free() -> None:
+    walls = built("octagon").solids
+    inner = min(wall.pose.x_m for wall in walls if wall.pose.x_m > 1.0) - 0.01
+    assert inner == pytest.approx(2.394 / 2, abs=5e-4)
+    assert len(walls) == 8
+
+
+def test_a_ground_without_walls_is_only_floor() -> None:
+    playground = built("octagon", walls=None)
+    assert (len(playground.floors), playground.solids) == (1, ())
+
+
+def test_the_u_has_the_three_boxes_of_the_thesis() -> None:
+    boxes = [(solid.pose.x_m, solid.pose.y_m, solid.outline) for solid in built("u_figure").solids]
+    expected = [(0.0, -0.24, Box(0.48, 0.06)), (-0.18, 0.0, Box(0.12, 0.42)), (0.12, 0.24, Box(0.72, 0.12))]
+    for (x, y, outline), (expected_x, expected_y, size) in zip(boxes, expected, strict=True):
+        assert (x, y) == pytest.approx((expected_x, expected_y))
+        assert isinstance(outline, Box)
+        assert (outline.size_x_m, outline.size_y_m) == pytest.approx((size.size_x_m, size.size_y_m))
+
+
+def test_a_wall_reaches_half_a_thickness_beyond_both_ends() -> None:
+    (solid,) = built("wall", end_y_m=0).solids
+    assert extent((solid,), 0) == pytest.approx((-0.01, 1.01))
+    assert extent((solid,), 1) == pytest.approx((-0.01, 0.01))
+
+
+def test_a_track_without_radius_is_one_rectangle_per_piece() -> None:
+    first, second = built("track", corner_radius_m=0).paints
+    assert flat(first.vertices) == pytest.approx([0.0, -0.02, 1.0, -0.02, 1.0, 0.02, 0.0, 0.02])
+    assert flat(second.vertices) == pytest.approx([1.02, 0.0, 1.02, 1.0, 0.98, 1.0, 0.98, 0.0])
+
+
+def test_a_closed_track_returns_to_its_first_point() -> None:
+    paints = built("track", corner_radius_m=0, closed=True).paints
+    assert len(paints) == 3
+
+
+def test_closing_a_track_that_repeats_its_first_point_adds_no_piece() -> None:
+    points = [[0, 0], [1, 0], [1, 1], [0, 0]]
+    assert len(built("track", points_m=points, corner_radius_m=0, closed=True).paints) == 3
+
+
+def test_rounded_corners_keep_their_radius() -> None:
+    corners = [vertex for paint in built("track").paints[1:-1] for vertex in paint.vertices]
+    distances = [math.dist(vertex, (0.8, 0.2)) for vertex in corners]
+    assert min(distances) == pytest.approx(0.18)
+    assert max(distances) == pytest.approx(0.22)
+
+
+def test_pieces_of_a_rounded_track_share_their_edges() -> None:
+    paints = built("track", closed=True, points_m=[[0, 0], [1, 0], [1, 1], [0, 1]]).paints
+    for paint, following in zip(paints, (*paints[1:], paints[0]), strict=True):
+        assert paint.vertices[1] == pytest.approx(following.vertices[0])
+        assert paint.vertices[2] == pytest.approx(following.vertices[3])

@@ -1,0 +1,195 @@
+"""The plug-ins that exist, and toys from a temporary folder that join them without an edit anywhere."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from tests.sim.builders import FLOOR, make, run, send
+from thymio_sim_ros import registry
+from thymio_sim_ros.registry import RegistryError
+from thymio_sim_ros.sim import actuators, playground, sensors, shapes
+from thymio_sim_ros.sim.commands import BUTTONS, LED_GROUPS, MotorTargets
+from thymio_sim_ros.sim.world import World
+
+TOY_SENSOR = """
+from thymio_sim_ros.sim.aseba_face import AsebaFace
+from thymio_sim_ros.sim.readings import ButtonsReading
+from thymio_sim_ros.sim.sensors import Sensor
+
+SENSOR = Sensor(
+    name="compass",
+    period_ns=500_000_000,
+    measure=lambda view: ButtonsReading(view.now_ns, (round(100 * view.pose.yaw_rad),)),
+    aseba=AsebaFace(variables=(("compass.heading", 1),), event="compass"),
+)
+"""
+
+TOY_SHAPE = """
+from dataclasses import dataclass
+
+from thymio_sim_ros.sim.fields import Coordinate, Extent
+from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.primitives import Disc, Primitive, Solid
+from thymio_sim_ros.sim.shapes import ShapeKind
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    x_m: Coordinate
+    width_m: Extent = 0.3
+
+    def primitives(self, name: str) -> tuple[Primitive, ...]:
+        sides = (self.width_m / 2, -self.width_m / 2)
+        return tuple(Solid(name, Pose(self.x_m, y, 0.0), Disc(0.01), 0.2, (1.0, 0.0, 0.0)) for y in sides)
+
+
+SHAPE = ShapeKind("gate", Gate)
+"""
+
+TOY_ACTUATOR = """
+from dataclasses import dataclass
+
+from thymio_sim_ros.sim.actuators import Actuator
+from thymio_sim_ros.sim.commands import MotorTargets
+from thymio_sim_ros.sim.geometry import Pose
+
+
+@dataclass(frozen=True)
+class Jump:
+    x_m: float
+
+
+class Spring:
+    target = None
+
+
+def apply(state, command, now_ns):
+    state.target = command.x_m
+
+
+def update(state, view, dt_s):
+    if state.target is not None:
+        view.place(Pose(state.target, 0.0, 0.0))
+        state.target = None
+
+
+ACTUATOR = Actuator("spring", (Jump,), Spring, apply, update)
+"""
+
+
+@pytest.fixture
+def add_plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[ModuleType, str, str], None]]:
+    """Puts a module of some text into a plug-in folder for the time of a test."""
+    added = []
+
+    def add(package: ModuleType, name: str, text: str) -> None:
+        (tmp_path / f"{name}.py").write_text(text)
+        monkeypatch.setattr(package, "__path__", [*package.__path__, str(tmp_path)])
+        added.append(f"{package.__name__}.{name}")
+        importlib.invalidate_caches()
+
+    yield add
+    for module in added:
+        sys.modules.pop(module, None)
+
+
+def test_the_sensors_are() -> None:
+    names = [sensor.name for sensor in sensors.all_sensors()]
+    assert names == ["buttons", "ground", "leds", "motor", "pose", "proximity"]
+
+
+def test_the_actuators_are() -> None:
+    assert [actuator.name for actuator in actuators.all_actuators()] == ["buttons", "hand", "leds", "motors"]
+
+
+def test_the_shapes_are() -> None:
+    names = [kind.name for kind in shapes.all_shapes()]
+    assert names == ["box", "cylinder", "octagon", "rectangle", "track", "u_figure", "wall"]
+
+
+def test_every_plug_in_is_named_after_its_module() -> None:
+    for package, plugins in (
+        (sensors, [sensor.name for sensor in sensors.all_sensors()]),
+        (actuators, [actuator.name for actuator in actuators.all_actuators()]),
+        (shapes, [kind.name for kind in shapes.all_shapes()]),
+    ):
+        modules = sorted(path.stem for path in Path(package.__path__[0]).glob("[a-z]*.py"))
+        assert plugins == modules
+
+
+def test_programs_see_the_variables_and_events_of_the_firmware() -> None:
+    faces = {sensor.name: sensor.aseba for sensor in sensors.all_sensors()}
+    assert faces["proximity"].variables == (("prox.horizontal", 7),)
+    assert [name for name, _ in faces["buttons"].variables] == [f"button.{button}" for button in BUTTONS]
+    events = {name: face.event for name, face in faces.items() if face.event}
+    assert events == {"buttons": "buttons", "motor": "motor", "proximity": "prox"}
+    assert [name for name, face in faces.items() if face.edge_events] == ["buttons"]
+
+
+def test_readings_have_as_many_words_as_their_variables() -> None:
+    declared = {sensor.name: sum(size for _, size in sensor.aseba.variables) for sensor in sensors.all_sensors()}
+    world = World(make([FLOOR]))
+    found = {name: len(reading.words) for step in run(world, 0.2) for _, name, reading in step.readings}
+    assert found == declared
+
+
+def test_every_light_can_be_reached_by_a_program() -> None:
+    natives = [native for actuator in actuators.all_actuators() for native in actuator.aseba.natives]
+    assert sorted(len(native.parameters) for native in natives) == sorted(LED_GROUPS.values())
+
+
+def test_a_new_sensor_file_is_enough(add_plugin: Callable[[ModuleType, str, str], None]) -> None:
+    add_plugin(sensors, "compass", TOY_SENSOR)
+    world = World(make([FLOOR]), noise=False)
+    send(world, MotorTargets(-100, 100))
+    words = [reading.words for step in run(world, 1.0) for _, name, reading in step.readings if name == "compass"]
+    assert words == [(35,), (71,)]
+
+
+def test_a_new_sensor_does_not_change_what_the_others_read(add_plugin: Callable[[ModuleType, str, str], None]) -> None:
+    def ground() -> list[object]:
+        steps = run(World(make([FLOOR]), seed=1), 1.0)
+        return [reading for step in steps for _, name, reading in step.readings if name == "ground"]
+
+    before = ground()
+    add_plugin(sensors, "compass", TOY_SENSOR)
+    assert ground() == before
+
+
+def test_a_new_shape_file_is_enough(add_plugin: Callable[[ModuleType, str, str], None]) -> None:
+    add_plugin(shapes, "gate", TOY_SHAPE)
+    loaded = make([FLOOR, {"kind": "gate", "x_m": 0.3}])
+    assert [solid.pose.y_m for solid in loaded.solids] == [0.15, -0.15]
+    kinds = [
+        item["properties"]["kind"]["const"] for item in playground.schema()["properties"]["shapes"]["items"]["oneOf"]
+    ]
+    assert "gate" in kinds
+
+
+def test_a_new_actuator_file_is_enough(add_plugin: Callable[[ModuleType, str, str], None]) -> None:
+    add_plugin(actuators, "spring", TOY_ACTUATOR)
+    (spring,) = (actuator for actuator in actuators.all_actuators() if actuator.name == "spring")
+    world = World(make([FLOOR]), noise=False)
+    send(world, spring.accepts[0](1.5))
+    world.step()
+    assert world.robots["thymio"].pose.x_m == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize(("text", "found"), [("", "NoneType"), ("SENSOR = 3", "int")])
+def test_a_file_without_its_export_is_named(
+    add_plugin: Callable[[ModuleType, str, str], None], text: str, found: str
+) -> None:
+    add_plugin(sensors, "broken", text)
+    with pytest.raises(RegistryError, match=f"broken: expected SENSOR of type Sensor, found {found}"):
+        sensors.all_sensors()
+
+
+def test_helpers_with_an_underscore_are_left_out(add_plugin: Callable[[ModuleType, str, str], None]) -> None:
+    add_plugin(shapes, "_helper", "raise AssertionError")
+    assert registry.collect(shapes, "SHAPE", shapes.ShapeKind) == shapes.all_shapes()
