@@ -5,7 +5,7 @@ import { h, setAttribute } from "./dom.js";
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function robotsPanel({ t, store }) {
   const element = h("div", { class: "robots", role: "group", "aria-label": t("robot") });
-  let shown = "";
+  /** @type {string | null} */ let shown = null;
   return {
     slot: "side",
     element,

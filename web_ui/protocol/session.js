@@ -155,8 +155,10 @@ export class Session {
     for (const channel of channels) {
       this.channels.set(channel.id, channel);
       if (channel.encoding !== "cdr" || !this.wants(channel.topic)) continue;
+      const definition = this.#definitionOf(channel);
+      if (definition === null) continue;
       const id = this.nextId++;
-      this.subscriptions.set(id, { channel, definition: parseSchema(channel.schemaName, channel.schema) });
+      this.subscriptions.set(id, { channel, definition });
       subscriptions.push({ id, channelId: channel.id });
     }
     if (subscriptions.length > 0) this.#sendJson({ op: "subscribe", subscriptions });
@@ -177,6 +179,16 @@ export class Session {
     if (this.watched.length === 0) return;
     this.#sendJson({ op: "subscribeParameterUpdates", parameterNames: this.watched });
     this.#sendJson({ op: "getParameters", parameterNames: this.watched, id: "watched" });
+  }
+
+  /** A schema that cannot be read costs its channel only. @param {Channel} channel */
+  #definitionOf({ topic, schemaName, schema }) {
+    try {
+      return parseSchema(schemaName, schema);
+    } catch (error) {
+      this.emit({ type: "fault", what: `${topic}: ${error instanceof Error ? error.message : error}` });
+      return null;
+    }
   }
 
   #emitChannels() {

@@ -81,7 +81,7 @@ function extruded(shape, bottom, top, bevel) {
     bevelSize: bevel,
     bevelOffset: -bevel,
     bevelSegments: 2,
-    curveSegments: 14,
+    curveSegments: 10,
   });
   return geometry.translate(0, 0, bottom + bevel);
 }

@@ -10,6 +10,7 @@ export const VIEWS = /** @type {readonly ViewName[]} */ (["home", "top", "follow
 const FOLLOW = { back: 0.42, up: 0.3 };
 const TURN_STEP = Math.PI / 24;
 const ZOOM_STEP = 1.15;
+const MARGIN = 1.05;
 
 export class Camera {
   /** @param {HTMLElement} element  where the pointer works @param {() => void} changed */
@@ -28,7 +29,8 @@ export class Camera {
     /** @type {ViewName} */ this.view = "home";
     /** Whether the person has moved the camera since the view was chosen. */
     this.touched = false;
-    this.bounds = new THREE.Box3(new THREE.Vector3(-0.5, -0.5, 0), new THREE.Vector3(0.5, 0.5, 0.1));
+    /** @type {THREE.Vector3[]} what the overview takes in */
+    this.corners = [new THREE.Vector3(-0.5, -0.5, 0), new THREE.Vector3(0.5, 0.5, 0)];
     this.target = new THREE.Vector3();
   }
 
@@ -39,10 +41,10 @@ export class Camera {
     if (!this.touched && this.view !== "follow") this.look(this.view);
   }
 
-  /** A new world to fit in. @param {THREE.Box3} bounds */
-  frame(bounds) {
-    if (bounds.isEmpty()) return;
-    this.bounds = bounds;
+  /** A new world to fit in. @param {THREE.Vector3[]} corners */
+  frame(corners) {
+    if (corners.length === 0) return;
+    this.corners = corners;
     if (this.view !== "follow") this.look(this.view);
   }
 
@@ -56,10 +58,10 @@ export class Camera {
       this.#place(this.target, new THREE.Vector3(x - FOLLOW.back * Math.cos(yaw), y - FOLLOW.back * Math.sin(yaw), FOLLOW.up));
       return;
     }
-    const centre = this.bounds.getCenter(new THREE.Vector3()).setZ(0);
     // Seen from straight above there is no "up"; a hair beside it, x points to the right.
-    const from = view === "top" ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.28, -0.9, 0.8);
-    this.#place(centre, from.normalize().multiplyScalar(this.#distance(from)).add(centre));
+    const from = (view === "top" ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.22, -0.85, 0.85)).normalize();
+    const { target, distance } = this.#fit(from);
+    this.#place(target, from.multiplyScalar(distance).add(target));
   }
 
   /** Keep up with the robot in the view "follow"; the person may still orbit. @param {{ x: number, y: number }} robot */
@@ -106,24 +108,32 @@ export class Camera {
     this.changed();
   }
 
-  /** How far to stand along `from` so that all corners of the bounds are in the picture. @param {THREE.Vector3} from */
-  #distance(from) {
-    const centre = this.bounds.getCenter(new THREE.Vector3()).setZ(0);
-    const forward = from.clone().normalize();
-    const right = new THREE.Vector3(0, 0, 1).cross(forward).normalize();
-    const up = forward.clone().cross(right);
-    const vertical = Math.tan((this.camera.fov * Math.PI) / 360);
-    const horizontal = vertical * this.camera.aspect;
-    let distance = 0.3;
-    for (let corner = 0; corner < 8; corner++) {
-      const at = new THREE.Vector3(
-        corner & 1 ? this.bounds.max.x : this.bounds.min.x,
-        corner & 2 ? this.bounds.max.y : this.bounds.min.y,
-        corner & 4 ? this.bounds.max.z : 0,
-      ).sub(centre);
-      const depth = at.dot(forward);
-      distance = Math.max(distance, depth + Math.abs(at.dot(right)) / horizontal, depth + Math.abs(at.dot(up)) / vertical);
-    }
-    return distance * 1.06;
+  /**
+   * Where to look and how far to stand along `from`, so that all corners just fit the picture: each
+   * side of the picture is a plane through the camera, pushed out to the corner that is farthest.
+   *
+   * @param {THREE.Vector3} from  unit vector from the target to the camera
+   */
+  #fit(from) {
+    const right = new THREE.Vector3(0, 0, 1).cross(from).normalize();
+    const up = from.clone().cross(right);
+    const high = Math.tan((this.camera.fov * Math.PI) / 360);
+    const wide = high * this.camera.aspect;
+    /** @param {THREE.Vector3} axis @param {number} slope */
+    const reach = (axis, slope) => {
+      let [low, top] = [-Infinity, -Infinity];
+      for (const corner of this.corners) {
+        const depth = corner.dot(from) * slope;
+        const across = corner.dot(axis);
+        low = Math.max(low, depth - across);
+        top = Math.max(top, depth + across);
+      }
+      return { middle: (top - low) / 2, depth: (top + low) / 2 / slope };
+    };
+    const [sideways, upwards] = [reach(right, wide), reach(up, high)];
+    const depth = Math.max(sideways.depth, upwards.depth);
+    const eye = right.multiplyScalar(sideways.middle).add(up.multiplyScalar(upwards.middle)).addScaledVector(from, depth);
+    const distance = eye.z / from.z;
+    return { target: eye.addScaledVector(from, -distance), distance: distance * MARGIN };
   }
 }

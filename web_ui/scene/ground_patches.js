@@ -1,5 +1,5 @@
-// The two ground sensors: a ring on the floor under each, filled with the grey it sees, drawn through
-// the body because the nose would hide it.
+// The two ground sensors: a patch on the floor below each, filled with the grey it sees, long enough to
+// look out from under the nose.
 
 import * as THREE from "three";
 
@@ -9,21 +9,25 @@ import { GROUND_PLACES } from "./parts.js";
 /** @typedef {import("../state/robot.js").Robot} Robot */
 
 const FULL = 1023;
+const LENGTH_M = 0.026;
+const WIDTH_M = 0.011;
+const RIM_M = 0.0014;
+const AHEAD_M = 0.006;
+const HEIGHT_M = 0.003; // above every layer of paint
 
 export function createGroundPatches() {
-  const disc = new THREE.CircleGeometry(0.0062, 20);
-  const ring = new THREE.RingGeometry(0.0062, 0.0078, 20);
-  const edge = new THREE.MeshBasicMaterial({ color: 0x1769d1, depthTest: false, transparent: true });
+  const inner = new THREE.PlaneGeometry(LENGTH_M, WIDTH_M);
+  const outer = new THREE.PlaneGeometry(LENGTH_M + 2 * RIM_M, WIDTH_M + 2 * RIM_M);
+  const edge = new THREE.MeshBasicMaterial({ color: 0x1769d1 });
   const group = new THREE.Group();
   const patches = GROUND.map((name) => {
-    const material = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true });
-    const fill = new THREE.Mesh(disc, material);
-    const rim = new THREE.Mesh(ring, edge);
-    for (const mesh of [fill, rim]) {
-      mesh.position.set(GROUND_PLACES[name].x, GROUND_PLACES[name].y, 0.001);
-      mesh.renderOrder = 3;
-      group.add(mesh);
-    }
+    const material = new THREE.MeshBasicMaterial();
+    const fill = new THREE.Mesh(inner, material);
+    const rim = new THREE.Mesh(outer, edge);
+    const { x, y } = GROUND_PLACES[name];
+    rim.position.set(x + AHEAD_M, y, HEIGHT_M);
+    fill.position.set(x + AHEAD_M, y, HEIGHT_M + 0.0004);
+    group.add(rim, fill);
     return { fill, rim, material };
   });
   return {
@@ -37,6 +41,6 @@ export function createGroundPatches() {
         material.color.setRGB(grey, grey, grey, THREE.SRGBColorSpace);
       });
     },
-    dispose: () => [disc, ring, edge, ...patches.map(({ material }) => material)].forEach((thing) => thing.dispose()),
+    dispose: () => [inner, outer, edge, ...patches.map(({ material }) => material)].forEach((thing) => thing.dispose()),
   };
 }

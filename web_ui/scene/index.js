@@ -98,7 +98,7 @@ export class SceneView {
     this.requested = false;
     const state = this.state();
     this.beforeDraw(nowMs);
-    if (this.playground.update(state.markers)) this.camera.frame(this.playground.bounds());
+    if (this.playground.update(state.markers)) this.camera.frame(this.playground.corners());
     const moving = this.#updateRobots(state, nowMs);
     const pose = this.#selectedPose();
     if (pose !== null) this.camera.follow(pose);
@@ -138,7 +138,7 @@ export class SceneView {
 
   #placeLabels() {
     for (const { model, label } of this.robots.values()) {
-      const place = model.group.visible ? this.#project(model.group.position.clone().setZ(0.095)) : null;
+      const place = model.group.visible ? this.#project(model.group.position.clone().setZ(0.115)) : null;
       label.hidden = place === null;
       if (place !== null) label.style.transform = `translate(${place.x}px, ${place.y}px) translate(-50%, -100%)`;
     }

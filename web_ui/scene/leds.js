@@ -14,11 +14,12 @@ const GLOW = 4.2; // size of the halo of a full light, in radii
 /** @param {THREE.MeshLambertMaterial} shell  the top's material, which the top light tints */
 export function createLeds(shell) {
   const disc = new THREE.CircleGeometry(1, 14);
+  const square = new THREE.PlaneGeometry(2, 2);
   const plain = new THREE.MeshBasicMaterial({ color: 0xffffff });
   const texture = glowTexture();
   const halo = new THREE.MeshBasicMaterial({ map: texture, transparent: true, depthWrite: false, opacity: 0.75 });
   const discs = new THREE.InstancedMesh(disc, plain, LIGHTS.length);
-  const halos = new THREE.InstancedMesh(disc, halo, LIGHTS.length);
+  const halos = new THREE.InstancedMesh(square, halo, LIGHTS.length);
   halos.renderOrder = 2;
   discs.frustumCulled = halos.frustumCulled = false;
 
@@ -57,7 +58,7 @@ export function createLeds(shell) {
     halos.setMatrixAt(index, matrix);
   };
 
-  const owned = [disc, plain, texture, halo, strip, ...strips.map(({ material }) => material)];
+  const owned = [disc, square, plain, texture, halo, strip, ...strips.map(({ material }) => material)];
   return {
     group,
     /** @param {Robot} robot */

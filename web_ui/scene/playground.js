@@ -36,9 +36,17 @@ export class PlaygroundModel {
     return true;
   }
 
-  /** The box around everything, metres. */
-  bounds() {
-    return new THREE.Box3().setFromObject(this.group);
+  /** All corners, in the world: what a view has to take in. */
+  corners() {
+    /** @type {THREE.Vector3[]} */ const corners = [];
+    for (const { mesh } of this.meshes.values()) {
+      mesh.updateMatrixWorld();
+      const { position } = mesh.geometry.attributes;
+      for (let index = 0; index < position.count; index++) {
+        corners.push(new THREE.Vector3().fromBufferAttribute(position, index).applyMatrix4(mesh.matrixWorld));
+      }
+    }
+    return corners;
   }
 
   dispose() {

@@ -19,7 +19,7 @@ export function createRays() {
   const fan = new THREE.BufferGeometry();
   const width = Math.tan(HALF_ANGLE);
   fan.setAttribute("position", new THREE.Float32BufferAttribute([0, -0.01, 0, 1, -width, 0, 1, width, 0, 0, -0.01, 0, 1, width, 0, 0, 0.01, 0], 3));
-  const dot = new THREE.SphereGeometry(0.0032, 10, 8);
+  const dot = new THREE.SphereGeometry(0.0032, 8, 5);
   const group = new THREE.Group();
   const rays = PROXIMITY.map((name) => {
     const { x, y, z, yaw } = PROXIMITY_PLACES[name];

@@ -1,0 +1,66 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { PlaygroundModel } from "../../web_ui/scene/playground.js";
+import { RobotModel } from "../../web_ui/scene/robot.js";
+import { applyMarkers } from "../../web_ui/state/markers.js";
+import { NEW_ROBOT } from "../../web_ui/state/robot.js";
+import { captured } from "./support.js";
+
+const TRIANGLES = 4000;
+
+/** @param {any} root */
+function triangles(root) {
+  let total = 0;
+  root.traverse((/** @type {any} */ object) => {
+    if (!object.isMesh) return;
+    const { index, attributes } = object.geometry;
+    total += ((index?.count ?? attributes.position.count) / 3) * (object.isInstancedMesh ? object.count : 1);
+  });
+  return total;
+}
+
+test(`a robot has fewer than ${TRIANGLES} triangles`, () => {
+  const count = triangles(new RobotModel("").group);
+  assert.ok(count < TRIANGLES, `${count}`);
+});
+
+test("a robot stands where it is said to, and its parts with it", () => {
+  const model = new RobotModel("");
+  const latest = { pose: { x: 1, y: 2, z: 0, yaw: Math.PI / 2 }, stampNs: 0, arrivedMs: 0 };
+  assert.equal(model.update({ ...NEW_ROBOT, latest }, null, 0), false);
+  const place = model.partPosition("button.center");
+  assert.ok(place !== null && Math.abs(place.x - 1) < 1e-9 && Math.abs(place.y - 2.048) < 1e-9);
+  assert.equal(model.partPosition("no such part"), null);
+});
+
+test("a robot nobody has placed is not drawn", () => {
+  const model = new RobotModel("");
+  model.update(NEW_ROBOT, null, 0);
+  assert.equal(model.group.visible, false);
+});
+
+test("only markers that changed are made anew", () => {
+  const wall = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
+  const first = applyMarkers(new Map(), [wall, { ...wall, id: 8, type: 3 }]);
+  const model = new PlaygroundModel();
+  assert.equal(model.update(first), true);
+  const kept = model.meshes.get("solid/wall/7")?.mesh;
+  assert.equal(model.update(first), false);
+  model.update(applyMarkers(first, [{ ...wall, id: 8, type: 2 }]));
+  assert.equal(model.meshes.get("solid/wall/7")?.mesh, kept);
+  model.update(applyMarkers(first, [{ ...wall, action: 3 }]));
+  assert.equal(model.group.children.length, 0);
+});
+
+test("every kind of marker is drawn in metres", () => {
+  const wall = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
+  const points = [{ x: 0, y: 0, z: 0 }, { x: 1, y: 0, z: 0 }, { x: 1, y: 1, z: 0 }];
+  const sizes = [1, 2, 3, 4, 11].map((type) => {
+    const model = new PlaygroundModel();
+    model.update(applyMarkers(new Map(), [{ ...wall, type, points, scale: { x: 0.1, y: 0.1, z: 0.2 } }]));
+    const height = Math.max(...model.corners().map(({ z }) => z)) - Math.min(...model.corners().map(({ z }) => z));
+    return height.toFixed(3);
+  });
+  assert.deepEqual(sizes, ["0.200", "0.200", "0.200", "0.000", "0.000"]);
+});

@@ -1,0 +1,49 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { poseAt, shortestTurn } from "../../web_ui/scene/motion.js";
+import { LEVELS, Quality } from "../../web_ui/scene/quality.js";
+
+/** @param {number} x @param {number} yaw @param {number} arrivedMs @param {number} [stampNs] */
+function sample(x, yaw, arrivedMs, stampNs = arrivedMs * 1e6) {
+  return { pose: { x, y: 0, z: 0, yaw }, stampNs, arrivedMs };
+}
+
+test("between two messages the robot is on its way", () => {
+  const { pose, arrived } = poseAt(sample(0, 0, 0), sample(0.01, 0.2, 50), 75);
+  assert.deepEqual([pose.x, pose.yaw, arrived], [0.005, 0.1, false]);
+});
+
+test("after as long again it has arrived", () => {
+  assert.deepEqual(poseAt(sample(0, 0, 0), sample(0.01, 0.2, 50), 100), { pose: sample(0.01, 0.2, 50).pose, arrived: true });
+});
+
+test("the first pose is taken as it is", () => {
+  assert.equal(poseAt(null, sample(1, 0, 0), 0).pose.x, 1);
+});
+
+test("a leap is not driven", () => {
+  assert.equal(poseAt(sample(0, 0, 0), sample(0.5, 0, 50), 51).pose.x, 0.5);
+});
+
+test("time that went back is a reset", () => {
+  assert.equal(poseAt(sample(0, 0, 0, 9e9), sample(0.01, 0, 50, 0), 51).pose.x, 0.01);
+});
+
+test("a heading turns the short way over the back", () => {
+  assert.ok(Math.abs(shortestTurn(3, -3) - (2 * Math.PI - 6)) < 1e-12);
+  assert.ok(Math.abs(shortestTurn(-3, 3) - (6 - 2 * Math.PI)) < 1e-12);
+  assert.equal(shortestTurn(0.5, 1), 0.5);
+});
+
+test("slow frames lower the quality, down to the last level", () => {
+  const quality = new Quality(0);
+  for (let frame = 0; frame < 1000; frame++) quality.note(frame * 100, true);
+  assert.equal(quality.level, LEVELS.length - 1);
+});
+
+test("fast frames and pauses leave the quality alone", () => {
+  const quality = new Quality(0);
+  for (let frame = 0; frame < 1000; frame++) quality.note(frame * 20 + Math.floor(frame / 10) * 1000, frame % 10 !== 9);
+  assert.equal(quality.level, 0);
+});

@@ -1,0 +1,158 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { INITIAL, locate, programOf, reduce } from "../../web_ui/state/index.js";
+import { applyMarkers } from "../../web_ui/state/markers.js";
+import { splitTopic } from "../../web_ui/state/names.js";
+import { captured } from "./support.js";
+
+/** @typedef {import("../../web_ui/state/index.js").Message} Message */
+/** @typedef {import("../../web_ui/state/index.js").State} State */
+
+/** @param {Message[]} messages @param {State} [state] */
+function after(messages, state = INITIAL) {
+  return messages.reduce(reduce, state);
+}
+
+/** @param {string} topic @param {any} value @param {number} [nowMs] @returns {Message} */
+function message(topic, value, nowMs = 0) {
+  return { type: "message", topic, value, timeNs: 0n, nowMs };
+}
+
+/** @param {any} data @returns {{ data: string }} */
+function json(data) {
+  return { data: JSON.stringify(data) };
+}
+
+test("topics are split into robot and name", () => {
+  assert.deepEqual(splitTopic("/led/state"), { robot: "", name: "led/state" });
+  assert.deepEqual(splitTopic("/thymio_1/led/state"), { robot: "thymio_1", name: "led/state" });
+  assert.deepEqual(splitTopic("/markers"), { robot: null, name: "/markers" });
+  assert.equal(splitTopic("/odom"), null);
+  assert.equal(splitTopic("/a/b/led/state"), null);
+});
+
+test("robots are those whose true pose is told", () => {
+  const state = after([{ type: "channels", topics: ["/thymio_0/ground_truth/odom", "/thymio_1/ground_truth/odom", "/clock"] }]);
+  assert.deepEqual(Object.keys(state.robots), ["thymio_0", "thymio_1"]);
+  assert.equal(state.selected, "thymio_0");
+});
+
+test("a robot that stays keeps what is known, and stays selected", () => {
+  const state = after([
+    { type: "channels", topics: ["/a/ground_truth/odom", "/b/ground_truth/odom"] },
+    { type: "select", robot: "b" },
+    message("/b/buttons/left", { data: true }),
+    { type: "channels", topics: ["/b/ground_truth/odom"] },
+  ]);
+  assert.equal(state.selected, "b");
+  assert.equal(state.robots.b.buttons.left, true);
+});
+
+test("the last two poses are kept, with their heading", () => {
+  const { value } = captured("nav_msgs/msg/Odometry");
+  const { latest, previous } = after([message("/ground_truth/odom", value, 10), message("/ground_truth/odom", value, 60)]).robots[""];
+  assert.deepEqual([previous?.arrivedMs, latest?.arrivedMs, latest?.stampNs], [10, 60, 12_340_000_000]);
+  assert.ok(Math.abs((latest?.pose.yaw ?? 0) - 2 * Math.atan2(0.6, 0.8)) < 1e-12);
+});
+
+test("lights are cut into their groups", () => {
+  const { leds } = after([message("/led/state", captured("std_msgs/msg/Float32MultiArray").value)]).robots[""];
+  assert.deepEqual(leds, { top: [0, 0.5, 1], remote: [0.25] });
+});
+
+test("wheels are found by name, with or without a prefix", () => {
+  const value = { name: ["a/right_wheel_joint", "a/left_wheel_joint"], position: [2, 1], velocity: [4, 3] };
+  const { wheels, wheelSpeeds } = after([message("/a/joint_states", value)]).robots.a;
+  assert.deepEqual([wheels, wheelSpeeds], [{ left: 1, right: 2 }, { left: 3, right: 4 }]);
+});
+
+test("sensors are kept by name", () => {
+  const robot = after([
+    message("/proximity/rear_left", { range: Infinity }),
+    message("/ground/left", { range: -Infinity }),
+    message("/raw/proximity", { data: [0, 0, 4505, 0, 0, 0, 0] }),
+  ]).robots[""];
+  assert.deepEqual([robot.proximity, robot.ground, robot.raw.proximity[2]], [{ rear_left: Infinity }, { left: -Infinity }, 4505]);
+});
+
+test("a runtime of its own goes before the one that all share", () => {
+  const status = captured("diagnostic_msgs/msg/DiagnosticStatus").value;
+  const shared = after([{ type: "channels", topics: ["/a/ground_truth/odom"] }, message("/aseba/status", status)]);
+  assert.deepEqual(programOf(shared), { state: "running", name: "line.aesl", message: "paused", level: 1, line: "" });
+  assert.deepEqual(Object.keys(shared.robots), ["a"]);
+  const own = reduce(shared, message("/a/aseba/status", { ...status, values: [{ key: "state", value: "fault" }] }));
+  assert.equal(programOf(own)?.state, "fault");
+});
+
+test("the simulator and its playgrounds are told as JSON", () => {
+  const { simulator, playgrounds } = after([
+    message("/simulator/state", json({ playground: "line", title: "Line", paused: true, real_time_factor: 2, achieved: 1.5 })),
+    message("/simulator/playgrounds", json([{ name: "line", title: "Line", description: "d" }, { name: "base" }])),
+  ]);
+  assert.deepEqual(simulator, { playground: "line", title: "Line", paused: true, factor: 2, achieved: 1.5 });
+  assert.deepEqual(playgrounds[1], { name: "base", title: "base", description: "" });
+});
+
+test("markers are replaced by namespace and id, and all deleted", () => {
+  const marker = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
+  const first = applyMarkers(new Map(), [marker, { ...marker, id: 8 }]);
+  assert.deepEqual([...first.keys()], ["solid/wall/7", "solid/wall/8"]);
+  assert.equal(applyMarkers(first, [{ ...marker, action: 2 }]).size, 1);
+  assert.deepEqual([...applyMarkers(first, [{ ...marker, action: 3 }, { ...marker, ns: "x" }]).keys()], ["x/7"]);
+  assert.equal(first.size, 2);
+});
+
+test("a program is on its way, then loaded", () => {
+  const sending = after([{ type: "upload", what: "program", name: "a.aesl", text: "x" }]);
+  assert.deepEqual(sending.program, { name: "a.aesl", text: "x", phase: "sending", fault: null });
+  assert.equal(reduce(sending, { type: "uploaded", what: "program", message: null }).program?.phase, "accepted");
+});
+
+test("a refused program keeps its text and the place of the fault", () => {
+  const { program } = after([
+    { type: "upload", what: "program", name: "a.aesl", text: "x" },
+    { type: "uploaded", what: "program", message: "/aseba_runtime.script.source: line 3, column 5: no such variable" },
+  ]);
+  assert.deepEqual(program, { name: "a.aesl", text: "x", phase: "refused", fault: { text: "no such variable", line: 3, column: 5 } });
+});
+
+test("a refusal without a place keeps its words", () => {
+  assert.deepEqual(locate("/simulator.playground: robots: found 0"), { text: "robots: found 0", line: null, column: null });
+  assert.deepEqual(locate("x.json: line 2, column 1: no"), { text: "x.json: no", line: 2, column: 1 });
+});
+
+test("refused parameters are told where they were asked, other statuses as notices", () => {
+  const state = after([
+    { type: "status", status: { level: 2, message: "refused", id: "parameter:/a.x" } },
+    { type: "status", status: { level: 1, message: "slow" } },
+    { type: "status", status: { level: 1, message: "slow" } },
+    { type: "fault", what: "a frame is too short" },
+  ]);
+  assert.deepEqual(state.notices.map(({ level, text }) => [level, text]), [["warning", "slow"], ["error", "a frame is too short"]]);
+  assert.equal(reduce(state, { type: "dismiss", id: state.notices[0].id }).notices.length, 1);
+});
+
+test("only the last notices are kept", () => {
+  const { notices } = after(["a", "b", "c", "d", "e"].map((text) => ({ type: "notice", level: "info", text })));
+  assert.deepEqual(notices.map(({ text }) => text), ["b", "c", "d", "e"]);
+});
+
+test("a lost connection is told until there is a new one, and the picture stays", () => {
+  const lost = after([{ type: "connected" }, message("/buttons/left", { data: true }), { type: "disconnected" }, { type: "connecting", address: "" }]);
+  assert.equal(lost.connection, "lost");
+  assert.equal(lost.robots[""].buttons.left, true);
+  assert.equal(reduce(lost, { type: "connected" }).connection, "connected");
+});
+
+test("another simulation starts from nothing, the same one goes on", () => {
+  const known = after([{ type: "serverInfo", name: "bridge", sessionId: "1", capabilities: [] }, message("/buttons/left", { data: true })]);
+  const again = reduce(known, { type: "serverInfo", name: "bridge", sessionId: "1", capabilities: [] });
+  assert.equal(again.robots[""].buttons.left, true);
+  assert.deepEqual(reduce(known, { type: "serverInfo", name: "bridge", sessionId: "2", capabilities: [] }).robots, {});
+});
+
+test("unknown topics and messages change nothing", () => {
+  assert.equal(reduce(INITIAL, message("/clock", {})), INITIAL);
+  assert.equal(reduce(INITIAL, /** @type {any} */ ({ type: "from the future" })), INITIAL);
+});
