@@ -46,8 +46,9 @@ def measured_ground(pattern: dict[str, Any] | None) -> Ground:
         case {"kind": "uniform", "grey8": grey}:
             return Ground([floor(grey, 0.0, 0.0, 0.4, 0.4)], [])
         case {"kind": "half_plane", "along": along, "edge": edge, "below": below, "above": above}:
-            low, high = ((edge, 0.5), (edge, 0.0)) if along == "x" else ((0.5, edge), (0.0, edge))
-            return Ground([floor(below, 0.0, 0.0, *low), floor(above, *high, 0.5, 0.5)], [])
+            right, top = (edge, 0.5) if along == "x" else (0.5, edge)
+            left, bottom = (edge, 0.0) if along == "x" else (0.0, edge)
+            return Ground([floor(below, 0.0, 0.0, right, top), floor(above, left, bottom, 0.5, 0.5)], [])
         case {"kind": "stripe", "centre_y": centre, "width": width, "stripe": stripe, "outside": outside}:
             half = width / 2 - 1e-9
             stripe_area = area(0.0, centre - half, 0.5, centre + half)

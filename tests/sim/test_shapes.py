@@ -45,8 +45,9 @@ def test_every_kind_has_an_example_here() -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_all_parts_are_convex_and_counter_clockwise(kind: str) -> None:
     playground = built(kind)
-    parts: list[tuple[Point, ...]] = [part.vertices for part in (*playground.floors, *playground.paints)]
-    parts += [solid.vertices for solid in playground.solids if not isinstance(solid.outline, Disc)]
+    parts: list[tuple[Point, ...]] = [floor.vertices for floor in playground.floors]
+    parts.extend(paint.vertices for paint in playground.paints)
+    parts.extend(solid.vertices for solid in playground.solids if not isinstance(solid.outline, Disc))
     assert all(is_convex(part) for part in parts)
 
 

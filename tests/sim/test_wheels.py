@@ -9,15 +9,15 @@ import pytest
 from thymio_sim_ros.sim.wheels import Wheels
 
 
-def rolled(left_m: float, right_m: float, *, slip: float = 1.0) -> Wheels:
+def rolled(left_m_s: float, right_m_s: float, *, slip: float = 1.0) -> Wheels:
     wheels = Wheels()
     wheels.drive((0.1, 0.1), (slip, slip), 0.166)
-    wheels.roll(left_m, right_m, 0.01)
+    wheels.roll((left_m_s, right_m_s), 0.01)
     return wheels
 
 
 def test_free_wheels_turn_as_commanded_whatever_the_slip() -> None:
-    wheels = rolled(0.00102, 0.00102, slip=1.02)
+    wheels = rolled(0.102, 0.102, slip=1.02)
     assert wheels.speeds_m_s == pytest.approx((0.1, 0.1))
     assert wheels.odometry.x_m == pytest.approx(0.001)
 
@@ -30,7 +30,7 @@ def test_blocked_wheels_stand_still() -> None:
 
 def test_wheels_that_a_push_turns_count_it() -> None:
     wheels = Wheels()
-    wheels.roll(-0.001, -0.001, 0.01)
+    wheels.roll((-0.1, -0.1), 0.01)
     assert wheels.odometry.x_m == pytest.approx(-0.001)
 
 
@@ -39,6 +39,6 @@ def test_odometry_follows_arcs() -> None:
     quarter = math.pi / 2 * 0.2
     way = (quarter * (1 - 0.047 / 0.2), quarter * (1 + 0.047 / 0.2))
     for _ in range(1000):
-        wheels.roll(way[0] / 1000, way[1] / 1000, 0.01)
+        wheels.roll((way[0] / 10, way[1] / 10), 0.01)
     odometry = wheels.odometry
     assert (odometry.x_m, odometry.y_m, odometry.yaw_rad) == pytest.approx((0.2, 0.2, math.pi / 2), abs=1e-6)

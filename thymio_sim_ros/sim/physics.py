@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import pymunk
@@ -53,28 +53,34 @@ class Contact:
 
 
 class RobotBody:
-    """One robot's body. `left_m` and `right_m`: ground covered at each wheel in this tick."""
+    """One robot's body, pushed by its two wheels. Invariant: `pose` is the body's after the last tick."""
 
     __slots__ = (
+        "_angle",
         "_body",
-        "_left_m_s",
-        "_right_m_s",
+        "_covered",
+        "_driven",
+        "_heading",
+        "_is_free",
         "_shape",
-        "_speed",
-        "_spin",
-        "left_m",
         "name",
         "pose",
-        "right_m",
+        "speed_m_s",
+        "spin_rad_s",
         "touching",
     )
 
     def __init__(self, name: str, pose: Pose) -> None:
         self.name = name
         self.pose = pose
-        self.touching: dict[object, Contact] = {}
-        self.left_m = self.right_m = 0.0
-        self._left_m_s = self._right_m_s = self._speed = self._spin = 0.0
+        self.touching: dict[pymunk.Shape, Contact] = {}
+        self.speed_m_s = 0.0
+        """Speed along the heading."""
+        self.spin_rad_s = 0.0
+        """Rate of turn, counter-clockwise."""
+        self._driven = self._covered = (0.0, 0.0)
+        self._is_free = True
+        self._angle = self._heading = pose.yaw_rad
         self._body = pymunk.Body(thymio2.MASS_KG, _MOMENT_KG_M2)
         self._body.position = (pose.x_m, pose.y_m)
         self._body.angle = pose.yaw_rad
@@ -82,64 +88,79 @@ class RobotBody:
         self._shape.collision_type = _ROBOT
 
     @property
-    def speed_m_s(self) -> float:
-        """Speed along the heading."""
-        return self._speed
+    def covered_m_s(self) -> tuple[float, float]:
+        """Speed over ground at each wheel, mean of the last tick; exactly what was driven when nothing was touched."""
+        return self._driven if self._is_free else self._covered
 
-    @property
-    def spin_rad_s(self) -> float:
-        """Rate of turn, counter-clockwise."""
-        return self._spin
-
-    def drive(self, left_m_s: float, right_m_s: float) -> None:
-        """Ground speed that each wheel gives from now on."""
-        self._left_m_s, self._right_m_s = left_m_s, right_m_s
+    def drive(self, ground_m_s: tuple[float, float]) -> None:
+        """Speed over ground that each wheel gives from now on."""
+        self._driven = ground_m_s
 
     def place(self, pose: Pose) -> None:
         """Put it somewhere, at rest."""
         body = self._body
         body.position, body.angle = (pose.x_m, pose.y_m), pose.yaw_rad
         body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
-        self._speed = self._spin = 0.0
+        self.speed_m_s = self.spin_rad_s = 0.0
+        self._angle = pose.yaw_rad
         self.pose = pose
         if body.space is not None:
             body.space.reindex_shapes_for_body(body)
 
-    def _push(self) -> float:
-        """Take the speed of the wheels, as far as contacts let; the heading in the middle of the movement."""
-        body = self._body
-        speed = (self._left_m_s + self._right_m_s) / 2
-        spin = (self._right_m_s - self._left_m_s) / thymio2.WHEEL_TRACK_M
-        if self.touching:
-            return self._press(speed, spin)
-        heading = body.angle + spin / 2 * _DT
-        body.velocity = (speed * math.cos(heading), speed * math.sin(heading))
-        body.angular_velocity = spin
-        return heading
+    def begin_tick(self) -> None:
+        """Forget what the last tick covered; contacts are no longer new."""
+        self._covered = (0.0, 0.0)
+        self._is_free = not self.touching
+        for key, contact in self.touching.items():
+            if contact.is_new:
+                self.touching[key] = replace(contact, is_new=False)
 
-    def _press(self, speed: float, spin: float) -> float:
-        """Push against what is touched: the more speed is missing, the harder."""
+    def push(self) -> None:
+        """Before a sub-step: take the speed of the wheels, as far as contacts let."""
+        left, right = self._driven
+        speed, spin = (left + right) / 2, (right - left) / thymio2.WHEEL_TRACK_M
         body = self._body
-        heading = body.angle + (body.angular_velocity + spin / 2) * _DT
+        if not self.touching:
+            self._heading = heading = self._angle + spin / 2 * _DT
+            body.velocity = (speed * math.cos(heading), speed * math.sin(heading))
+            body.angular_velocity = spin
+            self.speed_m_s, self.spin_rad_s = speed, spin
+            return
+        turning = body.angular_velocity
+        self._heading = heading = self._angle + (turning + spin / 2) * _DT
         vx, vy = body.velocity
         body.force = (
             (speed * math.cos(heading) - vx) * _PUSH_N_S_M,
             (speed * math.sin(heading) - vy) * _PUSH_N_S_M,
         )
-        body.torque = (spin - body.angular_velocity) * (_MOMENT_KG_M2 / _DT)
-        return heading
+        body.torque = (spin - turning) * (_MOMENT_KG_M2 / _DT)
 
-    def _read(self, heading: float) -> None:
-        """Take over what the sub-step has made of the push."""
+    def settle(self, earlier: int) -> None:
+        """After a sub-step, `earlier` ones done: take over what contacts have made of the push."""
+        if self._is_free and not self.touching:
+            self._angle += self.spin_rad_s * _DT
+            return
         body = self._body
+        if self._is_free:
+            self._is_free = False
+            left, right = self._driven
+            self._covered = (left * earlier / SUB_STEPS, right * earlier / SUB_STEPS)
         vx, vy = body.velocity
-        self._speed = vx * math.cos(heading) + vy * math.sin(heading)
-        self._spin = body.angular_velocity
-        half = self._spin * thymio2.WHEEL_TRACK_M / 2
-        self.left_m += (self._speed - half) * _DT
-        self.right_m += (self._speed + half) * _DT
-        x_m, y_m = body.position
-        self.pose = Pose(x_m, y_m, body.angle)
+        self._angle = body.angle
+        self.speed_m_s = vx * math.cos(self._heading) + vy * math.sin(self._heading)
+        self.spin_rad_s = body.angular_velocity
+        half = self.spin_rad_s * thymio2.WHEEL_TRACK_M / 2
+        left, right = self._covered
+        self._covered = (
+            left + (self.speed_m_s - half) / SUB_STEPS,
+            right + (self.speed_m_s + half) / SUB_STEPS,
+        )
+
+    def end_tick(self) -> None:
+        """Tell the new pose."""
+        x_m, y_m = self._body.position
+        self._angle = self._body.angle
+        self.pose = Pose(x_m, y_m, self._angle)
 
 
 class Physics:
@@ -170,14 +191,15 @@ class Physics:
         """One tick; the contacts at its end, by robot and in the order in which they began."""
         robots = self._robots
         for robot in robots:
-            robot.left_m = robot.right_m = 0.0
-            if robot.touching:
-                self._age(robot)
-        for _ in range(SUB_STEPS):
-            headings = [robot._push() for robot in robots]
+            robot.begin_tick()
+        for earlier in range(SUB_STEPS):
+            for robot in robots:
+                robot.push()
             self._space.step(_DT)
-            for robot, heading in zip(robots, headings, strict=True):
-                robot._read(heading)
+            for robot in robots:
+                robot.settle(earlier)
+        for robot in robots:
+            robot.end_tick()
         return tuple(contact for robot in robots for contact in robot.touching.values())
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
@@ -211,11 +233,6 @@ class Physics:
         shape.collision_type = _SOLID
         self._names[shape] = solid.name
         self._space.add(shape)
-
-    def _age(self, robot: RobotBody) -> None:
-        for key, old in robot.touching.items():
-            if old.is_new:
-                robot.touching[key] = Contact(old.robot, old.other, old.x_m, old.y_m, old.speed_m_s, False)
 
     def _on_begin(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
         one, other = arbiter.shapes

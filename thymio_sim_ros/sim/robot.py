@@ -131,11 +131,11 @@ class Robot:
         """Run the actuators for one tick."""
         for update, state, view in self._updates:
             update(state, view, dt_s)
-        self.body.drive(*self.wheels.ground)
+        self.body.drive(self.wheels.ground)
 
     def roll(self, dt_s: float) -> None:
         """Count on the wheels what the body has moved."""
-        self.wheels.roll(self.body.left_m, self.body.right_m, dt_s)
+        self.wheels.roll(self.body.covered_m_s, dt_s)
 
     def measure(self, now_ns: int) -> list[tuple[str, str, Reading]]:
         """The readings of the sensors that are due: (robot, sensor, reading)."""

@@ -38,11 +38,16 @@ class Wheels:
         left, right = commanded[0] * slip[0], commanded[1] * slip[1]
         self.ground = (max(-limit_m_s, min(limit_m_s, left)), max(-limit_m_s, min(limit_m_s, right)))
 
-    def roll(self, left_m: float, right_m: float, dt_s: float) -> None:
-        """Count a tick in which the robot covered this ground at each wheel."""
-        left = self.commanded[0] + (left_m / dt_s - self.ground[0])
-        right = self.commanded[1] + (right_m / dt_s - self.ground[1])
-        self.speeds_m_s = (left, right)
+    def roll(self, covered_m_s: tuple[float, float], dt_s: float) -> None:
+        """Count a tick in which the robot covered ground at this speed at each wheel."""
+        if covered_m_s == self.ground:
+            self.speeds_m_s = self.commanded
+        else:
+            self.speeds_m_s = (
+                self.commanded[0] + (covered_m_s[0] - self.ground[0]),
+                self.commanded[1] + (covered_m_s[1] - self.ground[1]),
+            )
+        left, right = self.speeds_m_s
         if left == 0.0 and right == 0.0:
             return
         way, turn = (left + right) / 2 * dt_s, (right - left) / WHEEL_TRACK_M * dt_s

@@ -49,7 +49,7 @@ def test_a_button_is_read_until_it_is_let_go(world: World) -> None:
 def test_the_motor_reads_speed_pwm_and_angles() -> None:
     wheels = Wheels()
     wheels.drive((0.0332, -0.166), (1.0, 1.0), 0.166)
-    wheels.roll(0.000332, -0.00166, 0.01)
+    wheels.roll((0.0332, -0.166), 0.01)
     reading = motor.SENSOR.measure(FakeView(wheels=wheels))
     assert isinstance(reading, MotorReading)
     assert reading.words == (100, -500, -160, 800)
