@@ -1,0 +1,104 @@
+"""World and devices in lock-step, in one thread, without ROS: tests, batch runs, benchmarks.
+
+One step: the world ticks; each robot's device is fed its readings, told the time, and runs; its commands go to the
+world, where they take effect in the next tick; the events it emitted reach the other robots' devices, in the order of
+the playground. The same playground, programs and seed give the same run bit for bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.program import ThymioProgram
+from thymio_sim_ros.sim.clock import TICK_NS
+from thymio_sim_ros.sim.commands import Command, PressButton
+from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.world import StepResult, World
+
+__all__ = ["Runner"]
+
+BUDGET = 5000
+"""Instructions of a device per tick; a handler that needs more goes on in the next."""
+
+_SECOND_NS = 1_000_000_000
+
+
+class Runner:
+    """A world and a device for each robot that has a program."""
+
+    def __init__(
+        self,
+        playground: Playground,
+        programs: Mapping[str, ThymioProgram] | ThymioProgram | None = None,
+        *,
+        seed: int = 0,
+        noise: bool = True,
+    ) -> None:
+        """One program for all robots, or one by robot's name; KeyError for a name that is not there."""
+        self.world = World(playground, seed=seed, noise=noise)
+        if isinstance(programs, ThymioProgram):
+            programs = dict.fromkeys(self.world.robots, programs)
+        self._programs = dict(programs or {})
+        numbers = {name: number for number, name in enumerate(self.world.robots, start=1)}
+        self.devices = {name: AsebaDevice(node_id=numbers[name]) for name in self._programs}
+        self._start()
+
+    @property
+    def now_ns(self) -> int:
+        """Simulated time."""
+        return self.world.now_ns
+
+    def step(self) -> StepResult:
+        """One tick of the world, and what the programs make of it."""
+        result = self.world.step()
+        for robot, sensor, reading in result.readings:
+            device = self.devices.get(robot)
+            if device is not None and reading.words:
+                device.feed(sensor, reading.words)
+        for device in self.devices.values():
+            device.advance(result.now_ns)
+        self._run_devices()
+        return result
+
+    def run(self, seconds: float) -> None:
+        """So many simulated seconds."""
+        for _ in range(round(seconds * _SECOND_NS / TICK_NS)):
+            self.step()
+
+    def until(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """Run until the condition holds, at most so many simulated seconds; whether it held."""
+        end_ns = self.now_ns + round(seconds * _SECOND_NS)
+        while not condition():
+            if self.now_ns >= end_ns:
+                return False
+            self.step()
+        return True
+
+    def post(self, robot: str, command: Command) -> None:
+        """A command for a robot; it takes effect in the next tick."""
+        self.world.post(robot, command)
+
+    def press(self, robot: str, button: str, *, pressed: bool = True) -> None:
+        """Put a finger on a button, or take it off."""
+        self.post(robot, PressButton(button, pressed))
+
+    def reset(self) -> None:
+        """World, noise and programs as at the start."""
+        self.world.reset()
+        self._start()
+
+    def _start(self) -> None:
+        for name, device in self.devices.items():
+            device.load(self._programs[name])
+        self._run_devices()
+
+    def _run_devices(self) -> None:
+        for name, device in self.devices.items():
+            device.run(BUDGET)
+            for command in device.take_commands():
+                self.world.post(name, command)
+            for event in device.take_events():
+                for other in self.devices.values():
+                    if other is not device and other.declares(event.name):
+                        other.receive_event(event.name, event.args, source=device.node_id)
