@@ -28,7 +28,7 @@ from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from thymio_sim_ros.nodes.life import Life, make_executor
+from thymio_sim_ros.nodes.life import Life, deliver, make_executor
 from thymio_sim_ros.sim.clock import TICK_NS
 
 if TYPE_CHECKING:  # the nodes are imported by the test that wants them
@@ -37,6 +37,9 @@ if TYPE_CHECKING:  # the nodes are imported by the test that wants them
 
 DEADLINE_S = 20.0
 SLICE_S = 0.02
+HOPS = 2
+"""Deliveries per tick: a reading reaches a node under test, and its command comes back."""
+
 DOMAINS = range(1, 100)
 DOMAIN_PORT = 17400
 """Loopback port of domain 0; holding port + id reserves a domain for this process."""
@@ -69,6 +72,10 @@ class Ros:
         self._executor.add_node(life.node)
         self._lives.append(life)
         return life
+
+    def deliver(self) -> None:
+        """Handle the messages that are there, waiting for none."""
+        deliver(self._executor)
 
     def spin(self) -> None:
         """One short turn of the executor."""
@@ -141,7 +148,8 @@ class SimulationInTest:
     def tick(self) -> None:
         """One tick of 10 ms, then whatever messages are there."""
         self.simulator.advance(1)
-        self.ros._executor.spin_once(timeout_sec=0.0005)
+        for _ in range(HOPS):
+            self.ros.deliver()
 
     def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
         """Step until the condition is true, at most so many simulated seconds; returns its value."""

@@ -52,6 +52,17 @@ def make_executor(context: Context) -> Executor:
     return EventsExecutor(context=context)
 
 
+def deliver(executor: Executor) -> None:
+    """Handle all messages that are there now; `spin_once` of the events executor handles those of one entity."""
+    last_in_line = executor.create_task(_nothing)
+    while not last_in_line.done():
+        executor.spin_once(timeout_sec=SPIN_SLICE_S)
+
+
+def _nothing() -> None:
+    """A task whose turn comes after everything that waited before it."""
+
+
 def drive(life: Life, context: Context, stop: Callable[[], bool]) -> None:
     """Turn a life on an executor of its own until `stop` says so or the context ends."""
     executor = make_executor(context)

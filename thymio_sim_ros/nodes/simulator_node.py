@@ -24,7 +24,7 @@ from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes.convert import SECOND_NS, ConvertOptions
-from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, run_main
+from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, run_main
 from thymio_sim_ros.nodes.names import ros_names
 from thymio_sim_ros.nodes.params import param
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
@@ -100,7 +100,10 @@ class Simulator:
         if now - self._last_beat_ns >= HEARTBEAT_NS:
             self._beat(now)
         wait_s = self._pacer.wait_ns(time.monotonic_ns()) / SECOND_NS
-        executor.spin_once(timeout_sec=min(max(wait_s, 0.0), SPIN_SLICE_S))
+        if wait_s > 0.0:
+            executor.spin_once(timeout_sec=min(wait_s, SPIN_SLICE_S))
+        else:
+            deliver(executor)
 
     def advance(self, ticks: int) -> None:
         """Step the world by ticks of 10 ms at once, also while paused, and publish what they give."""

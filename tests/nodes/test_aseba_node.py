@@ -1,0 +1,214 @@
+"""The Aseba runtime node beside the simulator node, joined by topics only."""
+
+from __future__ import annotations
+
+import math
+
+from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import Twist, Vector3
+from rcl_interfaces.srv import GetParameters, SetParameters
+from rclpy.parameter import Parameter
+from std_msgs.msg import Bool, Float32MultiArray, Int16MultiArray, MultiArrayDimension, MultiArrayLayout
+from std_srvs.srv import Trigger
+
+from tests.tracks import distance_to, track_points
+
+AESL = """<!DOCTYPE aesl-source>
+<network>
+<event size="2" name="pong"/>
+<event size="1" name="ping"/>
+<constant value="3" name="FACTOR"/>
+<node nodeId="1" name="thymio-II">onevent ping
+    emit pong [event.args[0] * FACTOR, 7]
+</node>
+</network>
+"""
+
+
+def values(status):
+    return {item.key: item.value for item in status.values}
+
+
+def test_a_pressed_button_raises_its_event(ros, simulation, runtime):
+    sim = simulation()
+    runtime("onevent button.center\nif button.center == 1 then\n call leds.top(32, 0, 16)\nend")
+    state = ros.collect(Float32MultiArray, "/led/state", latched=True)
+    press = ros.publisher(Bool, "/press/center")
+    press.publish(Bool(data=True))
+    sim.until(lambda: state and list(state[-1].data[:3]) == [1.0, 0.0, 0.5])
+
+
+def test_a_program_drives_the_wheels(ros, simulation, runtime):
+    sim = simulation()
+    runtime("motor.left.target = 200\nmotor.right.target = 200")
+    sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.05)
+
+
+def test_emit_reaches_a_topic_and_back(ros, simulation, runtime):
+    simulation()
+    runtime(AESL)
+    pongs = ros.collect(Int16MultiArray, "/aseba/events/pong")
+    anything = ros.collect(Int16MultiArray, "/aseba/events")
+    ros.publisher(Int16MultiArray, "/aseba/emit/ping").publish(Int16MultiArray(data=[5]))
+    ros.until(lambda: pongs and anything)
+    assert list(pongs[0].data) == [15, 7]
+    assert [(dim.label, dim.size) for dim in anything[0].layout.dim] == [("pong", 2)]
+
+
+def test_the_generic_pair_carries_any_event(ros, simulation, runtime):
+    simulation()
+    runtime(AESL)
+    pongs = ros.collect(Int16MultiArray, "/aseba/events/pong")
+    message = Int16MultiArray(
+        layout=MultiArrayLayout(dim=[MultiArrayDimension(label="ping", size=1, stride=1)]), data=[-2]
+    )
+    ros.publisher(Int16MultiArray, "/aseba/emit").publish(message)
+    ros.until(lambda: pongs)
+    assert list(pongs[0].data) == [-6, 7]
+
+
+def test_events_of_the_wrong_size_are_refused(ros, simulation, runtime):
+    simulation()
+    runtime(AESL)
+    pongs = ros.collect(Int16MultiArray, "/aseba/events/pong")
+    publisher = ros.publisher(Int16MultiArray, "/aseba/emit/ping")
+    publisher.publish(Int16MultiArray(data=[1, 2]))
+    publisher.publish(Int16MultiArray(data=[4]))
+    ros.until(lambda: pongs)
+    assert [list(pong.data) for pong in pongs] == [[12, 7]]
+
+
+def test_a_program_that_does_not_compile_is_refused_with_its_place(ros, simulation, runtime):
+    simulation()
+    runtime("var a = 1")
+    status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
+    bad = set_parameters(ros, {"script.source": "var a\n  motor.left.targt = 5", "script.name": "bad.aesl"})
+    assert not bad.successful
+    assert "line 2, column 3" in bad.reason
+    assert "motor.left.target" in bad.reason
+    answer = ros.call(GetParameters, "/aseba_runtime/get_parameters", GetParameters.Request(names=["script.source"]))
+    assert answer.values[0].string_value == "var a = 1"
+    good = set_parameters(ros, {"script.source": "motor.left.target = 5", "script.name": "good.aesl"})
+    assert good.successful, good.reason
+    ros.until(lambda: values(status[-1])["program"] == "good.aesl")
+    assert values(status[-1])["state"] == "running"
+
+
+def set_parameters(ros, wanted):
+    parameters = [Parameter(name, value=value).to_parameter_msg() for name, value in wanted.items()]
+    from rcl_interfaces.srv import SetParametersAtomically
+
+    request = SetParametersAtomically.Request(parameters=parameters)
+    return ros.call(SetParametersAtomically, "/aseba_runtime/set_parameters_atomically", request).result
+
+
+def test_a_fault_is_told_with_its_line_and_stops_the_wheels(ros, simulation, runtime):
+    sim = simulation()
+    runtime("var i = 9\nvar t[3]\nmotor.left.target = 100\nmotor.right.target = 100\nonevent button.center\n t[i] = 1")
+    status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
+    sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.01)
+    ros.publisher(Bool, "/press/center").publish(Bool(data=True))
+    sim.until(lambda: status and values(status[-1])["state"] == "fault")
+    assert values(status[-1])["line"] == "6"
+    assert status[-1].level == DiagnosticStatus.ERROR
+    sim.step(0.2)
+    stopped = sim.world.robots["thymio"].pose
+    sim.step(0.5)
+    assert sim.world.robots["thymio"].pose == stopped
+
+
+def test_run_control_by_services(ros, simulation, runtime):
+    sim = simulation()
+    runtime("motor.left.target = 100\nmotor.right.target = 100")
+    sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.01)
+    assert ros.call(Trigger, "/aseba/stop").message == "stopped"
+    sim.step(0.2)
+    stopped = sim.world.robots["thymio"].pose
+    sim.step(0.3)
+    assert sim.world.robots["thymio"].pose == stopped
+    assert ros.call(Trigger, "/aseba/reset").success
+    assert ros.call(Trigger, "/aseba/run").message == "running"
+    sim.until(lambda: sim.world.robots["thymio"].pose.x_m > stopped.x_m + 0.01)
+
+
+def test_timers_follow_simulated_time(ros, simulation, runtime):
+    sim = simulation()
+    runtime(
+        '<network><event size="1" name="tick"/><node name="thymio-II">var n = 0\ntimer.period[0] = 200\n'
+        "onevent timer0\nn = n + 1\nemit tick n</node></network>"
+    )
+    ticks = ros.collect(Int16MultiArray, "/aseba/events/tick")
+    sim.until(lambda: len(ticks) >= 5, seconds=1.5)
+    assert [list(tick.data) for tick in ticks[:5]] == [[1], [2], [3], [4], [5]]
+
+
+def test_a_reset_of_the_simulator_restarts_the_program(ros, simulation, runtime):
+    sim = simulation()
+    runtime(
+        '<network><event size="1" name="count"/><node name="thymio-II">var n = 0\n'
+        "onevent button.forward\nif button.forward == 1 then\nn = n + 1\nemit count n\nend</node></network>"
+    )
+    counts = ros.collect(Int16MultiArray, "/aseba/events/count")
+    press = ros.publisher(Bool, "/press/forward")
+    for expected in (1, 2):
+        press.publish(Bool(data=True))
+        sim.until(lambda n=expected: counts and list(counts[-1].data) == [n])
+        press.publish(Bool(data=False))
+        sim.step(0.2)
+    ros.call(Trigger, "/simulator/reset")
+    sim.step(0.5)
+    press.publish(Bool(data=True))
+    sim.until(lambda: len(counts) == 3)
+    assert list(counts[-1].data) == [1]
+
+
+def test_the_line_program_follows_the_line_for_a_lap(ros, simulation, runtime):
+    sim = simulation(playground="line")
+    runtime(path="line_follower")
+    world = sim.world
+    robot = next(iter(world.robots.values()))
+    points = track_points("line")
+    center_x = sum(x for x, _ in points) / len(points)
+    center_y = sum(y for _, y in points) / len(points)
+    turned = 0.0
+    last = math.atan2(robot.pose.y_m - center_y, robot.pose.x_m - center_x)
+    farthest = 0.0
+
+    def lap_done():
+        nonlocal turned, last, farthest
+        angle = math.atan2(robot.pose.y_m - center_y, robot.pose.x_m - center_x)
+        turned += math.remainder(angle - last, math.tau)
+        last = angle
+        farthest = max(farthest, distance_to(points, robot.pose.place((0.072, 0.0))))
+        return abs(turned) > math.tau
+
+    sim.until(lap_done, seconds=120.0)
+    assert farthest < 0.04
+
+
+def test_cmd_vel_takes_over_and_gives_back(ros, simulation, runtime):
+    sim = simulation(cmd_vel_timeout=0.3)
+    runtime("motor.left.target = 100\nmotor.right.target = 100")
+    sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.01)
+    before = sim.world.robots["thymio"].pose
+    ros.publisher(Twist, "/cmd_vel").publish(Twist(linear=Vector3(x=-0.1)))
+    sim.until(lambda: sim.world.robots["thymio"].pose.x_m < before.x_m - 0.01)
+    lowest = sim.world.robots["thymio"].pose.x_m
+    sim.until(lambda: sim.world.robots["thymio"].pose.x_m > lowest + 0.02)
+
+
+def test_parameters_describe_themselves(ros, simulation, runtime):
+    simulation()
+    runtime()
+    from rcl_interfaces.srv import DescribeParameters
+
+    request = DescribeParameters.Request(names=["real_time_factor", "seed"])
+    factor, seed = ros.call(DescribeParameters, "/simulator/describe_parameters", request).descriptors
+    assert "as fast as possible" in factor.description
+    assert factor.floating_point_range[0].to_value == 1000.0
+    assert seed.read_only
+    assert not ros.call(SetParameters, "/simulator/set_parameters", too_fast()).results[0].successful
+
+
+def too_fast():
+    return SetParameters.Request(parameters=[Parameter("real_time_factor", value=5000.0).to_parameter_msg()])

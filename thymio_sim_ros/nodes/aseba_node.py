@@ -1,0 +1,133 @@
+"""The Aseba runtime as a ROS node: feeds readings to devices, sends their commands, carries their events.
+
+It knows topics, not simulators: any robot that has them will do (ros-interface.md section 6). Devices keep
+simulated time by the node's clock. The program is a parameter; a text that does not compile is refused with
+its place, and the old program goes on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.clock import ClockChange, JumpThreshold, TimeJump
+from rclpy.context import Context
+from rclpy.duration import Duration
+from rclpy.executors import Executor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from thymio_sim_ros import resources
+from thymio_sim_ros.device.program import ProgramError, ThymioProgram, load_program
+from thymio_sim_ros.loading import NO_PROGRAM, read_program
+from thymio_sim_ros.nodes import params
+from thymio_sim_ros.nodes.device_ports import DevicePorts
+from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, run_main
+from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.params import param
+
+
+@dataclass(frozen=True)
+class RuntimeParams:
+    """Parameters of the Aseba runtime node."""
+
+    robots: list[str] = param(  # noqa: RUF009  (makes a field, as `field` does)
+        [""], "Namespaces of the robots that run the program; '' is the only robot", fixed=True
+    )
+    path: str = param("", "Program: a built-in behaviour's name or an .aesl file", name="script.path")
+    source: str = param("", "Program: text of an .aesl file or of one Aseba program", name="script.source")
+    name: str = param("", "Name shown for a program given as text", name="script.name")
+
+
+class AsebaRuntime:
+    """The runtime node: one device per robot, all on one Aseba bus."""
+
+    def __init__(
+        self, context: Context, defaults: RuntimeParams | None = None, *, use_sim_time: bool | None = None
+    ) -> None:
+        overrides = [] if use_sim_time is None else [Parameter("use_sim_time", value=use_sim_time)]
+        self.node = Node("aseba_runtime", context=context, parameter_overrides=overrides)
+        self.params = params.declare(self.node, defaults or RuntimeParams())
+        try:
+            program = self._first_program()
+        except (ProgramError, resources.ResourceError, OSError) as error:
+            self.node.destroy_node()
+            raise StartError(str(error)) from error
+        self.robots = [
+            DevicePorts(self.node, RobotNames(name), node_id=number, bus=self._pass_on)
+            for number, name in enumerate(self.params.robots, start=1)
+        ]
+        self._accepted: ThymioProgram | None = None
+        self.load(program)
+        self.node.add_on_set_parameters_callback(self._check_parameters)
+        self.node.add_post_set_parameters_callback(self._apply_parameters)
+        self._jumps = self.node.get_clock().create_jump_callback(
+            JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False),
+            post_callback=self._on_jump,
+        )
+
+    def load(self, program: ThymioProgram) -> None:
+        """Run this program on every robot, from its start."""
+        for ports in self.robots:
+            ports.load(program)
+
+    def turn(self, executor: Executor) -> None:
+        """Handle messages; let handlers that used up their budget go on."""
+        busy = any(ports.is_busy for ports in self.robots)
+        if not busy:
+            executor.spin_once(timeout_sec=SPIN_SLICE_S)
+        else:
+            deliver(executor)
+            for ports in self.robots:
+                ports.run()
+
+    def close(self) -> None:
+        """Stop the wheels that a program drives, then destroy the node."""
+        self._jumps.unregister()
+        for ports in self.robots:
+            ports.close()
+        self.node.destroy_node()
+
+    def _first_program(self) -> ThymioProgram:
+        if self.params.source:
+            return load_program(self.params.source, self.params.name or "program")
+        return read_program(self.params.path or NO_PROGRAM)
+
+    def _pass_on(self, sender: DevicePorts, event: str, args: Sequence[int]) -> None:
+        """Robots of one runtime hear each other directly, as on an Aseba network."""
+        for ports in self.robots:
+            if ports is not sender:
+                ports.hear(event, args, source=sender.device.node_id)
+
+    def _on_jump(self, jump: TimeJump) -> None:
+        """Time went back: the simulator was reset, and so are the robots' machines."""
+        if jump.clock_change in (ClockChange.ROS_TIME_NO_CHANGE, ClockChange.SYSTEM_TIME_NO_CHANGE):
+            for ports in self.robots:
+                ports.restart()
+
+    def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        changed = params.changes(parameters)
+        try:
+            if "script.source" in changed:
+                name = changed.get("script.name", self.params.name)
+                self._accepted = load_program(changed["script.source"], name or "program")
+            elif "script.path" in changed:
+                self._accepted = read_program(changed["script.path"])
+        except (ProgramError, resources.ResourceError, OSError) as error:
+            self._accepted = None
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _apply_parameters(self, parameters: list[Parameter]) -> None:
+        name = params.changes(parameters).get("script.name")
+        if name is not None:
+            self.params = replace(self.params, name=name)
+        if self._accepted is not None:
+            program, self._accepted = self._accepted, None
+            self.load(program)
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """The executable `aseba_runtime`."""
+    return run_main(lambda context: [AsebaRuntime(context)], args)
