@@ -1,0 +1,129 @@
+"""The suite and each executable as processes of their own: start, readiness, signals, nothing left behind."""
+
+from __future__ import annotations
+
+import http.client
+import os
+import signal
+import socket
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from nav_msgs.msg import Odometry
+from std_msgs.msg import Int16MultiArray
+
+from tests.processes import Process, free_port
+
+pytestmark = pytest.mark.process
+
+START_S = 60.0
+
+
+@pytest.fixture
+def process(ros_domain, tmp_path) -> Iterator[Callable[..., Process]]:
+    """Start `main()` of a module with arguments, in the test's domain."""
+    started: list[Process] = []
+
+    def start(module: str, *arguments: str) -> Process:
+        started.append(Process(tmp_path, module, *arguments))
+        return started[-1]
+
+    yield start
+    for one in started:
+        one.kill()
+
+
+def segments() -> set[str]:
+    return {path.name for path in Path("/dev/shm").glob("fastrtps_*")}
+
+
+def is_free(port: int) -> bool:
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) != 0
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_whole_suite_runs_and_ends(ros, process, number):
+    port, foxglove_port = free_port(), free_port()
+    before = segments()
+    suite = process("thymio_sim_ros.cli", "--port", str(port), "--foxglove-port", str(foxglove_port))
+    odometry: list[Odometry] = []
+    ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
+    ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, START_S, what="a moving robot")
+    ros.until(lambda: len(suite.output.splitlines()) >= 3, START_S)
+    page, foxglove, stop = suite.output.splitlines()[:3]
+    assert str(port) in page
+    assert str(foxglove_port) in foxglove
+    assert "Ctrl-C" in stop
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+    connection.request("GET", "/config.json")
+    assert str(foxglove_port).encode() in connection.getresponse().read()
+    connection.close()
+    suite.signal(number)
+    assert suite.wait() == 0, suite.output
+    assert is_free(port)
+    assert is_free(foxglove_port)
+    assert len(suite.output.splitlines()) == 3, suite.output
+    assert segments() <= before | own_segments(ros)
+
+
+def own_segments(ros) -> set[str]:
+    """Segments that exist while only this process uses ROS: its own."""
+    ros.spin()
+    mine = f"{os.getpid()}"
+    return {name for name in segments() if held_by(name, mine)}
+
+
+def held_by(name: str, pid: str) -> bool:
+    """Whether the process maps the segment, or it is a port that outlives its users."""
+    return name in Path(f"/proc/{pid}/maps").read_text() or name.startswith("fastrtps_port")
+
+
+def test_two_interrupts_at_once_end_it_cleanly(ros, process):
+    suite = process("thymio_sim_ros.cli", "--headless")
+    odometry: list[Odometry] = []
+    ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
+    ros.until(lambda: odometry, START_S, what="odometry")
+    suite.signal(signal.SIGINT)
+    suite.signal(signal.SIGINT)
+    assert suite.wait() == 0, suite.output
+    assert "Traceback" not in suite.output
+
+
+def test_nodes_in_processes_of_their_own_talk(ros, process):
+    process("thymio_sim_ros.nodes.simulator_node", "--ros-args", "-p", "playground:=line")
+    process(
+        "thymio_sim_ros.nodes.aseba_node", "--ros-args", "-p", "script.path:=line_follower", "-p", "use_sim_time:=true"
+    )
+    targets: list[Int16MultiArray] = []
+    odometry: list[Odometry] = []
+    ros.node.create_subscription(Int16MultiArray, "/motor/target", targets.append, 10)
+    ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
+    ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, START_S, what="a moving robot")
+    assert targets
+
+
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [
+        ("simulator_node", "simulator"),
+        ("aseba_node", "aseba_runtime"),
+        ("foxglove_node", "foxglove_bridge"),
+        ("web_node", "web_ui"),
+    ],
+)
+def test_each_executable_ends_with_0(ros, process, module, name):
+    port = ["-p", f"port:={free_port()}"] if name in ("foxglove_bridge", "web_ui") else []
+    node = process(f"thymio_sim_ros.nodes.{module}", "--ros-args", "-p", "use_sim_time:=false", *port)
+    ros.until(lambda: name in ros.node.get_node_names(), START_S, what=f"node {name}")
+    node.signal(signal.SIGINT)
+    assert node.wait() == 0, node.output
+    assert "Traceback" not in node.output
+
+
+def test_a_bad_parameter_is_one_line_and_exit_code_2(process):
+    node = process("thymio_sim_ros.nodes.simulator_node", "--ros-args", "-p", "playground:=nowhere")
+    assert node.wait() == 2
+    (line,) = node.output.splitlines()
+    assert "nowhere" in line

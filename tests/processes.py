@@ -1,0 +1,70 @@
+"""Programs as processes of their own, for the few tests that need them."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+START_S = 60.0
+END_S = 20.0
+
+
+class Process:
+    """`main()` of a module in a process group of its own, with signals reset and its output kept."""
+
+    def __init__(self, folder: Path, module: str, *arguments: str) -> None:
+        self._log = folder / f"{module}.txt"
+        command = [sys.executable, "-c", f"import sys; from {module} import main; sys.exit(main())", *arguments]
+        with self._log.open("w") as output:
+            self._popen = subprocess.Popen(
+                command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True, restore_signals=True
+            )
+
+    @property
+    def output(self) -> str:
+        """Everything printed so far."""
+        return self._log.read_text()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it has not ended yet."""
+        return self._popen.poll() is None
+
+    def signal(self, number: int) -> None:
+        """Signal the whole group, as a terminal does."""
+        os.killpg(self._popen.pid, number)
+
+    def wait(self) -> int:
+        """The exit code, at most `END_S` later."""
+        return self._popen.wait(END_S)
+
+    def kill(self) -> None:
+        """End what still runs."""
+        if self.is_running:
+            self.signal(signal.SIGKILL)
+            self._popen.wait()
+
+
+def wait_for_port(port: int) -> None:
+    """Block until somebody listens there; fails after `START_S`."""
+    deadline = time.monotonic() + START_S
+    while True:
+        with socket.socket() as probe:
+            probe.settimeout(0.1)
+            if probe.connect_ex(("127.0.0.1", port)) == 0:
+                return
+        assert time.monotonic() < deadline, f"nobody listens on port {port}"
+        select.select([], [], [], 0.05)
+
+
+def free_port() -> int:
+    """A TCP port of loopback that nobody uses now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])

@@ -1,0 +1,106 @@
+"""The command thymio-sim: what a user gets wrong is one line and exit code 2; the runner needs no ROS."""
+
+from __future__ import annotations
+
+import json
+import socket
+import subprocess
+import sys
+
+import pytest
+
+from thymio_sim_ros import cli
+
+
+def refused(capsys, *arguments):
+    """The one line on stderr of a command that exits with 2."""
+    assert cli.main(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    (line,) = captured.err.splitlines()
+    return line
+
+
+def test_a_missing_playground_is_one_line(capsys):
+    assert "did you mean 'obstacle'?" in refused(capsys, "--playground", "obstacel")
+
+
+def test_a_missing_program_is_one_line(capsys, tmp_path):
+    assert "nowhere.aesl" in refused(capsys, "--program", str(tmp_path / "nowhere.aesl"))
+
+
+def test_a_broken_program_is_located(capsys, tmp_path):
+    program = tmp_path / "broken.aesl"
+    program.write_text("var a\nonevent prox\n  a = bb + 1\n")
+    line = refused(capsys, "--program", str(program))
+    assert "broken.aesl" in line
+    assert "line 3, column 7" in line
+    assert "bb" in line
+
+
+def test_a_program_that_is_no_text_is_refused(capsys, tmp_path):
+    program = tmp_path / "picture.aesl"
+    program.write_bytes(b"\x89PNG\xff\xfe")
+    assert "UTF-8" in refused(capsys, "--program", str(program))
+
+
+def test_a_broken_playground_is_located(capsys, tmp_path):
+    playground = tmp_path / "broken.json"
+    playground.write_text('{"title": "x", "shapes": 3}')
+    line = refused(capsys, "--playground", str(playground))
+    assert "broken.json" in line
+    assert "expected" in line
+
+
+@pytest.mark.parametrize(("option", "whose"), [("--port", "page"), ("--foxglove-port", "Foxglove")])
+def test_a_port_in_use_is_one_line(capsys, option, whose):
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        line = refused(capsys, option, port)
+    assert port in line
+    assert whose in line
+    assert option in line
+
+
+@pytest.mark.parametrize(
+    "arguments", [("--port", "http"), ("--port", "70000"), ("--real-time-factor", "fast"), ("--nonsense",), ("extra",)]
+)
+def test_bad_arguments_exit_with_2(capsys, arguments):
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(arguments)
+    assert "error" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", [["--help"], ["runner", "--help"]])
+def test_help_has_an_example(capsys, command):
+    with pytest.raises(SystemExit, match="0"):
+        cli.main(command)
+    assert "example:" in capsys.readouterr().out
+
+
+def test_without_ros_it_says_where_to_get_it(capsys, monkeypatch):
+    monkeypatch.setattr(cli.importlib.util, "find_spec", lambda _name: None)
+    assert "runner" in refused(capsys, "--headless")
+
+
+def test_the_runner_repeats_itself_bit_for_bit(capsys):
+    outputs = []
+    for seed in ("3", "3", "4"):
+        assert cli.main(["runner", "--seconds", "10", "--seed", seed]) == 0
+        outputs.append(json.loads(capsys.readouterr().out)["robots"])
+    assert outputs[0] == outputs[1]
+    assert outputs[0] != outputs[2]
+
+
+def test_the_runner_needs_no_ros():
+    script = (
+        "import sys\n"
+        "sys.modules['rclpy'] = None\n"
+        "from thymio_sim_ros import cli\n"
+        "sys.exit(cli.main(['runner', '--seconds', '1']))\n"
+    )
+    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=False)
+    assert result.returncode == 0, result.stderr
+    assert "real_time_factor" in result.stdout

@@ -1,0 +1,205 @@
+"""The command `thymio-sim`: start the whole suite, or run a program without ROS.
+
+Everything a user can get wrong is checked before anything starts: one line on stderr, exit code 2.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import json
+import os
+import socket
+import sys
+import time
+from collections.abc import Callable, Sequence
+
+import thymio_sim_ros
+from thymio_sim_ros import resources
+from thymio_sim_ros.device.program import ProgramError, ThymioProgram
+from thymio_sim_ros.loading import NO_PROGRAM, load_playground, read_program
+from thymio_sim_ros.sim.playground import Playground, PlaygroundError
+from thymio_sim_ros.suite import ADDRESS, Suite
+
+EXAMPLE = """\
+example:
+  thymio-sim --playground obstacle --program my_robot.aesl
+  thymio-sim runner --program my_robot.aesl --seconds 60     (no ROS, as fast as possible)
+"""
+
+USAGE_ERROR = 2
+
+
+class UsageError(Exception):
+    """Something the user asked for cannot be done; the text is one line."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Entry point; the exit code."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    command: Callable[[Sequence[str]], int] = start_suite
+    if arguments[:1] == ["runner"]:
+        command, arguments = run_without_ros, arguments[1:]
+    try:
+        return command(arguments)
+    except UsageError as error:
+        print(f"thymio-sim: {error}", file=sys.stderr)
+        return USAGE_ERROR
+
+
+def start_suite(argv: Sequence[str]) -> int:
+    """Simulator, Aseba runtime, Foxglove bridge and page, until Ctrl-C."""
+    options = _suite_parser().parse_args(argv)
+    suite = Suite(
+        playground=options.playground,
+        program=options.program,
+        port=options.port,
+        foxglove_port=options.foxglove_port,
+        web=not (options.no_web or options.headless),
+        foxglove=not options.headless,
+        seed=options.seed,
+        real_time_factor=options.real_time_factor,
+    )
+    _check_files(suite.playground, suite.program)
+    if suite.web:
+        _check_port(suite.port, "the page", "--port")
+    if suite.foxglove:
+        _check_port(suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
+    _check_ros()
+    # A class room's robots stay apart, unless somebody has chosen otherwise (ros-packaging.md section 4).
+    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    from thymio_sim_ros.nodes import all_nodes
+
+    return all_nodes.run(suite, [], on_ready=lambda: print(_greeting(suite), flush=True))
+
+
+def run_without_ros(argv: Sequence[str]) -> int:
+    """World and program in lock-step, as fast as possible; prints where the robots are."""
+    options = _runner_parser().parse_args(argv)
+    playground, program = _check_files(options.playground, options.program)
+    from thymio_sim_ros.runner import Runner
+
+    runner = Runner(playground, program, seed=options.seed)
+    started = time.perf_counter()
+    runner.run(options.seconds)
+    factor = options.seconds / max(time.perf_counter() - started, 1e-9)
+    poses = {
+        name: {"x_m": robot.pose.x_m, "y_m": robot.pose.y_m, "yaw_rad": robot.pose.yaw_rad}
+        for name, robot in runner.world.robots.items()
+    }
+    print(json.dumps({"seconds": options.seconds, "real_time_factor": round(factor, 1), "robots": poses}, indent=2))
+    return 0
+
+
+def _suite_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="thymio-sim",
+        description="A simulated Thymio II: ROS 2 nodes, Foxglove bridge and a web page. Ctrl-C ends everything.",
+        epilog=EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    _add_world_options(parser)
+    parser.add_argument("--port", type=_port, default=Suite.port, help="port of the page (default: %(default)s)")
+    parser.add_argument(
+        "--foxglove-port", type=_port, default=Suite.foxglove_port, help="port of the bridge (default: %(default)s)"
+    )
+    parser.add_argument("--no-web", action="store_true", help="no web page; Foxglove can still connect")
+    parser.add_argument("--headless", action="store_true", help="only the ROS nodes: no page, no Foxglove bridge")
+    parser.add_argument(
+        "--real-time-factor",
+        type=_factor,
+        default=Suite.real_time_factor,
+        metavar="F",
+        help="simulated seconds per second, 0 is as fast as possible (default: %(default)g)",
+    )
+    parser.add_argument("--version", action="version", version=f"thymio-sim {thymio_sim_ros.__version__}")
+    return parser
+
+
+def _runner_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="thymio-sim runner",
+        description="Run a program in a playground without ROS, as fast as possible; the same seed, the same run.",
+        epilog=EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    _add_world_options(parser)
+    parser.add_argument("--seconds", type=_seconds, default=60.0, help="simulated seconds (default: %(default)g)")
+    return parser
+
+
+def _add_world_options(parser: argparse.ArgumentParser) -> None:
+    shipped, behaviours = ", ".join(resources.playgrounds()), ", ".join(resources.behaviours())
+    parser.add_argument(
+        "--playground",
+        default=Suite.playground,
+        metavar="NAME|FILE",
+        help=f"{shipped}, or a file (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--program",
+        default=Suite.program,
+        metavar="FILE.aesl",
+        help=f"{behaviours}, {NO_PROGRAM}, or a file (default: %(default)s)",
+    )
+    parser.add_argument("--seed", type=int, default=Suite.seed, help="seed of all noise (default: %(default)s)")
+
+
+def _port(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= 65535:
+        raise argparse.ArgumentTypeError(f"'{text}' is no port; expected a number from 1 to 65535")
+    return int(text)
+
+
+def _factor(text: str) -> float:
+    return _number(text, 0.0, 1000.0)
+
+
+def _seconds(text: str) -> float:
+    return _number(text, 0.0, 1e7)
+
+
+def _number(text: str, low: float, high: float) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not low <= value <= high:
+        raise argparse.ArgumentTypeError(f"'{text}' found, expected a number from {low:g} to {high:g}")
+    return value
+
+
+def _check_files(playground: str, program: str) -> tuple[Playground, ThymioProgram]:
+    """Both files, read and checked; UsageError says where, what was found, what was expected."""
+    try:
+        return load_playground(playground)[1], read_program(program)
+    except (PlaygroundError, ProgramError, resources.ResourceError, OSError) as error:
+        raise UsageError(str(error)) from error
+
+
+def _check_port(port: int, whose: str, option: str) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((ADDRESS, port))
+        except OSError as error:
+            raise UsageError(
+                f"port {port} of {whose} cannot be used: {error.strerror}; choose another with {option}"
+            ) from error
+
+
+def _check_ros() -> None:
+    if importlib.util.find_spec("rclpy") is None:
+        raise UsageError(
+            "ROS 2 is not installed here: on Linux x86-64 run `pip install 'thymio_sim_ros[ros]'`, elsewhere source a "
+            "ROS 2 Jazzy installation; `thymio-sim runner` works without"
+        )
+
+
+def _greeting(suite: Suite) -> str:
+    """The three lines a person needs."""
+    page = f"http://localhost:{suite.port}/" if suite.web else "none (started without it)"
+    foxglove = f"ws://localhost:{suite.foxglove_port}" if suite.foxglove else "none (started without it)"
+    return f"Page      {page}\nFoxglove  {foxglove}\nStop      Ctrl-C"
