@@ -1,0 +1,100 @@
+"""The launch file, without launch (no wheel has it): what it passes on is what the nodes declare."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import runpy
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+LAUNCH = Path(__file__).parents[2] / "thymio_sim_ros" / "launch" / "thymio.launch.py"
+# Executable → the module whose parameter dataclass it declares.
+MODULES = {
+    "simulator": "simulator_node",
+    "aseba_runtime": "aseba_node",
+    "foxglove_bridge": "foxglove_node",
+    "web_ui": "web_node",
+}
+NAMES = {
+    "launch": ["LaunchDescription"],
+    "launch.actions": ["DeclareLaunchArgument"],
+    "launch.conditions": ["IfCondition"],
+    "launch.substitutions": ["LaunchConfiguration", "PythonExpression"],
+    "launch_ros": [],
+    "launch_ros.actions": ["Node"],
+    "launch_ros.parameter_descriptions": ["ParameterValue"],
+}
+
+
+class Call:
+    """Any object of launch: remembers how it was made."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        self.args, self.kwargs = args, kwargs
+
+
+@pytest.fixture
+def description(monkeypatch: pytest.MonkeyPatch) -> Call:
+    for name, classes in NAMES.items():
+        module = ModuleType(name)
+        vars(module).update({class_name: type(class_name, (Call,), {}) for class_name in classes})
+        monkeypatch.setitem(sys.modules, name, module)
+    result = runpy.run_path(str(LAUNCH))["generate_launch_description"]()
+    assert isinstance(result, Call)
+    return result
+
+
+def _actions(description: Call, kind: str) -> list[Call]:
+    return [action for action in description.args[0] if type(action).__name__ == kind]
+
+
+def _declared(module: str) -> dict[str, type]:
+    """Parameter name → type of its default, of every parameter dataclass that a module defines."""
+    namespace = vars(importlib.import_module(f"thymio_sim_ros.nodes.{module}")).values()
+    classes = [item for item in namespace if isinstance(item, type) and dataclasses.is_dataclass(item)]
+    return {
+        field.metadata.get("name", field.name): type(field.default)
+        for item in classes
+        for field in dataclasses.fields(item)
+        if "text" in field.metadata
+    }
+
+
+def test_every_executable_is_started_as_the_node_of_its_name(description: Call) -> None:
+    nodes = [action.kwargs for action in _actions(description, "Node")]
+    assert [node["executable"] for node in nodes] == [node["name"] for node in nodes] == list(MODULES)
+    assert {node["package"] for node in nodes} == {"thymio_sim_ros"}
+
+
+def test_every_parameter_that_is_passed_is_declared_with_its_type(description: Call) -> None:
+    passed = {
+        (node.kwargs["name"], name): value.kwargs["value_type"]
+        for node in _actions(description, "Node")
+        for name, value in node.kwargs["parameters"][0].items()
+        if name != "use_sim_time"
+    }
+    declared = {(node, name): kind for node, module in MODULES.items() for name, kind in _declared(module).items()}
+    assert passed == {key: declared.get(key) for key in passed}
+
+
+def test_all_but_the_simulator_follow_simulated_time(description: Call) -> None:
+    follow = {
+        node.kwargs["name"]
+        for node in _actions(description, "Node")
+        if node.kwargs["parameters"][0].get("use_sim_time")
+    }
+    assert follow == MODULES.keys() - {"simulator"}
+
+
+def test_every_argument_has_a_text_and_is_used(description: Call) -> None:
+    arguments = _actions(description, "DeclareLaunchArgument")
+    assert all(argument.kwargs["description"] for argument in arguments)
+    source = LAUNCH.read_text()
+    assert [name for (name,) in (argument.args for argument in arguments) if f'value["{name}"]' not in source] == []
