@@ -70,7 +70,7 @@ class _Reader:
     def __init__(self, text: str | bytes) -> None:
         self.data = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
         self.parser = expat.ParserCreate("utf-8" if isinstance(text, str) else None)
-        self.parser.buffer_text = True
+        self.parser.buffer_text = False  # so that the place of a text is that of its first character
         self.parser.StartElementHandler = self.start
         self.parser.EndElementHandler = self.end
         self.parser.CharacterDataHandler = self.characters

@@ -15,7 +15,7 @@ from aseba_vm.recursion import Task
 from aseba_vm.stream import TokenStream
 from aseba_vm.symbols import Symbols
 from aseba_vm.tree import Access, Binary, Expression, Listing, Number, Subscript, Unary
-from aseba_vm.vectors import first_element
+from aseba_vm.vectors import first_constant
 
 _OPERATORS: Mapping[str, int] = {
     symbol: power
@@ -140,7 +140,7 @@ def literal(token: Token, value: int) -> Number:
 
 def constant_value(expression: Expression, pos: SourcePos) -> int:
     """Return the value of a constant expression (language spec, section 9.3). Raises CompileError."""
-    simple = simplify(first_element(expression))
+    simple = simplify(first_constant(expression))
     if not isinstance(simple, Number):
         raise CompileError("not-constant", (), pos)
     return simple.value
@@ -149,7 +149,7 @@ def constant_value(expression: Expression, pos: SourcePos) -> int:
 def _attempt(expression: Expression) -> tuple[int | None, CompileError | None]:
     """Return the value of a constant index, or None and what went wrong, if anything did."""
     try:
-        simple = simplify(first_element(expression))
+        simple = simplify(first_constant(expression))
     except CompileError as error:
         return None, error
     return (simple.value if isinstance(simple, Number) else None), None

@@ -28,15 +28,14 @@ SYMBOLS = (
 )
 
 #: Own limit: longer programs fit no node and would only keep the caller waiting.
-MAX_TOKENS = 100_000
+MAX_TOKENS = 32_768
 
 _LARGEST = 2**63 - 1
 _SHIFTS = frozenset(("<<", ">>", "<<=", ">>="))
 
 _TOKEN = re.compile(
     rf"(?P<word>[{LETTER_OR_DIGIT}_][{LETTER_OR_DIGIT}_.]*)"
-    r"|(?P<space>[ \t]+)"
-    r"|(?P<end>[\r\n])"
+    r"|(?P<space>[ \t\r\n]+)"
     r"|(?P<block>\#\*)"
     r"|(?P<comment>\#[^\r\n]*[\r\n]?)"
     rf"|(?P<symbol>{'|'.join(map(re.escape, SYMBOLS))})"
@@ -86,10 +85,11 @@ def tokenise(text: str) -> tuple[Token, ...]:
             if symbol in _SHIFTS:
                 pos = SourcePos(pos.offset + 1, row, pos.col + 1)
             tokens.append(Token(symbol, pos))
-        elif kind == "end":
-            base = offset
-            if found.group() == "\n":
-                row += 1
+        elif kind == "space":
+            row += text.count("\n", pos.offset, offset)
+            end = max(text.rfind("\n", pos.offset, offset), text.rfind("\r", pos.offset, offset))
+            if end >= 0:
+                base = end + 1
         elif kind == "comment":
             comment = found.group()
             tabs = 3 * comment.count("\t")

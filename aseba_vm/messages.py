@@ -95,6 +95,9 @@ TOKENS: Mapping[str, str] = {
 
 VALUED_TOKENS: Mapping[str, str] = {"identifier": "name '{0}'", "integer": "number {0}"}
 
+_LONGEST = 60
+"""Letters of a name that are shown; the rest of a longer one is cut."""
+
 
 def wording(kind: str, arguments: Sequence[object], messages: Mapping[str, str] = MESSAGES) -> str:
     """Return the sentence for an error or a warning; an unknown kind is its own sentence."""
@@ -102,6 +105,7 @@ def wording(kind: str, arguments: Sequence[object], messages: Mapping[str, str] 
     if template is None:
         return " ".join([kind, *map(str, arguments)])
     words: dict[str, str] = {}
+    arguments = [_shortened(argument) for argument in arguments]
     for index, argument in enumerate(arguments):
         if isinstance(argument, tuple):
             words[f"l{index}"] = ", ".join(map(_token, argument))
@@ -109,6 +113,12 @@ def wording(kind: str, arguments: Sequence[object], messages: Mapping[str, str] 
         else:
             words[f"t{index}"] = _token(argument)
     return template.format(*arguments, **words)
+
+
+def _shortened(argument: object) -> object:
+    if isinstance(argument, tuple):
+        return tuple(map(_shortened, argument))
+    return f"{argument[:_LONGEST]}…" if isinstance(argument, str) and len(argument) > _LONGEST else argument
 
 
 def _token(kind: object) -> str:

@@ -28,13 +28,17 @@ def suggestion(name: str, known: Iterable[str]) -> str | None:
 
 
 def _distance(one: str, two: str) -> int:
-    """Levenshtein distance, or anything above the maximum as soon as that is certain."""
-    previous = list(range(len(two) + 1))
+    """Levenshtein distance, or more than the maximum if it is: only a band around the diagonal can matter."""
+    far = _MAX_DISTANCE + 1
+    previous = {column: column for column in range(far)}
     for row, left in enumerate(one, start=1):
-        current = [row]
-        for column, right in enumerate(two, start=1):
-            current.append(min(previous[column] + 1, current[-1] + 1, previous[column - 1] + (left != right)))
-        if min(current) > _MAX_DISTANCE:
-            return _MAX_DISTANCE + 1
+        current: dict[int, int] = {}
+        for column in range(max(row - _MAX_DISTANCE, 0), min(row + _MAX_DISTANCE, len(two)) + 1):
+            best = min(previous.get(column, far), current.get(column - 1, far)) + 1
+            if column > 0:
+                best = min(best, previous.get(column - 1, far) + (left != two[column - 1]))
+            current[column] = best
+        if min(current.values(), default=far) >= far:
+            return far
         previous = current
-    return previous[-1]
+    return previous.get(len(two), far)

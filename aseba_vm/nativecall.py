@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 from aseba_vm.outbox import NativeCalled
@@ -49,6 +50,36 @@ class Machine(Protocol):
     node_id: int
 
 
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """A native ready to be called: how many words it pops, and for each parameter its size.
+
+    A size that is not fixed is minus its place among the words popped.
+    """
+
+    native: NativeFunction
+    count: int
+    sizes: tuple[int, ...]
+
+    @classmethod
+    def of(cls, native: NativeFunction) -> Signature:
+        """Derive the signature from the declaration."""
+        count = len(native.parameters)
+        places: dict[int, int] = {}
+        for place, index in enumerate(native.free_sizes, start=count):
+            places[_size_key(native, index)] = place
+        sizes = tuple(
+            parameter.size if parameter.size > 0 else -places[_size_key(native, index)]
+            for index, parameter in enumerate(native.parameters)
+        )
+        return cls(native, count + len(places), sizes)
+
+
+def _size_key(native: NativeFunction, index: int) -> int:
+    """What parameters of one size have in common: the template, or the parameter itself."""
+    return native.parameters[index].size or index + 1
+
+
 class NativeCall:
     """One call: address and size of each argument, and access to the words.
 
@@ -57,22 +88,14 @@ class NativeCall:
 
     __slots__ = ("addresses", "faults", "machine", "memory", "native", "sizes")
 
-    def __init__(self, machine: Machine, native: NativeFunction, popped: Sequence[int]) -> None:
+    def __init__(self, machine: Machine, signature: Signature, popped: Sequence[int]) -> None:
         """``popped`` are the words of the stack from the top: addresses, then sizes in list order."""
         self.machine = machine
         self.memory = machine.variables
-        self.native = native
+        self.native = signature.native
         self.faults: list[NativeFault] = []
-        count = len(native.parameters)
-        self.addresses = tuple(word & 0xFFFF for word in popped[:count])
-        free = {}
-        for index, word in zip(native.free_sizes, popped[count:], strict=True):
-            declared = native.parameters[index].size
-            free[declared or -0x10000 - index] = word & 0xFFFF
-        self.sizes = tuple(
-            parameter.size if parameter.size > 0 else free[parameter.size or -0x10000 - index]
-            for index, parameter in enumerate(native.parameters)
-        )
+        self.addresses = tuple([word & 0xFFFF for word in popped[: len(signature.sizes)]])
+        self.sizes = tuple([size if size > 0 else popped[-size] & 0xFFFF for size in signature.sizes])
 
     @property
     def is_inside_memory(self) -> bool:

@@ -42,11 +42,6 @@ class NativeFunction:
     description: str = ""
 
     @property
-    def argument_count(self) -> int:
-        """Words that the native pops: one address for each parameter, one size for each free size."""
-        return len(self.parameters) + len(self.free_sizes)
-
-    @property
     def free_sizes(self) -> tuple[int, ...]:
         """For each size pushed, in list order, the index of a parameter that has it (VM spec, section 6)."""
         free = [index for index, parameter in enumerate(self.parameters) if parameter.size == 0]

@@ -84,12 +84,21 @@ def out_of_bounds(access: Access) -> CompileError | None:
 
 def elements(expression: Expression, count: int) -> list[Scalar]:
     """Return the first ``count`` elements as scalar expressions, or fewer if there are fewer."""
-    return run(_elements(expression, count))
+    return run(_elements(expression, count, False))
 
 
 def first_element(expression: Expression) -> Expression:
     """Return element 0. Raises CompileError if it does not exist."""
     return needed(elements(expression, 1)[0])
+
+
+def first_constant(expression: Expression) -> Expression:
+    """Return element 0 with a word that is never constant in place of each element at a computed index.
+
+    Those indexes were evaluated when they were read; doing it again at each level would take quadratic time.
+    Raises CompileError if the element does not exist or one of the indexes could not be evaluated.
+    """
+    return needed(run(_elements(expression, 1, True))[0])
 
 
 def needed(scalar: Scalar) -> Expression:
@@ -99,7 +108,7 @@ def needed(scalar: Scalar) -> Expression:
     return scalar
 
 
-def _elements(expression: Expression, count: int) -> Task[list[Scalar]]:
+def _elements(expression: Expression, count: int, is_opaque: bool) -> Task[list[Scalar]]:
     match expression:
         case Access(variable, first, last, pos):
             error = out_of_bounds(expression)
@@ -107,24 +116,26 @@ def _elements(expression: Expression, count: int) -> Task[list[Scalar]]:
                 return [Missing(error)] * min(count, last - first + 1)
             end = min(last + 1, variable.size, first + count)
             return [Word(variable.address + index, pos) for index in range(first, end)]
-        case Subscript(variable, index, _, pos):
+        case Subscript(variable, index, fault, pos):
             if isinstance(index, Listing):
                 total = yield _size(index)
                 return [Missing(CompileError("illegal-index" if total > 2 else "list-as-index", (), pos))]
-            first_index: list[Scalar] = yield _elements(index, 1)
+            if is_opaque:
+                return [Word(variable.address, pos) if fault is None else Missing(fault)]
+            first_index: list[Scalar] = yield _elements(index, 1, False)
             inner = first_index[0]
             return [inner if isinstance(inner, Missing) else Element(variable, inner, pos)]
         case Unary(operator, operand, pos):
-            operands: list[Scalar] = yield _elements(operand, count)
+            operands: list[Scalar] = yield _elements(operand, count, is_opaque)
             return [item if isinstance(item, Missing) else Unary(operator, item, pos) for item in operands]
         case Binary(operator, left, right, pos):
-            lefts: list[Scalar] = yield _elements(left, count)
-            rights: list[Scalar] = yield _elements(right, count)
+            lefts: list[Scalar] = yield _elements(left, count, is_opaque)
+            rights: list[Scalar] = yield _elements(right, count, is_opaque)
             return [_paired(operator, one, two, pos) for one, two in zip(lefts, rights, strict=False)]
         case Listing(items):
             gathered: list[Scalar] = []
             for item in items:
-                gathered += yield _elements(item, count - len(gathered))
+                gathered += yield _elements(item, count - len(gathered), is_opaque)
                 if len(gathered) >= count:
                     break
             return gathered

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from aseba_vm.bytecode import LENGTH, WAS_TRUE, Op
 from aseba_vm.compiler import Program
-from aseba_vm.nativecall import DequeFault, DivisionFault, Native, NativeCall, NativeFault, wrap
+from aseba_vm.nativecall import DequeFault, DivisionFault, Native, NativeCall, NativeFault, Signature, wrap
 from aseba_vm.natives import NATIVES
 from aseba_vm.operations import (
     BAD,
@@ -99,7 +99,7 @@ class VirtualMachine:
         self._on_reset = on_reset
         self._kills_long_events = kills_long_events
         functions = {**NATIVES, **(natives or {})}
-        self._natives = [(native, functions.get(native.name)) for native in target.natives]
+        self._natives = [(Signature.of(native), functions.get(native.name)) for native in target.natives]
 
     # -- state
 
@@ -432,13 +432,13 @@ class VirtualMachine:
         """Call a native; return why it could not be, or an empty text, and the new index of the stack."""
         if number >= len(self._natives):
             return "unknown-native", sp
-        native, function = self._natives[number]
-        count = native.argument_count
+        signature, function = self._natives[number]
+        count = signature.count
         if sp + 1 < count:
             return "stack-underflow", sp
         popped = self.stack[sp - count + 1 : sp + 1][::-1]
         sp -= count
-        call = NativeCall(self, native, popped)
+        call = NativeCall(self, signature, popped)
         if not call.is_inside_memory:
             return "variable-out-of-range", sp
         if function is None:
