@@ -10,6 +10,7 @@ import pytest
 from tests.sim.builders import FLOOR, ROBOT, box, enki, enki_world, make, pose_close, run, send
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
 from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.physics import Physics
 from thymio_sim_ros.sim.world import World
 
 MOTION = [(family, entry) for family, entries in enki("motion").items() for entry in entries]
@@ -150,3 +151,39 @@ def test_a_moved_robot_is_where_it_was_put_at_rest_and_touches_nothing() -> None
     assert pose_close(world.robots["thymio"].pose, Pose(-0.5, 0.25, 1.0), 1e-5)
     assert step.contacts == ()
     assert world.robots["thymio"].twist.linear_m_s == pytest.approx(0.0, abs=1e-4)
+
+
+def test_gliding_is_what_the_engine_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    def go() -> list[Pose]:
+        world = World(make([FLOOR, box(0.5, 0.0, 0.02, 1.0)]), seed=2)
+        poses = []
+        for tick in range(1500):
+            if tick % 300 == 0:
+                send(world, MotorTargets(300 - tick // 3, 200))
+            world.step()
+            poses.append(world.robots["thymio"].pose)
+        return poses
+
+    gliding = go()
+    monkeypatch.setattr(Physics, "_count_quiet_ticks", lambda self: 0)
+    for glided, stepped in zip(gliding, go(), strict=True):
+        assert pose_close(glided, stepped, 1e-9)
+
+
+def test_a_gliding_robot_that_is_moved_to_a_wall_stops_at_it() -> None:
+    world = quiet({**box(1.0, 0.0, 0.02, 1.0), "name": "wall"})
+    run(world, 1.0)
+    send(world, MoveRobot(0.9, 0.0, 0.0))
+    send(world, MotorTargets(500, 500))
+    steps = run(world, 1.0)
+    assert [contact.other for contact in steps[-1].contacts] == ["wall"]
+    assert world.robots["thymio"].pose.x_m == pytest.approx(0.91, abs=0.001)
+
+
+def test_two_gliding_robots_meet() -> None:
+    world = quiet(robots=(ROBOT, {**ROBOT, "name": "other", "x_m": 1.0, "yaw_rad": math.pi}))
+    send(world, MotorTargets(500, 500))
+    world.post("other", MotorTargets(500, 500))
+    contacts = [contact for step in run(world, 3.0) for contact in step.contacts]
+    assert contacts[0].is_new
+    assert world.robots["thymio"].pose.x_m == pytest.approx(0.42, abs=0.01)

@@ -4,7 +4,8 @@ Robots are dynamic bodies. A free robot has the speed of its wheels; its velocit
 middle of the sub-step, so that its path follows arcs to the third order. pymunk moves bodies first and solves
 contacts and forces afterwards; a robot that touches something is therefore pushed by a force, which that
 solution takes into account, and which is small enough that walls and heavy things stop it. Contacts are without
-bounce and without friction along the wall (thymio-robot.md section 11).
+bounce and without friction along the wall (thymio-robot.md section 11). While nothing is in reach, the engine rests
+and the robots glide by the same sums.
 """
 
 from __future__ import annotations
@@ -32,6 +33,11 @@ _MOMENT_KG_M2 = 1.0
 """Far above the real one: wheels hold the heading of a robot that hits a wall (thymio-robot.md section 11)."""
 _PUSH_N_S_M = thymio2.DRIVE_FORCE_N / thymio2.MAX_SPEED_M_S
 """Force for each m/s that a robot in contact lacks; wheels at rest resist a push in the same way."""
+_LONGEST_WAY_M = thymio2.MAX_SPEED_M_S * TICK_NS * 1e-9
+_SAFE_M = 0.005
+_LOOK_ROUND_TICKS = 10
+_MOST_GLIDING = 8
+"""With more robots, looking round costs more than the engine."""
 _ROBOT, _SOLID = 1, 2
 _HULL = thymio2.hull()
 _HULL_REACH_M = thymio2.HULL_RADIUS_M
@@ -107,6 +113,26 @@ class RobotBody:
         if body.space is not None:
             body.space.reindex_shapes_for_body(body)
 
+    def glide(self) -> None:
+        """A tick without the engine, for when nothing can be touched; the same sums in the same order."""
+        left, right = self._driven
+        self.speed_m_s = speed = (left + right) / 2
+        self.spin_rad_s = spin = (right - left) / thymio2.WHEEL_TRACK_M
+        self._is_free = True
+        x_m, y_m, angle = self.pose.x_m, self.pose.y_m, self.pose.yaw_rad
+        for _ in range(SUB_STEPS):
+            heading = angle + spin / 2 * _DT
+            x_m += speed * math.cos(heading) * _DT
+            y_m += speed * math.sin(heading) * _DT
+            angle += spin * _DT
+        self._angle = angle
+        self.pose = Pose(x_m, y_m, angle)
+
+    def wake(self) -> None:
+        """Hand the pose over to the engine after gliding."""
+        self._body.position = (self.pose.x_m, self.pose.y_m)
+        self._body.angle = self._angle
+
     def begin_tick(self) -> None:
         """Forget what the last tick covered; contacts are no longer new."""
         self._covered = (0.0, 0.0)
@@ -164,7 +190,7 @@ class RobotBody:
 
 
 class Physics:
-    """The bodies of a world. Invariant: only `step` and `RobotBody.place` move them."""
+    """The bodies of a world. Invariant: only `step` and `place` move them."""
 
     def __init__(self, solids: Iterable[Solid]) -> None:
         self._space = pymunk.Space()
@@ -173,6 +199,8 @@ class Physics:
         self._robots: list[RobotBody] = []
         self._by_shape: dict[pymunk.Shape, RobotBody] = {}
         self._static: list[tuple[float, float, float, float, Obstacle]] = []
+        self._quiet_ticks = 0
+        self._engine_ticks = 0
         for solid in solids:
             self._add_solid(solid)
         for other in (_ROBOT, _SOLID):
@@ -190,6 +218,16 @@ class Physics:
     def step(self) -> tuple[Contact, ...]:
         """One tick; the contacts at its end, by robot and in the order in which they began."""
         robots = self._robots
+        if self._quiet_ticks > 0:
+            self._quiet_ticks -= 1
+            for robot in robots:
+                robot.glide()
+            if self._quiet_ticks == 0:
+                self._quiet_ticks = self._count_quiet_ticks()
+                if self._quiet_ticks == 0:
+                    for robot in robots:
+                        robot.wake()
+            return ()
         for robot in robots:
             robot.begin_tick()
         for earlier in range(SUB_STEPS):
@@ -200,7 +238,18 @@ class Physics:
                 robot.settle(earlier)
         for robot in robots:
             robot.end_tick()
+        self._engine_ticks += 1
+        if self._engine_ticks % _LOOK_ROUND_TICKS == 0:
+            self._quiet_ticks = self._count_quiet_ticks()
         return tuple(contact for robot in robots for contact in robot.touching.values())
+
+    def place(self, robot: RobotBody, pose: Pose) -> None:
+        """Put a robot somewhere, at rest."""
+        if self._quiet_ticks > 0:
+            self._quiet_ticks = 0
+            for other in self._robots:
+                other.wake()
+        robot.place(pose)
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
         """What a robot's rays may meet within `reach_m` of its origin, at least `height_m` high."""
@@ -220,6 +269,20 @@ class Physics:
                 if other is not robot and math.hypot(other.pose.x_m - x, other.pose.y_m - y) <= limit
             )
         return Surroundings(near)
+
+    def _count_quiet_ticks(self) -> int:
+        """For how many ticks no robot can reach anything, however it drives."""
+        if len(self._robots) > _MOST_GLIDING or any(robot.touching for robot in self._robots):
+            return 0
+        free_m = math.inf
+        for index, robot in enumerate(self._robots):
+            x, y = robot.pose.x_m, robot.pose.y_m
+            for left, bottom, right, top, _ in self._static:
+                free_m = min(free_m, math.hypot(max(left - x, 0.0, x - right), max(bottom - y, 0.0, y - top)))
+            for other in self._robots[:index]:
+                free_m = min(free_m, (math.hypot(other.pose.x_m - x, other.pose.y_m - y) - _HULL_REACH_M) / 2)
+        ticks = (free_m - _HULL_REACH_M - _SAFE_M) / _LONGEST_WAY_M
+        return max(0, int(min(ticks, _LOOK_ROUND_TICKS * 10)))
 
     def _add_solid(self, solid: Solid) -> None:
         obstacle = obstacle_of(solid)

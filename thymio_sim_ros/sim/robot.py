@@ -72,7 +72,7 @@ class _View:
         return self._robot.state(kind)
 
     def place(self, pose: Pose) -> None:
-        self._robot.body.place(pose)
+        self._world.physics.place(self._robot.body, pose)
 
 
 class Robot:
