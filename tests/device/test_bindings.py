@@ -1,0 +1,58 @@
+"""Layout and bindings follow from firmware 14 and from what the plug-ins declare."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from aseba_vm import TargetDescription
+from thymio_sim_ros.device import bindings
+from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.sim.commands import MotorTargets, SetLeds
+from thymio_sim_ros.sim.sensors import all_sensors
+
+FIRMWARE_14 = Path(__file__).parents[1] / "data" / "device" / "thymio2.json"
+
+
+def test_the_layout_is_that_of_firmware_14():
+    reference = TargetDescription.from_data(json.loads(FIRMWARE_14.read_text()))
+    ours = target()
+    assert [(v.name, v.size) for v in ours.variables] == [(v.name, v.size) for v in reference.variables]
+    assert [e.name for e in ours.local_events] == [e.name for e in reference.local_events]
+    assert [n.name for n in ours.natives] == [n.name for n in reference.natives]
+    assert [[p.size for p in n.parameters] for n in ours.natives] == [
+        [p.size for p in n.parameters] for n in reference.natives
+    ]
+    sizes = (ours.variables_size, ours.bytecode_size, ours.stack_size)
+    assert sizes == (reference.variables_size, reference.bytecode_size, reference.stack_size)
+
+
+def test_every_sensor_that_aseba_sees_is_bound():
+    assert bindings.sensor_names() == ("buttons", "ground", "motor", "proximity")
+    assert bindings.sensor_names() == tuple(sensor.name for sensor in all_sensors() if sensor.aseba.variables)
+
+
+def test_proximity_words_go_to_prox_horizontal_and_raise_prox():
+    binding = bindings.sensors()["proximity"]
+    (slot,) = binding.slots
+    assert (slot.address, slot.size) == target().addresses["prox.horizontal"]
+    assert target().local_events[binding.event].name == "prox"
+
+
+def test_buttons_raise_an_event_of_their_own_when_they_change():
+    binding = bindings.sensors()["buttons"]
+    names = [target().local_events[slot.edge].name for slot in binding.slots]
+    assert names == ["button.backward", "button.left", "button.center", "button.forward", "button.right"]
+    assert target().local_events[binding.event].name == "buttons"
+
+
+def test_motor_targets_and_lights_are_outputs():
+    commands = [output.command([1] * sum(slot.size for slot in output.slots)) for output in bindings.outputs()]
+    assert MotorTargets(1, 1) in commands
+    assert SetLeds("circle", (1,) * 8) in commands
+
+
+def test_natives_of_the_lights_exist_in_the_firmware():
+    firmware = {native.name: len(native.parameters) for native in target().natives}
+    for name, native in bindings.natives().items():
+        assert firmware[name] == len(native.parameters)

@@ -1,0 +1,221 @@
+"""The Aseba Thymio: readings in, commands and events out, run control, faults."""
+
+from __future__ import annotations
+
+import pytest
+
+from thymio_sim_ros.device.device import AsebaDevice, DeviceStatus
+from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.sim.commands import LED_GROUPS, MotorTargets, SetLeds
+
+BUDGET = 5000
+NO_BUTTON = (0, 0, 0, 0, 0)
+CENTER = (0, 0, 1, 0, 0)
+NEAR = (0, 0, 4000, 0, 0, 0, 0)
+GROUND = (0, 0, 900, 800, 900, 800)
+
+
+def device_with(source, events=()):
+    """A device that has run the beginning of a program, its first commands taken."""
+    lines = "".join(f'<event size="{size}" name="{name}"/>' for name, size in events)
+    code = source.replace("<", "&lt;")
+    text = f'<network>{lines}<node name="thymio-II">{code}</node></network>'
+    device = AsebaDevice()
+    device.load(load_program(text, "test.aesl"))
+    device.run(BUDGET)
+    device.take_commands()
+    return device
+
+
+def test_a_new_program_darkens_the_lights_and_stops_the_wheels():
+    device = AsebaDevice()
+    device.load(load_program("", "none"))
+    commands = device.take_commands()
+    assert MotorTargets(0, 0) in commands
+    groups = [command.group for command in commands if isinstance(command, SetLeds)]
+    assert sorted(groups) == sorted(LED_GROUPS)
+
+
+def test_the_identity_of_the_robot_survives_a_reset():
+    device = device_with("_id = 99")
+    device.reset()
+    assert device.get_variable("_id") == (1,)
+    assert device.get_variable("_productId") == (8,)
+    assert device.get_variable("_fwversion") == (14, 1)
+
+
+def test_targets_become_one_command_when_they_change():
+    device = device_with("onevent prox\nmotor.left.target = 100\nmotor.right.target = -50")
+    for _ in range(3):
+        device.feed("proximity", NEAR)
+        device.run(BUDGET)
+    assert device.take_commands() == [MotorTargets(100, -50)]
+    assert device.take_commands() == []
+
+
+def test_prox_comes_once_with_ground_and_horizontal_complete():
+    device = device_with(
+        "var seen[3]\nvar n = 0\nonevent prox\nn = n + 1\nseen = [n, prox.horizontal[2], prox.ground.delta[1]]"
+    )
+    device.feed("ground", GROUND)
+    device.run(BUDGET)
+    assert device.get_variable("n") == (0,)
+    device.feed("proximity", NEAR)
+    device.run(BUDGET)
+    assert device.get_variable("seen") == (1, 4000, 800)
+
+
+def test_events_that_wait_coalesce_and_the_lowest_number_comes_first():
+    device = device_with(
+        "var order[3]\nvar n = 0\nonevent motor\norder[n] = 3\nn = n + 1\nonevent prox\norder[n] = 2\nn = n + 1\n"
+        "onevent button.center\norder[n] = 1\nn = n + 1"
+    )
+    for _ in range(4):
+        device.feed("motor", (1, 1, 0, 0))
+        device.feed("proximity", NEAR)
+    device.feed("buttons", CENTER)
+    device.run(BUDGET)
+    assert device.get_variable("order") == (1, 2, 3)
+
+
+def test_a_button_raises_its_event_when_it_changes_only():
+    device = device_with("var n = 0\nonevent button.center\nn = n + 1")
+    for words in (NO_BUTTON, CENTER, CENTER, CENTER, NO_BUTTON, NO_BUTTON):
+        device.feed("buttons", words)
+        device.run(BUDGET)
+    assert device.get_variable("n") == (2,)
+
+
+def test_natives_of_the_lights_become_commands_in_order():
+    device = device_with("onevent prox\ncall leds.top(32, 0, 99)\ncall leds.prox.v(1, 2)\ncall leds.top(0, -1, 5)")
+    device.feed("proximity", NEAR)
+    device.run(BUDGET)
+    assert device.take_commands() == [
+        SetLeds("top", (32, 0, 32)),
+        SetLeds("ground", (1, 2)),
+        SetLeds("top", (0, 32, 5)),
+    ]
+    assert device.get_variable("leds.top") == (0, -1, 5)
+
+
+def test_variables_of_the_lights_work_like_their_natives():
+    device = device_with("onevent prox\nleds.circle[3] = 20")
+    device.feed("proximity", NEAR)
+    device.run(BUDGET)
+    assert device.take_commands() == [SetLeds("circle", (0, 0, 0, 20, 0, 0, 0, 0))]
+
+
+def test_timers_raise_their_events_in_simulated_time():
+    device = device_with("var n[2]\ntimer.period = [100, 250]\nonevent timer0\nn[0]++\nonevent timer1\nn[1]++")
+    for tick in range(6001):
+        device.advance(tick * 10_000_000)
+        device.run(BUDGET)
+    assert device.get_variable("n") == (600, 240)
+
+
+def test_emitted_events_are_taken_in_order():
+    device = device_with(
+        "onevent prox\nemit two [3, 4]\nemit none\nemit two prox.horizontal[1:2]", [("none", 0), ("two", 2)]
+    )
+    device.feed("proximity", NEAR)
+    device.run(BUDGET)
+    assert [(event.name, event.args) for event in device.take_events()] == [
+        ("two", (3, 4)),
+        ("none", ()),
+        ("two", (0, 4000)),
+    ]
+    assert device.take_events() == []
+
+
+def test_a_received_event_brings_source_and_arguments():
+    device = device_with("var got[3]\nonevent two\ngot = [event.source, event.args[0:1]]", [("two", 2)])
+    assert device.declares("two")
+    assert not device.declares("three")
+    device.receive_event("two", (7, -8), source=5)
+    device.run(BUDGET)
+    assert device.get_variable("got") == (5, 7, -8)
+    with pytest.raises(KeyError):
+        device.receive_event("three", ())
+
+
+def test_a_fault_stops_machine_and_wheels_and_names_the_line():
+    device = device_with("var t[2]\nvar i = 0\nmotor.left.target = 200\nonevent prox\ni = 5\nt[i] = 1")
+    device.feed("proximity", NEAR)
+    device.run(BUDGET)
+    assert device.status == DeviceStatus("fault", "prox", 6, "index 5 is outside an array of 2")
+    assert device.take_commands() == [MotorTargets(0, 0)]
+    device.feed("proximity", NEAR)
+    assert not device.is_busy
+
+
+def test_a_long_handler_goes_on_in_the_next_turn():
+    device = device_with("var i\nvar n\nonevent prox\nn = 0\nfor i in 1:2000 do\nn = n + 1\nend")
+    device.feed("proximity", NEAR)
+    device.run(1000)
+    assert device.is_busy
+    assert 0 < device.get_variable("n")[0] < 2000
+    turns = 0
+    while device.is_busy:
+        device.run(1000)
+        turns += 1
+    assert device.get_variable("n") == (2000,)
+    assert turns > 10
+
+
+def test_pause_step_and_resume():
+    device = device_with("var n = 0\nonevent prox\nn = 1\nn = 2")
+    device.pause()
+    assert device.status.state == "paused"
+    device.feed("proximity", NEAR)
+    device.run(BUDGET)
+    assert device.get_variable("n") == (0,)
+    for _ in range(2):
+        device.step()
+    assert device.get_variable("n") == (1,)
+    device.resume()
+    device.run(BUDGET)
+    assert device.get_variable("n") == (2,)
+    assert device.status.state == "running"
+
+
+def test_stop_halts_and_reset_begins_anew():
+    device = device_with("var n = 5\nmotor.left.target = 100\nonevent prox\nn = n + 1")
+    device.stop()
+    assert device.take_commands() == [MotorTargets(0, 0)]
+    assert device.status.state == "stopped"
+    device.set_variable("n", (40,))
+    device.reset()
+    device.resume()
+    device.run(BUDGET)
+    assert device.get_variable("n") == (5,)
+    assert MotorTargets(100, 0) in device.take_commands()
+
+
+def test_variables_are_read_and_written_whole():
+    device = device_with("var a[3] = [1, 2, 3]")
+    assert device.get_variable("a") == (1, 2, 3)
+    device.set_variable("a", (-32768, 0, 32767))
+    assert device.get_variable("a") == (-32768, 0, 32767)
+    with pytest.raises(ValueError, match="2 words found, expected 3"):
+        device.set_variable("a", (1, 2))
+    with pytest.raises(ValueError, match="40000"):
+        device.set_variable("a", (1, 2, 40000))
+    with pytest.raises(KeyError):
+        device.get_variable("b")
+
+
+def test_words_of_the_wrong_number_are_refused():
+    with pytest.raises(ValueError, match="3 words found, expected 7"):
+        AsebaDevice().feed("proximity", (1, 2, 3))
+
+
+def test_what_is_not_modelled_yet_is_said_once():
+    device = device_with("var status = 5\nonevent prox\ncall sound.freq(440, 30)\ncall sd.open(1, status)")
+    for _ in range(2):
+        device.feed("proximity", NEAR)
+        device.run(BUDGET)
+    assert device.take_notices() == [
+        "sound.freq has no effect in this simulator yet",
+        "sd.open has no effect in this simulator yet",
+    ]
+    assert device.get_variable("status") == (-1,)

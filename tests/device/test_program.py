@@ -1,0 +1,67 @@
+"""From a user's text to a program, or an error with its place in that text."""
+
+from __future__ import annotations
+
+import pytest
+
+from thymio_sim_ros.device.program import MAX_CHARACTERS, ProgramError, load_program
+
+AESL = """\
+<!DOCTYPE aesl-source>
+<network>
+<event size="1" name="ping"/>
+<constant value="7" name="SEVEN"/>
+<node nodeId="1" name="thymio-II">{code}</node>
+</network>
+"""
+
+
+def test_bare_text_is_a_program():
+    program = load_program("var a = 5", "a.txt")
+    assert program.program.addresses["a"][1] == 1
+    assert program.events == ()
+
+
+def test_an_aesl_file_brings_events_and_constants():
+    program = load_program(AESL.format(code="var a = SEVEN\nonevent ping\nemit ping a"), "a.aesl")
+    assert program.events == (("ping", 1),)
+    assert program.constants == (("SEVEN", 7),)
+
+
+def test_a_byte_order_mark_does_no_harm():
+    assert load_program("\ufeffvar a", "a.txt").program.addresses["a"]
+    assert load_program("\ufeff" + AESL.format(code="var a"), "a.aesl").program.addresses["a"]
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "column", "word"),
+    [
+        ("var a\na = bb", 2, 5, "bb"),
+        (AESL.format(code="a = 1"), 5, 35, "a"),
+        (AESL.format(code="var a\n  b = 1"), 6, 3, "b"),
+        (AESL.format(code="var a = 1 &lt;&lt; 2\nvar c = d"), 6, 9, "d"),
+        ("<network><node name='thymio-II'>var a</nodes></network>", 1, 40, "tag"),
+    ],
+)
+def test_errors_have_their_place_in_the_file(text, line, column, word):
+    with pytest.raises(ProgramError) as caught:
+        load_program(text, "my.aesl")
+    error = caught.value
+    assert (error.line, error.column) == (line, column)
+    assert word in error.message
+    assert str(error).startswith(f"my.aesl: line {line}, column {column}: ")
+
+
+def test_a_file_for_another_robot_names_what_it_found():
+    with pytest.raises(ProgramError, match="'e-puck'"):
+        load_program('<network><node name="e-puck">var a</node></network>', "a.aesl")
+
+
+def test_a_program_too_large_for_the_robot_is_refused():
+    with pytest.raises(ProgramError, match="memory"):
+        load_program("var a[600]", "a.txt")
+
+
+def test_a_huge_text_is_refused_at_once():
+    with pytest.raises(ProgramError, match="at most"):
+        load_program("#" * (MAX_CHARACTERS + 1), "a.txt")

@@ -1,0 +1,129 @@
+"""World and devices in lock-step without ROS: laps, repeatability, robots that talk."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+
+from tests.tracks import distance_to, track_points
+from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.loading import load_playground, read_program
+from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.sim import playground as playgrounds
+from thymio_sim_ros.sim.commands import BodyTwist
+
+TALK = """<network><event size="1" name="hello"/><node name="thymio-II">
+var heard[2]
+onevent button.center
+    if button.center == 1 then
+        emit hello 42
+    end
+onevent hello
+    heard = [event.source, event.args[0]]
+</node></network>"""
+
+TWO = json.dumps(
+    {
+        "format": 1,
+        "title": "Two",
+        "shapes": [{"kind": "rectangle", "size_x_m": 2.0, "size_y_m": 2.0, "colour": "#ffffff"}],
+        "robots": [{"name": "anna", "x_m": 0.0, "y_m": 0.5}, {"name": "bert", "x_m": 0.0, "y_m": -0.5}],
+    }
+)
+
+
+def line_runner(seed):
+    return Runner(load_playground("line")[1], read_program("line_follower"), seed=seed)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_line_program_goes_round_twice_without_leaving_the_line(seed):
+    runner = line_runner(seed)
+    robot = runner.world.robots["thymio"]
+    points = track_points("line")
+    middle = (sum(x for x, _ in points) / len(points), sum(y for _, y in points) / len(points))
+    turned, farthest, last = 0.0, 0.0, None
+    while turned < 2 * math.tau:
+        assert runner.now_ns < 120e9
+        runner.run(0.1)
+        angle = math.atan2(robot.pose.y_m - middle[1], robot.pose.x_m - middle[0])
+        turned += 0.0 if last is None else math.remainder(angle - last, math.tau)
+        last = angle
+        farthest = max(farthest, distance_to(points, robot.pose.place((0.072, 0.0))))
+    assert farthest < 0.02
+
+
+def test_the_same_seed_gives_the_same_poses_bit_for_bit():
+    poses = []
+    for seed in (5, 5, 6):
+        runner = line_runner(seed)
+        track = []
+        for _ in range(100):
+            runner.run(0.2)
+            track.append(runner.world.robots["thymio"].pose)
+        poses.append(track)
+    assert poses[0] == poses[1]
+    assert poses[0] != poses[2]
+
+
+def test_reset_repeats_the_run():
+    runner = line_runner(1)
+    runner.run(5.0)
+    first = runner.world.robots["thymio"].pose
+    runner.reset()
+    assert runner.now_ns == 0
+    runner.run(5.0)
+    assert runner.world.robots["thymio"].pose == first
+
+
+def test_robots_hear_each_other_s_events_but_not_their_own():
+    runner = Runner(playgrounds.loads(TWO, "two"), load_program(TALK, "talk.aesl"))
+    runner.press("anna", "center")
+    assert runner.until(lambda: runner.devices["bert"].get_variable("heard") == (1, 42), 1.0)
+    assert runner.devices["anna"].get_variable("heard") == (0, 0)
+
+
+def test_a_program_can_be_given_to_some_robots_only():
+    runner = Runner(playgrounds.loads(TWO, "two"), {"bert": load_program("motor.left.target = 100", "a")})
+    runner.run(1.0)
+    assert runner.world.robots["anna"].pose.yaw_rad == 0.0
+    assert runner.world.robots["bert"].pose.yaw_rad < -0.1
+
+
+def test_a_button_stops_the_line_program_and_lets_it_go_again():
+    runner = line_runner(0)
+    robot = runner.world.robots["thymio"]
+    runner.run(1.0)
+    runner.press("thymio", "center")
+    runner.run(0.3)
+    stopped = robot.pose
+    runner.press("thymio", "center", pressed=False)
+    runner.run(1.0)
+    assert robot.pose == stopped
+    runner.press("thymio", "center")
+    runner.run(1.0)
+    assert robot.pose.x_m > stopped.x_m + 0.05
+
+
+def test_an_event_sets_the_speed_of_the_line_program():
+    runner = line_runner(0)
+    runner.run(1.0)
+    runner.devices["thymio"].receive_event("speed", (9999,))
+    runner.run(0.5)
+    assert runner.devices["thymio"].get_variable("cruise") == (500,)
+
+
+def test_a_ros_command_takes_over_for_its_time():
+    runner = Runner(
+        load_playground("base")[1], load_program("motor.left.target = 100\nmotor.right.target = 100", "a"), noise=False
+    )
+    robot = runner.world.robots["thymio"]
+    runner.run(1.0)
+    before = robot.pose.x_m
+    runner.post("thymio", BodyTwist(-0.1, 0.0, 500_000_000))
+    runner.run(0.51)
+    assert robot.pose.x_m == pytest.approx(before - 0.05, abs=0.002)
+    runner.run(1.0)
+    assert robot.pose.x_m == pytest.approx(before - 0.05 + 0.0332, abs=0.002)
