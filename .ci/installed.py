@@ -18,7 +18,6 @@ from pathlib import Path
 
 import rclpy
 from ament_index_python.packages import get_package_prefix, get_package_share_directory
-from rclpy.context import Context
 from rclpy.node import Node
 
 PACKAGE = "thymio_sim_ros"
@@ -52,9 +51,8 @@ def main() -> int:
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     domain, held = reserve_domain()
     os.environ["ROS_DOMAIN_ID"] = str(domain)
-    context = Context()
-    rclpy.init(args=[], context=context, domain_id=domain)
-    observer = Node("observer", context=context)
+    rclpy.init(args=[], domain_id=domain)
+    observer = Node("observer")
     try:
         for name, (arguments, nodes) in EXECUTABLES.items():
             problem = run(prefix / "lib" / PACKAGE / name, arguments, nodes, observer)
@@ -63,7 +61,7 @@ def main() -> int:
             print(f"{name}: started and ended", flush=True)
     finally:
         observer.destroy_node()
-        context.try_shutdown()
+        rclpy.try_shutdown()
         held.close()
     return 0
 
@@ -100,13 +98,8 @@ def wait_for(nodes: set[str], observer: Node, process: subprocess.Popen[bytes]) 
             return None
         if process.poll() is not None:
             return f"ended with {process.returncode} before its node appeared"
-        rclpy_wait(observer)
+        rclpy.spin_once(observer, timeout_sec=0.1)
     return f"no {', '.join(nodes - set(observer.get_node_names()))} in the graph within {DEADLINE_S} s"
-
-
-def rclpy_wait(observer: Node) -> None:
-    """A short wait that ends with the next event of the observer's own."""
-    rclpy.spin_once(observer, timeout_sec=0.1)
 
 
 def reserve_domain() -> tuple[int, socket.socket]:
