@@ -7,6 +7,7 @@ import { watchKeyboard } from "./keyboard.js";
 import { PANELS } from "./panels/index.js";
 import { Client } from "./protocol/client.js";
 import { SceneView } from "./scene/index.js";
+import { snapshot } from "./state/index.js";
 import { PARAMETERS, splitTopic } from "./state/names.js";
 import { Store } from "./state/store.js";
 
@@ -102,7 +103,7 @@ async function main() {
   // Read-only, for tests: what the page knows, what it has drawn, and where a part is on the screen.
   Object.defineProperty(window, "thymio", {
     value: Object.freeze({
-      state: () => ({ ...store.state, markers: store.state.markers.size }),
+      state: () => snapshot(store.state),
       frames: () => scene.frames,
       /** @param {string} part @param {string} [robot] */
       partPosition: (part, robot) => scene.partPosition(part, robot),

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { INITIAL, locate, programOf, reduce } from "../../web_ui/state/index.js";
+import { INITIAL, locate, programOf, reduce, snapshot } from "../../web_ui/state/index.js";
 import { applyMarkers } from "../../web_ui/state/markers.js";
 import { splitTopic } from "../../web_ui/state/names.js";
 import { captured } from "./support.js";
@@ -105,15 +105,15 @@ test("markers are replaced by namespace and id, and all deleted", () => {
 
 test("a program is on its way, then loaded", () => {
   const sending = after([{ type: "upload", what: "program", name: "a.aesl", text: "x" }]);
-  assert.deepEqual(sending.program, { name: "a.aesl", text: "x", phase: "sending", fault: null });
-  assert.equal(reduce(sending, { type: "uploaded", what: "program", message: null }).program?.phase, "accepted");
+  assert.deepEqual(sending.uploads.program, { name: "a.aesl", text: "x", phase: "sending", fault: null });
+  assert.equal(reduce(sending, { type: "uploaded", what: "program", message: null }).uploads.program?.phase, "accepted");
 });
 
 test("a refused program keeps its text and the place of the fault", () => {
   const { program } = after([
     { type: "upload", what: "program", name: "a.aesl", text: "x" },
-    { type: "uploaded", what: "program", message: "/aseba_runtime.script.source: line 3, column 5: no such variable" },
-  ]);
+    { type: "uploaded", what: "program", message: "/aseba_runtime.script.source: a.aesl: line 3, column 5: no such variable" },
+  ]).uploads;
   assert.deepEqual(program, { name: "a.aesl", text: "x", phase: "refused", fault: { text: "no such variable", line: 3, column: 5 } });
 });
 
@@ -155,4 +155,10 @@ test("another simulation starts from nothing, the same one goes on", () => {
 test("unknown topics and messages change nothing", () => {
   assert.equal(reduce(INITIAL, message("/clock", {})), INITIAL);
   assert.equal(reduce(INITIAL, /** @type {any} */ ({ type: "from the future" })), INITIAL);
+});
+
+test("a snapshot is plain data with the selected robot at hand", () => {
+  const state = after([{ type: "channels", topics: ["/a/ground_truth/odom", "/b/ground_truth/odom"] }, { type: "select", robot: "b" }]);
+  const { robot, program, markers } = JSON.parse(JSON.stringify(snapshot(state)));
+  assert.deepEqual([robot.buttons.center, program, markers], [false, null, 0]);
 });

@@ -94,10 +94,10 @@ export function holdable(element, hold) {
 /**
  * A button that opens a file; the browser's own file field stays hidden behind it.
  *
- * @param {{ label: string, help: string, accept: string, open: (file: File) => void }} options
+ * @param {{ id: string, label: string, help: string, accept: string, open: (file: File) => void }} options
  */
-export function fileButton({ label, help, accept, open }) {
-  const input = h("input", { type: "file", accept, hidden: true, "aria-label": help });
+export function fileButton({ id, label, help, accept, open }) {
+  const input = h("input", { id, type: "file", accept, hidden: true, "aria-label": help });
   input.addEventListener("change", () => {
     const file = input.files?.[0];
     if (file !== undefined) open(file);

@@ -5,12 +5,12 @@ import { fileButton, h, setText } from "./dom.js";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function playgroundPanel({ t, actions, announce }) {
-  const select = h("select", { "aria-label": t("playground.choose") });
+  const select = h("select", { id: "playground-choice", "aria-label": t("playground.choose") });
   select.addEventListener("change", () => actions.loadPlayground(select.value));
   const description = h("p", { class: "description" });
   const fault = h("p", { class: "fault", hidden: true });
   const element = card("playground", t("playground"),
-    h("div", { class: "row" }, select, fileButton({ label: t("playground.open"), help: t("playground.openHelp"), accept: ".json", open: (file) => actions.loadFile(file) })),
+    h("div", { class: "row" }, select, fileButton({ id: "playground-file", label: t("playground.open"), help: t("playground.openHelp"), accept: ".json", open: (file) => actions.loadFile(file) })),
     description,
     fault,
   );
@@ -19,7 +19,8 @@ export function playgroundPanel({ t, actions, announce }) {
   return {
     slot: "side",
     element,
-    render({ playgrounds, simulator, playground }) {
+    render({ playgrounds, simulator, uploads }) {
+      const { playground } = uploads;
       const own = simulator !== null && !playgrounds.some(({ name }) => name === simulator.playground) ? simulator : null;
       const list = JSON.stringify([playgrounds, own?.title]);
       if (list !== listed) {

@@ -22,8 +22,8 @@ export function programPanel({ t, actions, store, announce }) {
   const element = card("program", t("program"),
     h("div", { class: "current" }, name, lamp),
     message,
-    h("div", { class: "row" }, ...verbs.map(({ button }) => button)),
-    h("div", { class: "row" }, fileButton({ label: t("program.open"), help: t("program.openHelp"), accept: ".aesl,.aseba,.txt", open: (file) => actions.loadFile(file) }), h("small", {}, t("program.dropHint"))),
+    h("div", { class: "row verbs" }, ...verbs.map(({ button }) => button)),
+    h("div", { class: "row" }, fileButton({ id: "program-file", label: t("program.open"), help: t("program.openHelp"), accept: ".aesl,.aseba,.txt", open: (file) => actions.loadFile(file) }), h("small", {}, t("program.dropHint"))),
     upload,
   );
   /** @type {import("../state/index.js").Upload | null} */ let shown = null;
@@ -66,7 +66,7 @@ export function programPanel({ t, actions, store, announce }) {
       const news = program === null ? "" : `${program.name}: ${word}`;
       if (news !== told && news !== "") announce(news);
       told = news;
-      showUpload(state.program);
+      showUpload(state.uploads.program);
     },
   };
 }

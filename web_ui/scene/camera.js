@@ -22,7 +22,6 @@ export class Camera {
     this.controls.maxPolarAngle = Math.PI / 2 - 0.03; // never below ground
     this.controls.minDistance = 0.12;
     this.controls.maxDistance = 12;
-    this.controls.zoomToCursor = false;
     this.controls.addEventListener("change", changed);
     this.controls.addEventListener("start", () => (this.touched = true));
     this.changed = changed;

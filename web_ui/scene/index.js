@@ -40,7 +40,7 @@ export class SceneView {
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(SKY);
     this.playground = new PlaygroundModel();
-    const sun = new THREE.DirectionalLight(0xffffff, 1.7);
+    const sun = new THREE.DirectionalLight(0xffffff, 1.95);
     sun.position.set(-1.2, -1.6, 3);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0xb9c4cf, 1.75), sun, this.playground.group);
     this.camera = new Camera(canvas, () => this.invalidate());

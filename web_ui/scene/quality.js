@@ -17,6 +17,8 @@ export class Quality {
     this.level = level;
     /** @type {number[]} */ this.intervals = [];
     /** @type {number | null} */ this.lastMs = null;
+    /** The first window is the page's own start, and no measure. */
+    this.settled = false;
   }
 
   /** The level's settings. */
@@ -31,6 +33,10 @@ export class Quality {
     if (this.intervals.length < WINDOW) return false;
     const mean = this.intervals.reduce((sum, value) => sum + value, 0) / this.intervals.length;
     this.intervals = [];
+    if (!this.settled) {
+      this.settled = true;
+      return false;
+    }
     if (mean <= 1000 / SLOWEST_FPS || this.level === LEVELS.length - 1) return false;
     this.level += 1;
     return true;

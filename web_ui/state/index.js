@@ -16,6 +16,7 @@ import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
  * @property {"sending" | "accepted" | "refused"} phase
  * @property {Fault | null} fault
  */
+/** @typedef {"program" | "playground"} What */
 /** @typedef {{ name: string, title: string, description: string }} PlaygroundInfo */
 /**
  * @typedef {object} Simulator
@@ -41,8 +42,7 @@ import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
  * @property {Readonly<Record<string, Program>>} programs  by namespace of the runtime that says so
  * @property {string} selected     name of the robot the panels show
  * @property {number} timeNs       simulated time
- * @property {Upload | null} program
- * @property {Upload | null} playground
+ * @property {Readonly<{ program: Upload | null, playground: Upload | null }>} uploads
  * @property {Notice[]} notices
  */
 
@@ -58,9 +58,9 @@ import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
  *   | { type: "removeStatus", ids: string[] }
  *   | { type: "fault", what: string }
  *   | { type: "select", robot: string }
- *   | { type: "upload", what: "program" | "playground", name: string, text: string }
- *   | { type: "uploaded", what: "program" | "playground", message: string | null }
- *   | { type: "forget", what: "program" | "playground" }
+ *   | { type: "upload", what: What, name: string, text: string }
+ *   | { type: "uploaded", what: What, message: string | null }
+ *   | { type: "forget", what: What }
  *   | { type: "notice", level: Notice["level"], text: string }
  *   | { type: "dismiss", id: number }} Message
  */
@@ -82,8 +82,7 @@ export const INITIAL = {
   programs: {},
   selected: "",
   timeNs: 0,
-  program: null,
-  playground: null,
+  uploads: { program: null, playground: null },
   notices: [],
 };
 
@@ -121,16 +120,14 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   },
   fault: (state, { what }) => withNotice(state, "error", what),
   select: (state, { robot }) => ({ ...state, selected: robot }),
-  upload: (state, { what, name, text }) => ({ ...state, [what]: { name, text, phase: "sending", fault: null } }),
+  upload: (state, { what, name, text }) => withUpload(state, what, { name, text, phase: "sending", fault: null }),
   uploaded(state, { what, message }) {
-    const upload = state[/** @type {"program" | "playground"} */ (what)];
+    const upload = state.uploads[/** @type {What} */ (what)];
     if (upload === null) return state;
-    return {
-      ...state,
-      [what]: { ...upload, phase: message === null ? "accepted" : "refused", fault: message === null ? null : locate(message) },
-    };
+    const fault = message === null ? null : locate(message, upload.name);
+    return withUpload(state, what, { ...upload, phase: fault === null ? "accepted" : "refused", fault });
   },
-  forget: (state, { what }) => ({ ...state, [what]: null }),
+  forget: (state, { what }) => withUpload(state, what, null),
   notice: (state, { level, text }) => withNotice(state, level, text),
   dismiss: (state, { id }) => ({ ...state, notices: state.notices.filter((notice) => notice.id !== id) }),
 });
@@ -189,14 +186,23 @@ function withNotice(state, level, text) {
   return { ...state, notices: [...state.notices, { id, level, text }].slice(-KEPT_NOTICES) };
 }
 
+/** @param {State} state @param {What} what @param {Upload | null} upload @returns {State} */
+function withUpload(state, what, upload) {
+  return { ...state, uploads: { ...state.uploads, [what]: upload } };
+}
+
+const NODE_AND_PARAMETER = new RegExp(`^(${Object.values(PARAMETERS).join("|").replaceAll(".", "\\.")}):\\s*`);
+
 /**
- * The place and the words of a refusal: "/node.parameter: line 3, column 5: words".
+ * The place and the words of a refusal: "/node.parameter: name: line 3, column 5: words".
  *
  * @param {string} message
+ * @param {string} [name]  of what was refused, which need not be repeated
  * @returns {Fault}
  */
-export function locate(message) {
-  const text = message.replace(new RegExp(`^(${Object.values(PARAMETERS).join("|").replaceAll(".", "\\.")}):\\s*`), "");
+export function locate(message, name = "") {
+  const told = message.replace(NODE_AND_PARAMETER, "");
+  const text = name !== "" && told.startsWith(`${name}:`) ? told.slice(name.length + 1).trim() : told;
   const match = /line (\d+), column (\d+):?\s*/.exec(text);
   if (match === null) return { text, line: null, column: null };
   return { text: text.replace(match[0], ""), line: Number(match[1]), column: Number(match[2]) };
@@ -205,4 +211,9 @@ export function locate(message) {
 /** The program state of the selected robot, else of the runtime they share. @param {State} state */
 export function programOf(state) {
   return state.programs[state.selected] ?? state.programs[""] ?? null;
+}
+
+/** What tests see of the state: plain data, with the selected robot and its program at hand. @param {State} state */
+export function snapshot(state) {
+  return { ...state, markers: state.markers.size, robot: state.robots[state.selected] ?? null, program: programOf(state) };
 }
