@@ -1,6 +1,6 @@
 """What a tick of the world costs, without ROS and without programs: python benchmarks/sim_step.py [--json]
 
-CPU time of one thread, the best of five rounds of 20 simulated seconds. Robots drive curves all the time; `N robots` share
+CPU time of one thread, the best of five rounds of 20 simulated seconds. Robots drive curves all the time; crowds share
 a walled square of 0.36 m² each, with one box for every two of them.
 """
 

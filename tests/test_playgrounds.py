@@ -85,3 +85,14 @@ def test_line_is_black_40_mm_wide_and_never_tighter_than_20_cm() -> None:
     (track,) = (named.shape for named in loaded.shapes if isinstance(named.shape, Track))
     assert (track.closed, track.colour, track.width_m) == (True, "#000000", 0.04)
     assert track.corner_radius_m >= 0.2
+
+
+def test_the_example_of_the_readme_loads() -> None:
+    text = (FOLDER / "README.md").read_text()
+    example = text.split("```json")[1].split("```")[0]
+    assert playground.loads(example, "README.md").title == "My square"
+
+
+def test_the_readme_lists_every_playground() -> None:
+    text = (FOLDER / "README.md").read_text()
+    assert all(f"`{path.name}`" in text for path in SHIPPED)

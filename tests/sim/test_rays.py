@@ -46,6 +46,7 @@ def test_a_fan_tells_the_nearest_thing_of_each_ray() -> None:
 
 def test_nothing_near_is_seen_at_once() -> None:
     assert Surroundings([]).is_empty
+    assert Surroundings([SQUARE]).near(-5.0, 0.0, 2.0).is_empty
     assert Surroundings([SQUARE]).fan(-5.0, 0.0, [(1.0, 0.0)], 2.0) == (math.inf,)
 
 

@@ -104,8 +104,7 @@ class Robot:
                 view = _View(self, shared, Noise(seed, self.name, actuator.name, enabled=noise))
                 self._updates.append((actuator.update, state, view))
         self._sensors = [
-            (sensor, sensor.schedule, _View(self, shared, Noise(seed, self.name, sensor.name, enabled=noise)))
-            for sensor in sensors
+            (sensor, _View(self, shared, Noise(seed, self.name, sensor.name, enabled=noise))) for sensor in sensors
         ]
 
     @property
@@ -137,14 +136,14 @@ class Robot:
         """Count on the wheels what the body has moved."""
         self.wheels.roll(self.body.covered_m_s, dt_s)
 
-    def measure(self, now_ns: int) -> list[tuple[str, str, Reading]]:
-        """The readings of the sensors that are due: (robot, sensor, reading)."""
+    def measure(self, due: Iterable[int]) -> list[tuple[str, str, Reading]]:
+        """The readings of the sensors with these numbers: (robot, sensor, reading)."""
         readings = []
-        for sensor, schedule, view in self._sensors:
-            if schedule.due(now_ns):
-                reading = sensor.measure(view)
-                if reading is not None:
-                    readings.append((self.name, sensor.name, reading))
+        for number in due:
+            sensor, view = self._sensors[number]
+            reading = sensor.measure(view)
+            if reading is not None:
+                readings.append((self.name, sensor.name, reading))
         return readings
 
     def state(self, kind: type[S]) -> S:

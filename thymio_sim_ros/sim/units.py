@@ -10,6 +10,9 @@ import math
 from thymio_sim_ros.sim.commands import LED_FULL
 from thymio_sim_ros.sim.thymio2 import FULL_TARGET, MAX_SPEED_M_S, PROXIMITY_RANGE_M, PWM_LIMIT, PWM_PER_SPEED_UNIT
 
+_UNITS_PER_M_S = FULL_TARGET / MAX_SPEED_M_S * (1 + 1e-9)
+"""A hair more, so that a target does not lose one when it comes back as a speed."""
+
 PROXIMITY_FULL = 4505
 """The largest proximity count."""
 _PROXIMITY_X0_M = 0.0003
@@ -26,7 +29,7 @@ _GROUND_MIDDLE = 0.44
 
 def speed_to_units(speed_m_s: float) -> int:
     """Ground speed of a wheel as motor.*.speed, truncated as in the reference."""
-    return int(speed_m_s * (FULL_TARGET / MAX_SPEED_M_S) + math.copysign(1e-6, speed_m_s))
+    return int(speed_m_s * _UNITS_PER_M_S)
 
 
 def units_to_speed(target: int) -> float:
@@ -36,7 +39,8 @@ def units_to_speed(target: int) -> float:
 
 def units_to_pwm(speed: int) -> int:
     """motor.*.pwm for a speed in units."""
-    return max(-PWM_LIMIT, min(PWM_LIMIT, int(PWM_PER_SPEED_UNIT * speed)))
+    pwm = int(PWM_PER_SPEED_UNIT * speed)
+    return pwm if -PWM_LIMIT <= pwm <= PWM_LIMIT else PWM_LIMIT if pwm > 0 else -PWM_LIMIT
 
 
 def proximity_response(distance_m: float) -> float:

@@ -56,6 +56,7 @@ class World:
         self._physics = Physics(self.playground.solids)
         shared = Shared(self._clock, self._ground, self._physics, self._proximity_model)
         actuators, sensors = all_actuators(), all_sensors()
+        self._schedules = [sensor.schedule for sensor in sensors]
         self._robots = {
             start.name: Robot(start, shared, actuators, sensors, seed=self._seed, noise=self._noise)
             for start in self.playground.robots
@@ -107,7 +108,8 @@ class World:
         return contacts
 
     def _run_sensors(self, now_ns: int) -> tuple[tuple[str, str, Reading], ...]:
+        due = [number for number, schedule in enumerate(self._schedules) if schedule.due(now_ns)]
         readings: list[tuple[str, str, Reading]] = []
         for robot in self._robots.values():
-            readings.extend(robot.measure(now_ns))
+            readings.extend(robot.measure(due))
         return tuple(readings)

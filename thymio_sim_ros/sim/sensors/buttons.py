@@ -14,7 +14,7 @@ __all__ = ["SENSOR"]
 
 def _measure(view: SensorView) -> ButtonsReading:
     pressed = view.state(ButtonState).pressed
-    return ButtonsReading(view.now_ns, tuple(int(pressed[button]) for button in BUTTONS))
+    return ButtonsReading(view.now_ns, tuple(map(int, pressed.values())))
 
 
 SENSOR = Sensor(

@@ -56,13 +56,15 @@ def _measure(view: SensorView) -> ProximityReading:
     x, y, cos, sin = pose.x_m, pose.y_m, math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
     counts, ranges = [], []
     for mount_x, mount_y, rays in _MOUNTS:
-        directions = [(cos * dx - sin * dy, sin * dx + cos * dy) for dx, dy in rays]
         origin_x, origin_y = x + cos * mount_x - sin * mount_y, y + sin * mount_x + cos * mount_y
-        distances = around.fan(origin_x, origin_y, directions, PROXIMITY_RANGE_M)
+        near = around.near(origin_x, origin_y, PROXIMITY_RANGE_M)
         count = 0
-        if min(distances) < math.inf:
-            value = response(distances, model) + noise.gauss(PROXIMITY_NOISE)
-            count = round(max(0.0, min(float(units.PROXIMITY_FULL), value)))
+        if not near.is_empty:
+            directions = [(cos * dx - sin * dy, sin * dx + cos * dy) for dx, dy in rays]
+            distances = near.fan(origin_x, origin_y, directions, PROXIMITY_RANGE_M)
+            if min(distances) < math.inf:
+                value = response(distances, model) + noise.gauss(PROXIMITY_NOISE)
+                count = round(max(0.0, min(float(units.PROXIMITY_FULL), value)))
         counts.append(count)
         ranges.append(units.proximity_distance(count) if count else math.inf)
     return ProximityReading(view.now_ns, tuple(counts), tuple(ranges))

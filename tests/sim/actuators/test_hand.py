@@ -1,0 +1,28 @@
+"""The operator's hand."""
+
+from __future__ import annotations
+
+from tests.sim.fake_view import FakeView
+from thymio_sim_ros.sim.actuators.hand import ACTUATOR, HandState
+from thymio_sim_ros.sim.commands import MoveRobot, ResetOdometry
+from thymio_sim_ros.sim.geometry import Pose
+
+
+def test_the_hand_puts_the_robot_down_once() -> None:
+    assert ACTUATOR.update is not None
+    state, view = HandState(), FakeView()
+    ACTUATOR.apply(state, MoveRobot(1.0, 2.0, 3.0), 0)
+    ACTUATOR.update(state, view, 0.01)
+    assert view.pose == Pose(1.0, 2.0, 3.0)
+    view.pose = Pose(0.0, 0.0, 0.0)
+    ACTUATOR.update(state, view, 0.01)
+    assert view.pose == Pose(0.0, 0.0, 0.0)
+
+
+def test_the_hand_zeroes_the_odometry() -> None:
+    assert ACTUATOR.update is not None
+    state, view = HandState(), FakeView()
+    view.wheels.roll((0.1, 0.1), 0.01)
+    ACTUATOR.apply(state, ResetOdometry(), 0)
+    ACTUATOR.update(state, view, 0.01)
+    assert view.wheels.odometry == Pose(0.0, 0.0, 0.0)
