@@ -25,7 +25,7 @@ export function createBody() {
     lower: new THREE.MeshLambertMaterial({ color: LOWER }),
     dark: new THREE.MeshLambertMaterial({ color: DARK }),
   };
-  const lower = extruded(outline(true), FLOOR_M, BELT_M - 0.0012, 0.0015);
+  const lower = extruded(outline(true), FLOOR_M, BELT_M - 0.0012, 0);
   const gap = extruded(outline(false, 0.0018), BELT_M - 0.0025, BELT_M + 0.001, 0);
   const shell = extruded(outline(false), BELT_M, HEIGHT_M, 0.0025);
   const hole = new THREE.CircleGeometry(0.0062, 24).translate(0, 0, HEIGHT_M + 0.0003);

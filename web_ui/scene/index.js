@@ -40,9 +40,11 @@ export class SceneView {
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(SKY);
     this.playground = new PlaygroundModel();
-    const sun = new THREE.DirectionalLight(0xffffff, 1.95);
+    const sun = new THREE.DirectionalLight(0xffffff, 1.75);
     sun.position.set(-1.2, -1.6, 3);
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xb9c4cf, 1.75), sun, this.playground.group);
+    const fill = new THREE.DirectionalLight(0xffffff, 0.5); // so that faces turned away from the sun are not dull
+    fill.position.set(1, 1.4, 0.35);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xccd5de, 1.75), sun, fill, this.playground.group);
     this.camera = new Camera(canvas, () => this.invalidate());
     this.renderer = createRenderer(canvas);
     const software = this.renderer !== null && SOFTWARE.test(graphicsName(this.renderer));

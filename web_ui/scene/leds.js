@@ -23,13 +23,12 @@ export function createLeds(shell) {
   halos.renderOrder = 2;
   discs.frustumCulled = halos.frustumCulled = false;
 
-  const strip = new THREE.BoxGeometry(0.05, 0.0016, 0.006);
+  const strip = new THREE.BoxGeometry(0.022, 0.0016, 0.004);
   const strips = /** @type {const} */ (["bottom_left", "bottom_right"]).map((group) => {
     const material = new THREE.MeshBasicMaterial({ color: STRIP_OFF });
     const mesh = new THREE.Mesh(strip, material);
-    const { y, z } = RGB_LIGHTS[group];
-    mesh.scale.x = 0.6;
-    mesh.position.set(0.043, y, z);
+    const { x, y, z } = RGB_LIGHTS[group];
+    mesh.position.set(x, y, z);
     return { group, mesh, material };
   });
   const group = new THREE.Group();
@@ -70,9 +69,9 @@ export function createLeds(shell) {
         mesh.instanceMatrix.needsUpdate = true;
         if (mesh.instanceColor !== null) mesh.instanceColor.needsUpdate = true;
       }
-      tint(shell.color, SHELL, robot.leds.top);
-      shell.emissive.copy(shell.color).multiplyScalar(0.45 * Math.max(0, ...(robot.leds.top ?? [0])));
-      for (const { group: name, material } of strips) tint(material.color, STRIP_OFF, robot.leds[name]);
+      tint(shell.color, SHELL, robot.leds.top, 0.72);
+      shell.emissive.copy(shell.color).multiplyScalar(0.12 * Math.max(0, ...(robot.leds.top ?? [0])));
+      for (const { group: name, material } of strips) tint(material.color, STRIP_OFF, robot.leds[name], 1);
     },
     dispose: () => {
       discs.dispose();
@@ -82,13 +81,13 @@ export function createLeds(shell) {
   };
 }
 
-/** Colour = levels divided by the largest, opacity = the largest (thymio-robot.md section 8.1). @param {THREE.Color} target @param {THREE.Color} off @param {number[] | undefined} levels */
-function tint(target, off, levels = [0, 0, 0]) {
+/** Colour = levels divided by the largest, opacity = the largest (thymio-robot.md section 8.1). @param {THREE.Color} target @param {THREE.Color} off @param {number[] | undefined} levels @param {number} most  share of the light's colour when full */
+function tint(target, off, levels = [0, 0, 0], most) {
   const largest = Math.max(...levels);
   target.copy(off);
   if (largest <= 0) return;
   const [r, g, b] = levels.map((level) => level / largest);
-  target.lerp(new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace), Math.min(1, 0.25 + 0.75 * largest));
+  target.lerp(new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace), most * Math.min(1, 0.25 + 0.75 * largest));
 }
 
 function glowTexture() {

@@ -85,8 +85,8 @@ export const LIGHTS = [
 /** The lights of any colour: the shell's top, and two strips low on the sides. */
 export const RGB_LIGHTS = /** @type {Record<string, Place>} */ ({
   top: { x: 0.005, y: 0.03, z: HEIGHT_M },
-  bottom_left: { x: 0.0459, y: 0.0565, z: 0.014 },
-  bottom_right: { x: 0.0459, y: -0.0565, z: 0.014 },
+  bottom_left: { x: 0.039, y: 0.0562, z: 0.014 },
+  bottom_right: { x: 0.039, y: -0.0562, z: 0.014 },
 });
 
 /** Place of every named part in the robot's frame. */
