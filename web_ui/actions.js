@@ -9,14 +9,25 @@ import { PARAMETERS, robotTopic } from "./state/names.js";
 export const LARGEST_FILE = 1_000_000;
 
 export class Actions {
-  /** @param {object} options @param {Client} options.client @param {Store} options.store @param {(key: string, values?: Record<string, any>) => string} options.t */
+  /**
+   * @param {object} options
+   * @param {Client} options.client
+   * @param {Store} options.store
+   * @param {(key: string, values?: Record<string, any>) => string} options.t
+   */
   constructor({ client, store, t }) {
     this.client = client;
     this.store = store;
     this.t = t;
   }
 
-  /** A finger on or off one of a robot's buttons. @param {string} robot @param {string} button @param {boolean} pressed */
+  /**
+   * A finger on or off one of a robot's buttons.
+   *
+   * @param {string} robot
+   * @param {string} button
+   * @param {boolean} pressed
+   */
   press(robot, button, pressed) {
     this.client.publish(robotTopic(robot, `press/${button}`), "std_msgs/msg/Bool", { data: pressed });
   }

@@ -3,12 +3,23 @@
 /** @typedef {import("./scene/index.js").SceneView} SceneView */
 
 const BUTTON_KEYS = /** @type {Record<string, string>} */ ({
-  ArrowUp: "forward", ArrowDown: "backward", ArrowLeft: "left", ArrowRight: "right", Enter: "center",
+  ArrowUp: "forward",
+  ArrowDown: "backward",
+  ArrowLeft: "left",
+  ArrowRight: "right",
+  Enter: "center",
 });
 const TURNS = /** @type {Record<string, [number, number]>} */ ({
-  ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, 1],
+  ArrowDown: [0, -1],
 });
-const VIEW_KEYS = /** @type {Record<string, import("./scene/camera.js").ViewName>} */ ({ Home: "home", t: "top", f: "follow" });
+const VIEW_KEYS = /** @type {Record<string, import("./scene/camera.js").ViewName>} */ ({
+  Home: "home",
+  t: "top",
+  f: "follow",
+});
 
 /**
  * @param {HTMLElement} element  which must have the focus

@@ -25,7 +25,10 @@ for (const { schemaName, schema, hex, value } of CAPTURED) {
 
 test("infinite ranges survive", () => {
   const definition = parseSchema("a/B", "float32 range\nfloat32 other");
-  assert.deepEqual(decode(definition, view(encode(definition, { range: Infinity, other: -Infinity }))), { range: Infinity, other: -Infinity });
+  assert.deepEqual(decode(definition, view(encode(definition, { range: Infinity, other: -Infinity }))), {
+    range: Infinity,
+    other: -Infinity,
+  });
 });
 
 test("big-endian messages are read too", () => {

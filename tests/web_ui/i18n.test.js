@@ -32,5 +32,8 @@ test("the first language that there is is chosen", () => {
 });
 
 test("values are filled in", () => {
-  assert.equal(translator("en")("program.refusedAt", { name: "a", line: 1, column: 2 }), "a was not loaded: line 1, column 2");
+  assert.equal(
+    translator("en")("program.refusedAt", { name: "a", line: 1, column: 2 }),
+    "a was not loaded: line 1, column 2",
+  );
 });

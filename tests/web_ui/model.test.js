@@ -55,7 +55,11 @@ test("only markers that changed are made anew", () => {
 
 test("every kind of marker is drawn in metres", () => {
   const wall = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
-  const points = [{ x: 0, y: 0, z: 0 }, { x: 1, y: 0, z: 0 }, { x: 1, y: 1, z: 0 }];
+  const points = [
+    { x: 0, y: 0, z: 0 },
+    { x: 1, y: 0, z: 0 },
+    { x: 1, y: 1, z: 0 },
+  ];
   const sizes = [1, 2, 3, 4, 11].map((type) => {
     const model = new PlaygroundModel();
     model.update(applyMarkers(new Map(), [{ ...wall, type, points, scale: { x: 0.1, y: 0.1, z: 0.2 } }]));

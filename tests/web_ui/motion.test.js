@@ -15,7 +15,10 @@ test("between two messages the robot is on its way", () => {
 });
 
 test("after as long again it has arrived", () => {
-  assert.deepEqual(poseAt(sample(0, 0, 0), sample(0.01, 0.2, 50), 100), { pose: sample(0.01, 0.2, 50).pose, arrived: true });
+  assert.deepEqual(poseAt(sample(0, 0, 0), sample(0.01, 0.2, 50), 100), {
+    pose: sample(0.01, 0.2, 50).pose,
+    arrived: true,
+  });
 });
 
 test("the first pose is taken as it is", () => {

@@ -6,7 +6,15 @@ import { BUTTON_PLACES, HEIGHT_M, LIGHTS, PARTS, PROXIMITY_PLACES } from "../../
 test("every light that a program can set is on the body", () => {
   /** @type {Record<string, number>} */ const counts = {};
   for (const { group } of LIGHTS) counts[group] = (counts[group] ?? 0) + 1;
-  assert.deepEqual(counts, { circle: 8, buttons: 4, proximity: 8, ground: 2, temperature: 2, microphone: 1, remote: 1 });
+  assert.deepEqual(counts, {
+    circle: 8,
+    buttons: 4,
+    proximity: 8,
+    ground: 2,
+    temperature: 2,
+    microphone: 1,
+    remote: 1,
+  });
   for (const name of ["top", "bottom_left", "bottom_right"]) assert.ok(PARTS.has(`led.${name}`));
 });
 
@@ -17,7 +25,9 @@ test("left is where y is positive", () => {
 });
 
 test("the circle goes clockwise from the front", () => {
-  const angles = LIGHTS.filter(({ group }) => group === "circle").map(({ place }) => Math.atan2(place.y, place.x - 0.0489));
+  const angles = LIGHTS.filter(({ group }) => group === "circle").map(({ place }) =>
+    Math.atan2(place.y, place.x - 0.0489),
+  );
   for (let index = 1; index < 8; index++) {
     const turn = (angles[index - 1] - angles[index] + 2 * Math.PI) % (2 * Math.PI);
     assert.ok(Math.abs(turn - Math.PI / 4) < 0.05, `${index}`);

@@ -10,17 +10,35 @@ test("every captured schema is understood", () => {
 
 test("constants and comments take no room", () => {
   const { fields } = parseSchema("a/msg/B", "uint8 ULTRASOUND=0\nuint8 kind # of radiation\nstring NAME = 'x # y'\n");
-  assert.deepEqual(fields.map(({ name }) => name), ["kind"]);
+  assert.deepEqual(
+    fields.map(({ name }) => name),
+    ["kind"],
+  );
 });
 
 test("arrays tell a fixed length from a bound", () => {
-  const { fields } = parseSchema("a/B", "float64[36] covariance\nint16[<=8] data\nstring<=10 name\nstring<=4[] names\nuint8[] rest\n");
-  assert.deepEqual(fields.map(({ isArray, size }) => [isArray, size]), [[true, 36], [true, null], [false, null], [true, null], [true, null]]);
+  const { fields } = parseSchema(
+    "a/B",
+    "float64[36] covariance\nint16[<=8] data\nstring<=10 name\nstring<=4[] names\nuint8[] rest\n",
+  );
+  assert.deepEqual(
+    fields.map(({ isArray, size }) => [isArray, size]),
+    [
+      [true, 36],
+      [true, null],
+      [false, null],
+      [true, null],
+      [true, null],
+    ],
+  );
 });
 
 test("a default value does not hide a field", () => {
   const { fields } = parseSchema("a/B", "bool flag true\nint32 count -1\n");
-  assert.deepEqual(fields.map(({ name }) => name), ["flag", "count"]);
+  assert.deepEqual(
+    fields.map(({ name }) => name),
+    ["flag", "count"],
+  );
 });
 
 test("a name without package belongs to the package that uses it", () => {
@@ -31,7 +49,10 @@ test("a name without package belongs to the package that uses it", () => {
 });
 
 test("a type that is not defined is named", () => {
-  assert.throws(() => parseSchema("a/B", "c/D field"), (error) => error instanceof SchemaError && /a\/B\.field.*c\/D/.test(error.message));
+  assert.throws(
+    () => parseSchema("a/B", "c/D field"),
+    (error) => error instanceof SchemaError && /a\/B\.field.*c\/D/.test(error.message),
+  );
 });
 
 test("a line that is no field is shown", () => {

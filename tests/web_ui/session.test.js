@@ -18,7 +18,8 @@ function opened() {
   });
   /** @param {object} message */
   const receive = (message) => session.receive(JSON.stringify(message));
-  const json = () => sent.filter((data) => typeof data === "string").map((data) => JSON.parse(/** @type {string} */ (data)));
+  const json = () =>
+    sent.filter((data) => typeof data === "string").map((data) => JSON.parse(/** @type {string} */ (data)));
   return { session, sent, events, receive, json };
 }
 
@@ -32,16 +33,36 @@ const TRIGGER = {
   name: "/simulator/reset",
   type: "std_srvs/srv/Trigger",
   request: { encoding: "cdr", schemaName: "std_srvs/srv/Trigger_Request", schemaEncoding: "ros2msg", schema: "" },
-  response: { encoding: "cdr", schemaName: "std_srvs/srv/Trigger_Response", schemaEncoding: "ros2msg", schema: captured("std_srvs/srv/Trigger_Response").schema },
+  response: {
+    encoding: "cdr",
+    schemaName: "std_srvs/srv/Trigger_Response",
+    schemaEncoding: "ros2msg",
+    schema: captured("std_srvs/srv/Trigger_Response").schema,
+  },
 };
 
 test("topics that are wanted are subscribed to, and their messages arrive decoded", () => {
   const { receive, session, json, events } = opened();
-  receive({ op: "advertise", channels: [channel(1, "/unwanted", "std_msgs/msg/Bool"), channel(2, "/buttons/left", "std_msgs/msg/Bool")] });
+  receive({
+    op: "advertise",
+    channels: [channel(1, "/unwanted", "std_msgs/msg/Bool"), channel(2, "/buttons/left", "std_msgs/msg/Bool")],
+  });
   const [{ op, subscriptions }] = json();
   assert.equal(op, "subscribe");
-  assert.deepEqual(subscriptions.map((/** @type {any} */ s) => s.channelId), [2]);
-  session.receive(serverFrame(1, [[4, subscriptions[0].id], [8, 5n]], bytes(captured("std_msgs/msg/Bool").hex)));
+  assert.deepEqual(
+    subscriptions.map((/** @type {any} */ s) => s.channelId),
+    [2],
+  );
+  session.receive(
+    serverFrame(
+      1,
+      [
+        [4, subscriptions[0].id],
+        [8, 5n],
+      ],
+      bytes(captured("std_msgs/msg/Bool").hex),
+    ),
+  );
   assert.deepEqual(events.at(-1), { type: "message", topic: "/buttons/left", value: { data: true }, timeNs: 5n });
 });
 
@@ -49,23 +70,41 @@ test("a channel that is gone leaves the list, and its late messages are dropped"
   const { receive, session, json, events } = opened();
   receive({ op: "advertise", channels: [channel(2, "/buttons/left", "std_msgs/msg/Bool")] });
   receive({ op: "unadvertise", channelIds: [2] });
-  session.receive(serverFrame(1, [[4, json()[0].subscriptions[0].id], [8, 5n]], bytes(captured("std_msgs/msg/Bool").hex)));
+  session.receive(
+    serverFrame(
+      1,
+      [
+        [4, json()[0].subscriptions[0].id],
+        [8, 5n],
+      ],
+      bytes(captured("std_msgs/msg/Bool").hex),
+    ),
+  );
   assert.deepEqual(events.at(-1), { type: "channels", topics: [] });
 });
 
 test("parameters are asked for once the server says that it has them", () => {
   const { receive, json } = opened();
   receive({ op: "serverInfo", name: "bridge", capabilities: ["parameters"], sessionId: "1" });
-  assert.deepEqual(json().map(({ op }) => op), ["subscribeParameterUpdates", "getParameters"]);
+  assert.deepEqual(
+    json().map(({ op }) => op),
+    ["subscribeParameterUpdates", "getParameters"],
+  );
 });
 
 test("publishing advertises the topic once", () => {
   const { session, json, sent } = opened();
   session.publish("/press/left", "std_msgs/msg/Bool", { data: true });
   session.publish("/press/left", "std_msgs/msg/Bool", { data: false });
-  assert.deepEqual(json().map(({ op, channels }) => [op, channels[0].topic, channels[0].encoding]), [["advertise", "/press/left", "cdr"]]);
+  assert.deepEqual(
+    json().map(({ op, channels }) => [op, channels[0].topic, channels[0].encoding]),
+    [["advertise", "/press/left", "cdr"]],
+  );
   const id = json()[0].channels[0].id;
-  assert.deepEqual(sent.slice(1).map((data) => Buffer.from(data).toString("hex")), [`01${hex32(id)}0001000001`, `01${hex32(id)}0001000000`]);
+  assert.deepEqual(
+    sent.slice(1).map((data) => Buffer.from(data).toString("hex")),
+    [`01${hex32(id)}0001000001`, `01${hex32(id)}0001000000`],
+  );
 });
 
 test("a zero twist is written as rclpy writes it", () => {
@@ -81,7 +120,17 @@ test("a service call is answered with what the service says", async () => {
   const request = Buffer.from(sent[0]);
   assert.equal(request.toString("hex").slice(26), "636472" + "0001000000");
   const response = Buffer.concat([Buffer.from("cdr"), bytes(captured("std_srvs/srv/Trigger_Response").hex)]);
-  session.receive(serverFrame(3, [[4, 4], [4, request.readUInt32LE(5)], [4, 3]], response));
+  session.receive(
+    serverFrame(
+      3,
+      [
+        [4, 4],
+        [4, request.readUInt32LE(5)],
+        [4, 3],
+      ],
+      response,
+    ),
+  );
   assert.deepEqual(await answer, { ok: true, message: "done" });
 });
 
@@ -107,9 +156,19 @@ test("a parameter that is taken over is answered with its value", async () => {
 
 test("a parameter is refused by the status that comes before its answer", async () => {
   const { session, receive, json } = opened();
-  const answer = session.setParameters([{ name: "/a.name", value: "n" }, { name: "/a.x", value: 2 }]);
+  const answer = session.setParameters([
+    { name: "/a.name", value: "n" },
+    { name: "/a.x", value: 2 },
+  ]);
   receive({ op: "status", level: 2, message: "/a.x: line 3, column 5: no", id: "parameter:/a.x" });
-  receive({ op: "parameterValues", parameters: [{ name: "/a.name", value: "n" }, { name: "/a.x", value: 1 }], id: json()[0].id });
+  receive({
+    op: "parameterValues",
+    parameters: [
+      { name: "/a.name", value: "n" },
+      { name: "/a.x", value: 1 },
+    ],
+    id: json()[0].id,
+  });
   assert.deepEqual(await answer, { ok: false, value: 1, message: "/a.x: line 3, column 5: no" });
 });
 
@@ -126,7 +185,13 @@ test("nothing stays pending when the connection is lost", async () => {
   receive({ op: "advertiseServices", services: [TRIGGER] });
   const answers = [session.call("/simulator/reset"), session.setParameters([{ name: "/a.x", value: 2 }])];
   session.close();
-  assert.deepEqual((await Promise.all(answers)).map(({ ok, message }) => [ok, message]), [[false, "connection lost"], [false, "connection lost"]]);
+  assert.deepEqual(
+    (await Promise.all(answers)).map(({ ok, message }) => [ok, message]),
+    [
+      [false, "connection lost"],
+      [false, "connection lost"],
+    ],
+  );
 });
 
 test("nonsense from the server is one fault, and the next message is read", () => {
@@ -135,14 +200,20 @@ test("nonsense from the server is one fault, and the next message is read", () =
   session.receive(new ArrayBuffer(0));
   receive({ op: "something new" });
   receive({ op: "removeStatus", statusIds: ["a"] });
-  assert.deepEqual(events.map(({ type }) => type), ["fault", "fault", "removeStatus"]);
+  assert.deepEqual(
+    events.map(({ type }) => type),
+    ["fault", "fault", "removeStatus"],
+  );
 });
 
 test("a channel with a schema nobody understands leaves the others alone", () => {
   const { receive, json, events } = opened();
   const broken = { ...channel(1, "/broken", "std_msgs/msg/Bool"), schema: "nonsense" };
   receive({ op: "advertise", channels: [broken, channel(2, "/buttons/left", "std_msgs/msg/Bool")] });
-  assert.deepEqual(json()[0].subscriptions.map((/** @type {any} */ s) => s.channelId), [2]);
+  assert.deepEqual(
+    json()[0].subscriptions.map((/** @type {any} */ s) => s.channelId),
+    [2],
+  );
   assert.equal(events[0].type, "fault");
 });
 

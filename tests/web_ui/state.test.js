@@ -33,7 +33,9 @@ test("topics are split into robot and name", () => {
 });
 
 test("robots are those whose true pose is told", () => {
-  const state = after([{ type: "channels", topics: ["/thymio_0/ground_truth/odom", "/thymio_1/ground_truth/odom", "/clock"] }]);
+  const state = after([
+    { type: "channels", topics: ["/thymio_0/ground_truth/odom", "/thymio_1/ground_truth/odom", "/clock"] },
+  ]);
   assert.deepEqual(Object.keys(state.robots), ["thymio_0", "thymio_1"]);
   assert.equal(state.selected, "thymio_0");
 });
@@ -51,7 +53,10 @@ test("a robot that stays keeps what is known, and stays selected", () => {
 
 test("the last two poses are kept, with their heading", () => {
   const { value } = captured("nav_msgs/msg/Odometry");
-  const { latest, previous } = after([message("/ground_truth/odom", value, 10), message("/ground_truth/odom", value, 60)]).robots[""];
+  const { latest, previous } = after([
+    message("/ground_truth/odom", value, 10),
+    message("/ground_truth/odom", value, 60),
+  ]).robots[""];
   assert.deepEqual([previous?.arrivedMs, latest?.arrivedMs, latest?.stampNs], [10, 60, 12_340_000_000]);
   assert.ok(Math.abs((latest?.pose.yaw ?? 0) - 2 * Math.atan2(0.6, 0.8)) < 1e-12);
 });
@@ -64,7 +69,13 @@ test("lights are cut into their groups", () => {
 test("wheels are found by name, with or without a prefix", () => {
   const value = { name: ["a/right_wheel_joint", "a/left_wheel_joint"], position: [2, 1], velocity: [4, 3] };
   const { wheels, wheelSpeeds } = after([message("/a/joint_states", value)]).robots.a;
-  assert.deepEqual([wheels, wheelSpeeds], [{ left: 1, right: 2 }, { left: 3, right: 4 }]);
+  assert.deepEqual(
+    [wheels, wheelSpeeds],
+    [
+      { left: 1, right: 2 },
+      { left: 3, right: 4 },
+    ],
+  );
 });
 
 test("sensors are kept by name", () => {
@@ -73,7 +84,10 @@ test("sensors are kept by name", () => {
     message("/ground/left", { range: -Infinity }),
     message("/raw/proximity", { data: [0, 0, 4505, 0, 0, 0, 0] }),
   ]).robots[""];
-  assert.deepEqual([robot.proximity, robot.ground, robot.raw.proximity[2]], [{ rear_left: Infinity }, { left: -Infinity }, 4505]);
+  assert.deepEqual(
+    [robot.proximity, robot.ground, robot.raw.proximity[2]],
+    [{ rear_left: Infinity }, { left: -Infinity }, 4505],
+  );
 });
 
 test("a runtime of its own goes before the one that all share", () => {
@@ -87,7 +101,10 @@ test("a runtime of its own goes before the one that all share", () => {
 
 test("the simulator and its playgrounds are told as JSON", () => {
   const { simulator, playgrounds } = after([
-    message("/simulator/state", json({ playground: "line", title: "Line", paused: true, real_time_factor: 2, achieved: 1.5 })),
+    message(
+      "/simulator/state",
+      json({ playground: "line", title: "Line", paused: true, real_time_factor: 2, achieved: 1.5 }),
+    ),
     message("/simulator/playgrounds", json([{ name: "line", title: "Line", description: "d" }, { name: "base" }])),
   ]);
   assert.deepEqual(simulator, { playground: "line", title: "Line", paused: true, factor: 2, achieved: 1.5 });
@@ -99,26 +116,50 @@ test("markers are replaced by namespace and id, and all deleted", () => {
   const first = applyMarkers(new Map(), [marker, { ...marker, id: 8 }]);
   assert.deepEqual([...first.keys()], ["solid/wall/7", "solid/wall/8"]);
   assert.equal(applyMarkers(first, [{ ...marker, action: 2 }]).size, 1);
-  assert.deepEqual([...applyMarkers(first, [{ ...marker, action: 3 }, { ...marker, ns: "x" }]).keys()], ["x/7"]);
+  assert.deepEqual(
+    [
+      ...applyMarkers(first, [
+        { ...marker, action: 3 },
+        { ...marker, ns: "x" },
+      ]).keys(),
+    ],
+    ["x/7"],
+  );
   assert.equal(first.size, 2);
 });
 
 test("a program is on its way, then loaded", () => {
   const sending = after([{ type: "upload", what: "program", name: "a.aesl", text: "x" }]);
   assert.deepEqual(sending.uploads.program, { name: "a.aesl", text: "x", phase: "sending", fault: null });
-  assert.equal(reduce(sending, { type: "uploaded", what: "program", message: null }).uploads.program?.phase, "accepted");
+  assert.equal(
+    reduce(sending, { type: "uploaded", what: "program", message: null }).uploads.program?.phase,
+    "accepted",
+  );
 });
 
 test("a refused program keeps its text and the place of the fault", () => {
   const { program } = after([
     { type: "upload", what: "program", name: "a.aesl", text: "x" },
-    { type: "uploaded", what: "program", message: "/aseba_runtime.script.source: a.aesl: line 3, column 5: no such variable" },
+    {
+      type: "uploaded",
+      what: "program",
+      message: "/aseba_runtime.script.source: a.aesl: line 3, column 5: no such variable",
+    },
   ]).uploads;
-  assert.deepEqual(program, { name: "a.aesl", text: "x", phase: "refused", fault: { text: "no such variable", line: 3, column: 5 } });
+  assert.deepEqual(program, {
+    name: "a.aesl",
+    text: "x",
+    phase: "refused",
+    fault: { text: "no such variable", line: 3, column: 5 },
+  });
 });
 
 test("a refusal without a place keeps its words", () => {
-  assert.deepEqual(locate("/simulator.playground: robots: found 0"), { text: "robots: found 0", line: null, column: null });
+  assert.deepEqual(locate("/simulator.playground: robots: found 0"), {
+    text: "robots: found 0",
+    line: null,
+    column: null,
+  });
   assert.deepEqual(locate("x.json: line 2, column 1: no"), { text: "x.json: no", line: 2, column: 1 });
 });
 
@@ -129,24 +170,41 @@ test("refused parameters are told where they were asked, other statuses as notic
     { type: "status", status: { level: 1, message: "slow" } },
     { type: "fault", what: "a frame is too short" },
   ]);
-  assert.deepEqual(state.notices.map(({ level, text }) => [level, text]), [["warning", "slow"], ["error", "a frame is too short"]]);
+  assert.deepEqual(
+    state.notices.map(({ level, text }) => [level, text]),
+    [
+      ["warning", "slow"],
+      ["error", "a frame is too short"],
+    ],
+  );
   assert.equal(reduce(state, { type: "dismiss", id: state.notices[0].id }).notices.length, 1);
 });
 
 test("only the last notices are kept", () => {
   const { notices } = after(["a", "b", "c", "d", "e"].map((text) => ({ type: "notice", level: "info", text })));
-  assert.deepEqual(notices.map(({ text }) => text), ["b", "c", "d", "e"]);
+  assert.deepEqual(
+    notices.map(({ text }) => text),
+    ["b", "c", "d", "e"],
+  );
 });
 
 test("a lost connection is told until there is a new one, and the picture stays", () => {
-  const lost = after([{ type: "connected" }, message("/buttons/left", { data: true }), { type: "disconnected" }, { type: "connecting", address: "" }]);
+  const lost = after([
+    { type: "connected" },
+    message("/buttons/left", { data: true }),
+    { type: "disconnected" },
+    { type: "connecting", address: "" },
+  ]);
   assert.equal(lost.connection, "lost");
   assert.equal(lost.robots[""].buttons.left, true);
   assert.equal(reduce(lost, { type: "connected" }).connection, "connected");
 });
 
 test("another simulation starts from nothing, the same one goes on", () => {
-  const known = after([{ type: "serverInfo", name: "bridge", sessionId: "1", capabilities: [] }, message("/buttons/left", { data: true })]);
+  const known = after([
+    { type: "serverInfo", name: "bridge", sessionId: "1", capabilities: [] },
+    message("/buttons/left", { data: true }),
+  ]);
   const again = reduce(known, { type: "serverInfo", name: "bridge", sessionId: "1", capabilities: [] });
   assert.equal(again.robots[""].buttons.left, true);
   assert.deepEqual(reduce(known, { type: "serverInfo", name: "bridge", sessionId: "2", capabilities: [] }).robots, {});
@@ -158,7 +216,10 @@ test("unknown topics and messages change nothing", () => {
 });
 
 test("a snapshot is plain data with the selected robot at hand", () => {
-  const state = after([{ type: "channels", topics: ["/a/ground_truth/odom", "/b/ground_truth/odom"] }, { type: "select", robot: "b" }]);
+  const state = after([
+    { type: "channels", topics: ["/a/ground_truth/odom", "/b/ground_truth/odom"] },
+    { type: "select", robot: "b" },
+  ]);
   const { robot, program, markers } = JSON.parse(JSON.stringify(snapshot(state)));
   assert.deepEqual([robot.buttons.center, program, markers], [false, null, 0]);
 });

@@ -24,7 +24,14 @@ export function view(data) {
   return new DataView(data.buffer, data.byteOffset, data.byteLength);
 }
 
-/** A binary frame of the server: an opcode, then numbers by size, then a payload. @param {number} code @param {[1 | 4 | 8, number | bigint][]} numbers @param {Uint8Array} [payload] @returns {ArrayBuffer} */
+/**
+ * A binary frame of the server: an opcode, then numbers by size, then a payload.
+ *
+ * @param {number} code
+ * @param {[1 | 4 | 8, number | bigint][]} numbers
+ * @param {Uint8Array} [payload]
+ * @returns {ArrayBuffer}
+ */
 export function serverFrame(code, numbers, payload = new Uint8Array()) {
   const head = Buffer.alloc(1 + numbers.reduce((sum, [size]) => sum + size, 0));
   head.writeUInt8(code, 0);

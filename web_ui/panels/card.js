@@ -9,7 +9,12 @@ import { h } from "./dom.js";
  */
 export function card(name, title, ...content) {
   const key = `card.${name}`;
-  const details = h("details", { class: `card ${name}`, open: localStorage.getItem(key) !== "closed" }, h("summary", {}, h("h2", {}, title)), h("div", { class: "content" }, ...content));
+  const details = h(
+    "details",
+    { class: `card ${name}`, open: localStorage.getItem(key) !== "closed" },
+    h("summary", {}, h("h2", {}, title)),
+    h("div", { class: "content" }, ...content),
+  );
   details.addEventListener("toggle", () => localStorage.setItem(key, details.open ? "open" : "closed"));
   return details;
 }

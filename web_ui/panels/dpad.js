@@ -7,16 +7,25 @@ import { h, holdable, icon, ICONS, setAttribute } from "./dom.js";
 export function dpadPanel({ t, actions, store }) {
   const buttons = BUTTONS.map((name) => {
     const label = t(`button.${name}`);
-    const button = h("button", { type: "button", class: `pad ${name}`, "data-button": name, "aria-label": label, title: label }, icon(name === "center" ? ICONS.dot : ICONS.arrow));
+    const button = h(
+      "button",
+      { type: "button", class: `pad ${name}`, "data-button": name, "aria-label": label, title: label },
+      icon(name === "center" ? ICONS.dot : ICONS.arrow),
+    );
     holdable(button, (pressed) => actions.press(store.state.selected, name, pressed));
     return { name, button };
   });
-  const element = h("div", { class: "dpad", role: "group", "aria-label": t("dpad") }, ...buttons.map(({ button }) => button));
+  const element = h(
+    "div",
+    { class: "dpad", role: "group", "aria-label": t("dpad") },
+    ...buttons.map(({ button }) => button),
+  );
   return {
     slot: "stage",
     element,
     render({ robots, selected }) {
-      for (const { name, button } of buttons) setAttribute(button, "aria-pressed", String(robots[selected]?.buttons[name] ?? false));
+      for (const { name, button } of buttons)
+        setAttribute(button, "aria-pressed", String(robots[selected]?.buttons[name] ?? false));
     },
   };
 }

@@ -14,8 +14,21 @@ export function noticesPanel({ t, store }) {
       shown = notices;
       element.replaceChildren(
         ...notices.map(({ id, level, text }) =>
-          h("div", { class: `notice ${level}` }, h("p", {}, text),
-            h("button", { type: "button", class: "plain", "aria-label": t("notice.dismiss"), onclick: () => store.dispatch({ type: "dismiss", id }) }, icon(ICONS.close))),
+          h(
+            "div",
+            { class: `notice ${level}` },
+            h("p", {}, text),
+            h(
+              "button",
+              {
+                type: "button",
+                class: "plain",
+                "aria-label": t("notice.dismiss"),
+                onclick: () => store.dispatch({ type: "dismiss", id }),
+              },
+              icon(ICONS.close),
+            ),
+          ),
         ),
       );
     },

@@ -9,8 +9,21 @@ export function playgroundPanel({ t, actions, announce }) {
   select.addEventListener("change", () => actions.loadPlayground(select.value));
   const description = h("p", { class: "description" });
   const fault = h("p", { class: "fault", hidden: true });
-  const element = card("playground", t("playground"),
-    h("div", { class: "row" }, select, fileButton({ id: "playground-file", label: t("playground.open"), help: t("playground.openHelp"), accept: ".json", open: (file) => actions.loadFile(file) })),
+  const element = card(
+    "playground",
+    t("playground"),
+    h(
+      "div",
+      { class: "row" },
+      select,
+      fileButton({
+        id: "playground-file",
+        label: t("playground.open"),
+        help: t("playground.openHelp"),
+        accept: ".json",
+        open: (file) => actions.loadFile(file),
+      }),
+    ),
     description,
     fault,
   );
@@ -21,19 +34,24 @@ export function playgroundPanel({ t, actions, announce }) {
     element,
     render({ playgrounds, simulator, uploads }) {
       const { playground } = uploads;
-      const own = simulator !== null && !playgrounds.some(({ name }) => name === simulator.playground) ? simulator : null;
+      const own =
+        simulator !== null && !playgrounds.some(({ name }) => name === simulator.playground) ? simulator : null;
       const list = JSON.stringify([playgrounds, own?.title]);
       if (list !== listed) {
         listed = list;
         select.replaceChildren(...playgrounds.map(({ name, title }) => h("option", { value: name }, title)));
-        if (own !== null) select.prepend(h("option", { value: own.playground }, t("playground.own", { title: own.title })));
+        if (own !== null)
+          select.prepend(h("option", { value: own.playground }, t("playground.own", { title: own.title })));
       }
       const current = simulator?.playground ?? "";
       if (document.activeElement !== select || playground?.phase !== "sending") select.value = current;
       setText(description, playgrounds.find(({ name }) => name === current)?.description ?? "");
       if (playground === shown) return;
       shown = playground;
-      const text = playground?.phase === "refused" ? `${t("playground.refused", { name: playground.name })} ${playground.fault?.text ?? ""}` : "";
+      const text =
+        playground?.phase === "refused"
+          ? `${t("playground.refused", { name: playground.name })} ${playground.fault?.text ?? ""}`
+          : "";
       setText(fault, text);
       fault.hidden = text === "";
       if (text !== "") announce(text);

@@ -7,7 +7,11 @@ import { fileButton, h, icon, ICONS, setAttribute, setText } from "./dom.js";
 import { sourceView } from "./source.js";
 
 const KNOWN_STATES = ["running", "paused", "stopped", "fault"];
-const VERBS = /** @type {const} */ ([["run", ICONS.play], ["stop", ICONS.stop], ["reset", ICONS.restart]]);
+const VERBS = /** @type {const} */ ([
+  ["run", ICONS.play],
+  ["stop", ICONS.stop],
+  ["reset", ICONS.restart],
+]);
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function programPanel({ t, actions, store, announce }) {
@@ -16,14 +20,32 @@ export function programPanel({ t, actions, store, announce }) {
   const message = h("p", { class: "message", hidden: true });
   const verbs = VERBS.map(([verb, path]) => ({
     verb,
-    button: h("button", { type: "button", title: t(`program.${verb}`), onclick: () => actions.program(verb) }, icon(path), t(`program.${verb}`)),
+    button: h(
+      "button",
+      { type: "button", title: t(`program.${verb}`), onclick: () => actions.program(verb) },
+      icon(path),
+      t(`program.${verb}`),
+    ),
   }));
   const upload = h("div", { class: "upload", hidden: true });
-  const element = card("program", t("program"),
+  const element = card(
+    "program",
+    t("program"),
     h("div", { class: "current" }, name, lamp),
     message,
     h("div", { class: "row verbs" }, ...verbs.map(({ button }) => button)),
-    h("div", { class: "row" }, fileButton({ id: "program-file", label: t("program.open"), help: t("program.openHelp"), accept: ".aesl,.aseba,.txt", open: (file) => actions.loadFile(file) }), h("small", {}, t("program.dropHint"))),
+    h(
+      "div",
+      { class: "row" },
+      fileButton({
+        id: "program-file",
+        label: t("program.open"),
+        help: t("program.openHelp"),
+        accept: ".aesl,.aseba,.txt",
+        open: (file) => actions.loadFile(file),
+      }),
+      h("small", {}, t("program.dropHint")),
+    ),
     upload,
   );
   /** @type {import("../state/index.js").Upload | null} */ let shown = null;
@@ -38,13 +60,26 @@ export function programPanel({ t, actions, store, announce }) {
     upload.className = `upload ${now.phase}`;
     const { fault } = now;
     const placed = fault !== null && fault.line !== null;
-    const headline = now.phase === "refused" && placed
-      ? t("program.refusedAt", { name: now.name, line: fault.line ?? 0, column: fault.column ?? 0 })
-      : t(`program.${now.phase}`, { name: now.name });
-    const close = h("button", { type: "button", class: "plain", "aria-label": t("program.close"), onclick: () => store.dispatch({ type: "forget", what: "program" }) }, icon(ICONS.close));
+    const headline =
+      now.phase === "refused" && placed
+        ? t("program.refusedAt", { name: now.name, line: fault.line ?? 0, column: fault.column ?? 0 })
+        : t(`program.${now.phase}`, { name: now.name });
+    const close = h(
+      "button",
+      {
+        type: "button",
+        class: "plain",
+        "aria-label": t("program.close"),
+        onclick: () => store.dispatch({ type: "forget", what: "program" }),
+      },
+      icon(ICONS.close),
+    );
     upload.replaceChildren(h("p", { class: "headline" }, headline, close));
     if (fault !== null) {
-      upload.append(placed ? sourceView(now.text, fault, t("program.source")) : h("p", { class: "fault" }, fault.text), h("small", {}, t("program.keeps")));
+      upload.append(
+        placed ? sourceView(now.text, fault, t("program.source")) : h("p", { class: "fault" }, fault.text),
+        h("small", {}, t("program.keeps")),
+      );
     }
     announce(fault === null ? headline : `${headline}: ${fault.text}`);
   };

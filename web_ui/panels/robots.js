@@ -15,10 +15,17 @@ export function robotsPanel({ t, store }) {
         shown = names.join();
         element.hidden = names.length < 2;
         element.replaceChildren(
-          ...names.map((name) => h("button", { type: "button", "data-robot": name, onclick: () => store.dispatch({ type: "select", robot: name }) }, name || t("app.robot"))),
+          ...names.map((name) =>
+            h(
+              "button",
+              { type: "button", "data-robot": name, onclick: () => store.dispatch({ type: "select", robot: name }) },
+              name || t("app.robot"),
+            ),
+          ),
         );
       }
-      for (const button of element.children) setAttribute(button, "aria-pressed", String(button.getAttribute("data-robot") === selected));
+      for (const button of element.children)
+        setAttribute(button, "aria-pressed", String(button.getAttribute("data-robot") === selected));
     },
   };
 }

@@ -13,10 +13,32 @@ const GROUND_FULL = 1023;
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function sensorsPanel({ t }) {
-  const rows = groups(t).map(([title, list]) => ({ title, cells: list.map((row) => ({ row, ...cellsOf(row.label) })) }));
-  const table = h("table", {},
-    h("thead", {}, h("tr", {}, h("th", { scope: "col" }, t("sensors.sensor")), h("th", { scope: "col" }, t("sensors.value")), h("th", { scope: "col" }, t("sensors.raw")))),
-    ...rows.map(({ title, cells }) => h("tbody", {}, h("tr", { class: "group" }, h("th", { colspan: 3, scope: "rowgroup" }, title)), ...cells.map(({ element }) => element))),
+  const rows = groups(t).map(([title, list]) => ({
+    title,
+    cells: list.map((row) => ({ row, ...cellsOf(row.label) })),
+  }));
+  const table = h(
+    "table",
+    {},
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        h("th", { scope: "col" }, t("sensors.sensor")),
+        h("th", { scope: "col" }, t("sensors.value")),
+        h("th", { scope: "col" }, t("sensors.raw")),
+      ),
+    ),
+    ...rows.map(({ title, cells }) =>
+      h(
+        "tbody",
+        {},
+        h("tr", { class: "group" }, h("th", { colspan: 3, scope: "rowgroup" }, title)),
+        ...cells.map(({ element }) => element),
+      ),
+    ),
   );
   const element = card("sensors", t("sensors"), table);
   /** @type {Robot | undefined} */ let shown;
@@ -43,30 +65,43 @@ export function sensorsPanel({ t }) {
 /** @param {import("../i18n/index.js").Translate} t @returns {[string, Row[]][]} */
 function groups(t) {
   return [
-    [t("sensors.proximity"), PROXIMITY.map((name, index) => ({
-      label: t(`proximity.${name}`),
-      value: ({ proximity }) => formatRange(proximity[name], t),
-      raw: ({ raw }) => raw.proximity?.[index],
-      full: PROXIMITY_FULL,
-    }))],
-    [t("sensors.ground"), GROUND.map((name, index) => ({
-      label: t(`side.${name}`),
-      value: ({ ground }) => (ground[name] === undefined ? "" : t(isBright(ground[name]) ? "sensors.bright" : "sensors.dark")),
-      raw: ({ raw }) => raw.ground?.[4 + index],
-      full: GROUND_FULL,
-    }))],
-    [t("sensors.motors"), /** @type {const} */ (["left", "right"]).map((side, index) => ({
-      label: t(`side.${side}`),
-      value: ({ wheelSpeeds }) => `${(wheelSpeeds[side] * WHEEL_RADIUS_M * 100).toFixed(1)} cm/s`,
-      raw: ({ raw }) => raw.motor?.[index],
-      full: 500,
-    }))],
-    [t("sensors.buttons"), BUTTONS.map((name) => ({
-      label: t(`button.${name}`),
-      value: ({ buttons }) => t(buttons[name] ? "sensors.pressed" : "sensors.released"),
-      raw: ({ buttons }) => Number(buttons[name]),
-      full: 1,
-    }))],
+    [
+      t("sensors.proximity"),
+      PROXIMITY.map((name, index) => ({
+        label: t(`proximity.${name}`),
+        value: ({ proximity }) => formatRange(proximity[name], t),
+        raw: ({ raw }) => raw.proximity?.[index],
+        full: PROXIMITY_FULL,
+      })),
+    ],
+    [
+      t("sensors.ground"),
+      GROUND.map((name, index) => ({
+        label: t(`side.${name}`),
+        value: ({ ground }) =>
+          ground[name] === undefined ? "" : t(isBright(ground[name]) ? "sensors.bright" : "sensors.dark"),
+        raw: ({ raw }) => raw.ground?.[4 + index],
+        full: GROUND_FULL,
+      })),
+    ],
+    [
+      t("sensors.motors"),
+      /** @type {const} */ (["left", "right"]).map((side, index) => ({
+        label: t(`side.${side}`),
+        value: ({ wheelSpeeds }) => `${(wheelSpeeds[side] * WHEEL_RADIUS_M * 100).toFixed(1)} cm/s`,
+        raw: ({ raw }) => raw.motor?.[index],
+        full: 500,
+      })),
+    ],
+    [
+      t("sensors.buttons"),
+      BUTTONS.map((name) => ({
+        label: t(`button.${name}`),
+        value: ({ buttons }) => t(buttons[name] ? "sensors.pressed" : "sensors.released"),
+        raw: ({ buttons }) => Number(buttons[name]),
+        full: 1,
+      })),
+    ],
   ];
 }
 
@@ -78,7 +113,11 @@ function cellsOf(label) {
   return { element: h("tr", {}, h("th", { scope: "row" }, label), value, bar), value, raw, bar };
 }
 
-/** Reflecting ground is told as "too close" (−inf) or, as the driver does, 0 (ros-interface.md 4.3). @param {number} range */
+/**
+ * Reflecting ground is told as "too close" (−inf) or, as the driver does, 0 (ros-interface.md 4.3).
+ *
+ * @param {number} range
+ */
 function isBright(range) {
   return range <= 0;
 }
@@ -86,6 +125,6 @@ function isBright(range) {
 /** @param {number | undefined} range @param {import("../i18n/index.js").Translate} t */
 function formatRange(range, t) {
   if (range === undefined) return "";
-  if (range === Infinity || range < 0 && range !== -Infinity) return t("sensors.nothing");
+  if (range === Infinity || (range < 0 && range !== -Infinity)) return t("sensors.nothing");
   return range === -Infinity ? "< 2.2 cm" : `${(range * 100).toFixed(1)} cm`;
 }

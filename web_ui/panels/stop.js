@@ -4,6 +4,11 @@ import { h, icon, ICONS } from "./dom.js";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function stopPanel({ t, actions }) {
-  const element = h("button", { type: "button", class: "stop", title: t("stop.help"), onclick: () => actions.stop() }, icon(ICONS.stop), t("stop"));
+  const element = h(
+    "button",
+    { type: "button", class: "stop", title: t("stop.help"), onclick: () => actions.stop() },
+    icon(ICONS.stop),
+    t("stop"),
+  );
   return { slot: "header", element };
 }

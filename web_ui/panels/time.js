@@ -6,14 +6,41 @@ export const FACTORS = [0.25, 0.5, 1, 2, 5, 10];
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function timePanel({ t, actions, store, announce }) {
-  const pause = h("button", { type: "button", class: "primary", onclick: () => actions.pause(!(store.state.simulator?.paused ?? false)) });
-  const step = h("button", { type: "button", title: t("time.step"), onclick: () => actions.step() }, icon(ICONS.step), h("span", {}, t("time.step")));
-  const reset = h("button", { type: "button", title: t("time.reset"), onclick: () => actions.reset() }, icon(ICONS.restart), h("span", {}, t("time.reset")));
-  const speed = h("select", { "aria-label": t("time.speed") }, ...FACTORS.map((factor) => h("option", { value: factor }, `×${factor}`)));
+  const pause = h("button", {
+    type: "button",
+    class: "primary",
+    onclick: () => actions.pause(!(store.state.simulator?.paused ?? false)),
+  });
+  const step = h(
+    "button",
+    { type: "button", title: t("time.step"), onclick: () => actions.step() },
+    icon(ICONS.step),
+    h("span", {}, t("time.step")),
+  );
+  const reset = h(
+    "button",
+    { type: "button", title: t("time.reset"), onclick: () => actions.reset() },
+    icon(ICONS.restart),
+    h("span", {}, t("time.reset")),
+  );
+  const speed = h(
+    "select",
+    { "aria-label": t("time.speed") },
+    ...FACTORS.map((factor) => h("option", { value: factor }, `×${factor}`)),
+  );
   speed.addEventListener("change", () => actions.setFactor(Number(speed.value)));
   const achieved = h("span", { class: "achieved" });
   const clock = h("output", { class: "clock", "aria-label": t("time.simulated"), title: t("time.simulated") });
-  const element = h("div", { class: "time", role: "group", "aria-label": t("time") }, pause, step, reset, h("label", { class: "speed" }, h("span", {}, t("time.speed")), speed), achieved, clock);
+  const element = h(
+    "div",
+    { class: "time", role: "group", "aria-label": t("time") },
+    pause,
+    step,
+    reset,
+    h("label", { class: "speed" }, h("span", {}, t("time.speed")), speed),
+    achieved,
+    clock,
+  );
   /** @type {boolean | null} */ let paused = null;
   let wanted = NaN;
   return {
@@ -22,7 +49,10 @@ export function timePanel({ t, actions, store, announce }) {
     render({ simulator, timeNs, robots, selected, services }) {
       const now = simulator?.paused ?? false;
       if (now !== paused) {
-        pause.replaceChildren(icon(now ? ICONS.play : ICONS.pause), h("span", {}, t(now ? "time.resume" : "time.pause")));
+        pause.replaceChildren(
+          icon(now ? ICONS.play : ICONS.pause),
+          h("span", {}, t(now ? "time.resume" : "time.pause")),
+        );
         if (paused !== null) announce(t(now ? "time.paused" : "time.running"));
         paused = now;
       }
@@ -32,7 +62,14 @@ export function timePanel({ t, actions, store, announce }) {
       const factor = simulator?.factor ?? 1;
       if (factor !== wanted) showFactor(speed, factor);
       wanted = factor;
-      setText(achieved, simulator === null ? "" : now ? t("time.paused") : t("time.achieved", { factor: simulator.achieved.toFixed(2) }));
+      setText(
+        achieved,
+        simulator === null
+          ? ""
+          : now
+            ? t("time.paused")
+            : t("time.achieved", { factor: simulator.achieved.toFixed(2) }),
+      );
       setAttribute(achieved, "data-slow", String(!now && simulator !== null && simulator.achieved < 0.9 * factor));
       setText(clock, formatTime(timeNs || (robots[selected]?.latest?.stampNs ?? 0)));
     },

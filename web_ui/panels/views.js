@@ -7,10 +7,28 @@ import { h, icon, ICONS, setAttribute } from "./dom.js";
 export function viewsPanel({ t, scene }) {
   const buttons = VIEWS.map((view) => ({
     view,
-    button: h("button", { type: "button", title: t(`view.${view}`), "aria-label": t(`view.${view}`), onclick: () => scene.look(view) }, icon(ICONS[view])),
+    button: h(
+      "button",
+      { type: "button", title: t(`view.${view}`), "aria-label": t(`view.${view}`), onclick: () => scene.look(view) },
+      icon(ICONS[view]),
+    ),
   }));
-  const beams = h("button", { type: "button", title: t("view.sensors"), "aria-label": t("view.sensors"), onclick: () => scene.setSensors(!scene.showSensors) }, icon(ICONS.beams));
-  const element = h("div", { class: "views", role: "toolbar", "aria-label": t("view") }, ...buttons.map(({ button }) => button), beams);
+  const beams = h(
+    "button",
+    {
+      type: "button",
+      title: t("view.sensors"),
+      "aria-label": t("view.sensors"),
+      onclick: () => scene.setSensors(!scene.showSensors),
+    },
+    icon(ICONS.beams),
+  );
+  const element = h(
+    "div",
+    { class: "views", role: "toolbar", "aria-label": t("view") },
+    ...buttons.map(({ button }) => button),
+    beams,
+  );
   return {
     slot: "stage",
     element,

@@ -5,6 +5,13 @@
 
 /** @typedef {import("./ros2msg.js").Definition} Definition */
 /** @typedef {import("./ros2msg.js").Field} Field */
+/**
+ * @typedef {object} Primitive
+ * @property {number} size  bytes
+ * @property {any} zero
+ * @property {(view: DataView, at: number, littleEndian: boolean) => any} read
+ * @property {(view: DataView, at: number, value: any) => void} write
+ */
 
 const HEADER_BYTES = 4;
 const LITTLE_ENDIAN_HEADER = [0x00, 0x01, 0x00, 0x00];
@@ -19,18 +26,53 @@ export class CdrError extends Error {
 }
 
 /** One row per primitive: its size, and how a DataView reads and writes it. */
-const PRIMITIVES = /** @type {Record<string, { size: number, read: (view: DataView, at: number, le: boolean) => any, write: (view: DataView, at: number, value: any) => void, zero: any }>} */ ({
-  bool: { size: 1, zero: false, read: (v, at) => v.getUint8(at) !== 0, write: (v, at, x) => v.setUint8(at, x ? 1 : 0) },
+const PRIMITIVES = /** @type {Record<string, Primitive>} */ ({
+  bool: {
+    size: 1,
+    zero: false,
+    read: (v, at) => v.getUint8(at) !== 0,
+    write: (v, at, x) => v.setUint8(at, x ? 1 : 0),
+  },
   int8: { size: 1, zero: 0, read: (v, at) => v.getInt8(at), write: (v, at, x) => v.setInt8(at, x) },
   uint8: { size: 1, zero: 0, read: (v, at) => v.getUint8(at), write: (v, at, x) => v.setUint8(at, x) },
   int16: { size: 2, zero: 0, read: (v, at, le) => v.getInt16(at, le), write: (v, at, x) => v.setInt16(at, x, true) },
-  uint16: { size: 2, zero: 0, read: (v, at, le) => v.getUint16(at, le), write: (v, at, x) => v.setUint16(at, x, true) },
+  uint16: {
+    size: 2,
+    zero: 0,
+    read: (v, at, le) => v.getUint16(at, le),
+    write: (v, at, x) => v.setUint16(at, x, true),
+  },
   int32: { size: 4, zero: 0, read: (v, at, le) => v.getInt32(at, le), write: (v, at, x) => v.setInt32(at, x, true) },
-  uint32: { size: 4, zero: 0, read: (v, at, le) => v.getUint32(at, le), write: (v, at, x) => v.setUint32(at, x, true) },
-  int64: { size: 8, zero: 0n, read: (v, at, le) => v.getBigInt64(at, le), write: (v, at, x) => v.setBigInt64(at, BigInt(x), true) },
-  uint64: { size: 8, zero: 0n, read: (v, at, le) => v.getBigUint64(at, le), write: (v, at, x) => v.setBigUint64(at, BigInt(x), true) },
-  float32: { size: 4, zero: 0, read: (v, at, le) => v.getFloat32(at, le), write: (v, at, x) => v.setFloat32(at, x, true) },
-  float64: { size: 8, zero: 0, read: (v, at, le) => v.getFloat64(at, le), write: (v, at, x) => v.setFloat64(at, x, true) },
+  uint32: {
+    size: 4,
+    zero: 0,
+    read: (v, at, le) => v.getUint32(at, le),
+    write: (v, at, x) => v.setUint32(at, x, true),
+  },
+  int64: {
+    size: 8,
+    zero: 0n,
+    read: (v, at, le) => v.getBigInt64(at, le),
+    write: (v, at, x) => v.setBigInt64(at, BigInt(x), true),
+  },
+  uint64: {
+    size: 8,
+    zero: 0n,
+    read: (v, at, le) => v.getBigUint64(at, le),
+    write: (v, at, x) => v.setBigUint64(at, BigInt(x), true),
+  },
+  float32: {
+    size: 4,
+    zero: 0,
+    read: (v, at, le) => v.getFloat32(at, le),
+    write: (v, at, x) => v.setFloat32(at, x, true),
+  },
+  float64: {
+    size: 8,
+    zero: 0,
+    read: (v, at, le) => v.getFloat64(at, le),
+    write: (v, at, x) => v.setFloat64(at, x, true),
+  },
 });
 
 /**
@@ -43,7 +85,8 @@ const PRIMITIVES = /** @type {Record<string, { size: number, read: (view: DataVi
 export function decode(definition, payload) {
   if (payload.byteLength < HEADER_BYTES) throw new CdrError(`a message of ${payload.byteLength} bytes has no header`);
   const kind = payload.getUint8(1);
-  if (payload.getUint8(0) !== 0 || kind > 1) throw new CdrError(`representation ${payload.getUint16(0)} is not plain CDR`);
+  if (payload.getUint8(0) !== 0 || kind > 1)
+    throw new CdrError(`representation ${payload.getUint16(0)} is not plain CDR`);
   return readFields(new Reader(payload, kind === 1), definition, definition.fields);
 }
 
@@ -68,7 +111,12 @@ class Reader {
     this.offset = HEADER_BYTES;
   }
 
-  /** The start of the next value of `size` bytes, of which `count` must be there. @param {number} size @param {number} count */
+  /**
+   * The start of the next value of `size` bytes, of which `count` must be there.
+   *
+   * @param {number} size
+   * @param {number} count
+   */
   claim(size, count = 1) {
     const start = this.offset + ((size - ((this.offset - HEADER_BYTES) % size)) % size);
     const end = start + size * count;

@@ -5,7 +5,10 @@ import { Session, SUBPROTOCOLS } from "./session.js";
 /** @typedef {import("./session.js").SessionEvent} SessionEvent */
 /** @typedef {import("./session.js").ServiceAnswer} ServiceAnswer */
 /** @typedef {import("./session.js").ParameterAnswer} ParameterAnswer */
-/** @typedef {SessionEvent | { type: "connecting", address: string } | { type: "connected" } | { type: "disconnected" }} ClientEvent */
+/**
+ * @typedef {SessionEvent | { type: "connecting", address: string } | { type: "connected" }
+ *   | { type: "disconnected" }} ClientEvent
+ */
 
 const RETRY_MS = 1000;
 
@@ -60,6 +63,9 @@ export class Client {
 
   /** @param {import("./session.js").Parameter[]} parameters @returns {Promise<ParameterAnswer>} */
   setParameters(parameters) {
-    return this.session?.setParameters(parameters) ?? Promise.resolve({ ok: false, value: undefined, message: "not connected" });
+    return (
+      this.session?.setParameters(parameters) ??
+      Promise.resolve({ ok: false, value: undefined, message: "not connected" })
+    );
   }
 }

@@ -17,10 +17,21 @@
 
 /** Primitive types and the names they have in older definitions. */
 const PRIMITIVES = new Map([
-  ["bool", "bool"], ["byte", "uint8"], ["char", "uint8"],
-  ["int8", "int8"], ["uint8", "uint8"], ["int16", "int16"], ["uint16", "uint16"],
-  ["int32", "int32"], ["uint32", "uint32"], ["int64", "int64"], ["uint64", "uint64"],
-  ["float32", "float32"], ["float64", "float64"], ["string", "string"], ["wstring", "wstring"],
+  ["bool", "bool"],
+  ["byte", "uint8"],
+  ["char", "uint8"],
+  ["int8", "int8"],
+  ["uint8", "uint8"],
+  ["int16", "int16"],
+  ["uint16", "uint16"],
+  ["int32", "int32"],
+  ["uint32", "uint32"],
+  ["int64", "int64"],
+  ["uint64", "uint64"],
+  ["float32", "float32"],
+  ["float64", "float64"],
+  ["string", "string"],
+  ["wstring", "wstring"],
 ]);
 
 /** Types that definitions may use without a package (genmsg habit, kept by rosbag tools). */

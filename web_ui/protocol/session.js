@@ -36,7 +36,13 @@ export const STATUS_ERROR = 2;
 const OWN_SCHEMAS = /** @type {Record<string, string>} */ ({
   "std_msgs/msg/Bool": "bool data",
   "geometry_msgs/msg/Twist": [
-    "Vector3 linear", "Vector3 angular", "=".repeat(80), "MSG: geometry_msgs/Vector3", "float64 x", "float64 y", "float64 z",
+    "Vector3 linear",
+    "Vector3 angular",
+    "=".repeat(80),
+    "MSG: geometry_msgs/Vector3",
+    "float64 x",
+    "float64 y",
+    "float64 z",
   ].join("\n"),
 });
 
@@ -58,7 +64,9 @@ export class Session {
     /** @type {Map<string, Service>} */ this.services = new Map();
     /** @type {Map<string, { id: number, definition: Definition }>} */ this.published = new Map();
     /** @type {Map<number, { service: Service, settle: (answer: ServiceAnswer) => void }>} */ this.calls = new Map();
-    /** @type {Map<string, { name: string, refusal: string | null, settle: (answer: ParameterAnswer) => void }>} */
+    /**
+     * @type {Map<string, { name: string, refusal: string | null, settle: (answer: ParameterAnswer) => void }>}
+     */
     this.requests = new Map();
     this.nextId = 1;
   }
@@ -73,7 +81,13 @@ export class Session {
     }
   }
 
-  /** Publish a message; the channel is advertised on first use. @param {string} topic @param {string} schemaName @param {Record<string, any>} value */
+  /**
+   * Publish a message; the channel is advertised on first use.
+   *
+   * @param {string} topic
+   * @param {string} schemaName
+   * @param {Record<string, any>} value
+   */
   publish(topic, schemaName, value) {
     let channel = this.published.get(topic);
     if (channel === undefined) {
@@ -88,7 +102,13 @@ export class Session {
     this.send(messageFrame(channel.id, encode(channel.definition, value)));
   }
 
-  /** Call a service whose answer has `success` and `message`. @param {string} name @param {Record<string, any>} request @returns {Promise<ServiceAnswer>} */
+  /**
+   * Call a service whose answer has `success` and `message`.
+   *
+   * @param {string} name
+   * @param {Record<string, any>} request
+   * @returns {Promise<ServiceAnswer>}
+   */
   call(name, request = {}) {
     const service = this.services.get(name);
     if (service === undefined) return Promise.resolve({ ok: false, message: `${name} is not available` });
@@ -119,7 +139,8 @@ export class Session {
   /** The connection is gone: nothing pending will be answered. */
   close() {
     for (const { settle } of this.calls.values()) settle({ ok: false, message: "connection lost" });
-    for (const { settle } of this.requests.values()) settle({ ok: false, value: undefined, message: "connection lost" });
+    for (const { settle } of this.requests.values())
+      settle({ ok: false, value: undefined, message: "connection lost" });
     this.calls.clear();
     this.requests.clear();
   }

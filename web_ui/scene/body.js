@@ -44,7 +44,12 @@ export function createBody() {
   return { group, top: materials.top, dispose: () => owned.forEach((thing) => thing.dispose()) };
 }
 
-/** The body seen from above; with notches where the wheels are. @param {boolean} arches @param {number} inset */
+/**
+ * The body seen from above; with notches where the wheels are.
+ *
+ * @param {boolean} arches
+ * @param {number} inset
+ */
 function outline(arches, inset = 0) {
   const half = HALF_WIDTH_M - inset;
   const rear = REAR_M + inset;
@@ -64,7 +69,13 @@ function outline(arches, inset = 0) {
   return shape;
 }
 
-/** @param {THREE.Shape} shape @param {number} outer @param {number} inner @param {number} from @param {number} to */
+/**
+ * @param {THREE.Shape} shape
+ * @param {number} outer
+ * @param {number} inner
+ * @param {number} from
+ * @param {number} to
+ */
 function notch(shape, outer, inner, from, to) {
   shape.lineTo(from, outer);
   shape.lineTo(from, inner);

@@ -15,7 +15,11 @@ const HEADINGS = /** @type {Record<string, number>} */ ({ forward: 0, left: 90, 
 export function createButtons() {
   const round = new THREE.CylinderGeometry(0.0044, 0.0044, RAISED_M, 22).rotateX(Math.PI / 2);
   const arrow = new THREE.ExtrudeGeometry(
-    new THREE.Shape([new THREE.Vector2(0.0048, 0), new THREE.Vector2(-0.0032, 0.005), new THREE.Vector2(-0.0032, -0.005)]),
+    new THREE.Shape([
+      new THREE.Vector2(0.0048, 0),
+      new THREE.Vector2(-0.0032, 0.005),
+      new THREE.Vector2(-0.0032, -0.005),
+    ]),
     { depth: RAISED_M, bevelEnabled: false },
   ).translate(0, 0, -RAISED_M / 2);
   const touch = new THREE.CircleGeometry(TOUCH_RADIUS_M, 16);

@@ -47,14 +47,22 @@ export class Camera {
     if (this.view !== "follow") this.look(this.view);
   }
 
-  /** Choose a view, from its start. @param {ViewName} view @param {{ x: number, y: number, yaw: number } | null} [robot] */
+  /**
+   * Choose a view, from its start.
+   *
+   * @param {ViewName} view
+   * @param {{ x: number, y: number, yaw: number } | null} [robot]
+   */
   look(view, robot = null) {
     this.view = view;
     this.touched = false;
     if (view === "follow") {
       const { x, y, yaw } = robot ?? { x: 0, y: 0, yaw: 0 };
       this.target.set(x, y, 0.03);
-      this.#place(this.target, new THREE.Vector3(x - FOLLOW.back * Math.cos(yaw), y - FOLLOW.back * Math.sin(yaw), FOLLOW.up));
+      this.#place(
+        this.target,
+        new THREE.Vector3(x - FOLLOW.back * Math.cos(yaw), y - FOLLOW.back * Math.sin(yaw), FOLLOW.up),
+      );
       return;
     }
     // Seen from straight above there is no "up"; a hair beside it, x points to the right.
@@ -63,7 +71,11 @@ export class Camera {
     this.#place(target, from.multiplyScalar(distance).add(target));
   }
 
-  /** Keep up with the robot in the view "follow"; the person may still orbit. @param {{ x: number, y: number }} robot */
+  /**
+   * Keep up with the robot in the view "follow"; the person may still orbit.
+   *
+   * @param {{ x: number, y: number }} robot
+   */
   follow({ x, y }) {
     if (this.view !== "follow") return;
     const moved = new THREE.Vector3(x - this.target.x, y - this.target.y, 0);
@@ -77,7 +89,9 @@ export class Camera {
   /** Turn about the target. @param {number} sideways steps @param {number} upwards steps */
   turn(sideways, upwards) {
     const offset = this.camera.position.clone().sub(this.controls.target);
-    const sphere = new THREE.Spherical().setFromVector3(offset.clone().applyAxisAngle(new THREE.Vector3(1, 0, 0), -Math.PI / 2));
+    const sphere = new THREE.Spherical().setFromVector3(
+      offset.clone().applyAxisAngle(new THREE.Vector3(1, 0, 0), -Math.PI / 2),
+    );
     sphere.theta += sideways * TURN_STEP;
     sphere.phi = Math.min(this.controls.maxPolarAngle, Math.max(0.001, sphere.phi - upwards * TURN_STEP));
     offset.setFromSpherical(sphere).applyAxisAngle(new THREE.Vector3(1, 0, 0), Math.PI / 2);
@@ -131,7 +145,10 @@ export class Camera {
     };
     const [sideways, upwards] = [reach(right, wide), reach(up, high)];
     const depth = Math.max(sideways.depth, upwards.depth);
-    const eye = right.multiplyScalar(sideways.middle).add(up.multiplyScalar(upwards.middle)).addScaledVector(from, depth);
+    const eye = right
+      .multiplyScalar(sideways.middle)
+      .add(up.multiplyScalar(upwards.middle))
+      .addScaledVector(from, depth);
     const distance = eye.z / from.z;
     return { target: eye.addScaledVector(from, -distance), distance: distance * MARGIN };
   }

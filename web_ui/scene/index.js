@@ -57,7 +57,8 @@ export class SceneView {
     watchPointer({
       element: canvas,
       camera: this.camera.camera,
-      targets: () => [...this.robots.values()].flatMap(({ model }) => (model.group.visible ? model.buttons.targets : [])),
+      targets: () =>
+        [...this.robots.values()].flatMap(({ model }) => (model.group.visible ? model.buttons.targets : [])),
       press,
       hover: (target) => {
         if (target?.robot === this.hovered?.robot && target?.button === this.hovered?.button) return;
@@ -88,7 +89,12 @@ export class SceneView {
     this.invalidate();
   }
 
-  /** A part's place in CSS pixels of the window; null while it is not drawn. @param {string} part @param {string} [robot] */
+  /**
+   * A part's place in CSS pixels of the window; null while it is not drawn.
+   *
+   * @param {string} part
+   * @param {string} [robot]
+   */
   partPosition(part, robot = this.state().selected) {
     const model = this.robots.get(robot)?.model;
     const place = model?.group.visible ? model.partPosition(part) : null;
@@ -150,7 +156,9 @@ export class SceneView {
     const { robots, selected } = this.state();
     const pose = robots[selected]?.latest?.pose ?? null;
     const group = this.robots.get(selected)?.model.group;
-    return pose === null || group === undefined ? pose : { x: group.position.x, y: group.position.y, yaw: group.rotation.z };
+    return pose === null || group === undefined
+      ? pose
+      : { x: group.position.x, y: group.position.y, yaw: group.rotation.z };
   }
 
   /** World → CSS pixels of the canvas. @param {THREE.Vector3} place */

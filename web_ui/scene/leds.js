@@ -35,7 +35,10 @@ export function createLeds(shell) {
   group.add(discs, halos, ...strips.map(({ mesh }) => mesh));
 
   const turns = LIGHTS.map(({ normal }) =>
-    new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, 1), new THREE.Vector3(normal.x, normal.y, normal.z)),
+    new THREE.Quaternion().setFromUnitVectors(
+      new THREE.Vector3(0, 0, 1),
+      new THREE.Vector3(normal.x, normal.y, normal.z),
+    ),
   );
   const matrix = new THREE.Matrix4();
   const place = new THREE.Vector3();
@@ -81,7 +84,14 @@ export function createLeds(shell) {
   };
 }
 
-/** Colour = levels divided by the largest, opacity = the largest (thymio-robot.md section 8.1). @param {THREE.Color} target @param {THREE.Color} off @param {number[] | undefined} levels @param {number} most  share of the light's colour when full */
+/**
+ * Colour = levels divided by the largest, opacity = the largest (thymio-robot.md section 8.1).
+ *
+ * @param {THREE.Color} target
+ * @param {THREE.Color} off
+ * @param {number[] | undefined} levels
+ * @param {number} most  share of the light's colour when full
+ */
 function tint(target, off, levels = [0, 0, 0], most) {
   const largest = Math.max(...levels);
   target.copy(off);

@@ -34,7 +34,12 @@ export function poseAt(previous, latest, nowMs) {
   };
 }
 
-/** The turn from one heading to another that is at most half a circle. @param {number} from @param {number} to */
+/**
+ * The turn from one heading to another that is at most half a circle.
+ *
+ * @param {number} from
+ * @param {number} to
+ */
 export function shortestTurn(from, to) {
   const turn = (to - from) % (2 * Math.PI);
   if (turn > Math.PI) return turn - 2 * Math.PI;

@@ -27,9 +27,18 @@ export const BUTTON_PLACES = /** @type {Record<string, Place>} */ ({
 /** Where each proximity sensor sits and looks (degrees from straight ahead). */
 export const PROXIMITY_PLACES = /** @type {Record<string, Place & { yaw: number }>} */ (
   Object.fromEntries(
-    [[62, 48.5, 40], [75, 25.5, 20], [79.5, 0, 0], [75, -25.5, -20], [62, -48.5, -40], [-29.5, 29.5, 180], [-29.5, -29.5, 180]].map(
-      ([x, y, degrees], index) => [PROXIMITY[index], { x: x / 1000, y: y / 1000, z: 0.034, yaw: (degrees * Math.PI) / 180 }],
-    ),
+    [
+      [62, 48.5, 40],
+      [75, 25.5, 20],
+      [79.5, 0, 0],
+      [75, -25.5, -20],
+      [62, -48.5, -40],
+      [-29.5, 29.5, 180],
+      [-29.5, -29.5, 180],
+    ].map(([x, y, degrees], index) => [
+      PROXIMITY[index],
+      { x: x / 1000, y: y / 1000, z: 0.034, yaw: (degrees * Math.PI) / 180 },
+    ]),
   )
 );
 
@@ -66,18 +75,39 @@ const TOP_MM = TOP_M * 1000;
 /** Every light of one colour; the three coloured ones are `RGB_LIGHTS`. */
 export const LIGHTS = [
   ...lights("circle", 0.0021, [
-    [73.2, 0, TOP_MM, UP, YELLOW], [66, -17.2, TOP_MM, UP, YELLOW], [48.9, -24.3, TOP_MM, UP, YELLOW], [31.7, -17.2, TOP_MM, UP, YELLOW],
-    [24.6, 0, TOP_MM, UP, YELLOW], [31.7, 17.2, TOP_MM, UP, YELLOW], [48.9, 24.3, TOP_MM, UP, YELLOW], [66, 17.2, TOP_MM, UP, YELLOW],
+    [73.2, 0, TOP_MM, UP, YELLOW],
+    [66, -17.2, TOP_MM, UP, YELLOW],
+    [48.9, -24.3, TOP_MM, UP, YELLOW],
+    [31.7, -17.2, TOP_MM, UP, YELLOW],
+    [24.6, 0, TOP_MM, UP, YELLOW],
+    [31.7, 17.2, TOP_MM, UP, YELLOW],
+    [48.9, 24.3, TOP_MM, UP, YELLOW],
+    [66, 17.2, TOP_MM, UP, YELLOW],
   ]),
   ...lights("buttons", 0.0011, [
-    [55.6, 0, TOP_MM, UP, RED], [48, -7.6, TOP_MM, UP, RED], [40.4, 0, TOP_MM, UP, RED], [48, 7.6, TOP_MM, UP, RED],
+    [55.6, 0, TOP_MM, UP, RED],
+    [48, -7.6, TOP_MM, UP, RED],
+    [40.4, 0, TOP_MM, UP, RED],
+    [48, 7.6, TOP_MM, UP, RED],
   ]),
   ...lights("proximity", 0.0018, [
-    [59.6, 55.8, 40, facing(60), RED], [72.3, 36.6, 40, facing(27), RED], [80.6, 3.2, 40, facing(2), RED], [80.6, -3.2, 40, facing(-2), RED],
-    [72.3, -36.6, 40, facing(-27), RED], [59.6, -55.8, 40, facing(-60), RED], [-30.8, 40.6, 40, facing(180), RED], [-30.8, -40.6, 40, facing(180), RED],
+    [59.6, 55.8, 40, facing(60), RED],
+    [72.3, 36.6, 40, facing(27), RED],
+    [80.6, 3.2, 40, facing(2), RED],
+    [80.6, -3.2, 40, facing(-2), RED],
+    [72.3, -36.6, 40, facing(-27), RED],
+    [59.6, -55.8, 40, facing(-60), RED],
+    [-30.8, 40.6, 40, facing(180), RED],
+    [-30.8, -40.6, 40, facing(180), RED],
   ]),
-  ...lights("ground", 0.0018, [[79.2, 12, 15.6, facing(9), RED], [79.2, -12, 15.6, facing(-9), RED]]),
-  ...lights("temperature", 0.0018, [[36, 56.8, 36.7, facing(90), RED], [29, 56.8, 36.7, facing(90), BLUE]]),
+  ...lights("ground", 0.0018, [
+    [79.2, 12, 15.6, facing(9), RED],
+    [79.2, -12, 15.6, facing(-9), RED],
+  ]),
+  ...lights("temperature", 0.0018, [
+    [36, 56.8, 36.7, facing(90), RED],
+    [29, 56.8, 36.7, facing(90), BLUE],
+  ]),
   ...lights("microphone", 0.0018, [[26.7, -56.8, 36.7, facing(-90), BLUE]]),
   ...lights("remote", 0.0018, [[41.7, -56.8, 36.7, facing(-90), RED]]),
 ];
@@ -90,14 +120,16 @@ export const RGB_LIGHTS = /** @type {Record<string, Place>} */ ({
 });
 
 /** Place of every named part in the robot's frame. */
-export const PARTS = new Map(/** @type {[string, Place][]} */ ([
-  ["robot", { x: 0.02, y: 0, z: HEIGHT_M }],
-  ["pen", { x: 0, y: 0, z: HEIGHT_M }],
-  ["wheel.left", { x: 0, y: WHEEL.track / 2, z: WHEEL.radius }],
-  ["wheel.right", { x: 0, y: -WHEEL.track / 2, z: WHEEL.radius }],
-  ...Object.entries(BUTTON_PLACES).map(([name, place]) => [`button.${name}`, place]),
-  ...Object.entries(PROXIMITY_PLACES).map(([name, place]) => [`proximity.${name}`, place]),
-  ...Object.entries(GROUND_PLACES).map(([name, place]) => [`ground.${name}`, place]),
-  ...LIGHTS.map(({ name, place }) => [name, place]),
-  ...Object.entries(RGB_LIGHTS).map(([name, place]) => [`led.${name}`, place]),
-]));
+export const PARTS = new Map(
+  /** @type {[string, Place][]} */ ([
+    ["robot", { x: 0.02, y: 0, z: HEIGHT_M }],
+    ["pen", { x: 0, y: 0, z: HEIGHT_M }],
+    ["wheel.left", { x: 0, y: WHEEL.track / 2, z: WHEEL.radius }],
+    ["wheel.right", { x: 0, y: -WHEEL.track / 2, z: WHEEL.radius }],
+    ...Object.entries(BUTTON_PLACES).map(([name, place]) => [`button.${name}`, place]),
+    ...Object.entries(PROXIMITY_PLACES).map(([name, place]) => [`proximity.${name}`, place]),
+    ...Object.entries(GROUND_PLACES).map(([name, place]) => [`ground.${name}`, place]),
+    ...LIGHTS.map(({ name, place }) => [name, place]),
+    ...Object.entries(RGB_LIGHTS).map(([name, place]) => [`led.${name}`, place]),
+  ]),
+);

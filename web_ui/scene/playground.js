@@ -9,8 +9,10 @@ import { MARKER } from "../state/markers.js";
 /** One row per kind of marker: its geometry in its own frame, already scaled. */
 const GEOMETRIES = /** @type {Record<number, (marker: Marker) => THREE.BufferGeometry>} */ ({
   [MARKER.CUBE]: ({ scale }) => new THREE.BoxGeometry(scale.x, scale.y, scale.z),
-  [MARKER.SPHERE]: ({ scale }) => new THREE.SphereGeometry(0.5, 24, 16).rotateX(Math.PI / 2).scale(scale.x, scale.y, scale.z),
-  [MARKER.CYLINDER]: ({ scale }) => new THREE.CylinderGeometry(0.5, 0.5, 1, 28).rotateX(Math.PI / 2).scale(scale.x, scale.y, scale.z),
+  [MARKER.SPHERE]: ({ scale }) =>
+    new THREE.SphereGeometry(0.5, 24, 16).rotateX(Math.PI / 2).scale(scale.x, scale.y, scale.z),
+  [MARKER.CYLINDER]: ({ scale }) =>
+    new THREE.CylinderGeometry(0.5, 0.5, 1, 28).rotateX(Math.PI / 2).scale(scale.x, scale.y, scale.z),
   [MARKER.LINE_STRIP]: ribbon,
   [MARKER.TRIANGLE_LIST]: triangles,
 });
@@ -18,7 +20,9 @@ const GEOMETRIES = /** @type {Record<number, (marker: Marker) => THREE.BufferGeo
 export class PlaygroundModel {
   constructor() {
     this.group = new THREE.Group();
-    /** @type {Map<string, { marker: Marker, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshLambertMaterial> }>} */
+    /**
+     * @type {Map<string, { marker: Marker, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshLambertMaterial> }>}
+     */
     this.meshes = new Map();
     /** @type {ReadonlyMap<string, Marker> | null} */ this.shown = null;
   }
@@ -62,7 +66,8 @@ export class PlaygroundModel {
       vertexColors: perPoint,
       transparent: a < 1,
       opacity: a,
-      side: marker.type === MARKER.TRIANGLE_LIST || marker.type === MARKER.LINE_STRIP ? THREE.DoubleSide : THREE.FrontSide,
+      side:
+        marker.type === MARKER.TRIANGLE_LIST || marker.type === MARKER.LINE_STRIP ? THREE.DoubleSide : THREE.FrontSide,
     });
     const mesh = new THREE.Mesh(GEOMETRIES[marker.type](marker), material);
     const { position, orientation } = marker.pose;
@@ -86,7 +91,13 @@ export class PlaygroundModel {
 /** @param {Marker} marker */
 function triangles({ points, colors, scale }) {
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(points.flatMap(({ x, y, z }) => [x * scale.x, y * scale.y, z * scale.z]), 3));
+  geometry.setAttribute(
+    "position",
+    new THREE.Float32BufferAttribute(
+      points.flatMap(({ x, y, z }) => [x * scale.x, y * scale.y, z * scale.z]),
+      3,
+    ),
+  );
   if (colors.length > 0) {
     const colour = new THREE.Color();
     const values = colors.flatMap(({ r, g, b }) => colour.setRGB(r, g, b, THREE.SRGBColorSpace).toArray());
@@ -96,7 +107,11 @@ function triangles({ points, colors, scale }) {
   return geometry;
 }
 
-/** A strip of the marker's width (scale.x) lying flat, with round joints: WebGL's own lines are one pixel wide. @param {Marker} marker */
+/**
+ * A strip of the marker's width (scale.x) lying flat, with round joints: WebGL's own lines are one pixel wide.
+ *
+ * @param {Marker} marker
+ */
 function ribbon({ points, scale }) {
   const half = scale.x / 2;
   /** @type {number[]} */ const corners = [];
@@ -111,7 +126,17 @@ function ribbon({ points, scale }) {
   for (const { x, y, z } of points) {
     for (let side = 0; side < sides; side++) {
       const [from, to] = [side, side + 1].map((step) => (2 * Math.PI * step) / sides);
-      corners.push(x, y, z, x + half * Math.cos(from), y + half * Math.sin(from), z, x + half * Math.cos(to), y + half * Math.sin(to), z);
+      corners.push(
+        x,
+        y,
+        z,
+        x + half * Math.cos(from),
+        y + half * Math.sin(from),
+        z,
+        x + half * Math.cos(to),
+        y + half * Math.sin(to),
+        z,
+      );
     }
   }
   const geometry = new THREE.BufferGeometry();

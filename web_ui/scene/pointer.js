@@ -35,14 +35,18 @@ export function watchPointer({ element, camera, targets, press, hover }) {
   };
 
   // Captured, so that the camera's own handlers do not see a press on a button.
-  element.addEventListener("pointerdown", (event) => {
-    const target = event.button === 0 ? targetAt(event) : null;
-    if (target === null) return;
-    event.stopImmediatePropagation();
-    element.setPointerCapture(event.pointerId);
-    held.set(event.pointerId, target);
-    press(target, true);
-  }, { capture: true });
+  element.addEventListener(
+    "pointerdown",
+    (event) => {
+      const target = event.button === 0 ? targetAt(event) : null;
+      if (target === null) return;
+      event.stopImmediatePropagation();
+      element.setPointerCapture(event.pointerId);
+      held.set(event.pointerId, target);
+      press(target, true);
+    },
+    { capture: true },
+  );
   element.addEventListener("pointerup", release, { capture: true });
   element.addEventListener("pointercancel", release, { capture: true });
   element.addEventListener("pointermove", (event) => {

@@ -4,7 +4,12 @@
 /** @typedef {{ pixelRatio: number }} Level */
 
 /** From fine to simple; the pixel ratio costs most (web-ui-features.md section 5.1). */
-export const LEVELS = /** @type {readonly Level[]} */ ([{ pixelRatio: 2 }, { pixelRatio: 1 }, { pixelRatio: 0.7 }, { pixelRatio: 0.5 }]);
+export const LEVELS = /** @type {readonly Level[]} */ ([
+  { pixelRatio: 2 },
+  { pixelRatio: 1 },
+  { pixelRatio: 0.7 },
+  { pixelRatio: 0.5 },
+]);
 
 const SLOWEST_FPS = 15;
 const WINDOW = 24;
@@ -26,7 +31,12 @@ export class Quality {
     return LEVELS[this.level];
   }
 
-  /** Note a drawn frame; true when the level has just changed. `ongoing`: another frame follows at once. @param {number} nowMs @param {boolean} ongoing */
+  /**
+   * Note a drawn frame; true when the level has just changed. `ongoing`: another frame follows at once.
+   *
+   * @param {number} nowMs
+   * @param {boolean} ongoing
+   */
   note(nowMs, ongoing) {
     if (this.lastMs !== null && nowMs - this.lastMs < IDLE_MS) this.intervals.push(nowMs - this.lastMs);
     this.lastMs = ongoing ? nowMs : null;

@@ -18,12 +18,18 @@ export function createRays() {
   // A flat fan of length 1 along x: scaled, it is the beam.
   const fan = new THREE.BufferGeometry();
   const width = Math.tan(HALF_ANGLE);
-  fan.setAttribute("position", new THREE.Float32BufferAttribute([0, -0.01, 0, 1, -width, 0, 1, width, 0, 0, -0.01, 0, 1, width, 0, 0, 0.01, 0], 3));
+  fan.setAttribute(
+    "position",
+    new THREE.Float32BufferAttribute([0, -0.01, 0, 1, -width, 0, 1, width, 0, 0, -0.01, 0, 1, width, 0, 0, 0.01, 0], 3),
+  );
   const dot = new THREE.SphereGeometry(0.0032, 8, 5);
   const group = new THREE.Group();
   const rays = PROXIMITY.map((name) => {
     const { x, y, z, yaw } = PROXIMITY_PLACES[name];
-    const beam = new THREE.Mesh(fan, new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false, side: THREE.DoubleSide }));
+    const beam = new THREE.Mesh(
+      fan,
+      new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false, side: THREE.DoubleSide }),
+    );
     const hit = new THREE.Mesh(dot, new THREE.MeshBasicMaterial());
     const mount = new THREE.Group();
     mount.position.set(x, y, z);

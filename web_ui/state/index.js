@@ -104,7 +104,14 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   serverInfo(state, { name, sessionId }) {
     if (sessionId === state.sessionId && sessionId !== "") return { ...state, server: name };
     // Another session: what was known belongs to a simulation that is no more.
-    return { ...INITIAL, connection: state.connection, notices: state.notices, selected: state.selected, server: name, sessionId };
+    return {
+      ...INITIAL,
+      connection: state.connection,
+      notices: state.notices,
+      selected: state.selected,
+      server: name,
+      sessionId,
+    };
   },
   channels: withChannels,
   services: (state, { names }) => ({ ...state, services: names }),
@@ -112,11 +119,18 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   time: (state, { timeNs }) => ({ ...state, timeNs: Number(timeNs) }),
   parameters: (state, { parameters }) => ({
     ...state,
-    parameters: { ...state.parameters, ...Object.fromEntries(parameters.map((/** @type {any} */ p) => [p.name, p.value])) },
+    parameters: {
+      ...state.parameters,
+      ...Object.fromEntries(parameters.map((/** @type {any} */ p) => [p.name, p.value])),
+    },
   }),
   status(state, { status }) {
     if (typeof status.id === "string" && status.id.startsWith("parameter:")) return state; // told where it was asked
-    return withNotice(state, (/** @type {const} */ (["info", "warning", "error"]))[status.level] ?? "error", status.message);
+    return withNotice(
+      state,
+      /** @type {const} */ (["info", "warning", "error"])[status.level] ?? "error",
+      status.message,
+    );
   },
   fault: (state, { what }) => withNotice(state, "error", what),
   select: (state, { robot }) => ({ ...state, selected: robot }),
@@ -148,7 +162,8 @@ function withTopic(state, { topic, value, nowMs = 0 }) {
   const part = splitTopic(topic);
   if (part === null) return state;
   if (part.robot === null) return GLOBAL_STEPS[part.name](state, value);
-  if (part.name === "aseba/status") return { ...state, programs: { ...state.programs, [part.robot]: readStatus(value) } };
+  if (part.name === "aseba/status")
+    return { ...state, programs: { ...state.programs, [part.robot]: readStatus(value) } };
   const robot = reduceRobot(state.robots[part.robot] ?? NEW_ROBOT, part.name, value, nowMs);
   return { ...state, robots: { ...state.robots, [part.robot]: robot } };
 }
@@ -170,7 +185,11 @@ const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any) => Sta
   },
   "/simulator/playgrounds": (state, value) => ({
     ...state,
-    playgrounds: JSON.parse(value.data).map((/** @type {any} */ { name, title = name, description = "" }) => ({ name, title, description })),
+    playgrounds: JSON.parse(value.data).map((/** @type {any} */ { name, title = name, description = "" }) => ({
+      name,
+      title,
+      description,
+    })),
   }),
 });
 
@@ -213,7 +232,16 @@ export function programOf(state) {
   return state.programs[state.selected] ?? state.programs[""] ?? null;
 }
 
-/** What tests see of the state: plain data, with the selected robot and its program at hand. @param {State} state */
+/**
+ * What tests see of the state: plain data, with the selected robot and its program at hand.
+ *
+ * @param {State} state
+ */
 export function snapshot(state) {
-  return { ...state, markers: state.markers.size, robot: state.robots[state.selected] ?? null, program: programOf(state) };
+  return {
+    ...state,
+    markers: state.markers.size,
+    robot: state.robots[state.selected] ?? null,
+    program: programOf(state),
+  };
 }

@@ -10,7 +10,13 @@ export const GLOBAL_TOPICS = ["/markers", "/simulator/state", "/simulator/playgr
 
 /** Topics of one robot, relative to its namespace. */
 export const ROBOT_TOPICS = [
-  "ground_truth/odom", "joint_states", "led/state", "raw/proximity", "raw/ground", "raw/motor", "aseba/status",
+  "ground_truth/odom",
+  "joint_states",
+  "led/state",
+  "raw/proximity",
+  "raw/ground",
+  "raw/motor",
+  "aseba/status",
   ...PROXIMITY.map((name) => `proximity/${name}`),
   ...GROUND.map((name) => `ground/${name}`),
   ...BUTTONS.map((name) => `buttons/${name}`),

@@ -40,7 +40,11 @@ export const NEW_ROBOT = {
 
 /** One row per topic, or per folder of topics (then `leaf` is the rest of the name). */
 const READERS = /** @type {Record<string, (robot: Robot, value: any, leaf: string, nowMs: number) => Robot>} */ ({
-  "ground_truth/odom": (robot, value, _leaf, nowMs) => ({ ...robot, previous: robot.latest, latest: poseSample(value, nowMs) }),
+  "ground_truth/odom": (robot, value, _leaf, nowMs) => ({
+    ...robot,
+    previous: robot.latest,
+    latest: poseSample(value, nowMs),
+  }),
   joint_states: readJoints,
   "led/state": (robot, value) => ({ ...robot, leds: splitGroups(value) }),
   proximity: (robot, value, leaf) => ({ ...robot, proximity: { ...robot.proximity, [leaf]: value.range } }),
@@ -80,7 +84,10 @@ function readJoints(robot, value) {
   return {
     ...robot,
     wheels: { left: pick(value.position, "left", wheels.left), right: pick(value.position, "right", wheels.right) },
-    wheelSpeeds: { left: pick(value.velocity, "left", wheelSpeeds.left), right: pick(value.velocity, "right", wheelSpeeds.right) },
+    wheelSpeeds: {
+      left: pick(value.velocity, "left", wheelSpeeds.left),
+      right: pick(value.velocity, "right", wheelSpeeds.right),
+    },
   };
 }
 
