@@ -71,6 +71,7 @@ def test_broken_json_is_located() -> None:
         ({"format": True}, "format"),
         ({"title": None}, "title"),
         ({"title": "two\nlines"}, "title"),
+        ({"title": "half a pair \ud800"}, "title"),
         ({"shapes": {}}, "shapes"),
         ({"shapes": [1]}, "shapes[0]"),
         ({"shapes": [{"kind": "pyramid"}]}, "shapes[0].kind"),
@@ -112,6 +113,25 @@ def test_what_is_wrong_is_refused_at_its_key(changes: dict[str, Any], key: str) 
 def test_points_are_checked_one_by_one(points: Any, key: str) -> None:
     track = {"kind": "track", "points_m": points, "width_m": 0.04, "colour": "#000000"}
     assert refused_with(shapes=[track]).key == f"shapes[0].{key}"
+
+
+@pytest.mark.parametrize(
+    ("points", "radius", "found"),
+    [
+        ([[0, 0], [0, 0]], 0, "a single place"),
+        ([[0, 0], [1, 0], [1, 1]], 0.01, "below half of the width"),
+    ],
+)
+def test_a_track_that_cannot_be_painted_is_refused(points: Any, radius: float, found: str) -> None:
+    track = {"kind": "track", "points_m": points, "width_m": 0.04, "colour": "#000000", "closed": True}
+    error = refused_with(shapes=[{**track, "corner_radius_m": radius}])
+    assert found in error.found
+
+
+def test_a_playground_of_too_many_parts_is_refused() -> None:
+    points = [[index % 2, index / 10] for index in range(500)]
+    track = {"kind": "track", "points_m": points, "width_m": 0.04, "colour": "#000000", "corner_radius_m": 0.02}
+    assert refused_with(shapes=[track]).found == "more than 10000 parts so far"
 
 
 def test_corners_that_do_not_fit_their_pieces_are_refused() -> None:

@@ -79,7 +79,7 @@ Coordinate = Annotated[float, Number("m", -FAR_M, FAR_M)]
 Extent = Annotated[float, Number("m", 0.001, FAR_M)]
 Angle = Annotated[float, Number("rad", -2 * math.pi, 2 * math.pi)]
 Radius = Annotated[float, Number("m", 0.0, FAR_M)]
-Text = Annotated[str, Pattern(r"[^\x00-\x1f\x7f]*", "one line of text", 2000)]
+Text = Annotated[str, Pattern(r"[^\x00-\x1f\x7f\ud800-\udfff]*", "one line of text", 2000)]
 Name = Annotated[
     str, Pattern(r"[A-Za-z](_?[A-Za-z0-9])*", "a ROS name: letters, digits, single underscores, a letter first", 60)
 ]

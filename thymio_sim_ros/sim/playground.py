@@ -218,8 +218,8 @@ def _primitives(shapes: tuple[NamedShape, ...]) -> list[Primitive]:
             found.extend(named.shape.primitives(named.name))
         except ValueError as error:
             raise FieldError(f"shapes[{index}]", str(error), f"a {named.kind} that can be built") from error
-    if len(found) > MAX_PRIMITIVES:
-        raise FieldError("shapes", f"{len(found)} parts", f"at most {MAX_PRIMITIVES}")
+        if len(found) > MAX_PRIMITIVES:
+            raise FieldError(f"shapes[{index}]", f"more than {MAX_PRIMITIVES} parts so far", "a simpler playground")
     return found
 
 

@@ -15,7 +15,8 @@ from thymio_sim_ros.sim.geometry import Pose, Twist
 class ProximityReading:
     """Seven horizontal proximity sensors: left, center_left, center, center_right, right, rear_left, rear_right.
 
-    `ranges_m` is the distance along the axis (inf: nothing within range); `words` are counts 0…4505.
+    `words` are counts 0…4505; `ranges_m` is the distance along the axis of a wall that gives this count, as the robot's
+    driver computes it, at most 0.14 (inf: nothing within range, count 0).
     """
 
     stamp_ns: int

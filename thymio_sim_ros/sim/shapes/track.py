@@ -47,11 +47,16 @@ class Track:
     def stations(self) -> tuple[_Station, ...]:
         """The middle line: x, y in m and direction in rad, two stations for each straight piece and arc step.
 
-        ValueError when the arcs at both ends of a piece need more than its length.
+        ValueError when all points are one, when arcs are tighter than half the width, or when the arcs at both
+        ends of a piece need more than its length.
         """
+        if 0.0 < self.corner_radius_m < self.width_m / 2:
+            raise ValueError("a corner radius below half of the width")
         points = [point for index, point in enumerate(self.points_m) if index == 0 or point != self.points_m[index - 1]]
-        if self.closed and points[0] == points[-1]:
+        if self.closed and len(points) > 1 and points[0] == points[-1]:
             points.pop()
+        if len(points) < 2:
+            raise ValueError("a single place")
         ring = [*points, points[0]] if self.closed else points
         directions = [math.atan2(by - ay, bx - ax) for (ax, ay), (bx, by) in itertools.pairwise(ring)]
         stations: list[_Station] = []
