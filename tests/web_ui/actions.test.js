@@ -1,0 +1,111 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { Actions, LARGEST_FILE } from "../../web_ui/actions.js";
+import { Store } from "../../web_ui/state/store.js";
+
+/** @typedef {import("../../web_ui/state/index.js").Message} Message */
+
+/** Actions over a client that notes what it is asked, and answers as told. */
+function prepared({ ok = true, message = "" } = {}) {
+  /** @type {any[]} */ const asked = [];
+  const client = {
+    publish: (/** @type {any[]} */ ...given) => asked.push(["publish", ...given]),
+    call: async (/** @type {any[]} */ ...given) => {
+      asked.push(["call", ...given]);
+      return { ok, message };
+    },
+    setParameters: async (/** @type {any} */ given) => {
+      asked.push(["set", given]);
+      return { ok, message, value: undefined };
+    },
+  };
+  const store = new Store();
+  const actions = new Actions({ client: /** @type {any} */ (client), store, t: (key) => key });
+  return { actions, asked, store };
+}
+
+/** @param {Store} store @param {string[]} topics @param {string[]} names */
+function connect(store, topics, names) {
+  store.dispatch({ type: "channels", topics });
+  store.dispatch({ type: "services", names });
+}
+
+test("a finger on a button is published to its robot", () => {
+  const { actions, asked } = prepared();
+  actions.press("", "left", true);
+  actions.press("thymio_1", "left", false);
+  assert.deepEqual(asked, [
+    ["publish", "/press/left", "std_msgs/msg/Bool", { data: true }],
+    ["publish", "/thymio_1/press/left", "std_msgs/msg/Bool", { data: false }],
+  ]);
+});
+
+test("stop ends every program first, and then tells every wheel zero", async () => {
+  const { actions, asked, store } = prepared();
+  connect(store, ["/a/ground_truth/odom", "/b/ground_truth/odom"], ["/a/aseba/stop", "/b/aseba/stop", "/a/aseba/run"]);
+  await actions.stop();
+  assert.deepEqual(
+    asked.map(([kind, name]) => `${kind} ${name}`),
+    ["call /a/aseba/stop", "call /b/aseba/stop", "publish /a/cmd_vel", "publish /b/cmd_vel"],
+  );
+});
+
+test("a robot's own runtime is asked, else the one that all share", async () => {
+  const { actions, asked, store } = prepared();
+  connect(store, ["/a/ground_truth/odom"], ["/aseba/run", "/aseba/stop", "/a/aseba/run"]);
+  await actions.program("run");
+  await actions.program("stop");
+  assert.deepEqual(
+    asked.map(([, name]) => name),
+    ["/a/aseba/run", "/aseba/stop"],
+  );
+});
+
+test("a call that is refused is told", async () => {
+  const { actions, store } = prepared({ ok: false, message: "not paused" });
+  await actions.step();
+  assert.deepEqual(
+    store.state.notices.map(({ level, text }) => [level, text]),
+    [["error", "not paused"]],
+  );
+});
+
+test("a program file goes to the runtime with its name", async () => {
+  const { actions, asked, store } = prepared();
+  await actions.loadFile(new File(["onevent prox\n"], "line.aesl"));
+  assert.deepEqual(asked, [
+    [
+      "set",
+      [
+        { name: "/aseba_runtime.script.name", value: "line.aesl" },
+        { name: "/aseba_runtime.script.source", value: "onevent prox\n" },
+      ],
+    ],
+  ]);
+  assert.equal(store.state.uploads.program?.phase, "accepted");
+});
+
+test("a playground file goes to the simulator as its text", async () => {
+  const { actions, asked, store } = prepared({ ok: false, message: "/simulator.playground: robots: found 0" });
+  await actions.loadFile(new File(["{}"], "own.JSON"));
+  assert.deepEqual(asked, [["set", [{ name: "/simulator.playground", value: "{}" }]]]);
+  assert.equal(store.state.uploads.playground?.fault?.text, "robots: found 0");
+});
+
+test("a playground of the list goes by its name", async () => {
+  const { actions, asked } = prepared();
+  await actions.loadPlayground("base");
+  assert.deepEqual(asked, [["set", [{ name: "/simulator.playground", value: "base" }]]]);
+});
+
+test("files of other kinds, and too large ones, are not sent", async () => {
+  const { actions, asked, store } = prepared();
+  await actions.loadFile(new File(["x"], "holiday.png"));
+  await actions.loadFile(new File(["x".repeat(LARGEST_FILE + 1)], "long.aesl"));
+  assert.deepEqual(asked, []);
+  assert.deepEqual(
+    store.state.notices.map(({ text }) => text),
+    ["file.unknown", "file.tooLarge"],
+  );
+});
