@@ -21,10 +21,24 @@ _MAX_WAITING = 10_000
 def listen(address: str, port: int) -> socket.socket:
     """A listening socket; port 0: any free one. Raises OSError that names address and port."""
     try:
-        family, _, _, _, endpoint = socket.getaddrinfo(address or None, port, type=socket.SOCK_STREAM)[0]
-        return socket.create_server(endpoint[:2], family=family, backlog=128)
+        info = socket.getaddrinfo(address or None, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
+        family, kind, protocol, _, endpoint = info[0]
+        # socket.create_server leaves the protocol at 0, and asyncio then leaves Nagle on: 40 ms per answer (measured).
+        listener = socket.socket(family, kind, protocol)
     except OSError as error:
-        raise OSError(error.errno, f"cannot listen on {address}:{port}: {error.strerror or error}") from error
+        raise _named(error, address, port) from error
+    try:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(endpoint)
+        listener.listen(128)
+    except OSError as error:
+        listener.close()
+        raise _named(error, address, port) from error
+    return listener
+
+
+def _named(error: OSError, address: str, port: int) -> OSError:
+    return OSError(error.errno, f"cannot listen on {address}:{port}: {(error.strerror or str(error)).lower()}")
 
 
 class ServerThread:

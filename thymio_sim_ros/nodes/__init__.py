@@ -1,0 +1,1 @@
+"""The only folder that imports rclpy: thin nodes around the pure packages (docs/architecture.md)."""

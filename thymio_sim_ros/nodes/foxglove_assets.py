@@ -1,0 +1,62 @@
+"""Files for viewers, by `package://<package>/<path>`: meshes, textures, robot descriptions, and nothing else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from urllib.parse import unquote
+
+from thymio_sim_ros.nodes.schemas import share_folders
+
+__all__ = ["AssetError", "load_asset"]
+
+_SCHEME = "package://"
+_EXTENSIONS = frozenset(
+    (
+        ".dae",
+        ".fbx",
+        ".glb",
+        ".gltf",
+        ".jpeg",
+        ".jpg",
+        ".mtl",
+        ".obj",
+        ".png",
+        ".stl",
+        ".tif",
+        ".tiff",
+        ".urdf",
+        ".webp",
+        ".xacro",
+    )
+)
+_MAX_SIZE = 64 << 20
+
+
+class AssetError(Exception):
+    """Why a file is not given; the text is for the client."""
+
+
+def load_asset(uri: str) -> bytes:
+    """Content of the file; raises AssetError. The file must lie in its package's share folder, links resolved."""
+    if not uri.startswith(_SCHEME):
+        raise AssetError(f"expected {_SCHEME}…, found {uri!r:.80}")
+    package, _, path = unquote(uri.removeprefix(_SCHEME)).partition("/")
+    if not package.isidentifier() or ".." in Path(path).parts or "\0" in path:
+        raise AssetError(f"{uri!r:.80} leaves its package")
+    if Path(path).suffix.lower() not in _EXTENSIONS:
+        raise AssetError(f"files of type {Path(path).suffix or 'none'} are not given")
+    for share in share_folders():
+        folder = (share / package).resolve()
+        file = (folder / path).resolve()
+        if file.is_relative_to(folder) and file.is_file():
+            return _read(file, uri)
+    raise AssetError(f"{uri} does not exist")
+
+
+def _read(file: Path, uri: str) -> bytes:
+    try:
+        if file.stat().st_size > _MAX_SIZE:
+            raise AssetError(f"{uri} is larger than {_MAX_SIZE >> 20} MiB")
+        return file.read_bytes()
+    except OSError as error:
+        raise AssetError(f"{uri}: {error.strerror}") from error

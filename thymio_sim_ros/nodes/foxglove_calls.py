@@ -1,0 +1,86 @@
+"""Service calls that wait for nobody: lazy clients, readiness and time-outs by polling."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from rclpy.client import Client
+from rclpy.node import Node
+from rclpy.task import Future
+
+__all__ = ["CALL_TIMEOUT_S", "Calls"]
+
+CALL_TIMEOUT_S = 5.0
+
+Done = Callable[[Any, str], None]
+"""Called once: with the response and "", or with None and the reason."""
+
+
+@dataclass(slots=True)
+class _Call:
+    client: Client
+    name: str
+    request: Any
+    done: Done
+    deadline_s: float
+    future: Future | None = None
+
+
+class Calls:
+    """All calls of the bridge. Belongs to the executor's thread; `poll` must be called while it returns True."""
+
+    def __init__(
+        self, node: Node, *, wake: Callable[[], None] = lambda: None, timeout_s: float = CALL_TIMEOUT_S
+    ) -> None:
+        self._node = node
+        self._wake = wake
+        self._timeout_s = timeout_s
+        self._clients: dict[tuple[str, Any], Client] = {}
+        self._open: list[_Call] = []
+
+    def call(self, service_type: Any, name: str, request: Any, done: Done) -> None:
+        """Call a service; the request leaves as soon as the service is found."""
+        key = (name, service_type)
+        client = self._clients.get(key)
+        if client is None:
+            client = self._clients[key] = self._node.create_client(service_type, name)
+        self._open.append(_Call(client, name, request, done, time.monotonic() + self._timeout_s))
+        self.poll()
+        self._wake()
+
+    def poll(self) -> bool:
+        """Send what can be sent, give up what is too old; whether calls are open still."""
+        now_s = time.monotonic()
+        for call in list(self._open):
+            if call.future is None and call.client.service_is_ready():
+                call.future = call.client.call_async(call.request)
+                call.future.add_done_callback(lambda future, call=call: self._answered(call, future))
+            elif now_s >= call.deadline_s:
+                self._give_up(call)
+        return bool(self._open)
+
+    def forget(self, name: str) -> None:
+        """The service is gone: its open calls fail, its client ends."""
+        for call in [call for call in self._open if call.name == name]:
+            self._finish(call, None, f"service {name} is gone")
+        for key in [key for key in self._clients if key[0] == name]:
+            self._node.destroy_client(self._clients.pop(key))
+
+    def _answered(self, call: _Call, future: Future) -> None:
+        if future.cancelled():
+            return
+        error = future.exception()
+        self._finish(call, None if error else future.result(), f"service {call.name} failed: {error}" if error else "")
+
+    def _give_up(self, call: _Call) -> None:
+        if call.future is not None:
+            call.client.remove_pending_request(call.future)
+        self._finish(call, None, f"no answer from {call.name} within {self._timeout_s:g} s")
+
+    def _finish(self, call: _Call, response: Any, reason: str) -> None:
+        if call in self._open:
+            self._open.remove(call)
+            call.done(response, reason)

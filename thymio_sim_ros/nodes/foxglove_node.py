@@ -1,0 +1,280 @@
+"""The Foxglove bridge as a ROS node: any ROS graph for Foxglove Studio, Lichtblick and our own page.
+
+Two threads. The executor's owns everything of ROS and this file; the event loop's owns sockets (`bridge`). Commands go
+there by `ServerThread.post`, events come here by `Mailbox`; nothing else is shared. Topics, services and parameters
+each have a module; what they have in common is that the graph is polled and messages are never deserialised.
+"""
+
+from __future__ import annotations
+
+import ssl
+import time
+import uuid
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from rclpy.clock import Clock, JumpThreshold, TimeJump
+from rclpy.clock_type import ClockType
+from rclpy.context import Context
+from rclpy.duration import Duration
+from rclpy.executors import Executor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from thymio_sim_ros.bridge import Capability, ServerInfo, ServerSettings, ServerThread
+from thymio_sim_ros.bridge import events as ev
+from thymio_sim_ros.bridge.messages import AssetResponse
+from thymio_sim_ros.bridge.vocabulary import CDR, JSON
+from thymio_sim_ros.nodes import params
+from thymio_sim_ros.nodes.foxglove_assets import AssetError, load_asset
+from thymio_sim_ros.nodes.foxglove_calls import Calls
+from thymio_sim_ros.nodes.foxglove_graph import allow_list, connection_graph, is_parameter_service, visible
+from thymio_sim_ros.nodes.foxglove_parameters import Parameters
+from thymio_sim_ros.nodes.foxglove_publishers import ClientPublishers
+from thymio_sim_ros.nodes.foxglove_services import Services
+from thymio_sim_ros.nodes.foxglove_topics import Topics
+from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, run_main
+from thymio_sim_ros.nodes.mailbox import Mailbox
+from thymio_sim_ros.nodes.params import param
+
+__all__ = ["FoxgloveBridge", "FoxgloveParams", "main"]
+
+_DISCOVER_S = 0.25
+_REFRESH_S = 1.0
+_HURRY_S = 0.02
+"""Period of polling while something waits for discovery: a call, a message of a new publisher."""
+
+
+@dataclass(frozen=True)
+class FoxgloveParams:
+    """Parameters of the bridge; names as the vendor's bridge has them where it has them."""
+
+    port: int = param(8765, "TCP port; 0 takes a free one", low=0, high=65535, fixed=True)
+    address: str = param("127.0.0.1", "Address to listen on; 0.0.0.0 for the whole network", fixed=True)
+    tls: bool = param(False, "Serve wss:// with certfile and keyfile", fixed=True)
+    certfile: str = param("", "PEM file with the certificate chain", fixed=True)
+    keyfile: str = param("", "PEM file with the private key", fixed=True)
+    allowed_origins: tuple[str, ...] = param(
+        ("",),
+        "Web pages that may connect beside this machine's and the Foxglove app's, as https://host:port; *: all",
+        fixed=True,
+    )
+    topic_whitelist: tuple[str, ...] = param((".*",), "Regular expressions of topics to offer", fixed=True)
+    service_whitelist: tuple[str, ...] = param((".*",), "Regular expressions of services to offer", fixed=True)
+    param_whitelist: tuple[str, ...] = param(
+        (".*",), "Regular expressions of parameters (/node.name) to offer", fixed=True
+    )
+    client_topic_whitelist: tuple[str, ...] = param(
+        (".*",), "Regular expressions of topics on which clients may publish", fixed=True
+    )
+    include_hidden: bool = param(False, "Offer hidden topics and services too", fixed=True)
+    min_qos_depth: int = param(10, "Least history of a subscription", low=1, high=1000, fixed=True)
+    max_qos_depth: int = param(25, "Greatest history of a subscription", low=1, high=1000, fixed=True)
+    send_buffer_limit: int = param(
+        1 << 20,
+        "Bytes that may wait for a slow client before only newest messages are sent",
+        low=1 << 12,
+        high=1 << 30,
+        fixed=True,
+    )
+    max_message_size: int = param(
+        16 << 20, "Longest frame accepted from a client, bytes", low=1 << 10, high=1 << 30, fixed=True
+    )
+
+
+class FoxgloveBridge:
+    """The node and its server, which listens when the constructor returns. `port` is the one really taken.
+
+    Raises StartError when the port cannot be used. Belongs to the thread that turns the node's executor.
+    """
+
+    def __init__(
+        self,
+        *,
+        context: Context,
+        port: int | None = None,
+        address: str | None = None,
+        use_sim_time: bool | None = None,
+        defaults: FoxgloveParams | None = None,
+    ) -> None:
+        overrides = [] if use_sim_time is None else [Parameter("use_sim_time", value=use_sim_time)]
+        self.node = Node("foxglove_bridge", context=context, parameter_overrides=overrides)
+        try:
+            values = defaults or FoxgloveParams()
+            values = replace(
+                values,
+                port=values.port if port is None else port,
+                address=values.address if address is None else address,
+            )
+            self.params = params.declare(self.node, values)
+            self._uses_sim_time = bool(self.node.get_parameter("use_sim_time").value)
+            self._mailbox: Mailbox[ev.Event] = Mailbox(self.node, self._on_event)
+            self._server = self._open_server()
+        except BaseException:
+            self.node.destroy_node()
+            raise
+        self.address, self.port = self._server.address, self._server.port
+        self._sim_now_ns = 0
+        self._wants_graph = False
+        self._build()
+        self.node.get_logger().info(self.greeting)
+
+    @property
+    def greeting(self) -> str:
+        """Where to connect, for a person."""
+        scheme = "wss" if self.params.tls else "ws"
+        host = "localhost" if self.address in ("127.0.0.1", "0.0.0.0", "::1", "::") else self.address
+        link = f"https://app.foxglove.dev/?ds=foxglove-websocket&ds.url={scheme}%3A%2F%2F{host}%3A{self.port}"
+        return f"Foxglove: {scheme}://{host}:{self.port} or {link}"
+
+    def turn(self, executor: Executor) -> None:
+        """Handle what is due; returns after `SPIN_SLICE_S` at the latest."""
+        executor.spin_once(timeout_sec=SPIN_SLICE_S)
+
+    def close(self) -> None:
+        """End server, thread and node; call it when nobody turns the executor any more."""
+        self._mailbox.close()
+        self._server.close()
+        self._jump_handle.unregister()
+        self._topics.close()
+        self._publishers.end()
+        self.node.destroy_node()
+
+    def _open_server(self) -> ServerThread:
+        values = self.params
+        capabilities = [item for item in Capability if item is not Capability.TIME or self._uses_sim_time]
+        try:
+            return ServerThread(
+                ServerInfo("thymio_sim_ros", tuple(capabilities), (CDR, JSON), session_id=_new_id()),
+                self._mailbox,
+                address=values.address,
+                port=values.port,
+                settings=ServerSettings(
+                    allowed_origins=tuple(filter(None, values.allowed_origins)),
+                    buffer_limit=values.send_buffer_limit,
+                    max_message_size=values.max_message_size,
+                    tls=_tls(values),
+                ),
+            )
+        except OSError as error:
+            raise StartError(f"the Foxglove bridge {error.strerror}; choose another port") from error
+
+    def _build(self) -> None:
+        values, post = self.params, self._server.post
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._is_topic = allow_list(values.topic_whitelist)
+        self._is_service = allow_list(values.service_whitelist)
+        self._hurry = self.node.create_timer(_HURRY_S, self._poll_waiting, clock=steady)
+        self._hurry.cancel()
+        self._calls = Calls(self.node, wake=self._hurry.reset)
+        self._topics = Topics(
+            self.node, post, self._now_ns, min_depth=values.min_qos_depth, max_depth=values.max_qos_depth
+        )
+        self._services = Services(self.node, self._calls, post)
+        self._parameters = Parameters(self.node, self._calls, post, is_allowed=allow_list(values.param_whitelist))
+        self._publishers = ClientPublishers(
+            self.node, post, is_allowed=allow_list(values.client_topic_whitelist), wake=self._hurry.reset
+        )
+        self._seen: tuple[Any, Any] = ({}, {})
+        self._jump_handle = self.node.get_clock().create_jump_callback(
+            JumpThreshold(
+                min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1), on_clock_change=True
+            ),
+            post_callback=self._on_time,
+        )
+        self.node.create_timer(_DISCOVER_S, self._discover, clock=steady)
+        self.node.create_timer(_REFRESH_S, self._refresh, clock=steady)
+
+    def _now_ns(self) -> int:
+        return self._sim_now_ns if self._uses_sim_time else time.time_ns()
+
+    def _on_time(self, jump: TimeJump) -> None:
+        """Simulated time moved; backwards means a reset."""
+        if not self._uses_sim_time:
+            return
+        now_ns = self.node.get_clock().now().nanoseconds
+        if now_ns < self._sim_now_ns:
+            self._server.post(ev.NewSession(_new_id()))
+        self._sim_now_ns = now_ns
+        self._server.post(ev.SetTime(now_ns))
+
+    def _discover(self) -> None:
+        """Follow the graph."""
+        self._mailbox.drain()
+        topics = dict(self.node.get_topic_names_and_types())
+        services = dict(self.node.get_service_names_and_types())
+        if (topics, services) == self._seen:
+            return
+        self._seen = (topics, services)
+        hidden = self.params.include_hidden
+        self._topics.update(visible(topics, self._is_topic, hidden=hidden))
+        offered = visible(services, self._is_service, hidden=hidden)
+        if not hidden:
+            offered = {name: types for name, types in offered.items() if not is_parameter_service(name)}
+        self._services.update(offered)
+        self._parameters.update(services)
+
+    def _refresh(self) -> None:
+        self._topics.refresh()
+        if self._wants_graph:
+            self._tell_graph()
+
+    def _tell_graph(self) -> None:
+        topics, services = self._seen
+        hidden = self.params.include_hidden
+        shown = visible(topics, self._is_topic, hidden=hidden), visible(services, self._is_service, hidden=hidden)
+        self._server.post(ev.SetGraph(connection_graph(self.node, *shown)))
+
+    def _poll_waiting(self) -> None:
+        waits = [self._calls.poll(), self._publishers.poll()]
+        if not any(waits):
+            self._hurry.cancel()
+
+    def _on_event(self, event: ev.Event) -> None:
+        _HANDLERS[type(event)](self, event)
+
+    def _want_graph(self, event: ev.GraphWanted) -> None:
+        self._wants_graph = event.wanted
+        if event.wanted:
+            self._tell_graph()
+
+    def _give_asset(self, event: ev.AssetWanted) -> None:
+        try:
+            answer = AssetResponse(event.request_id, load_asset(event.uri))
+        except AssetError as error:
+            answer = AssetResponse(event.request_id, b"", str(error))
+        self._server.post(ev.Tell(event.client, answer))
+
+
+_HANDLERS: dict[type, Callable[[FoxgloveBridge, Any], None]] = {
+    ev.ChannelWanted: lambda self, event: self._topics.want(event.channel_id),
+    ev.ChannelUnwanted: lambda self, event: self._topics.unwant(event.channel_id),
+    ev.ClientChannelOpened: lambda self, event: self._publishers.open(event.client, event.channel),
+    ev.ClientChannelClosed: lambda self, event: self._publishers.close(event.client, event.channel_id),
+    ev.ClientSent: lambda self, event: self._publishers.publish(event.client, event.channel_id, event.payload),
+    ev.ServiceCalled: lambda self, event: self._services.call(event.client, event.request),
+    ev.ParametersSet: lambda self, event: self._parameters.set(event),
+    ev.GraphWanted: FoxgloveBridge._want_graph,
+    ev.AssetWanted: FoxgloveBridge._give_asset,
+}
+
+
+def _new_id() -> str:
+    return str(uuid.uuid4())
+
+
+def _tls(values: FoxgloveParams) -> ssl.SSLContext | None:
+    if not values.tls:
+        return None
+    tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    try:
+        tls.load_cert_chain(values.certfile, values.keyfile or None)
+    except OSError as error:
+        raise StartError(f"the certificate {values.certfile!r} cannot be used: {error.strerror or error}") from error
+    return tls
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """The executable `foxglove_bridge`."""
+    return run_main(lambda context: [FoxgloveBridge(context=context)], args)

@@ -1,0 +1,145 @@
+"""Topics of the graph as channels; raw subscriptions only while a client wants them."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from rclpy._rclpy_pybind11 import RCLError
+from rclpy.node import Node
+from rclpy.subscription import Subscription
+
+from thymio_sim_ros.bridge.events import AddChannels, Command, Data, KeepLast, RemoveChannels
+from thymio_sim_ros.bridge.messages import Channel
+from thymio_sim_ros.bridge.vocabulary import CDR
+from thymio_sim_ros.nodes.foxglove_qos import Reception, reception
+from thymio_sim_ros.nodes.foxglove_types import MissingTypeError, load_type
+from thymio_sim_ros.nodes.schemas import message_definition
+
+__all__ = ["Topics"]
+
+
+class _Topic:
+    """One channel and, while it is wanted, its subscription."""
+
+    def __init__(self, channel: Channel, message_type: Any) -> None:
+        self.channel = channel
+        self.message_type = message_type
+        self.reception: Reception | None = None
+        self.subscription: Subscription | None = None
+
+
+class Topics:
+    """Keeps channels equal to the graph. Belongs to the executor's thread."""
+
+    def __init__(
+        self,
+        node: Node,
+        post: Callable[[Command], None],
+        now_ns: Callable[[], int],
+        *,
+        min_depth: int = 10,
+        max_depth: int = 25,
+    ) -> None:
+        self._node = node
+        self._post = post
+        self._now_ns = now_ns
+        self._depths = {"min_depth": min_depth, "max_depth": max_depth}
+        self._ids = itertools.count(1)
+        self._by_name: dict[str, _Topic] = {}
+        self._by_id: dict[int, _Topic] = {}
+        self._refused: set[tuple[str, str]] = set()
+
+    def update(self, topics: Mapping[str, Sequence[str]]) -> None:
+        """Make channels for new topics, take away those of vanished ones; topic → types, the first one counts."""
+        gone = [name for name, topic in self._by_name.items() if topic.channel.schema_name not in topics.get(name, ())]
+        if gone:
+            self._remove(gone)
+        added = [
+            topic.channel
+            for name, types in topics.items()
+            if name not in self._by_name and (topic := self._add(name, types[0])) is not None
+        ]
+        if added:
+            self._post(AddChannels(tuple(added)))
+
+    def want(self, channel_id: int) -> None:
+        """Subscribe for the first client."""
+        topic = self._by_id.get(channel_id)
+        if topic is not None and topic.subscription is None:
+            self._subscribe(topic, self._reception(topic))
+
+    def unwant(self, channel_id: int) -> None:
+        """Unsubscribe after the last client."""
+        topic = self._by_id.get(channel_id)
+        if topic is not None:
+            self._unsubscribe(topic)
+
+    def refresh(self) -> None:
+        """Subscribe anew where publishers came or left so that another QoS fits."""
+        for topic in self._by_id.values():
+            if topic.subscription is None:
+                continue
+            fitting = self._reception(topic)
+            if fitting != topic.reception:
+                self._unsubscribe(topic)
+                self._subscribe(topic, fitting)
+
+    def close(self) -> None:
+        """End all subscriptions."""
+        for topic in self._by_id.values():
+            self._unsubscribe(topic)
+
+    @property
+    def subscribed(self) -> tuple[str, ...]:
+        """Topics with a subscription now."""
+        return tuple(name for name, topic in self._by_name.items() if topic.subscription is not None)
+
+    def _add(self, name: str, type_name: str) -> _Topic | None:
+        try:
+            message_type = load_type(type_name)
+            schema = message_definition(type_name)
+        except MissingTypeError as error:
+            self._refuse(name, type_name, str(error))
+            return None
+        channel = Channel(next(self._ids), name, CDR, type_name, schema, "ros2msg")
+        topic = self._by_name[name] = self._by_id[channel.id] = _Topic(channel, message_type)
+        return topic
+
+    def _remove(self, names: Sequence[str]) -> None:
+        topics = [self._by_name.pop(name) for name in names]
+        for topic in topics:
+            self._unsubscribe(topic)
+            del self._by_id[topic.channel.id]
+        self._post(RemoveChannels(tuple(topic.channel.id for topic in topics)))
+
+    def _reception(self, topic: _Topic) -> Reception:
+        return reception(self._node.get_publishers_info_by_topic(topic.channel.topic), **self._depths)
+
+    def _subscribe(self, topic: _Topic, fitting: Reception) -> None:
+        channel_id, now_ns, post = topic.channel.id, self._now_ns, self._post
+
+        def forward(payload: bytes) -> None:
+            post(Data(channel_id, now_ns(), payload))
+
+        post(KeepLast(channel_id, fitting.kept))
+        try:
+            topic.subscription = self._node.create_subscription(
+                topic.message_type, topic.channel.topic, forward, fitting.profile, raw=True
+            )
+        except RCLError as error:  # this process uses the topic with another type
+            self._refuse(topic.channel.topic, topic.channel.schema_name, str(error))
+            return
+        topic.reception = fitting
+
+    def _unsubscribe(self, topic: _Topic) -> None:
+        if topic.subscription is not None:
+            self._node.destroy_subscription(topic.subscription)
+            topic.subscription = topic.reception = None
+
+    def _refuse(self, name: str, type_name: str, reason: str) -> None:
+        """Say once why a topic is not there."""
+        if (name, type_name) not in self._refused:
+            self._refused.add((name, type_name))
+            self._node.get_logger().warning(f"{name} is not bridged: {reason}")

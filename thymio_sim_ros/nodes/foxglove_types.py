@@ -1,0 +1,48 @@
+"""Type names and their classes."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+from rclpy.type_support import check_for_type_support
+
+from thymio_sim_ros.nodes import tf_messages
+
+__all__ = ["MissingTypeError", "full_name", "load_type"]
+
+
+class MissingTypeError(Exception):
+    """A type that is not installed here."""
+
+    def __init__(self, name: str, reason: str) -> None:
+        super().__init__(f"type {name} is not available: {reason}")
+        self.name = name
+        self.reason = reason
+
+
+def full_name(name: str, kind: str = "msg") -> str:
+    """`pkg/Type`, as clients may write it, as `pkg/msg/Type`; other forms as they are."""
+    words = name.split("/")
+    return f"{words[0]}/{kind}/{words[1]}" if len(words) == 2 else name
+
+
+def load_type(name: str) -> Any:
+    """The class of `pkg/msg/Type` or `pkg/srv/Type`, ready for publishers, subscriptions and clients.
+
+    Transforms work without tf2_msgs, as raw bytes. Raises MissingTypeError.
+    """
+    if name == tf_messages.TF_TYPE_NAME:
+        if not tf_messages.available():
+            raise MissingTypeError(name, "tf2_msgs is not installed and cannot be replaced")
+        return tf_messages.TFMessage
+    words = name.split("/")
+    if len(words) != 3 or not all(word.isidentifier() for word in words):
+        raise MissingTypeError(name, "expected package/msg/Type")
+    try:
+        cls = getattr(importlib.import_module(".".join(words[:2])), words[2])
+        if words[1] == "msg":
+            check_for_type_support(cls)
+    except (ImportError, AttributeError) as error:
+        raise MissingTypeError(name, str(error)) from error
+    return cls

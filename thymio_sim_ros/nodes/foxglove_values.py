@@ -1,0 +1,113 @@
+"""Parameter values: the bridge's form ↔ ROS's (foxglove.md section 2)."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import math
+from typing import Any
+
+from rcl_interfaces.msg import ParameterType, ParameterValue
+
+from thymio_sim_ros.bridge.messages import Parameter
+
+__all__ = ["UnfitValueError", "from_ros", "to_ros"]
+
+_FIELDS = {
+    ParameterType.PARAMETER_BOOL: "bool_value",
+    ParameterType.PARAMETER_INTEGER: "integer_value",
+    ParameterType.PARAMETER_DOUBLE: "double_value",
+    ParameterType.PARAMETER_STRING: "string_value",
+    ParameterType.PARAMETER_BYTE_ARRAY: "byte_array_value",
+    ParameterType.PARAMETER_BOOL_ARRAY: "bool_array_value",
+    ParameterType.PARAMETER_INTEGER_ARRAY: "integer_array_value",
+    ParameterType.PARAMETER_DOUBLE_ARRAY: "double_array_value",
+    ParameterType.PARAMETER_STRING_ARRAY: "string_array_value",
+}
+_SCALARS = {
+    bool: ParameterType.PARAMETER_BOOL,
+    int: ParameterType.PARAMETER_INTEGER,
+    float: ParameterType.PARAMETER_DOUBLE,
+    str: ParameterType.PARAMETER_STRING,
+}
+_ARRAYS = {
+    bool: ParameterType.PARAMETER_BOOL_ARRAY,
+    int: ParameterType.PARAMETER_INTEGER_ARRAY,
+    float: ParameterType.PARAMETER_DOUBLE_ARRAY,
+    str: ParameterType.PARAMETER_STRING_ARRAY,
+}
+_HINTS = {
+    "float64": ParameterType.PARAMETER_DOUBLE,
+    "float64_array": ParameterType.PARAMETER_DOUBLE_ARRAY,
+    "byte_array": ParameterType.PARAMETER_BYTE_ARRAY,
+}
+_TYPES = {code: hint for hint, code in _HINTS.items()}
+
+
+class UnfitValueError(ValueError):
+    """A value that no ROS parameter can have; the text says why."""
+
+
+def from_ros(name: str, value: ParameterValue) -> Parameter:
+    """A ROS value; numbers that JSON cannot say (NaN, infinity) are given as text."""
+    field = _FIELDS.get(value.type)
+    if field is None:
+        return Parameter(name)
+    found = getattr(value, field)
+    if value.type == ParameterType.PARAMETER_BYTE_ARRAY:
+        return Parameter(name, base64.b64encode(b"".join(found)).decode(), "byte_array")
+    if value.type == ParameterType.PARAMETER_DOUBLE:
+        return Parameter(name, found, "float64") if math.isfinite(found) else Parameter(name, str(found))
+    if isinstance(found, (bool, int, str)):
+        return Parameter(name, found)
+    items = tuple(found)
+    if value.type == ParameterType.PARAMETER_DOUBLE_ARRAY and not all(map(math.isfinite, items)):
+        return Parameter(name, tuple(str(item) for item in items))
+    return Parameter(name, items, _TYPES.get(value.type))
+
+
+def to_ros(parameter: Parameter, current: int = ParameterType.PARAMETER_NOT_SET) -> ParameterValue:
+    """The value for ROS; `current` is the type code in force, so that 1 sets a double. Raises UnfitValueError."""
+    value = parameter.value
+    if value is None:
+        return ParameterValue()
+    code = _HINTS.get(parameter.type or "") or _kind(value, current)
+    if code == ParameterType.PARAMETER_BYTE_ARRAY:
+        return ParameterValue(type=code, byte_array_value=_bytes(value))
+    if code == ParameterType.PARAMETER_DOUBLE:
+        value = _float(value)
+    elif code == ParameterType.PARAMETER_DOUBLE_ARRAY:
+        value = tuple(_float(item) for item in (value if isinstance(value, tuple) else (value,)))
+    try:
+        return ParameterValue(type=code, **{_FIELDS[code]: value})
+    except (AssertionError, TypeError, OverflowError) as error:
+        raise UnfitValueError(f"no ROS parameter can have the value {value!r:.60}") from error
+
+
+def _kind(value: Any, current: int) -> Any:
+    if not isinstance(value, tuple):
+        code = _SCALARS[type(value)]
+        is_double = current == ParameterType.PARAMETER_DOUBLE and type(value) is int
+        return ParameterType.PARAMETER_DOUBLE if is_double else code
+    kinds = {type(item) for item in value}
+    if not kinds:
+        return current if current in _ARRAYS.values() else ParameterType.PARAMETER_STRING_ARRAY
+    if kinds == {int, float} or (kinds == {int} and current == ParameterType.PARAMETER_DOUBLE_ARRAY):
+        return ParameterType.PARAMETER_DOUBLE_ARRAY
+    if len(kinds) > 1:
+        raise UnfitValueError("a list must have elements of one kind")
+    return _ARRAYS[kinds.pop()]
+
+
+def _float(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise UnfitValueError(f"expected a number, found {value!r:.40}")
+    return float(value)
+
+
+def _bytes(value: Any) -> list[bytes]:
+    try:
+        data = base64.b64decode(value, validate=True)
+    except (TypeError, binascii.Error) as error:
+        raise UnfitValueError(f"expected base64 text, found {value!r:.40}") from error
+    return [data[index : index + 1] for index in range(len(data))]
