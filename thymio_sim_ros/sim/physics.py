@@ -217,17 +217,10 @@ class Physics:
 
     def step(self) -> tuple[Contact, ...]:
         """One tick; the contacts at its end, by robot and in the order in which they began."""
-        robots = self._robots
         if self._quiet_ticks > 0:
-            self._quiet_ticks -= 1
-            for robot in robots:
-                robot.glide()
-            if self._quiet_ticks == 0:
-                self._quiet_ticks = self._count_quiet_ticks()
-                if self._quiet_ticks == 0:
-                    for robot in robots:
-                        robot.wake()
+            self._glide()
             return ()
+        robots = self._robots
         for robot in robots:
             robot.begin_tick()
         for earlier in range(SUB_STEPS):
@@ -247,8 +240,7 @@ class Physics:
         """Put a robot somewhere, at rest."""
         if self._quiet_ticks > 0:
             self._quiet_ticks = 0
-            for other in self._robots:
-                other.wake()
+            self._wake()
         robot.place(pose)
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
@@ -270,6 +262,21 @@ class Physics:
             )
         return Surroundings(near)
 
+    def _glide(self) -> None:
+        """A tick in which nothing can be touched."""
+        for robot in self._robots:
+            robot.glide()
+        self._quiet_ticks -= 1
+        if self._quiet_ticks == 0:
+            self._quiet_ticks = self._count_quiet_ticks()
+            if self._quiet_ticks == 0:
+                self._wake()
+
+    def _wake(self) -> None:
+        """Let the engine take over."""
+        for robot in self._robots:
+            robot.wake()
+
     def _count_quiet_ticks(self) -> int:
         """For how many ticks no robot can reach anything, however it drives."""
         if len(self._robots) > _MOST_GLIDING or any(robot.touching for robot in self._robots):
@@ -280,7 +287,7 @@ class Physics:
             for left, bottom, right, top, _ in self._static:
                 free_m = min(free_m, math.hypot(max(left - x, 0.0, x - right), max(bottom - y, 0.0, y - top)))
             for other in self._robots[:index]:
-                free_m = min(free_m, (math.hypot(other.pose.x_m - x, other.pose.y_m - y) - _HULL_REACH_M) / 2)
+                free_m = min(free_m, math.hypot(other.pose.x_m - x, other.pose.y_m - y) / 2)
         ticks = (free_m - _HULL_REACH_M - _SAFE_M) / _LONGEST_WAY_M
         return max(0, int(min(ticks, _LOOK_ROUND_TICKS * 10)))
 
