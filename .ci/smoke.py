@@ -1,0 +1,100 @@
+"""The main job from an installed wheel: start the suite, see the robot move, stop it. Argument: the environment."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import time
+import urllib.request
+from pathlib import Path
+
+import websockets
+
+DEADLINE_S = 60.0
+END_S = 10.0
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def main(prefix: Path) -> None:
+    check_files(prefix)
+    port, foxglove_port = free_port(), free_port()
+    command = [prefix / "bin" / "thymio-sim", "--port", str(port), "--foxglove-port", str(foxglove_port)]
+    environment = os.environ | {"ROS_DOMAIN_ID": "97"}
+    suite = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, start_new_session=True)
+    try:
+        assert suite.stdout is not None
+        lines = [suite.stdout.readline() for _ in range(3)]
+        assert str(port) in lines[0], lines
+        page = urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=DEADLINE_S).read().decode()
+        assert "<script" in page, page[:300]
+        asyncio.run(asyncio.wait_for(see_it_move(foxglove_port), DEADLINE_S))
+        begin = time.monotonic()
+        os.killpg(suite.pid, signal.SIGINT)
+        code = suite.wait(END_S)
+        print(f"ended with {code} after {time.monotonic() - begin:.2f} s")
+        assert code == 0
+    finally:
+        if suite.poll() is None:
+            os.killpg(suite.pid, signal.SIGKILL)
+
+
+def check_files(prefix: Path) -> None:
+    """The ament index entry, the executables and the shared files that ros2 looks for."""
+    wanted = [
+        prefix / "share/ament_index/resource_index/packages/thymio_sim_ros",
+        prefix / "share/thymio_sim_ros/package.xml",
+        prefix / "share/thymio_sim_ros/launch/thymio.launch.py",
+        prefix / "share/thymio_sim_ros/playgrounds/line.json",
+        *(
+            prefix / "lib/thymio_sim_ros" / name
+            for name in ("simulator", "aseba_runtime", "foxglove_bridge", "web_ui", "thymio")
+        ),
+    ]
+    absent = [str(path) for path in wanted if not path.is_file()]
+    assert not absent, f"not installed: {absent}"
+    for path in wanted[4:]:
+        assert os.access(path, os.X_OK), f"not executable: {path}"
+
+
+async def see_it_move(port: int) -> None:
+    """Two different positions of /odom through the bridge."""
+    protocols = [websockets.Subprotocol("foxglove.sdk.v1")]
+    async with websockets.connect(f"ws://127.0.0.1:{port}", subprotocols=protocols) as client:
+        seen: set[float] = set()
+        async for message in client:
+            if isinstance(message, str):
+                for channel in json.loads(message).get("channels", []):
+                    if channel["topic"] == "/odom":
+                        subscription = {"id": 1, "channelId": channel["id"]}
+                        await client.send(json.dumps({"op": "subscribe", "subscriptions": [subscription]}))
+            elif message[0] == 1:
+                seen.add(position_x(message[13:]))
+                if len(seen) > 5:
+                    print(f"odometry moves: {sorted(seen)[-1]:.3f} m")
+                    return
+
+
+def position_x(cdr: bytes) -> float:
+    """pose.pose.position.x of a serialised nav_msgs/Odometry."""
+    offset = 4 + 8
+    for _ in range(2):
+        offset += -(offset - 4) % 4
+        (size,) = struct.unpack_from("<I", cdr, offset)
+        offset += 4 + size
+    offset += -(offset - 4) % 8
+    return float(struct.unpack_from("<d", cdr, offset)[0])
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]).resolve())

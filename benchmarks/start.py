@@ -1,0 +1,68 @@
+"""From the start of `thymio-sim` to its first odometry message in another process: wall and CPU seconds.
+
+Run: python benchmarks/start.py [ROUNDS]. Discovery between processes is part of it and varies by itself
+(a participant seen late costs up to some seconds), hence the median of several rounds.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import signal
+import statistics
+import subprocess
+import sys
+import time
+
+import rclpy
+from nav_msgs.msg import Odometry
+from rclpy.context import Context
+from rclpy.node import Node
+
+from thymio_sim_ros.nodes.life import make_executor
+
+COMMAND = "import sys; from thymio_sim_ros.cli import main; sys.exit(main(['--headless']))"
+
+
+def one_round(domain: int) -> tuple[float, float]:
+    """Seconds of wall time until the first message, and CPU seconds of the suite's whole short life."""
+    os.environ.update(ROS_DOMAIN_ID=str(domain), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
+    context = Context()
+    rclpy.init(args=[], context=context, domain_id=domain)
+    node = Node("listener", context=context)
+    executor = make_executor(context)
+    executor.add_node(node)
+    seen: list[float] = []
+    node.create_subscription(Odometry, "/odom", lambda _message: seen.append(time.monotonic()), 10)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    begin = time.monotonic()
+    suite = subprocess.Popen([sys.executable, "-c", COMMAND], stdout=subprocess.DEVNULL)
+    while not seen and time.monotonic() - begin < 30.0:
+        executor.spin_once(timeout_sec=0.01)
+    suite.send_signal(signal.SIGINT)
+    suite.wait()
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    executor.shutdown()
+    node.destroy_node()
+    context.try_shutdown()
+    return seen[0] - begin, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def main() -> None:
+    """Print the rounds and their medians as JSON."""
+    rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 5
+    walls, cpus = zip(*(one_round(80 + number) for number in range(rounds)), strict=True)
+    print(
+        json.dumps(
+            {
+                "first_odometry_wall_s": [round(wall, 2) for wall in walls],
+                "median_wall_s": round(statistics.median(walls), 2),
+                "median_cpu_s": round(statistics.median(cpus), 2),
+            }
+        )
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,163 @@
+"""The page in a real Chromium against the running suite: it draws, the robot moves, a click reaches the program."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from thymio_sim_ros import resources
+
+playwright = pytest.importorskip("playwright.sync_api")
+pytest.importorskip("rclpy")
+
+from tests.processes import Process, free_port, wait_for_port
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+DEADLINE_MS = 60_000
+FLAGS = [
+    "--no-sandbox",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+]
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.process,
+    pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine"),
+    pytest.mark.skipif(resources.page() is None, reason="the page is not built: make web"),
+]
+
+PROGRAM = """\
+var lit = 0
+onevent button.center
+if button.center == 1 then
+    lit = 1 - lit
+    call leds.top(0, 32 * lit, 0)
+    motor.left.target = 150 * lit
+    motor.right.target = 150 * lit
+end
+"""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[playwright.Browser]:
+    with playwright.sync_playwright() as api:
+        browser = api.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def suite(ros_domain, tmp_path):
+    """Start the suite with these arguments; gives the page's address."""
+    started: list[Process] = []
+
+    def start(*arguments: str) -> str:
+        port = free_port()
+        command = ["--port", str(port), "--foxglove-port", str(free_port()), *arguments]
+        started.append(Process(tmp_path, "thymio_sim_ros.cli", *command))
+        return f"http://127.0.0.1:{port}/"
+
+    yield start
+    for process in started:
+        process.kill()
+
+
+@pytest.fixture
+def page(browser) -> Iterator[playwright.Page]:
+    """A page that fails the test when a script on it fails or it asks another host."""
+    page = browser.new_page(viewport={"width": 800, "height": 600})
+    page.set_default_timeout(DEADLINE_MS)
+    problems: list[str] = []
+    page.on("pageerror", lambda error: problems.append(f"script: {error}"))
+    page.on("request", lambda request: problems.append(request.url) if not request.url.startswith(LOCAL) else None)
+    yield page
+    page.close()
+    assert not problems
+
+
+LOCAL = ("http://127.0.0.1:", "ws://127.0.0.1:", "data:", "blob:")
+
+
+def open_page(page, address):
+    """Load the page, as soon as the suite answers, and wait for the robot."""
+    wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
+    page.goto(address)
+    page.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
+
+
+def robot(page):
+    return page.evaluate("window.thymio.partPosition('robot')")
+
+
+def colours(page) -> int:
+    """Number of different colours in a picture of the canvas."""
+    image = page.locator("canvas").first.screenshot()
+    return page.evaluate(
+        """async (bytes) => {
+            const bitmap = await createImageBitmap(new Blob([new Uint8Array(bytes)], {type: 'image/png'}));
+            const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+            const context = canvas.getContext('2d');
+            context.drawImage(bitmap, 0, 0);
+            const data = new Uint32Array(context.getImageData(0, 0, bitmap.width, bitmap.height).data.buffer);
+            return new Set(data).size;
+        }""",
+        list(image),
+    )
+
+
+def test_the_canvas_shows_something_and_the_robot_moves(suite, page):
+    open_page(page, suite())
+    page.wait_for_function("window.thymio.frames() > 2")
+    assert colours(page) > 20
+    begin = robot(page)
+    page.wait_for_function(
+        "(begin) => { const now = window.thymio.partPosition('robot');"
+        " return Math.hypot(now.x - begin.x, now.y - begin.y) > 5; }",
+        arg=begin,
+    )
+
+
+def test_a_click_on_the_centre_button_reaches_the_program(suite, page, tmp_path):
+    program = tmp_path / "switch.aesl"
+    program.write_text(PROGRAM)
+    open_page(page, suite("--playground", "base", "--program", str(program)))
+    begin = robot(page)
+    press(page, "button.center")
+    page.wait_for_function(
+        "(begin) => { const now = window.thymio.partPosition('robot');"
+        " return Math.hypot(now.x - begin.x, now.y - begin.y) > 5; }",
+        arg=begin,
+    )
+
+
+def press(page, part):
+    """A real pointer on a part of the model; held until the page has heard of it."""
+    position = page.evaluate("(part) => window.thymio.partPosition(part)", part)
+    page.mouse.move(position["x"], position["y"])
+    page.mouse.down()
+    page.wait_for_function("() => window.thymio.state().robot.buttons.center === true")
+    page.mouse.up()
+    page.wait_for_function("() => window.thymio.state().robot.buttons.center === false")
+
+
+def test_a_broken_program_is_shown_at_its_place_and_the_old_one_goes_on(suite, page, tmp_path):
+    open_page(page, suite())
+    broken = tmp_path / "broken.aesl"
+    broken.write_text("var a\nonevent prox\n  motor.left.targt = 5\n")
+    page.set_input_files("#program-file", str(broken))
+    page.get_by_text("motor.left.target", exact=False).first.wait_for()
+    assert "line 3" in page.inner_text("body").lower()
+    assert Path(page.evaluate("window.thymio.state().program.name")).name == "line_follower.aesl"
+
+
+def test_another_playground_can_be_chosen(suite, page):
+    open_page(page, suite())
+    page.select_option("#playground-choice", "obstacle")
+    page.wait_for_function("window.thymio.state().simulator.playground === 'obstacle'")
