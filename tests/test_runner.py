@@ -85,6 +85,38 @@ def test_robots_hear_each_other_s_events_but_not_their_own():
     assert runner.devices["anna"].get_variable("heard") == (0, 0)
 
 
+def test_every_event_of_one_handler_is_heard_in_the_same_tick():
+    source = TALK.replace("emit hello 42", "emit hello 4\n        emit hello 2").replace("heard = [", "heard += [")
+    runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "talk.aesl"))
+    runner.press("bert", "center")
+    assert runner.until(lambda: runner.devices["bert"].get_variable("button.center") == (1,), 1.0)
+    assert runner.devices["anna"].get_variable("heard") == (4, 6)
+
+
+def test_robots_that_answer_each_other_for_ever_do_not_hold_the_world_up():
+    source = """<network><event size="0" name="ball"/><node name="thymio-II">
+    var n = 0
+    onevent button.center
+    emit ball
+    onevent ball
+    n = n + 1
+    emit ball
+    </node></network>"""
+    runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "ball.aesl"))
+    runner.press("anna", "center")
+    runner.run(1.0)
+    assert runner.devices["bert"].get_variable("n")[0] > 50
+
+
+def test_a_timer_started_at_the_beginning_fires_on_time():
+    program = load_program("var n = 0\ntimer.period[0] = 100\nonevent timer0\nn++", "timer")
+    runner = Runner(load_playground("base")[1], program)
+    runner.run(0.09)
+    assert runner.devices["thymio"].get_variable("n") == (0,)
+    runner.run(0.01)
+    assert runner.devices["thymio"].get_variable("n") == (1,)
+
+
 def test_a_program_can_be_given_to_some_robots_only():
     runner = Runner(playgrounds.loads(TWO, "two"), {"bert": load_program("motor.left.target = 100", "a")})
     runner.run(1.0)

@@ -1,8 +1,9 @@
 """World and devices in lock-step, in one thread, without ROS: tests, batch runs, benchmarks.
 
-One step: the world ticks; each robot's device is fed its readings, told the time, and runs; its commands go to the
-world, where they take effect in the next tick; the events it emitted reach the other robots' devices, in the order of
-the playground. The same playground, programs and seed give the same run bit for bit.
+One step: (1) the world ticks; (2) each robot's device is fed its readings and told the time; (3) the devices run, in
+the order of the playground, and the events that one emits reach the others, until nobody has anything left to hear;
+(4) the commands go to the world, where they take effect in the next tick. All devices are on one Aseba bus: who emits
+does not hear himself. The same playground, programs and seed give the same run bit for bit.
 """
 
 from __future__ import annotations
@@ -19,7 +20,10 @@ from thymio_sim_ros.sim.world import StepResult, World
 __all__ = ["Runner"]
 
 BUDGET = 5000
-"""Instructions of a device per tick; a handler that needs more goes on in the next."""
+"""Instructions of a device per round of a tick; a handler that needs more goes on in the next."""
+
+MOST_ROUNDS = 10
+"""Times per tick that robots may answer each other's events; what is left goes on in the next tick."""
 
 _SECOND_NS = 1_000_000_000
 
@@ -91,14 +95,26 @@ class Runner:
     def _start(self) -> None:
         for name, device in self.devices.items():
             device.load(self._programs[name])
+            device.advance(self.now_ns)
         self._run_devices()
 
     def _run_devices(self) -> None:
+        devices = self.devices.values()
+        for _ in range(MOST_ROUNDS):
+            for device in devices:
+                device.run(BUDGET)
+            if sum(self._pass_on(device) for device in devices) == 0:
+                break
         for name, device in self.devices.items():
-            device.run(BUDGET)
             for command in device.take_commands():
                 self.world.post(name, command)
-            for event in device.take_events():
-                for other in self.devices.values():
-                    if other is not device and other.declares(event.name):
-                        other.receive_event(event.name, event.args, source=device.node_id)
+
+    def _pass_on(self, sender: AsebaDevice) -> int:
+        """Let the others hear what a device emitted; how often one does."""
+        heard = 0
+        for event in sender.take_events():
+            for device in self.devices.values():
+                if device is not sender and device.declares(event.name):
+                    device.receive_event(event.name, event.args, source=sender.node_id)
+                    heard += 1
+        return heard

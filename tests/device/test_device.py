@@ -113,6 +113,39 @@ def test_timers_raise_their_events_in_simulated_time():
     assert device.get_variable("n") == (600, 240)
 
 
+def test_a_period_below_the_tick_loses_nothing():
+    device = device_with("var n = 0\ntimer.period[0] = 3\nonevent timer0\nn++")
+    for tick in range(31):
+        device.advance(tick * 10_000_000)
+        device.run(BUDGET)
+    assert device.get_variable("n") == (100,)
+
+
+def test_a_timer_set_by_a_sensor_s_event_counts_from_that_moment():
+    device = device_with("var n = 0\nonevent prox\ntimer.period[0] = 25\nonevent timer0\nn++")
+    for now_ms, expected in ((0, 0), (100, 0), (120, 0), (124, 0), (125, 1), (149, 1), (150, 2)):
+        device.advance(now_ms * 1_000_000)
+        if now_ms == 100:
+            device.feed("proximity", NEAR)
+        device.run(BUDGET)
+        assert device.get_variable("n") == (expected,), now_ms
+
+
+def test_timer_events_coalesce_while_a_handler_runs():
+    device = device_with(
+        "var i\nvar n = 0\ntimer.period[0] = 1\nonevent prox\nfor i in 1:500 do\nend\nonevent timer0\nn++"
+    )
+    device.advance(0)
+    device.feed("proximity", NEAR)
+    for now_ms in (0, 100, 200, 300):
+        device.advance(now_ms * 1_000_000)
+        device.run(100)
+    assert device.is_busy
+    while device.is_busy:
+        device.run(BUDGET)
+    assert device.get_variable("n") == (101,)
+
+
 def test_emitted_events_are_taken_in_order():
     device = device_with(
         "onevent prox\nemit two [3, 4]\nemit none\nemit two prox.horizontal[1:2]", [("none", 0), ("two", 2)]
@@ -136,6 +169,87 @@ def test_a_received_event_brings_source_and_arguments():
     assert device.get_variable("got") == (5, 7, -8)
     with pytest.raises(KeyError):
         device.receive_event("three", ())
+
+
+def test_events_that_arrive_together_are_all_handled():
+    device = device_with("var sum = 0\nonevent add\nsum = sum * 10 + event.args[0]", [("add", 1)])
+    for number in (1, 2, 3):
+        device.receive_event("add", (number,))
+    device.run(BUDGET)
+    assert device.get_variable("sum") == (123,)
+
+
+def test_a_handler_that_never_ends_is_ended_by_a_global_event():
+    device = device_with(
+        "var n = 0\nvar i\nonevent prox\nwhile n == 0 do\ni++\nend\nonevent rescue\nn = 1", [("rescue", 0)]
+    )
+    device.feed("proximity", NEAR)
+    device.run(BUDGET)
+    device.receive_event("rescue", ())
+    device.run(BUDGET)
+    assert device.get_variable("n") == (0,)
+    device.run(2 * 65535)
+    assert device.get_variable("n") == (1,)
+    assert not device.is_busy
+
+
+def test_events_beyond_what_can_wait_are_lost_with_a_notice():
+    device = device_with("var n = 0\nonevent add\nn++", [("add", 0)])
+    for _ in range(150):
+        device.receive_event("add", ())
+    device.run(BUDGET)
+    assert device.get_variable("n") == (100,)
+    assert device.take_notices() == ["more events arrive than the program can handle: add is lost"]
+
+
+def test_a_machine_that_does_not_run_hears_no_events():
+    device = device_with("var n = 0\nonevent add\nn++", [("add", 0)])
+    device.stop()
+    device.receive_event("add", ())
+    device.resume()
+    device.run(BUDGET)
+    assert device.get_variable("n") == (0,)
+
+
+def test_a_program_that_writes_a_button_raises_no_event_of_it():
+    device = device_with("var n = 0\nonevent button.center\nn++\nbutton.center = 7")
+    for _ in range(3):
+        device.feed("buttons", CENTER)
+        device.run(BUDGET)
+    assert device.get_variable("n") == (1,)
+
+
+def test_random_numbers_repeat_after_a_reset_and_differ_between_robots():
+    program = load_program("var r[3]\ncall math.rand(r)", "random")
+    numbers = []
+    for node_id in (1, 1, 2):
+        device = AsebaDevice(node_id=node_id)
+        device.load(program)
+        device.run(BUDGET)
+        numbers.append(device.get_variable("r"))
+    device.load(program)
+    device.run(BUDGET)
+    assert numbers[0] == numbers[1] != numbers[2] == device.get_variable("r")
+
+
+@pytest.mark.parametrize(
+    ("source", "event", "line", "fault"),
+    [
+        ("var a = 0\n\na = 5 / a", "init", 3, "division by zero"),
+        ("var a = -4\nonevent prox\ncall math.sqrt(a, a)", "prox", 3, "square root of a negative number"),
+        (
+            "var t[2]\nvar i = 3\nonevent prox\ncallsub s\nsub s\nt[i] = 1",
+            "prox",
+            6,
+            "index 3 is outside an array of 2",
+        ),
+    ],
+)
+def test_faults_name_event_line_and_reason(source, event, line, fault):
+    device = device_with(source)
+    device.feed("proximity", NEAR)
+    device.run(BUDGET)
+    assert device.status == DeviceStatus("fault", event, line, fault)
 
 
 def test_a_fault_stops_machine_and_wheels_and_names_the_line():
@@ -172,6 +286,7 @@ def test_pause_step_and_resume():
     for _ in range(2):
         device.step()
     assert device.get_variable("n") == (1,)
+    assert device.status == DeviceStatus("paused", "prox", 4)
     device.resume()
     device.run(BUDGET)
     assert device.get_variable("n") == (2,)

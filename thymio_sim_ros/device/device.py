@@ -1,11 +1,14 @@
 """An Aseba Thymio: readings in, machine, commands and events out. It knows no world and no ROS.
 
 Events are delivered as the firmware does (thymio-robot.md section 3): one pending flag each, the lowest number first, a
-running handler is never interrupted by a local event. A reset clears all variables and switches the lights off.
+running handler is never interrupted by a local event. Global events wait in line; one that finds a handler which has
+had its turn of instructions ends it (aseba-bytecode-vm.md section 10.5). What is fed belongs to the present: timers
+that fired before come first. A reset clears all variables and switches the lights off.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -15,14 +18,17 @@ from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.layout import FIRMWARE, PRODUCT_ID, target
 from thymio_sim_ros.device.natives import native_functions
 from thymio_sim_ros.device.program import ThymioProgram, load_program
-from thymio_sim_ros.device.timers import Timer
+from thymio_sim_ros.device.status import FAULT, INIT, PAUSED, RUNNING, STOPPED, DeviceStatus, sentence
+from thymio_sim_ros.device.timers import Timers
 from thymio_sim_ros.sim.commands import LED_GROUPS, Command, SetLeds
 
-RUNNING, PAUSED, STOPPED, FAULT = "running", "paused", "stopped", "fault"
+__all__ = ["AsebaDevice", "DeviceStatus", "EmittedEvent"]
 
 INT16 = range(-0x8000, 0x8000)
-MOST_TIMER_EVENTS = 100
-"""Timer events that may wait for a handler: what a very late turn makes up for."""
+TURN = 65535
+"""Instructions after which a handler can be ended by a global event (thymio-robot.md section 3)."""
+MOST_WAITING = 100
+"""Global events that may wait for a machine; more are lost, and said so."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,16 +39,6 @@ class EmittedEvent:
     args: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class DeviceStatus:
-    """State (`running`, `paused`, `stopped`, `fault`); event, line (from 1) and text of a fault."""
-
-    state: str
-    event: str = ""
-    line: int | None = None
-    fault: str = ""
-
-
 class AsebaDevice:
     """One robot's machine with its variables. Invariant: between calls no instruction runs."""
 
@@ -50,15 +46,21 @@ class AsebaDevice:
         self.node_id = node_id
         self._target = target()
         self._addresses = self._target.addresses
-        self._timers = (Timer(), Timer())
+        self._timers = Timers()
         self._timer_events = tuple(0xFFFE - self._target.local_event_number(name) for name in ("timer0", "timer1"))
-        self._pending: dict[int, int] = {}
+        self._pending: set[int] = set()
+        self._arrived: set[int] = set()
+        self._incoming: deque[tuple[int, int, tuple[int, ...]]] = deque()
+        self._last: dict[str, list[int]] = {}
+        self._event = ""
+        self._begun = 0
         self._commands: list[Command] = []
         self._events: list[EmittedEvent] = []
         self._notices: list[str] = []
         self._noticed: set[str] = set()
         self._sent: list[list[int]] = []
-        self.status = DeviceStatus(RUNNING)
+        self._state = RUNNING
+        self._fault: DeviceStatus | None = None
         self._vm = VirtualMachine(
             self._target, native_functions(self._send, self._tell), node_id, on_reset=self._on_reset
         )
@@ -69,93 +71,109 @@ class AsebaDevice:
         """Whether something waits for instructions: a handler that goes on, or an event."""
         if self._vm.is_step_by_step:
             return False
-        return self._vm.is_active or bool(self._pending)
+        return self._vm.is_active or self._waits
+
+    @property
+    def status(self) -> DeviceStatus:
+        """How the machine is."""
+        if self._fault is not None:
+            return self._fault
+        if not self._vm.is_active:
+            return DeviceStatus(self._state)
+        return DeviceStatus(self._state, self._event, self._program.line_of(self._vm.pc))
 
     def load(self, program: ThymioProgram) -> None:
         """Replace the program; the robot is reset and the next `run` begins with the initialisation."""
         self._program = program
         self._names = [name for name, _ in program.events]
-        self._vm.load(program.program)
-        self.status = DeviceStatus(RUNNING)
+        self._last.clear()
+        words = program.program.words
+        self._vm.set_bytecode((*words, *[0] * (self._target.bytecode_size - len(words))))
+        self.resume()
 
     def feed(self, sensor: str, words: Sequence[int]) -> None:
         """Store a reading's words and let its events wait. KeyError: no such sensor; ValueError: wrong words."""
         binding = bindings.sensors()[sensor]
         if len(words) != binding.size:
             raise ValueError(f"{len(words)} words found, expected {binding.size}")
-        memory = self._vm.variables
+        new = [int(word) for word in words]
+        old = self._last.get(sensor, [0] * binding.size)
         begin = 0
         for slot in binding.slots:
-            new = [int(word) for word in words[begin : begin + slot.size]]
-            begin += slot.size
-            old = memory[slot.address : slot.address + slot.size]
-            if new != old:
-                self._vm.write_variables(slot.address, new)
-                if slot.edge is not None:
-                    self._pending[slot.edge] = 1
+            end = begin + slot.size
+            self._vm.write_variables(slot.address, new[begin:end])
+            if slot.edge is not None and new[begin:end] != old[begin:end]:
+                self._arrived.add(slot.edge)
+            begin = end
+        self._last[sensor] = new
         if binding.event is not None:
-            self._pending[binding.event] = 1
+            self._arrived.add(binding.event)
 
     def advance(self, now_ns: int) -> None:
-        """Simulated time has come so far: timers whose period ended raise their events."""
-        address, _ = self._addresses["timer.period"]
-        for index, timer in enumerate(self._timers):
-            ended = timer.elapsed(self._vm.variables[address + index], now_ns)
-            if ended:
-                event = self._timer_events[index]
-                self._pending[event] = min(self._pending.get(event, 0) + ended, MOST_TIMER_EVENTS)
+        """Simulated time has come so far; `run` raises the events of timers whose period ended on the way."""
+        self._pending.update(self._timer_events[index] for index in self._timers.set_clock(now_ns))
 
     def run(self, budget: int) -> None:
-        """Execute handlers until nothing waits, or about so many instructions were executed."""
-        left = budget
-        while left > 0 and self.is_busy:
-            if not self._vm.is_active:
-                self._start_lowest()
-            before = self._vm.instructions
-            self._vm.run(left)
-            left -= max(1, self._vm.instructions - before)
+        """Execute handlers until nothing waits, or so many instructions were executed."""
+        vm = self._vm
+        end = vm.instructions + budget
+        while self.is_busy and vm.instructions < end:
+            if not vm.is_active:
+                self._start_next()
+            elif self._incoming and vm.instructions - self._begun >= TURN:
+                self._start_incoming()
+            vm.run(end - vm.instructions)
             self._listen()
+        if not vm.is_active:
+            self._notice_periods()
 
     def declares(self, event: str) -> bool:
         """Whether the program knows a global event of this name."""
         return event in self._names
 
     def receive_event(self, name: str, args: Sequence[int], *, source: int = 0) -> None:
-        """A global event arrives, as on the Aseba network: it ends a running handler. KeyError: not declared."""
+        """A global event arrives and waits for `run`; a machine that is not running does not hear it.
+
+        KeyError: the program does not declare it.
+        """
         if name not in self._names:
             raise KeyError(name)
-        self._vm.receive(self._names.index(name), source, args)
-        self._listen()
+        if self._vm.is_step_by_step and (self._vm.is_active or self._state != PAUSED):
+            return
+        if len(self._incoming) >= MOST_WAITING:
+            self._tell(f"more events arrive than the program can handle: {name} is lost")
+            return
+        self._incoming.append((self._names.index(name), source, tuple(args)))
 
     def resume(self) -> None:
         """Let events run (again)."""
         self._vm.resume()
-        self.status = DeviceStatus(RUNNING)
+        self._state, self._fault = RUNNING, None
 
     def pause(self) -> None:
         """Execute nothing until `step` or `resume`; wheels and lights stay as they are."""
         self._vm.pause()
-        self.status = DeviceStatus(PAUSED)
+        self._state, self._fault = PAUSED, None
 
     def step(self) -> None:
         """Execute one instruction; between events, begin the next one that waits."""
         self.pause()
-        if not self._vm.is_active and self._pending:
-            self._start_lowest()
+        while not self._vm.is_active and self._waits:
+            self._start_next()
         self._vm.step()
         self._listen()
 
     def stop(self) -> None:
         """Abandon the handler; wheels stand still."""
         self._vm.stop()
-        self._pending.clear()
+        self._forget_events()
         self._halt()
-        self.status = DeviceStatus(STOPPED)
+        self._state, self._fault = STOPPED, None
 
     def reset(self) -> None:
         """As the robot's reset: variables cleared, lights off, ready to begin anew, paused."""
         self._vm.reset()
-        self.status = DeviceStatus(PAUSED)
+        self._state, self._fault = PAUSED, None
 
     def take_commands(self) -> list[Command]:
         """What the program told the actuators since the last time: native calls, then changed variables."""
@@ -196,12 +214,44 @@ class AsebaDevice:
             raise ValueError(f"{name}: {wrong[0]} found, expected -32768 to 32767")
         self._vm.write_variables(address, words)
 
-    def _start_lowest(self) -> None:
-        index = min(self._pending)
-        self._pending[index] -= 1
-        if self._pending[index] <= 0:
-            del self._pending[index]
-        self._vm.start_local(index)
+    @property
+    def _waits(self) -> bool:
+        """Whether an event, or time that is not counted yet, waits for the machine."""
+        return bool(self._pending or self._arrived or self._incoming or self._timers.lag_ms)
+
+    def _start_next(self) -> None:
+        """Start the next event, or count time up to the next timer event; at the end comes what belongs to now."""
+        self._notice_periods()
+        if not self._pending and self._timers.lag_ms:
+            self._pending.update(self._timer_events[index] for index in self._timers.next_firing())
+        elif not self._timers.lag_ms:
+            self._pending |= self._arrived
+            self._arrived.clear()
+            if self._incoming:
+                self._start_incoming()
+                return
+        if self._pending:
+            index = min(self._pending)
+            self._pending.remove(index)
+            self._begin(self._target.local_events[index].name)
+            self._vm.start_local(index)
+
+    def _start_incoming(self) -> None:
+        number, source, args = self._incoming.popleft()
+        self._begin(self._names[number])
+        self._vm.receive(number, source, args)
+
+    def _begin(self, event: str) -> None:
+        self._event, self._begun = event, self._vm.instructions
+
+    def _notice_periods(self) -> None:
+        address, size = self._addresses["timer.period"]
+        self._timers.notice(self._vm.variables[address : address + size])
+
+    def _forget_events(self) -> None:
+        self._pending.clear()
+        self._arrived.clear()
+        self._incoming.clear()
 
     def _listen(self) -> None:
         for message in self._vm.take_messages():
@@ -209,10 +259,10 @@ class AsebaDevice:
                 if message.number < len(self._names):
                     self._events.append(EmittedEvent(self._names[message.number], message.arguments))
             elif isinstance(message, OutOfBounds | DivisionByZero | NodeSpecific | BadCode):
-                segment = self._program.program.segment_of(message.pc)
-                name = segment.name if segment is not None else ""
-                self.status = DeviceStatus(FAULT, name, self._program.line_of(message.pc), message.reason)
-                self._pending.clear()
+                line = self._program.line_of(message.pc)
+                self._state = FAULT
+                self._fault = DeviceStatus(FAULT, self._event, line, sentence(message.reason))
+                self._forget_events()
                 self._halt()
 
     def _halt(self) -> None:
@@ -244,9 +294,10 @@ class AsebaDevice:
         vm.variables[:] = [0] * len(vm.variables)
         for name, words in (("_id", (self.node_id,)), ("_productId", (PRODUCT_ID,)), ("_fwversion", FIRMWARE)):
             vm.write_variables(self._addresses[name][0], words)
-        self._pending.clear()
-        for timer in self._timers:
-            timer.reset()
+        vm.random_state = (self.node_id - 1) * 25173 & 0xFFFF  # robots differ, a run repeats itself
+        self._begin(INIT)
+        self._forget_events()
+        self._timers.reset()
         self._sent = [self._words(output) for output in bindings.outputs()]
         at_rest = [output.command(words) for output, words in zip(bindings.outputs(), self._sent, strict=True)]
         dark: list[Command] = [SetLeds(group, (0,) * size) for group, size in LED_GROUPS.items()]

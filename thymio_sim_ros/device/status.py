@@ -1,0 +1,35 @@
+"""What a device tells about its machine."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+RUNNING, PAUSED, STOPPED, FAULT = "running", "paused", "stopped", "fault"
+
+INIT = "init"
+"""In place of an event: the beginning of the program."""
+
+_SENTENCES: Mapping[str, str] = {
+    "sqrt-of-negative": "square root of a negative number",
+    "stack-overflow": "the stack is full: an expression or a chain of subroutines is too deep",
+    "emit-too-long": "an event carries more words than a message holds",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceStatus:
+    """State (`running`, `paused`, `stopped`, `fault`), the event being handled, and its source line from 1.
+
+    Between events, event is empty and line None. After a fault they say where it happened, and `fault` why.
+    """
+
+    state: str
+    event: str = ""
+    line: int | None = None
+    fault: str = ""
+
+
+def sentence(reason: str) -> str:
+    """A fault's reason for people."""
+    return _SENTENCES.get(reason, reason)
