@@ -200,14 +200,32 @@ test("a lost connection is told until there is a new one, and the picture stays"
   assert.equal(reduce(lost, { type: "connected" }).connection, "connected");
 });
 
-test("another simulation starts from nothing, the same one goes on", () => {
-  const known = after([
-    { type: "serverInfo", name: "bridge", sessionId: "1", capabilities: [] },
+/** @param {string} sessionId @returns {Message} */
+function greeting(sessionId) {
+  return { type: "serverInfo", name: "bridge", sessionId, capabilities: [] };
+}
+
+test("the same simulation goes on after a connection was lost, another one starts from nothing", () => {
+  const lost = after([
+    { type: "connected" },
+    greeting("1"),
     message("/buttons/left", { data: true }),
+    { type: "disconnected" },
+    { type: "connected" },
   ]);
-  const again = reduce(known, { type: "serverInfo", name: "bridge", sessionId: "1", capabilities: [] });
-  assert.equal(again.robots[""].buttons.left, true);
-  assert.deepEqual(reduce(known, { type: "serverInfo", name: "bridge", sessionId: "2", capabilities: [] }).robots, {});
+  assert.equal(reduce(lost, greeting("1")).robots[""].buttons.left, true);
+  assert.deepEqual(reduce(lost, greeting("2")).robots, {});
+});
+
+test("a simulation that begins anew keeps its topics, and its time starts at zero", () => {
+  const state = after([
+    { type: "connected" },
+    greeting("1"),
+    { type: "channels", topics: ["/ground_truth/odom"] },
+    { type: "time", timeNs: 5n },
+    greeting("2"),
+  ]);
+  assert.deepEqual([state.topics, Object.keys(state.robots), state.timeNs], [["/ground_truth/odom"], [""], 0]);
 });
 
 test("unknown topics and messages change nothing", () => {

@@ -30,6 +30,7 @@ import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
 /**
  * @typedef {object} State
  * @property {"connecting" | "connected" | "lost"} connection
+ * @property {boolean} greeted    whether the server of this connection has said who it is
  * @property {string} server
  * @property {string} sessionId
  * @property {string[]} topics
@@ -70,6 +71,7 @@ const KEPT_NOTICES = 4;
 /** @type {State} */
 export const INITIAL = {
   connection: "connecting",
+  greeted: false,
   server: "",
   sessionId: "",
   topics: [],
@@ -99,19 +101,16 @@ export function reduce(state, message) {
 /** One row per kind of message. */
 const STEPS = /** @type {Record<string, (state: State, message: any) => State>} */ ({
   connecting: (state) => ({ ...state, connection: state.connection === "lost" ? "lost" : "connecting" }),
-  connected: (state) => ({ ...state, connection: "connected", services: [], topics: [] }),
+  connected: (state) => ({ ...state, connection: "connected", greeted: false, services: [], topics: [] }),
   disconnected: (state) => ({ ...state, connection: "lost" }),
   serverInfo(state, { name, sessionId }) {
-    if (sessionId === state.sessionId && sessionId !== "") return { ...state, server: name };
-    // Another session: what was known belongs to a simulation that is no more.
-    return {
-      ...INITIAL,
-      connection: state.connection,
-      notices: state.notices,
-      selected: state.selected,
-      server: name,
-      sessionId,
-    };
+    const known = { ...state, greeted: true, server: name, sessionId };
+    if (sessionId === state.sessionId && sessionId !== "") return known;
+    // On a connection that goes on, the simulation began anew: its topics stay, its time does not.
+    if (state.greeted) return { ...known, timeNs: 0 };
+    // Another simulator: what was known belongs to one that is no more.
+    const { connection, notices, selected } = state;
+    return { ...INITIAL, connection, notices, selected, greeted: true, server: name, sessionId };
   },
   channels: withChannels,
   services: (state, { names }) => ({ ...state, services: names }),
