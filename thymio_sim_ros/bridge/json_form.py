@@ -72,7 +72,7 @@ def _writer(shape: Any) -> Writer:
         return lambda items: [write_item(item) for item in items]
     if get_origin(shape) is None and dataclasses.is_dataclass(shape):
         return _record_writer(shape)
-    return lambda value: value
+    return dict if get_origin(shape) is Mapping else lambda value: value
 
 
 def _fields(shape: Any) -> list[tuple[str, str, Any, bool]]:

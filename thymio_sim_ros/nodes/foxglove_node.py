@@ -10,7 +10,7 @@ from __future__ import annotations
 import ssl
 import time
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -118,7 +118,6 @@ class FoxgloveBridge:
         self._sim_now_ns = 0
         self._wants_graph = False
         self._build()
-        self.node.get_logger().info(self.greeting)
 
     @property
     def greeting(self) -> str:
@@ -277,4 +276,10 @@ def _tls(values: FoxgloveParams) -> ssl.SSLContext | None:
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `foxglove_bridge`."""
-    return run_main(lambda context: [FoxgloveBridge(context=context)], args)
+
+    def build(context: Context) -> Iterator[FoxgloveBridge]:
+        bridge = FoxgloveBridge(context=context)
+        bridge.node.get_logger().info(bridge.greeting)
+        yield bridge
+
+    return run_main(build, args)
