@@ -122,7 +122,7 @@ class AsebaDevice:
                 self._start_next()
             elif self._incoming and vm.instructions - self._begun >= TURN:
                 self._start_incoming()
-            vm.run(end - vm.instructions)
+            vm.run(min(TURN, end - vm.instructions))
             self._listen()
         if not vm.is_active:
             self._notice_periods()
