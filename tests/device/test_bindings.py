@@ -5,11 +5,16 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 from aseba_vm import TargetDescription
+from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.device import bindings
-from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.layout import extend, target
+from thymio_sim_ros.sim.actuators import Actuator
+from thymio_sim_ros.sim.aseba_face import ActuatorFace, AsebaFace, Native, Output
 from thymio_sim_ros.sim.commands import MotorTargets, SetLeds
-from thymio_sim_ros.sim.sensors import all_sensors
+from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 
 FIRMWARE_14 = Path(__file__).parents[1] / "data" / "device" / "thymio2.json"
 
@@ -56,3 +61,24 @@ def test_natives_of_the_lights_exist_in_the_firmware():
     firmware = {native.name: len(native.parameters) for native in target().natives}
     for name, native in bindings.natives().items():
         assert firmware[name] == len(native.parameters)
+
+
+def test_what_only_plug_ins_know_comes_after_the_firmware_and_takes_no_room_from_programs():
+    sensor = Sensor("radar", 1, lambda view: None, AsebaFace((("radar.echo", 3),), "radar", edge_events=True))
+    face = ActuatorFace(
+        (Output((("arm.angle", 1),), lambda words: MotorTargets(0, 0)),),
+        (Native("arm.wave", ("times",), lambda words: MotorTargets(0, 0)),),
+    )
+    arm = Actuator("arm", (), dict, lambda state, command, now_ns: None, aseba=face)
+    wider = extend(THYMIO_II, [sensor], [arm])
+    assert wider.addresses["radar.echo"] == (128, 3)
+    assert wider.addresses["arm.angle"] == (131, 1)
+    assert wider.variables_size == THYMIO_II.variables_size + 4
+    assert [event.name for event in wider.local_events[17:]] == ["radar.echo", "radar"]
+    assert [native.name for native in wider.natives[60:]] == ["arm.wave"]
+
+
+def test_a_plug_in_that_contradicts_the_firmware_is_refused():
+    sensor = Sensor("acc", 1, lambda view: None, AsebaFace((("acc", 4),)))
+    with pytest.raises(ValueError, match="acc: a plug-in declares 4 words, expected 3"):
+        extend(THYMIO_II, [sensor], [])

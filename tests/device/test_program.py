@@ -40,6 +40,14 @@ def test_a_byte_order_mark_does_no_harm():
         (AESL.format(code="a = 1"), 5, 35, "a"),
         (AESL.format(code="var a\n  b = 1"), 6, 3, "b"),
         (AESL.format(code="var a = 1 &lt;&lt; 2\nvar c = d"), 6, 9, "d"),
+        (AESL.format(code="var a\nif a &lt; 2 and b &gt; 3 then end"), 6, 17, "b"),
+        (AESL.format(code="<![CDATA[var a\nif a < 2 and b > 3 then end]]>"), 6, 14, "b"),
+        (AESL.format(code="<![CDATA[b = 1]]>"), 5, 44, "b"),
+        (AESL.format(code="<toolsPlugins><a><b/></a></toolsPlugins>var a\n<!-- no -->b = 1"), 6, 12, "b"),
+        (AESL.format(code="var a\n&#98; = 1"), 6, 1, "b"),
+        (AESL.format(code="var a\n\tb = 1").replace("\n", "\r\n"), 6, 2, "b"),
+        ("var a\r\nb = 1", 2, 1, "b"),
+        ("\ufeffb = 1", 1, 1, "b"),
         ("<network><node name='thymio-II'>var a</nodes></network>", 1, 40, "tag"),
     ],
 )
@@ -55,6 +63,27 @@ def test_errors_have_their_place_in_the_file(text, line, column, word):
 def test_a_file_for_another_robot_names_what_it_found():
     with pytest.raises(ProgramError, match="'e-puck'"):
         load_program('<network><node name="e-puck">var a</node></network>', "a.aesl")
+
+
+@pytest.mark.parametrize(
+    ("definitions", "message"),
+    [
+        ('<event size="1" name="a"/><event size="2" name="a"/>', "event 'a' is defined twice"),
+        ('<constant value="1" name="A"/><constant value="1" name="A"/>', "constant 'A' is defined twice"),
+        ('<event size="300" name="a"/>', "event 'a': 300 words, expected at most 258"),
+        ('<event size="1" name=""/>', "event number 1 has no name"),
+    ],
+)
+def test_bad_definitions_are_refused(definitions, message):
+    with pytest.raises(ProgramError) as caught:
+        load_program(f'<network>{definitions}<node name="thymio-II">var a</node></network>', "a.aesl")
+    assert str(caught.value) == f"a.aesl: {message}"
+
+
+def test_an_unfinished_program_is_told_at_its_end():
+    with pytest.raises(ProgramError) as caught:
+        load_program(AESL.format(code="var a\na = "), "a.aesl")
+    assert (caught.value.line, caught.value.column) == (6, 4)
 
 
 def test_a_program_too_large_for_the_robot_is_refused():

@@ -55,7 +55,7 @@ def sensors() -> dict[str, SensorBinding]:
             None if sensor.aseba.event is None else _event(sensor.aseba.event),
         )
         for sensor in all_sensors()
-        if sensor.aseba.variables
+        if sensor.aseba.variables or sensor.aseba.event
     }
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
-from aseba_vm import NativeFunction, Parameter, TargetDescription, Variable
+from aseba_vm import LocalEvent, NativeFunction, Parameter, TargetDescription, Variable
 from aseba_vm.targets import THYMIO_II
-from thymio_sim_ros.sim.actuators import all_actuators
-from thymio_sim_ros.sim.sensors import all_sensors
+from thymio_sim_ros.sim.actuators import Actuator, all_actuators
+from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 
 PRODUCT_ID = 8
 FIRMWARE = (14, 1)
@@ -17,16 +18,37 @@ FIRMWARE = (14, 1)
 
 @cache
 def target() -> TargetDescription:
-    """Firmware 14 in its own order; variables and natives that only a plug-in knows come after it."""
-    variables = {variable.name: variable for variable in THYMIO_II.variables}
-    natives = {native.name: native for native in THYMIO_II.natives}
-    faces = [sensor.aseba.variables for sensor in all_sensors()]
-    for actuator in all_actuators():
-        faces += [output.variables for output in actuator.aseba.outputs]
-        for native in actuator.aseba.natives:
-            parameters = tuple(Parameter(name, 1) for name in native.parameters)
-            natives.setdefault(native.name, NativeFunction(native.name, parameters, native.description))
+    """The target of this installation."""
+    return extend(THYMIO_II, all_sensors(), all_actuators())
+
+
+def extend(base: TargetDescription, sensors: Sequence[Sensor], actuators: Sequence[Actuator]) -> TargetDescription:
+    """The base in its own order; what only a plug-in knows comes after it, and programs keep their room.
+
+    ValueError when a plug-in gives a name that exists another size.
+    """
+    variables = {variable.name: variable for variable in base.variables}
+    events = {event.name: event for event in base.local_events}
+    natives = {native.name: native for native in base.natives}
+    faces = [sensor.aseba for sensor in sensors]
+    declared = [variable for face in faces for variable in face.variables]
+    declared += [pair for actuator in actuators for output in actuator.aseba.outputs for pair in output.variables]
+    for name, size in declared:
+        if variables.setdefault(name, Variable(name, size)).size != size:
+            raise ValueError(f"variable {name}: a plug-in declares {size} words, expected {variables[name].size}")
     for face in faces:
-        for name, size in face:
-            variables.setdefault(name, Variable(name, size))
-    return replace(THYMIO_II, variables=tuple(variables.values()), natives=tuple(natives.values()))
+        edges = [name for name, _ in face.variables] if face.edge_events else []
+        for name in [*edges, *([face.event] if face.event else [])]:
+            events.setdefault(name, LocalEvent(name))
+    for native in (native for actuator in actuators for native in actuator.aseba.natives):
+        parameters = tuple(Parameter(name, 1) for name in native.parameters)
+        known = natives.setdefault(native.name, NativeFunction(native.name, parameters, native.description))
+        if [parameter.size for parameter in known.parameters] != [1] * len(parameters):
+            raise ValueError(f"native {native.name}: a plug-in declares {len(parameters)} parameters of one word")
+    extended = replace(
+        base,
+        variables=tuple(variables.values()),
+        local_events=tuple(events.values()),
+        natives=tuple(natives.values()),
+    )
+    return replace(extended, variables_size=base.variables_size + extended.variables_end - base.variables_end)

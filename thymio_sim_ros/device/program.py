@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
-from aseba_vm import AeslError, CompileError, Program, aesl, compile
+from aseba_vm import AeslError, CompileError, Program, SourcePos, aesl, compile
 from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.places import place_in_file
 
 MAX_CHARACTERS = 1_000_000
+MAX_EVENT_WORDS = 258
+"""Words that a message on the Aseba network holds."""
+
+_Place = Callable[[SourcePos], tuple[int, int]]
+"""Row and column in the user's text, from 0, of a place in the code."""
 
 
 class ProgramError(Exception):
@@ -44,9 +50,10 @@ def load_program(text: str, name: str) -> ThymioProgram:
     """The program of an .aesl file's text or of bare Aseba text; ProgramError for what is wrong with it."""
     if len(text) > MAX_CHARACTERS:
         raise ProgramError(name, None, None, f"{len(text)} characters found, expected at most {MAX_CHARACTERS}")
-    if text.lstrip("\ufeff \t\r\n").startswith("<"):
-        return _load_aesl(text.lstrip("\ufeff"), name)
-    return _compile(name, text.lstrip("\ufeff"), (), (), row=0, column=0)
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n")
+    if text.lstrip().startswith("<"):
+        return _load_aesl(text, name)
+    return _compile(name, text, aesl.Network(), 0, lambda pos: (pos.row, pos.col))
 
 
 def _load_aesl(text: str, name: str) -> ThymioProgram:
@@ -54,28 +61,37 @@ def _load_aesl(text: str, name: str) -> ThymioProgram:
         network = aesl.loads(text)
     except AeslError as error:
         raise ProgramError(name, error.line, error.column, error.reason) from error
+    _check_definitions(name, network)
     node = network.node(target().name)
     if node is None:
         found = ", ".join(f"'{other.name}'" for other in network.nodes) or "none"
         raise ProgramError(name, None, None, f"no program for '{target().name}'; nodes found: {found}")
-    return _compile(name, node.code, network.events, network.constants, row=node.row, column=node.col)
+    return _compile(name, node.code, network, node.row, lambda pos: place_in_file(text, node.row, node.col, pos.offset))
 
 
-def _compile(
-    name: str,
-    source: str,
-    events: Sequence[tuple[str, int]],
-    constants: Sequence[tuple[str, int]],
-    *,
-    row: int,
-    column: int,
-) -> ThymioProgram:
-    """Compile a text that begins at a row and column of its file."""
+def _check_definitions(name: str, network: aesl.Network) -> None:
+    """Every event and constant has a name of its own; an event fits a message."""
+    for kind, names in (
+        ("event", [event for event, _ in network.events]),
+        ("constant", [constant for constant, _ in network.constants]),
+    ):
+        twice = next((found for index, found in enumerate(names) if found in names[:index]), None)
+        if twice is not None:
+            raise ProgramError(name, None, None, f"{kind} '{twice}' is defined twice")
+        if "" in names:
+            raise ProgramError(name, None, None, f"{kind} number {names.index('') + 1} has no name")
+    for event, size in network.events:
+        if size > MAX_EVENT_WORDS:
+            raise ProgramError(name, None, None, f"event '{event}': {size} words, expected at most {MAX_EVENT_WORDS}")
+
+
+def _compile(name: str, source: str, network: aesl.Network, row: int, place: _Place) -> ThymioProgram:
+    """Compile a text that begins at a row of its file."""
     try:
-        program = compile(source, target(), events=events, constants=constants)
+        program = compile(source, target(), events=network.events, constants=network.constants)
     except CompileError as error:
         if error.pos is None:
             raise ProgramError(name, None, None, str(error)) from error
-        shift = column if error.pos.row == 0 else 0
-        raise ProgramError(name, row + error.pos.row + 1, max(0, error.pos.col + shift) + 1, str(error)) from error
-    return ThymioProgram(name, source, program, tuple(events), tuple(constants), row + 1)
+        line, column = place(error.pos)
+        raise ProgramError(name, line + 1, column + 1, str(error)) from error
+    return ThymioProgram(name, source, program, network.events, network.constants, row + 1)
