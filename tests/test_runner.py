@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 
@@ -38,21 +39,43 @@ def line_runner(seed):
     return Runner(load_playground("line")[1], read_program("line_follower"), seed=seed)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_the_line_program_goes_round_twice_without_leaving_the_line(seed):
-    runner = line_runner(seed)
+def farthest_in_laps(runner, laps):
+    """Largest distance in m of the ground sensors' middle from the line's middle during so many laps."""
     robot = runner.world.robots["thymio"]
     points = track_points("line")
     middle = (sum(x for x, _ in points) / len(points), sum(y for _, y in points) / len(points))
     turned, farthest, last = 0.0, 0.0, None
-    while turned < 2 * math.tau:
-        assert runner.now_ns < 120e9
+    while turned < laps * math.tau:
+        assert runner.now_ns < laps * 60e9
         runner.run(0.1)
         angle = math.atan2(robot.pose.y_m - middle[1], robot.pose.x_m - middle[0])
         turned += 0.0 if last is None else math.remainder(angle - last, math.tau)
         last = angle
         farthest = max(farthest, distance_to(points, robot.pose.place((0.072, 0.0))))
-    assert farthest < 0.02
+    return farthest
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_the_line_program_goes_round_without_leaving_the_line(seed):
+    assert farthest_in_laps(line_runner(seed), 1) < 0.02
+
+
+@pytest.mark.parametrize("speed", [300, 500])
+def test_the_line_program_goes_round_five_times_at_any_speed(speed):
+    runner = line_runner(0)
+    runner.devices["thymio"].receive_event("speed", (speed,))
+    assert farthest_in_laps(runner, 5) < 0.02
+
+
+def test_the_line_program_tells_when_it_turns():
+    runner = line_runner(0)
+    told = []
+    for _ in range(1000):
+        runner.step()
+        told += [(robot, event.name, event.args) for robot, event in runner.emitted]
+    assert told[0] == ("thymio", "line", (0,))
+    assert {args for _, _, args in told} >= {(0,), (-1,)}
+    assert all(before != after for before, after in itertools.pairwise(told))
 
 
 def test_the_same_seed_gives_the_same_poses_bit_for_bit():

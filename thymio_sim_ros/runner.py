@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
 from thymio_sim_ros.device.program import ThymioProgram
 from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.commands import Command, PressButton
@@ -29,7 +29,10 @@ _SECOND_NS = 1_000_000_000
 
 
 class Runner:
-    """A world and a device for each robot that has a program."""
+    """A world and a device for each robot that has a program.
+
+    `emitted` holds the events that the last step brought, as (robot, event), in order.
+    """
 
     def __init__(
         self,
@@ -46,6 +49,7 @@ class Runner:
         self._programs = dict(programs or {})
         numbers = {name: number for number, name in enumerate(self.world.robots, start=1)}
         self.devices = {name: AsebaDevice(node_id=numbers[name]) for name in self._programs}
+        self.emitted: list[tuple[str, EmittedEvent]] = []
         self._start()
 
     @property
@@ -99,20 +103,21 @@ class Runner:
         self._run_devices()
 
     def _run_devices(self) -> None:
-        devices = self.devices.values()
+        self.emitted.clear()
         for _ in range(MOST_ROUNDS):
-            for device in devices:
+            for device in self.devices.values():
                 device.run(BUDGET)
-            if sum(self._pass_on(device) for device in devices) == 0:
+            if sum(self._pass_on(name, device) for name, device in self.devices.items()) == 0:
                 break
         for name, device in self.devices.items():
             for command in device.take_commands():
                 self.world.post(name, command)
 
-    def _pass_on(self, sender: AsebaDevice) -> int:
+    def _pass_on(self, name: str, sender: AsebaDevice) -> int:
         """Let the others hear what a device emitted; how often one does."""
         heard = 0
         for event in sender.take_events():
+            self.emitted.append((name, event))
             for device in self.devices.values():
                 if device is not sender and device.declares(event.name):
                     device.receive_event(event.name, event.args, source=sender.node_id)
