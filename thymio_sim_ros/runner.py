@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
 from thymio_sim_ros.device.program import ThymioProgram
 from thymio_sim_ros.sim.clock import TICK_NS
@@ -60,9 +61,10 @@ class Runner:
     def step(self) -> StepResult:
         """One tick of the world, and what the programs make of it."""
         result = self.world.step()
+        bound = bindings.sensors()
         for robot, sensor, reading in result.readings:
             device = self.devices.get(robot)
-            if device is not None and reading.words:
+            if device is not None and sensor in bound:
                 device.feed(sensor, reading.words)
         for device in self.devices.values():
             device.advance(result.now_ns)
