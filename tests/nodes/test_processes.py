@@ -101,7 +101,7 @@ def test_nodes_in_processes_of_their_own_talk(ros, process):
     ros.node.create_subscription(Int16MultiArray, "/motor/target", targets.append, 10)
     ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
     ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, START_S, what="a moving robot")
-    assert targets
+    ros.until(lambda: targets, START_S, what="wheel targets of the program")
 
 
 @pytest.mark.parametrize(
