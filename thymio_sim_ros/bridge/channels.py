@@ -7,7 +7,7 @@ delivers both. Unknown ids and refused wishes become a status for the client con
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -20,8 +20,8 @@ from thymio_sim_ros.bridge.vocabulary import Capability, StatusLevel
 MAX_CLIENT_CHANNELS = 256
 """Channels that one client may open: each may cost a publisher."""
 
-MAX_SUBSCRIPTIONS = 4096
-"""Subscriptions that one client may hold."""
+MAX_REFUSALS = 8
+"""Refusals told for one frame: a frame full of nonsense must not cost the others their time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,14 +38,17 @@ class Outcome:
 
     letters: list[Letter] = field(default_factory=list)
     events: list[ev.Event] = field(default_factory=list)
+    refusals: int = 0
 
     def tell(self, client: int, message: ms.ServerMessage) -> None:
         """Add a letter to one client."""
         self.letters.append(Letter((client,), message))
 
     def refuse(self, client: int, text: str, level: StatusLevel = StatusLevel.ERROR) -> None:
-        """Add a status that says why something was not done."""
-        self.tell(client, ms.Status(level, text))
+        """Add a status that says why something was not done; the first `MAX_REFUSALS` only."""
+        self.refusals += 1
+        if self.refusals <= MAX_REFUSALS:
+            self.tell(client, ms.Status(level, text))
 
 
 class Switchboard:
@@ -90,8 +93,8 @@ class Switchboard:
         """A client is gone with all it had."""
         state = self._clients.pop(client)
         outcome = Outcome()
-        for channel_id in dict.fromkeys(state.subscriptions.values()):
-            self._reroute(channel_id, outcome)
+        for channel_id in state.subscriptions.values():
+            self._unroute(client, channel_id, outcome)
         outcome.events += (ev.ClientChannelClosed(client, channel_id) for channel_id in state.channels)
         if state.graph is not None:
             self._graph_left(outcome)
@@ -116,55 +119,63 @@ class Switchboard:
     # --- clients' messages ---
 
     def _subscribe(self, client: int, message: ms.Subscribe, outcome: Outcome) -> None:
-        for subscription in message.subscriptions:
-            state = self._clients[client]
-            where = f"subscription {subscription.id}"
-            if subscription.id in state.subscriptions:
+        state = self._clients[client]
+        subscriptions = dict(state.subscriptions)
+        subscribed = set(subscriptions.values())
+        for item in message.subscriptions:
+            where = f"subscription {item.id}"
+            if item.id in subscriptions:
                 outcome.refuse(client, f"{where} exists already")
-            elif subscription.channel_id not in self._channels:
-                outcome.refuse(client, f"{where}: no channel {subscription.channel_id}", StatusLevel.WARNING)
-            elif len(state.subscriptions) >= MAX_SUBSCRIPTIONS:
-                outcome.refuse(client, f"{where}: more than {MAX_SUBSCRIPTIONS} subscriptions")
+            elif item.channel_id not in self._channels:
+                outcome.refuse(client, f"{where}: no channel {item.channel_id}", StatusLevel.WARNING)
+            elif item.channel_id in subscribed:
+                topic = self._channels[item.channel_id].topic
+                outcome.refuse(client, f"{where}: already subscribed to {topic}", StatusLevel.WARNING)
             else:
-                subscriptions = {**state.subscriptions, subscription.id: subscription.channel_id}
-                self._clients[client] = replace(state, subscriptions=subscriptions)
-                self._reroute(subscription.channel_id, outcome)
-                for data in self._kept.get(subscription.channel_id, ()):
-                    outcome.tell(client, ms.MessageData(subscription.id, data.time_ns, data.payload))
+                subscriptions[item.id] = item.channel_id
+                subscribed.add(item.channel_id)
+                self._route(item.channel_id, (*self.routes(item.channel_id), (client, item.id)), outcome)
+                for data in self._kept.get(item.channel_id, ()):
+                    outcome.tell(client, ms.MessageData(item.id, data.time_ns, data.payload))
+        self._clients[client] = replace(state, subscriptions=subscriptions)
 
     def _unsubscribe(self, client: int, message: ms.Unsubscribe, outcome: Outcome) -> None:
+        state = self._clients[client]
+        subscriptions = dict(state.subscriptions)
         for subscription_id in message.subscription_ids:
-            state = self._clients[client]
-            channel_id = state.subscriptions.get(subscription_id)
+            channel_id = subscriptions.pop(subscription_id, None)
             if channel_id is None:
                 outcome.refuse(client, f"no subscription {subscription_id}", StatusLevel.WARNING)
-                continue
-            self._clients[client] = replace(state, subscriptions=_without(state.subscriptions, [subscription_id]))
-            self._reroute(channel_id, outcome)
+            else:
+                self._unroute(client, channel_id, outcome)
+        self._clients[client] = replace(state, subscriptions=subscriptions)
 
     def _open(self, client: int, message: ms.ClientAdvertise, outcome: Outcome) -> None:
+        state = self._clients[client]
+        channels = dict(state.channels)
         for channel in message.channels:
-            state = self._clients[client]
             where = f"channel {channel.id} for {channel.topic}"
-            if channel.id in state.channels:
-                outcome.refuse(client, f"{where}: the id is in use for {state.channels[channel.id].topic}")
+            if channel.id in channels:
+                outcome.refuse(client, f"{where}: the id is in use for {channels[channel.id].topic}")
             elif channel.encoding not in self._info.supported_encodings:
                 expected = " or ".join(self._info.supported_encodings)
                 outcome.refuse(client, f"{where}: expected encoding {expected}, found {channel.encoding}")
-            elif len(state.channels) >= MAX_CLIENT_CHANNELS:
+            elif len(channels) >= MAX_CLIENT_CHANNELS:
                 outcome.refuse(client, f"{where}: more than {MAX_CLIENT_CHANNELS} channels")
             else:
-                self._clients[client] = replace(state, channels={**state.channels, channel.id: channel})
+                channels[channel.id] = channel
                 outcome.events.append(ev.ClientChannelOpened(client, channel))
+        self._clients[client] = replace(state, channels=channels)
 
     def _close(self, client: int, message: ms.ClientUnadvertise, outcome: Outcome) -> None:
+        state = self._clients[client]
+        channels = dict(state.channels)
         for channel_id in message.channel_ids:
-            state = self._clients[client]
-            if channel_id not in state.channels:
+            if channels.pop(channel_id, None) is None:
                 outcome.refuse(client, f"no client channel {channel_id}", StatusLevel.WARNING)
-                continue
-            self._clients[client] = replace(state, channels=_without(state.channels, [channel_id]))
-            outcome.events.append(ev.ClientChannelClosed(client, channel_id))
+            else:
+                outcome.events.append(ev.ClientChannelClosed(client, channel_id))
+        self._clients[client] = replace(state, channels=channels)
 
     def _client_data(self, client: int, message: ms.ClientMessageData, outcome: Outcome) -> None:
         if message.channel_id in self._clients[client].channels:
@@ -226,7 +237,8 @@ class Switchboard:
             self._kept.pop(channel_id, None)
             for client, subscription_id in self._routes.pop(channel_id, ()):
                 state = self._clients[client]
-                self._clients[client] = replace(state, subscriptions=_without(state.subscriptions, [subscription_id]))
+                left = {key: value for key, value in state.subscriptions.items() if key != subscription_id}
+                self._clients[client] = replace(state, subscriptions=left)
         self._tell_all(ms.Unadvertise(command.channel_ids), letters)
 
     def _keep_last(self, command: ev.KeepLast, letters: list[Letter]) -> None:
@@ -294,14 +306,8 @@ class Switchboard:
         known = (self._parameters[name] for name in names if name in self._parameters)
         return ms.ParameterValues(tuple(known), request_id)
 
-    def _reroute(self, channel_id: int, outcome: Outcome) -> None:
-        """Set `routes` of a channel anew and tell the owner of its first and last subscriber."""
-        routes = tuple(
-            (client, subscription_id)
-            for client, state in self._clients.items()
-            for subscription_id, subscribed in state.subscriptions.items()
-            if subscribed == channel_id
-        )
+    def _route(self, channel_id: int, routes: tuple[tuple[int, int], ...], outcome: Outcome) -> None:
+        """Set who gets a channel; tells the owner of its first and of its last subscriber."""
         was_wanted = channel_id in self._routes
         if routes:
             self._routes[channel_id] = routes
@@ -312,14 +318,12 @@ class Switchboard:
             self._kept.pop(channel_id, None)
             outcome.events.append(ev.ChannelUnwanted(channel_id))
 
+    def _unroute(self, client: int, channel_id: int, outcome: Outcome) -> None:
+        self._route(channel_id, tuple(route for route in self.routes(channel_id) if route[0] != client), outcome)
+
     def _graph_left(self, outcome: Outcome) -> None:
         if all(state.graph is None for state in self._clients.values()):
             outcome.events.append(ev.GraphWanted(False))
-
-
-def _without(items: Mapping[int, Any], gone: Iterable[int]) -> dict[int, Any]:
-    left = set(gone)
-    return {key: value for key, value in items.items() if key not in left}
 
 
 _FROM_CLIENT: dict[type, tuple[Capability | None, Callable[[Switchboard, int, Any, Outcome], None]]] = {

@@ -59,7 +59,7 @@ class ServerSettings:
     """Origins of web pages beside those of `origins`; `*`: all."""
     buffer_limit: int = 1 << 20
     """Bytes that may wait for a client before data is thinned out."""
-    max_message_size: int = 16 << 20
+    max_message_size: int = 4 << 20
     """Longest frame accepted from a client, bytes."""
     ping_interval_s: float = 10.0
     ping_timeout_s: float = 20.0

@@ -79,7 +79,7 @@ class FoxgloveParams:
         fixed=True,
     )
     max_message_size: int = param(
-        16 << 20, "Longest frame accepted from a client, bytes", low=1 << 10, high=1 << 30, fixed=True
+        4 << 20, "Longest frame accepted from a client, bytes", low=1 << 10, high=1 << 30, fixed=True
     )
 
 

@@ -1,0 +1,191 @@
+"""A server and real clients on loopback, in one event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import os
+import socket
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from typing import TypeVar
+
+from websockets.asyncio.client import ClientConnection, connect
+
+from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerInfo, ServerSettings, wire
+from thymio_sim_ros.bridge import events as ev
+from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.channels import Switchboard
+from thymio_sim_ros.bridge.server import BridgeServer
+from thymio_sim_ros.bridge.thread import listen
+
+DEADLINE_S = 20.0
+
+T = TypeVar("T")
+
+CHANNEL = ms.Channel(10, "/t", "cdr", "std_msgs/msg/String", "string data", "ros2msg")
+
+
+class Sink:
+    """Keeps what the server tells its owner."""
+
+    def __init__(self) -> None:
+        self.events: list[ev.Event] = []
+        self.is_full = False
+        self._arrived = asyncio.Event()
+
+    def post(self, event: ev.Event) -> None:
+        """Take an event."""
+        self.events.append(event)
+        self._arrived.set()
+
+    async def until(self, condition: Callable[[list[ev.Event]], bool]) -> None:
+        """Wait until the events satisfy the condition."""
+        async with asyncio.timeout(DEADLINE_S):
+            while not condition(self.events):
+                self._arrived.clear()
+                await self._arrived.wait()
+
+
+class Client:
+    """A real client that speaks in messages."""
+
+    def __init__(self, connection: ClientConnection) -> None:
+        self.connection = connection
+
+    async def send(self, *messages: ms.ClientMessage) -> None:
+        """Send messages."""
+        for message in messages:
+            await self.connection.send(wire.encode_client(message))
+
+    async def next(self, kind: type[T]) -> T:
+        """The next message of this kind; others are skipped."""
+        async with asyncio.timeout(DEADLINE_S):
+            while True:
+                message = wire.decode_server(await self.connection.recv())
+                if isinstance(message, kind):
+                    return message
+
+    async def subscribe(self, subscription: int, channel: int = CHANNEL.id) -> None:
+        """Subscribe; done when the server has seen it."""
+        await self.send(ms.Subscribe((ms.Subscription(subscription, channel),)))
+        await self.settle()
+
+    async def settle(self) -> None:
+        """Wait until the server has handled all that was sent."""
+        await self.send(ms.GetParameters((), "settle"))
+        while (await self.next(ms.ParameterValues)).id != "settle":
+            pass
+
+
+class Bridge:
+    """A running server with one channel."""
+
+    def __init__(self, server: BridgeServer, sink: Sink, port: int) -> None:
+        self.server = server
+        self.sink = sink
+        self.port = port
+
+    @property
+    def url(self) -> str:
+        """Where clients connect."""
+        return f"ws://127.0.0.1:{self.port}"
+
+    @asynccontextmanager
+    async def client(
+        self, *, subprotocols: tuple[str, ...] = SUBPROTOCOLS, origin: str | None = None
+    ) -> AsyncIterator[Client]:
+        """A connected client."""
+        async with connect(self.url, subprotocols=subprotocols, origin=origin, max_size=None) as connection:  # type: ignore[arg-type]  # plain strings
+            yield Client(connection)
+
+    def publish(self, *payloads: bytes) -> None:
+        """Publish on the channel, times 0, 1, 2, …"""
+        self.server.apply(ev.Data(CHANNEL.id, time_ns, payload) for time_ns, payload in enumerate(payloads))
+
+    async def until(self, condition: Callable[[], bool]) -> None:
+        """Give way until the condition is true."""
+        async with asyncio.timeout(DEADLINE_S):
+            while not condition():
+                await asyncio.sleep(0)
+
+
+@asynccontextmanager
+async def bridge(settings: ServerSettings | None = None) -> AsyncIterator[Bridge]:
+    """A server that ends with the block."""
+    sink = Sink()
+    board = Switchboard(ServerInfo("test", tuple(Capability), ("cdr", "json")))
+    server = BridgeServer(board, sink, settings)
+    listener = listen("127.0.0.1", 0)
+    await server.start(listener)
+    server.apply([ev.AddChannels((CHANNEL,))])
+    try:
+        yield Bridge(server, sink, listener.getsockname()[1])
+    finally:
+        await server.close()
+
+
+class StalledClient:
+    """Says what it is told to, and does not read until asked to: a bare socket, so that nothing reads ahead."""
+
+    def __init__(self, port: int) -> None:
+        self._socket = socket.socket()
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        self._socket.setblocking(False)
+        self._port = port
+        self._read = bytearray()
+
+    async def connect(self) -> None:
+        """Shake hands; reads no further than the headers."""
+        loop = asyncio.get_running_loop()
+        await loop.sock_connect(self._socket, ("127.0.0.1", self._port))
+        key = base64.b64encode(os.urandom(16)).decode()
+        request = (
+            "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+            f"Sec-WebSocket-Key: {key}\r\n"
+            f"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: {SUBPROTOCOLS[0]}\r\n\r\n"
+        )
+        await loop.sock_sendall(self._socket, request.encode())
+        while b"\r\n\r\n" not in self._read:
+            self._read += await loop.sock_recv(self._socket, 1)
+        self._read.clear()
+
+    async def say(self, message: ms.ClientMessage) -> None:
+        """Send one short message, masked with zeros."""
+        frame = wire.encode_client(message)
+        body, opcode = (frame.encode(), 0x81) if isinstance(frame, str) else (frame, 0x82)
+        assert len(body) < 126
+        await asyncio.get_running_loop().sock_sendall(
+            self._socket, bytes([opcode, 0x80 | len(body), 0, 0, 0, 0]) + body
+        )
+
+    async def next(self, kind: type[T]) -> T:
+        """Read on to the next message of this kind."""
+        async with asyncio.timeout(DEADLINE_S):
+            while True:
+                message = await self._next()
+                if isinstance(message, kind):
+                    return message
+
+    def abort(self) -> None:
+        """Vanish."""
+        self._socket.close()
+
+    async def _next(self) -> ms.ServerMessage:
+        head = await self._exactly(2)
+        size = head[1]
+        if size == 126:
+            size = int.from_bytes(await self._exactly(2), "big")
+        elif size == 127:
+            size = int.from_bytes(await self._exactly(8), "big")
+        body = await self._exactly(size)
+        return wire.decode_server(body.decode() if head[0] == 0x81 else body)
+
+    async def _exactly(self, size: int) -> bytes:
+        while len(self._read) < size:
+            data = await asyncio.get_running_loop().sock_recv(self._socket, 1 << 16)
+            assert data, "the server closed the connection"
+            self._read += data
+        taken = bytes(self._read[:size])
+        del self._read[:size]
+        return taken

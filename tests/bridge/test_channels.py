@@ -1,0 +1,478 @@
+"""The switchboard: what clients and the owner of the data say, and what follows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
+
+from thymio_sim_ros.bridge import Capability, ServerInfo
+from thymio_sim_ros.bridge import events as ev
+from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.channels import MAX_CLIENT_CHANNELS, MAX_REFUSALS, Letter, Switchboard
+from thymio_sim_ros.bridge.graph import ConnectionGraph
+from thymio_sim_ros.bridge.vocabulary import StatusLevel
+
+A, B = 1, 2
+SIDE = ms.ServiceSide("cdr", "std_srvs/srv/Empty_Request", "ros2msg", "")
+SERVICE = ms.Service(5, "/s", "std_srvs/srv/Empty", SIDE, SIDE)
+
+
+def channel(number: int, topic: str = "/t") -> ms.Channel:
+    return ms.Channel(number, topic, "cdr", "std_msgs/msg/Bool", "bool data", "ros2msg")
+
+
+def client_channel(number: int, topic: str = "/cmd_vel", encoding: str = "cdr") -> ms.ClientChannel:
+    return ms.ClientChannel(number, topic, encoding, "geometry_msgs/Twist")
+
+
+def switchboard(*clients: int, capabilities: Sequence[Capability] = tuple(Capability)) -> Switchboard:
+    """A board with channels 10 and 11, one service, and the clients connected."""
+    board = Switchboard(ServerInfo("test", tuple(capabilities), ("cdr", "json"), session_id="first"))
+    board.apply(ev.AddChannels((channel(10), channel(11, "/u"))))
+    board.apply(ev.AddServices((SERVICE,)))
+    for client in clients:
+        board.join(client)
+    return board
+
+
+def subscribe(board: Switchboard, client: int, subscription: int, channel_id: int) -> list[ev.Event]:
+    outcome = board.receive(client, ms.Subscribe((ms.Subscription(subscription, channel_id),)))
+    assert not [letter for letter in outcome.letters if isinstance(letter.message, ms.Status)]
+    return outcome.events
+
+
+def refusals(letters: Sequence[Letter]) -> list[tuple[int, str]]:
+    """(client, text) of each status; every letter must be one."""
+    found = []
+    for letter in letters:
+        assert isinstance(letter.message, ms.Status)
+        found.append((letter.clients[0], letter.message.message))
+    return found
+
+
+# --- greeting ---
+
+
+def test_a_client_is_greeted_with_info_time_channels_and_services() -> None:
+    assert [type(message) for message in switchboard().join(A)] == [
+        ms.ServerInfo,
+        ms.Time,
+        ms.Advertise,
+        ms.AdvertiseServices,
+    ]
+
+
+def test_time_is_told_only_by_a_server_that_offers_it() -> None:
+    greeting = switchboard(capabilities=[Capability.SERVICES]).join(A)
+    assert not [message for message in greeting if isinstance(message, ms.Time)]
+
+
+def test_a_newcomer_gets_the_newest_time() -> None:
+    board = switchboard()
+    board.apply(ev.SetTime(42))
+    assert ms.Time(42) in board.join(A)
+
+
+def test_an_empty_server_advertises_nothing() -> None:
+    assert [type(message) for message in Switchboard(ServerInfo("x", ())).join(A)] == [ms.ServerInfo]
+
+
+# --- subscribing ---
+
+
+def test_the_owner_hears_of_the_first_and_the_last_subscriber_only() -> None:
+    board = switchboard(A, B)
+    assert subscribe(board, A, 1, 10) == [ev.ChannelWanted(10)]
+    assert subscribe(board, B, 1, 10) == []
+    assert board.receive(A, ms.Unsubscribe((1,))).events == []
+    assert board.receive(B, ms.Unsubscribe((1,))).events == [ev.ChannelUnwanted(10)]
+
+
+def test_equal_subscription_ids_of_two_clients_are_two_subscriptions() -> None:
+    board = switchboard(A, B)
+    subscribe(board, A, 7, 10)
+    subscribe(board, B, 7, 11)
+    assert (board.routes(10), board.routes(11)) == (((A, 7),), ((B, 7),))
+
+
+def test_one_client_gets_a_channel_once() -> None:
+    board = switchboard(A)
+    subscribe(board, A, 1, 10)
+    outcome = board.receive(A, ms.Subscribe((ms.Subscription(2, 10),)))
+    assert refusals(outcome.letters) == [(A, "subscription 2: already subscribed to /t")]
+    assert board.routes(10) == ((A, 1),)
+
+
+def test_a_subscription_id_in_use_is_refused_and_changes_nothing() -> None:
+    board = switchboard(A)
+    subscribe(board, A, 1, 10)
+    outcome = board.receive(A, ms.Subscribe((ms.Subscription(1, 11),)))
+    assert refusals(outcome.letters) == [(A, "subscription 1 exists already")]
+    assert (board.routes(11), outcome.events) == ((), [])
+
+
+def test_an_unknown_channel_is_a_warning_and_the_rest_is_done() -> None:
+    board = switchboard(A)
+    outcome = board.receive(A, ms.Subscribe((ms.Subscription(1, 99), ms.Subscription(2, 10))))
+    assert outcome.letters == [
+        Letter((A,), ms.Status(StatusLevel.WARNING, "subscription 1: no channel 99")),
+    ]
+    assert board.routes(10) == ((A, 2),)
+
+
+def test_an_unknown_subscription_cannot_be_ended() -> None:
+    outcome = switchboard(A).receive(A, ms.Unsubscribe((3,)))
+    assert refusals(outcome.letters) == [(A, "no subscription 3")]
+
+
+def test_a_frame_full_of_nonsense_is_refused_a_few_times_only() -> None:
+    outcome = switchboard(A).receive(A, ms.Unsubscribe(tuple(range(1000))))
+    assert len(refusals(outcome.letters)) == MAX_REFUSALS
+
+
+def test_a_leaving_client_takes_its_subscriptions_along() -> None:
+    board = switchboard(A, B)
+    subscribe(board, A, 1, 10)
+    subscribe(board, A, 2, 11)
+    subscribe(board, B, 1, 11)
+    assert board.leave(A) == [ev.ChannelUnwanted(10)]
+    assert (board.routes(10), board.routes(11)) == ((), ((B, 1),))
+
+
+def test_a_vanished_channel_ends_its_subscriptions() -> None:
+    board = switchboard(A)
+    subscribe(board, A, 1, 10)
+    assert board.apply(ev.RemoveChannels((10,))) == [Letter((A,), ms.Unadvertise((10,)))]
+    assert board.routes(10) == ()
+    assert refusals(board.receive(A, ms.Unsubscribe((1,))).letters) == [(A, "no subscription 1")]
+
+
+# --- latched channels ---
+
+
+def test_a_newcomer_gets_what_is_kept_and_nobody_else_gets_it_again() -> None:
+    board = switchboard(A, B)
+    subscribe(board, A, 1, 10)
+    board.apply(ev.KeepLast(10, 1))
+    board.keep(ev.Data(10, 5, b"old"))
+    board.keep(ev.Data(10, 6, b"new"))
+    outcome = board.receive(B, ms.Subscribe((ms.Subscription(4, 10),)))
+    assert outcome.letters == [Letter((B,), ms.MessageData(4, 6, b"new"))]
+
+
+def test_a_repeated_message_takes_one_place_only() -> None:
+    board = switchboard(A, B)
+    subscribe(board, A, 1, 10)
+    board.apply(ev.KeepLast(10, 2))
+    for time_ns, payload in ((1, b"one"), (2, b"two"), (3, b"two")):
+        board.keep(ev.Data(10, time_ns, payload))
+    letters = board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).letters
+    assert [letter.message for letter in letters] == [ms.MessageData(4, 1, b"one"), ms.MessageData(4, 2, b"two")]
+
+
+def test_nothing_is_kept_of_an_ordinary_channel() -> None:
+    board = switchboard(A, B)
+    subscribe(board, A, 1, 10)
+    board.keep(ev.Data(10, 5, b"x"))
+    assert board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).letters == []
+
+
+def test_what_is_kept_is_forgotten_with_the_last_subscriber() -> None:
+    board = switchboard(A)
+    subscribe(board, A, 1, 10)
+    board.apply(ev.KeepLast(10, 1))
+    board.keep(ev.Data(10, 5, b"x"))
+    board.receive(A, ms.Unsubscribe((1,)))
+    assert board.receive(A, ms.Subscribe((ms.Subscription(1, 10),))).letters == []
+
+
+def test_depth_zero_ends_keeping() -> None:
+    board = switchboard(A, B)
+    subscribe(board, A, 1, 10)
+    board.apply(ev.KeepLast(10, 1))
+    board.keep(ev.Data(10, 5, b"x"))
+    board.apply(ev.KeepLast(10, 0))
+    assert board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).letters == []
+
+
+# --- client channels ---
+
+
+def test_equal_client_channel_ids_of_two_clients_are_two_channels() -> None:
+    board = switchboard(A, B)
+    board.receive(A, ms.ClientAdvertise((client_channel(1, "/a"),)))
+    board.receive(B, ms.ClientAdvertise((client_channel(1, "/b"),)))
+    assert board.receive(A, ms.ClientMessageData(1, b"x")).events == [ev.ClientSent(A, 1, b"x")]
+    assert board.receive(B, ms.ClientMessageData(1, b"y")).events == [ev.ClientSent(B, 1, b"y")]
+
+
+def test_a_leaving_client_closes_its_channels() -> None:
+    board = switchboard(A, B)
+    board.receive(A, ms.ClientAdvertise((client_channel(1), client_channel(2))))
+    board.receive(B, ms.ClientAdvertise((client_channel(1),)))
+    assert board.leave(A) == [ev.ClientChannelClosed(A, 1), ev.ClientChannelClosed(A, 2)]
+    assert board.receive(B, ms.ClientMessageData(1, b"y")).events == [ev.ClientSent(B, 1, b"y")]
+
+
+def test_a_client_channel_is_closed_once() -> None:
+    board = switchboard(A)
+    board.receive(A, ms.ClientAdvertise((client_channel(1),)))
+    assert board.receive(A, ms.ClientUnadvertise((1,))).events == [ev.ClientChannelClosed(A, 1)]
+    assert refusals(board.receive(A, ms.ClientUnadvertise((1,))).letters) == [(A, "no client channel 1")]
+
+
+def test_a_message_on_a_channel_that_was_not_advertised_is_refused() -> None:
+    outcome = switchboard(A).receive(A, ms.ClientMessageData(1, b"x"))
+    assert refusals(outcome.letters) == [(A, "message on client channel 1, which is not advertised")]
+    assert outcome.events == []
+
+
+@pytest.mark.parametrize(
+    ("second", "text"),
+    [
+        (client_channel(1, "/b"), "channel 1 for /b: the id is in use for /cmd_vel"),
+        (client_channel(2, "/b", "protobuf"), "channel 2 for /b: expected encoding cdr or json, found protobuf"),
+    ],
+)
+def test_a_client_channel_with_a_used_id_or_an_unknown_encoding_is_refused(second: ms.ClientChannel, text: str) -> None:
+    board = switchboard(A)
+    outcome = board.receive(A, ms.ClientAdvertise((client_channel(1), second)))
+    assert refusals(outcome.letters) == [(A, text)]
+    assert outcome.events == [ev.ClientChannelOpened(A, client_channel(1))]
+
+
+def test_a_client_cannot_open_endless_channels() -> None:
+    board = switchboard(A)
+    outcome = board.receive(A, ms.ClientAdvertise(tuple(client_channel(n) for n in range(MAX_CLIENT_CHANNELS + 1))))
+    assert refusals(outcome.letters) == [(A, "channel 256 for /cmd_vel: more than 256 channels")]
+    assert len(outcome.events) == MAX_CLIENT_CHANNELS
+
+
+# --- services, assets ---
+
+
+def test_a_call_of_a_service_reaches_the_owner() -> None:
+    request = ms.ServiceRequest(5, 1, "cdr", b"")
+    assert switchboard(A).receive(A, request).events == [ev.ServiceCalled(A, request)]
+
+
+def test_a_call_of_an_unknown_service_fails_with_a_status_beside_it() -> None:
+    outcome = switchboard(A).receive(A, ms.ServiceRequest(6, 1, "cdr", b""))
+    assert outcome.letters == [
+        Letter((A,), ms.ServiceCallFailure(6, 1, "no service 6")),
+        Letter((A,), ms.Status(StatusLevel.ERROR, "no service 6")),
+    ]
+
+
+def test_a_vanished_service_cannot_be_called() -> None:
+    board = switchboard(A)
+    assert board.apply(ev.RemoveServices((5,))) == [Letter((A,), ms.UnadvertiseServices((5,)))]
+    assert board.receive(A, ms.ServiceRequest(5, 1, "cdr", b"")).events == []
+
+
+def test_a_wish_for_an_asset_reaches_the_owner() -> None:
+    outcome = switchboard(A).receive(A, ms.FetchAsset("package://p/m.stl", 3))
+    assert outcome.events == [ev.AssetWanted(A, "package://p/m.stl", 3)]
+
+
+# --- parameters ---
+
+SPEED, NAME = ms.Parameter("/n.speed", 1.0, "float64"), ms.Parameter("/n.name", "x")
+
+
+def with_parameters(*clients: int) -> Switchboard:
+    board = switchboard(*clients)
+    board.apply(ev.ParametersChanged((SPEED, NAME)))
+    return board
+
+
+def test_no_names_mean_all_parameters() -> None:
+    letters = with_parameters(A).receive(A, ms.GetParameters((), "q")).letters
+    assert letters == [Letter((A,), ms.ParameterValues((SPEED, NAME), "q"))]
+
+
+def test_unknown_names_are_left_out() -> None:
+    letters = with_parameters(A).receive(A, ms.GetParameters(("/n.name", "/n.no"))).letters
+    assert letters == [Letter((A,), ms.ParameterValues((NAME,)))]
+
+
+def test_setting_is_the_owners_business() -> None:
+    outcome = with_parameters(A).receive(A, ms.SetParameters((SPEED,), "q"))
+    assert outcome.events == [ev.ParametersSet(A, (SPEED,), "q")]
+    assert outcome.letters == []
+
+
+def test_an_answer_carries_the_value_in_force() -> None:
+    letters = with_parameters(A).apply(ev.ShowParameters(A, ("/n.speed", "/n.no"), "q"))
+    assert letters == [Letter((A,), ms.ParameterValues((SPEED,), "q"))]
+
+
+def test_an_answer_to_a_client_that_left_is_forgotten() -> None:
+    board = with_parameters(A)
+    board.leave(A)
+    assert board.apply(ev.ShowParameters(A, ("/n.speed",), "q")) == []
+    assert board.apply(ev.Tell(A, ms.RemoveStatus(()))) == []
+
+
+def test_changes_go_to_those_who_asked_for_them() -> None:
+    board = with_parameters(A, B)
+    board.receive(A, ms.SubscribeParameterUpdates(("/n.speed", "/n.later")))
+    faster = ms.Parameter("/n.speed", 2.0, "float64")
+    later = ms.Parameter("/n.later", True)
+    letters = board.apply(ev.ParametersChanged((faster, later, ms.Parameter("/n.name", "y"))))
+    assert letters == [Letter((A,), ms.ParameterValues((faster, later)))]
+
+
+def test_an_equal_value_is_no_change() -> None:
+    board = with_parameters(A)
+    board.receive(A, ms.SubscribeParameterUpdates(("/n.speed",)))
+    assert board.apply(ev.ParametersChanged((SPEED,))) == []
+
+
+def test_an_unset_parameter_is_told_without_value() -> None:
+    board = with_parameters(A)
+    board.receive(A, ms.SubscribeParameterUpdates(("/n.speed",)))
+    letters = board.apply(ev.ParametersChanged((), ("/n.speed", "/n.unknown")))
+    assert letters == [Letter((A,), ms.ParameterValues((ms.Parameter("/n.speed"),)))]
+
+
+def test_updates_end_when_they_are_unsubscribed() -> None:
+    board = with_parameters(A)
+    board.receive(A, ms.SubscribeParameterUpdates(("/n.speed",)))
+    board.receive(A, ms.UnsubscribeParameterUpdates(("/n.speed",)))
+    assert board.apply(ev.ParametersChanged((), ("/n.speed",))) == []
+
+
+# --- connection graph ---
+
+GRAPH = ConnectionGraph({"/t": ("/n",)})
+
+
+def test_the_owner_hears_of_the_first_and_the_last_who_watch_the_graph() -> None:
+    board = switchboard(A, B)
+    assert board.receive(A, ms.SubscribeConnectionGraph()).events == [ev.GraphWanted(True)]
+    assert board.receive(B, ms.SubscribeConnectionGraph()).events == []
+    assert board.receive(A, ms.UnsubscribeConnectionGraph()).events == []
+    assert board.leave(B) == [ev.GraphWanted(False)]
+
+
+def test_each_watcher_gets_the_whole_graph_first_and_then_differences() -> None:
+    board = switchboard(A, B)
+    board.receive(A, ms.SubscribeConnectionGraph())
+    whole = ms.ConnectionGraphUpdate((ms.PublishedTopic("/t", ("/n",)),))
+    assert board.apply(ev.SetGraph(GRAPH)) == [Letter((A,), whole)]
+    assert board.receive(B, ms.SubscribeConnectionGraph()).letters == [Letter((B,), whole)]
+    assert board.apply(ev.SetGraph(GRAPH)) == []
+    gone = ms.ConnectionGraphUpdate(removed_topics=("/t",))
+    assert board.apply(ev.SetGraph(ConnectionGraph())) == [Letter((A,), gone), Letter((B,), gone)]
+
+
+def test_asking_twice_for_the_graph_is_asking_once() -> None:
+    board = switchboard(A)
+    board.receive(A, ms.SubscribeConnectionGraph())
+    outcome = board.receive(A, ms.SubscribeConnectionGraph())
+    assert (outcome.letters, outcome.events) == ([], [])
+
+
+# --- sessions, capabilities ---
+
+
+def test_a_new_session_is_announced_with_its_id_and_the_whole_graph() -> None:
+    board = switchboard(A, B)
+    board.receive(A, ms.SubscribeConnectionGraph())
+    board.apply(ev.SetGraph(GRAPH))
+    letters = board.apply(ev.NewSession("second"))
+    assert [letter.clients for letter in letters] == [(A, B), (A,)]
+    assert isinstance(letters[0].message, ms.ServerInfo)
+    assert letters[0].message.session_id == "second"
+    assert letters[1].message == ms.ConnectionGraphUpdate((ms.PublishedTopic("/t", ("/n",)),))
+
+
+@pytest.mark.parametrize(
+    ("message", "capability"),
+    [
+        (ms.ClientAdvertise(()), Capability.CLIENT_PUBLISH),
+        (ms.ServiceRequest(5, 1, "cdr", b""), Capability.SERVICES),
+        (ms.GetParameters(()), Capability.PARAMETERS),
+        (ms.SubscribeParameterUpdates(()), Capability.PARAMETERS_SUBSCRIBE),
+        (ms.SubscribeConnectionGraph(), Capability.CONNECTION_GRAPH),
+        (ms.FetchAsset("package://p/m.stl", 3), Capability.ASSETS),
+    ],
+)
+def test_what_is_not_offered_is_refused(message: ms.ClientMessage, capability: Capability) -> None:
+    outcome = switchboard(A, capabilities=[]).receive(A, message)
+    assert refusals(outcome.letters) == [(A, f"this server does not offer {capability}")]
+    assert outcome.events == []
+
+
+class Storm(RuleBasedStateMachine):
+    """Clients that come, go and subscribe at random; the owner keeps a list of what it was told."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.board = Switchboard(ServerInfo("storm", tuple(Capability), ("cdr",)))
+        self.clients: set[int] = set()
+        self.channels: set[int] = set()
+        self.wanted: set[int] = set()
+        self.subscriptions: set[tuple[int, int, int]] = set()
+
+    @rule(client=st.integers(1, 4))
+    def come_or_go(self, client: int) -> None:
+        if client in self.clients:
+            self.clients.remove(client)
+            self.note(self.board.leave(client))
+            self.subscriptions = {row for row in self.subscriptions if row[0] != client}
+        else:
+            self.clients.add(client)
+            self.board.join(client)
+
+    @rule(number=st.integers(1, 4))
+    def offer_or_withdraw(self, number: int) -> None:
+        if number in self.channels:
+            self.channels.remove(number)
+            self.wanted.discard(number)
+            self.board.apply(ev.RemoveChannels((number,)))
+            self.subscriptions = {row for row in self.subscriptions if row[2] != number}
+        else:
+            self.channels.add(number)
+            self.board.apply(ev.AddChannels((channel(number),)))
+
+    @rule(client=st.integers(1, 4), subscription=st.integers(0, 3), number=st.integers(1, 4))
+    def subscribe(self, client: int, subscription: int, number: int) -> None:
+        if client not in self.clients:
+            return
+        self.note(self.board.receive(client, ms.Subscribe((ms.Subscription(subscription, number),))).events)
+        mine = [row for row in self.subscriptions if row[0] == client]
+        if number in self.channels and all(row[1] != subscription and row[2] != number for row in mine):
+            self.subscriptions.add((client, subscription, number))
+
+    @rule(client=st.integers(1, 4), subscription=st.integers(0, 3))
+    def unsubscribe(self, client: int, subscription: int) -> None:
+        if client in self.clients:
+            self.note(self.board.receive(client, ms.Unsubscribe((subscription,))).events)
+            self.subscriptions = {row for row in self.subscriptions if row[:2] != (client, subscription)}
+
+    def note(self, events: list[ev.Event]) -> None:
+        for event in events:
+            if isinstance(event, ev.ChannelWanted):
+                assert event.channel_id not in self.wanted
+                self.wanted.add(event.channel_id)
+            elif isinstance(event, ev.ChannelUnwanted):
+                self.wanted.remove(event.channel_id)
+
+    @invariant()
+    def routes_are_the_subscriptions(self) -> None:
+        routes = {(client, sub, number) for number in range(1, 5) for client, sub in self.board.routes(number)}
+        assert routes == self.subscriptions
+
+    @invariant()
+    def the_owner_knows_what_is_wanted(self) -> None:
+        assert self.wanted == {number for _, _, number in self.subscriptions}
+
+
+TestStorm = Storm.TestCase
+TestStorm.settings = settings(max_examples=50, stateful_step_count=40)

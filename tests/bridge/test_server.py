@@ -1,0 +1,317 @@
+"""A real server and several real clients on loopback."""
+
+from __future__ import annotations
+
+import asyncio
+import random
+
+import pytest
+from websockets.asyncio.client import connect
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+from tests.bridge.peers import CHANNEL, DEADLINE_S, StalledClient, bridge
+from thymio_sim_ros.bridge import ServerSettings, wire
+from thymio_sim_ros.bridge import events as ev
+from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.vocabulary import StatusLevel
+
+LIMIT = 1 << 16
+KILOBYTE = bytes(1024)
+
+
+@pytest.mark.parametrize(
+    ("offered", "accepted"),
+    [
+        (("foxglove.websocket.v1", "foxglove.sdk.v1"), "foxglove.sdk.v1"),
+        (("foxglove.websocket.v1",), "foxglove.websocket.v1"),
+        (("other", "foxglove.sdk.v1"), "foxglove.sdk.v1"),
+    ],
+)
+def test_both_names_of_the_protocol_are_spoken(offered: tuple[str, ...], accepted: str) -> None:
+    async def scenario() -> str | None:
+        async with bridge() as server, server.client(subprotocols=offered) as client:
+            return client.connection.subprotocol
+
+    assert asyncio.run(scenario()) == accepted
+
+
+def test_a_client_of_another_protocol_is_refused() -> None:
+    async def scenario() -> None:
+        async with bridge() as server, connect(server.url):
+            pass
+
+    with pytest.raises(InvalidStatus, match="400"):
+        asyncio.run(scenario())
+
+
+def test_a_page_from_elsewhere_is_refused_and_told_why() -> None:
+    async def scenario() -> None:
+        async with bridge() as server, server.client(origin="https://evil.example"):
+            pass
+
+    with pytest.raises(InvalidStatus) as caught:
+        asyncio.run(scenario())
+    assert caught.value.response.status_code == 403
+    assert b"allowed_origins" in caught.value.response.body
+
+
+def test_a_page_of_this_machine_is_welcome() -> None:
+    async def scenario() -> ms.ServerInfo:
+        async with bridge() as server, server.client(origin="http://localhost:8080") as client:
+            return await client.next(ms.ServerInfo)
+
+    assert asyncio.run(scenario()).name == "test"
+
+
+def test_messages_reach_every_subscriber_under_its_own_id() -> None:
+    async def scenario() -> None:
+        async with bridge() as server, server.client() as one, server.client() as two:
+            await one.subscribe(1)
+            await two.subscribe(2)
+            server.publish(b"a", b"b")
+            for client, subscription in ((one, 1), (two, 2)):
+                assert await client.next(ms.MessageData) == ms.MessageData(subscription, 0, b"a")
+                assert await client.next(ms.MessageData) == ms.MessageData(subscription, 1, b"b")
+
+    asyncio.run(scenario())
+
+
+def test_new_and_vanished_channels_are_told_to_all() -> None:
+    async def scenario() -> None:
+        added = ms.Channel(11, "/u", "cdr", "std_msgs/msg/Bool", "bool data", "ros2msg")
+        async with bridge() as server, server.client() as one, server.client() as two:
+            for client in (one, two):
+                assert await client.next(ms.Advertise) == ms.Advertise((CHANNEL,))
+            server.server.apply([ev.AddChannels((added,)), ev.RemoveChannels((11,))])
+            for client in (one, two):
+                assert await client.next(ms.Advertise) == ms.Advertise((added,))
+                assert await client.next(ms.Unadvertise) == ms.Unadvertise((11,))
+
+    asyncio.run(scenario())
+
+
+def test_equal_client_channel_ids_of_two_clients_are_not_confused() -> None:
+    async def scenario() -> list[ev.Event]:
+        async with bridge() as server, server.client() as one, server.client() as two:
+            for client, topic in ((one, "/a"), (two, "/b")):
+                await client.send(ms.ClientAdvertise((ms.ClientChannel(1, topic, "cdr", "std_msgs/Bool"),)))
+                await client.settle()
+            await two.send(ms.ClientMessageData(1, b"two"))
+            await two.settle()
+            await one.send(ms.ClientMessageData(1, b"one"))
+            await one.settle()
+            return server.sink.events[:4]
+
+    opened_a, opened_b, *sent = asyncio.run(scenario())
+    assert isinstance(opened_a, ev.ClientChannelOpened)
+    assert isinstance(opened_b, ev.ClientChannelOpened)
+    assert (opened_a.channel.topic, opened_b.channel.topic) == ("/a", "/b")
+    assert sent == [ev.ClientSent(opened_b.client, 1, b"two"), ev.ClientSent(opened_a.client, 1, b"one")]
+
+
+def test_a_bad_frame_is_answered_and_the_connection_kept() -> None:
+    async def scenario() -> None:
+        async with bridge() as server, server.client() as client, server.client() as other:
+            for bad in ("no json", b"", b"\x09", '{"op":"dance"}', b"\x01\x01"):
+                await client.connection.send(bad)
+                assert (await client.next(ms.Status)).level == StatusLevel.ERROR
+            for peer in (client, other):
+                await peer.subscribe(1)
+            server.publish(b"still here")
+            for peer in (client, other):
+                assert (await peer.next(ms.MessageData)).payload == b"still here"
+
+    asyncio.run(scenario())
+
+
+def test_a_storm_of_changed_frames_leaves_the_server_standing() -> None:
+    frames = [
+        wire.encode_client(message)
+        for message in (
+            ms.Subscribe((ms.Subscription(1, CHANNEL.id),)),
+            ms.Unsubscribe((1,)),
+            ms.ClientAdvertise((ms.ClientChannel(1, "/a", "cdr", "std_msgs/Bool"),)),
+            ms.ClientMessageData(1, b"data"),
+            ms.ServiceRequest(1, 2, "cdr", b"data"),
+            ms.SetParameters((ms.Parameter("/n.p", 1.0),), "q"),
+            ms.FetchAsset("package://p/m.stl", 1),
+        )
+    ]
+    rng = random.Random(5)
+
+    async def scenario() -> None:
+        async with bridge() as server, server.client() as fuzzer, server.client() as other:
+            for _ in range(1000):
+                frame = rng.choice(frames)
+                at = rng.randrange(len(frame))
+                if isinstance(frame, str):
+                    await fuzzer.connection.send(frame[:at] + chr(rng.randrange(32, 1000)) + frame[at + 1 :])
+                else:
+                    await fuzzer.connection.send(frame[:at] + rng.randbytes(1) + frame[at + 1 :])
+            await fuzzer.connection.send("the end")
+            while "'the end'" not in (await fuzzer.next(ms.Status)).message:
+                pass
+            await other.subscribe(1)
+            server.publish(b"still here")
+            assert (await other.next(ms.MessageData)).payload == b"still here"
+
+    asyncio.run(scenario())
+
+
+def test_a_too_long_frame_ends_that_connection_only() -> None:
+    async def scenario() -> None:
+        settings = ServerSettings(max_message_size=1000)
+        async with bridge(settings) as server, server.client() as client, server.client() as other:
+            await client.connection.send(bytes(1001))
+            with pytest.raises(ConnectionClosed, match="1009"):
+                await client.next(ms.MessageData)
+            await other.subscribe(1)
+            server.publish(b"still here")
+            assert (await other.next(ms.MessageData)).payload == b"still here"
+
+    asyncio.run(scenario())
+
+
+def test_a_client_that_vanishes_is_forgotten() -> None:
+    async def scenario() -> None:
+        async with bridge() as server:
+            client = StalledClient(server.port)
+            await client.connect()
+            await client.say(ms.Subscribe((ms.Subscription(1, CHANNEL.id),)))
+            await client.say(ms.ClientAdvertise((ms.ClientChannel(1, "/a", "cdr", "std_msgs/Bool"),)))
+            await server.sink.until(lambda events: len(events) == 2)
+            client.abort()
+            await server.sink.until(lambda events: len(events) == 4)
+            assert [type(event) for event in server.sink.events[2:]] == [ev.ChannelUnwanted, ev.ClientChannelClosed]
+            assert server.server.client_count == 0
+
+    asyncio.run(scenario())
+
+
+def test_clients_that_come_and_go_leave_no_task_behind() -> None:
+    async def scenario() -> None:
+        async with bridge() as server:
+            before = len(asyncio.all_tasks())
+            for _ in range(50):
+                async with server.client() as client:
+                    await client.subscribe(1)
+            await server.until(lambda: server.server.client_count == 0 and len(asyncio.all_tasks()) == before)
+
+    asyncio.run(scenario())
+
+
+def test_a_healthy_client_beside_a_stalled_one_loses_nothing() -> None:
+    async def scenario() -> None:
+        settings = ServerSettings(buffer_limit=LIMIT)
+        async with bridge(settings) as server, server.client() as healthy:
+            stalled = StalledClient(server.port)
+            await stalled.connect()
+            await stalled.say(ms.Subscribe((ms.Subscription(1, CHANNEL.id),)))
+            await healthy.subscribe(1)
+            await server.sink.until(lambda events: len(events) == 1)
+            for number in range(5000):  # far more than the kernel's buffers and ours
+                server.publish(number.to_bytes(4, "little") + KILOBYTE)
+                data = await healthy.next(ms.MessageData)
+                assert int.from_bytes(data.payload[:4], "little") == number
+            stalled.abort()
+
+    asyncio.run(scenario())
+
+
+def test_a_stalled_client_keeps_its_control_messages_and_gets_the_newest_data() -> None:
+    async def scenario() -> None:
+        settings = ServerSettings(buffer_limit=LIMIT)
+        async with bridge(settings) as server:
+            stalled = StalledClient(server.port)
+            await stalled.connect()
+            await stalled.say(ms.Subscribe((ms.Subscription(1, CHANNEL.id),)))
+            await server.sink.until(lambda events: len(events) == 1)
+            last = 20_000
+            for number in range(last + 1):
+                server.publish(number.to_bytes(4, "little") + KILOBYTE)
+            await stalled.say(ms.GetParameters((), "still answered"))
+            numbers: list[int] = []
+            while not numbers or numbers[-1] != last:
+                numbers.append(int.from_bytes((await stalled.next(ms.MessageData)).payload[:4], "little"))
+            assert numbers == sorted(numbers)
+            assert len(numbers) < last
+            await stalled.say(ms.GetParameters((), "answered"))
+            assert (await stalled.next(ms.ParameterValues)).id in ("still answered", "answered")
+            stalled.abort()
+
+    asyncio.run(scenario())
+
+
+def test_a_slow_connection_is_told_so_once() -> None:
+    async def scenario() -> list[str]:
+        async with bridge(ServerSettings(buffer_limit=LIMIT)) as server:
+            stalled = StalledClient(server.port)
+            await stalled.connect()
+            await stalled.say(ms.Subscribe((ms.Subscription(1, CHANNEL.id),)))
+            await server.sink.until(lambda events: len(events) == 1)
+            for _ in range(20_000):
+                server.publish(KILOBYTE)
+            await stalled.say(ms.FetchAsset("end", 1))
+            await server.sink.until(lambda events: len(events) == 2)
+            server.server.apply([ev.Tell(1, ms.Status(StatusLevel.INFO, "end"))])
+            texts = []
+            while "end" not in texts:
+                texts.append((await stalled.next(ms.Status)).message)
+            stalled.abort()
+            return texts
+
+    slow, end = asyncio.run(scenario())
+    assert slow.startswith("Send buffer limit reached")
+    assert end == "end"
+
+
+def test_a_client_that_lets_even_control_messages_pile_up_is_cut_off() -> None:
+    async def scenario() -> None:
+        async with bridge(ServerSettings(buffer_limit=LIMIT)) as server:
+            stalled = StalledClient(server.port)
+            await stalled.connect()
+            await server.until(lambda: server.server.client_count == 1)
+            text = "x" * LIMIT
+            for _ in range(200):
+                server.server.apply([ev.Tell(1, ms.Status(StatusLevel.INFO, text))])
+            await server.until(lambda: server.server.client_count == 0)
+            stalled.abort()
+
+    asyncio.run(scenario())
+
+
+def test_while_the_owner_is_behind_a_busy_client_waits_and_others_are_served() -> None:
+    async def scenario() -> None:
+        async with bridge() as server, server.client() as busy, server.client() as other:
+            await other.subscribe(1)
+            await busy.send(ms.ClientAdvertise((ms.ClientChannel(1, "/a", "cdr", "std_msgs/Bool"),)))
+            await busy.settle()
+            server.sink.is_full = True
+            await busy.send(ms.ClientMessageData(1, b"first"), ms.ClientMessageData(1, b"second"))
+            server.publish(b"data")
+            assert (await other.next(ms.MessageData)).payload == b"data"
+            server.sink.is_full = False
+            await server.sink.until(lambda events: len(events) == 4)
+            assert [event.payload for event in server.sink.events if isinstance(event, ev.ClientSent)] == [
+                b"first",
+                b"second",
+            ]
+
+    asyncio.run(scenario())
+
+
+def test_a_stalled_client_does_not_hold_up_the_end() -> None:
+    async def scenario() -> None:
+        async with bridge(ServerSettings(buffer_limit=LIMIT)) as server:
+            stalled = StalledClient(server.port)
+            await stalled.connect()
+            await stalled.say(ms.Subscribe((ms.Subscription(1, CHANNEL.id),)))
+            await server.sink.until(lambda events: len(events) == 1)
+            for _ in range(20_000):
+                server.publish(KILOBYTE)
+            async with asyncio.timeout(DEADLINE_S):
+                await server.server.close()
+            assert server.server.client_count == 0
+            stalled.abort()
+
+    asyncio.run(scenario())
