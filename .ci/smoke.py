@@ -29,6 +29,7 @@ def free_port() -> int:
 def main(prefix: Path) -> None:
     check_files(prefix)
     port, foxglove_port = free_port(), free_port()
+    shared_memory = set(os.listdir("/dev/shm"))
     command = [prefix / "bin" / "thymio-sim", "--port", str(port), "--foxglove-port", str(foxglove_port)]
     environment = os.environ | {"ROS_DOMAIN_ID": "97"}
     suite = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, start_new_session=True)
@@ -44,6 +45,8 @@ def main(prefix: Path) -> None:
         code = suite.wait(END_S)
         print(f"ended with {code} after {time.monotonic() - begin:.2f} s")
         assert code == 0
+        left = set(os.listdir("/dev/shm")) - shared_memory
+        assert not left, f"left in /dev/shm: {left}"
     finally:
         if suite.poll() is None:
             os.killpg(suite.pid, signal.SIGKILL)

@@ -44,9 +44,14 @@ class Process:
         """The exit code, at most `END_S` later."""
         return self._popen.wait(END_S)
 
-    def kill(self) -> None:
-        """End what still runs."""
-        if self.is_running:
+    def end(self) -> None:
+        """End what still runs as a terminal would, so that it can tidy up; by force when it does not."""
+        if not self.is_running:
+            return
+        self.signal(signal.SIGINT)
+        try:
+            self.wait()
+        except subprocess.TimeoutExpired:
             self.signal(signal.SIGKILL)
             self._popen.wait()
 

@@ -68,9 +68,15 @@ def start_suite(argv: Sequence[str]) -> int:
     _check_ros()
     # A class room's robots stay apart, unless somebody has chosen otherwise (ros-packaging.md section 4).
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    from thymio_sim_ros.nodes import all_nodes
+    from thymio_sim_ros.nodes import leftovers
 
-    return all_nodes.run(suite, [], on_ready=lambda: print(_greeting(suite), flush=True))
+    before = leftovers.present()
+    from thymio_sim_ros.nodes import all_nodes  # loads rcl
+
+    try:
+        return all_nodes.run(suite, [], on_ready=lambda: print(_greeting(suite), flush=True))
+    finally:
+        leftovers.remove_new(before)
 
 
 def run_without_ros(argv: Sequence[str]) -> int:

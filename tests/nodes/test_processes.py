@@ -31,7 +31,7 @@ def process(ros_domain, tmp_path) -> Iterator[Callable[..., Process]]:
 
     yield start
     for one in started:
-        one.kill()
+        one.end()
 
 
 def segments() -> set[str]:

@@ -66,7 +66,7 @@ def suite(ros_domain, tmp_path):
 
     yield start
     for process in started:
-        process.kill()
+        process.end()
 
 
 @pytest.fixture
