@@ -93,6 +93,8 @@ class _Reader:
             self.parser.Parse(self.data, True)
         except expat.ExpatError as err:
             raise AeslError(expat.errors.messages[err.code], err.lineno, err.offset + 1) from err
+        except (LookupError, ValueError) as err:
+            raise AeslError(f"unknown encoding: {err}", 1, 1) from err
         return Network(tuple(self.events), tuple(self.constants), self.keywords, tuple(self.nodes), tuple(self.others))
 
     # -- what expat finds
@@ -170,7 +172,8 @@ class _Reader:
     def raw(self, start: int) -> str:
         """Return the XML text from ``start`` to the end of the element that ends here."""
         at = self.parser.CurrentByteIndex
-        end = self.data.index(b">", at) + 1
+        is_empty = not self.data.startswith(b"</", at)
+        end = at if is_empty else self.data.index(b">", at) + 1
         return self.data[start:end].decode("utf-8", "replace")
 
     def error(self, reason: str) -> AeslError:

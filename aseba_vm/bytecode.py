@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
+from aseba_vm.errors import SourcePos
+
 
 class Op(IntEnum):
     """The top 4 bits of an instruction."""
@@ -70,6 +72,7 @@ class Segment:
 
     ``number`` is that of the event or the index of the subroutine, ``depth`` the estimated depth of the stack,
     ``row`` that of ``sub``. ``falls_through``: the last instruction may be skipped, so that the code runs on.
+    ``far_blocks``: where blocks begin that are too long for the 12 bits of a jump (language spec, section 12).
     """
 
     is_sub: bool
@@ -79,6 +82,7 @@ class Segment:
     depth: int
     row: int
     falls_through: bool = False
+    far_blocks: tuple[SourcePos, ...] = ()
 
     @property
     def size(self) -> int:
@@ -196,3 +200,27 @@ def describe(words: Sequence[int]) -> str:
         case Op.UNKNOWN:
             return f"unknown {words[0]:#06x}"
     return op.name.lower()
+
+
+def disassemble(words: Sequence[int]) -> str:
+    """Return a program image as text: the event table, then one line per instruction with its address."""
+    if not words:
+        return ""
+    start = min(words[0], len(words))
+    lines = [f"{0:5}  {words[0]:04X}            code at {words[0]}"]
+    lines += [
+        f"{at:5}  {words[at]:04X} {words[at + 1]:04X}       event {words[at]} at {words[at + 1]}"
+        for at in range(1, start - 1, 2)
+    ]
+    lines += [
+        f"{pc:5}  {' '.join(f'{word:04X}' for word in code):14}  {describe(code)}{_destination(pc, code)}"
+        for pc, code in instructions(words, start)
+    ]
+    return "\n".join(lines)
+
+
+def _destination(pc: int, words: Sequence[int]) -> str:
+    op = words[0] >> 12
+    if op == Op.JUMP:
+        return f" -> {pc + signed12(words[0])}"
+    return f" -> {pc + signed(words[1])}" if op == Op.BRANCH and len(words) == 2 else ""

@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from aseba_vm.bytecode import EventEntry, Segment, SubEntry, link
+from aseba_vm.bytecode import EventEntry, Segment, SubEntry, instructions, link
 from aseba_vm.check import check_sizes, check_types
 from aseba_vm.emit import check_stack, emit
 from aseba_vm.errors import CompileError
@@ -16,6 +16,7 @@ from aseba_vm.optimise import optimise
 from aseba_vm.parser import parse
 from aseba_vm.target import TargetDescription
 from aseba_vm.tree import Memory, Tree
+from aseba_vm.warn import CompileWarning, find_warnings
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,21 @@ class Stages:
     optimised: Tree
     segments: tuple[Segment, ...]
 
+    def dump(self, stage: str) -> str:
+        """Return a stage as text: ``tokens``, ``tree``, ``expanded``, ``optimised`` or ``code``."""
+        match stage:
+            case "tokens":
+                return "\n".join(map(str, self.tokens))
+            case "tree":
+                return self.tree.dump()
+            case "expanded":
+                return self.expanded.dump()
+            case "optimised":
+                return self.optimised.dump()
+            case "code":
+                return "\n".join(segment.dump() for segment in self.segments)
+        raise ValueError(f"no stage is called {stage!r}")
+
 
 @dataclass(frozen=True, slots=True)
 class Program:
@@ -35,7 +51,7 @@ class Program:
 
     ``words`` are unsigned, ``lines`` the source row (from 0) of each word or None where the reference has no value,
     ``variables`` those of the program by address, ``allocated`` the words of variable memory in use, ``stack`` the
-    estimated depth of each event (in table order) and then of each subroutine.
+    estimated depth of each event (in table order) and then of each subroutine, ``warnings`` what is probably not meant.
     """
 
     words: tuple[int, ...]
@@ -45,6 +61,7 @@ class Program:
     subs: tuple[SubEntry, ...]
     allocated: int
     stack: tuple[int, ...]
+    warnings: tuple[CompileWarning, ...] = ()
 
     @property
     def addresses(self) -> dict[str, tuple[int, int]]:
@@ -55,6 +72,11 @@ class Program:
         """Return the source row of a word of bytecode, None outside the code or where no row is known."""
         first = 2 * len(self.events) + 1
         return self.lines[pc] if first <= pc < len(self.lines) else None
+
+    def addresses_of(self, row: int) -> tuple[int, ...]:
+        """Return the addresses of the instructions of a source row, in order: the first is the place to stop at."""
+        start = 2 * len(self.events) + 1
+        return tuple(pc for pc, _ in instructions(self.words, start) if self.lines[pc] == row)
 
     def segment_of(self, pc: int) -> EventEntry | SubEntry | None:
         """Return the event or subroutine whose code holds the address."""
@@ -112,4 +134,5 @@ def assemble(stages: Stages, target: TargetDescription) -> Program:
         subs=image.subs,
         allocated=stages.tree.allocated,
         stack=tuple(segment.depth for segment in (*events, *subs)),
+        warnings=find_warnings(stages.tree, stages.segments),
     )

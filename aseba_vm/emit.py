@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from aseba_vm.bytecode import BINARY_NUMBER, EDGE, LENGTH, UNARY_NUMBER, Instruction, Op, Segment
-from aseba_vm.errors import CompileError
+from aseba_vm.errors import CompileError, SourcePos
 from aseba_vm.recursion import Task, run
 from aseba_vm.symbols import INIT_EVENT
 from aseba_vm.tree import (
@@ -31,6 +31,9 @@ from aseba_vm.tree import (
     While,
     Word,
 )
+
+_FARTHEST = 2047
+"""Words that the 12 bits of a jump can lead over."""
 
 
 def emit(tree: Tree) -> tuple[Segment, ...]:
@@ -91,6 +94,7 @@ class _Builder:
     size: int = 0
     last_row: int | None = 0
     subs: dict[str, int] = field(default_factory=dict)
+    far_blocks: list[SourcePos] = field(default_factory=list)
     skips_to: int = -1
     """Size of the code at the last place that a branch leads to."""
 
@@ -110,7 +114,16 @@ class _Builder:
                 falls_through = self.skips_to == self.size
         else:
             self.add(Op.STOP, 0, self.last_row)
-        return Segment(self.is_sub, self.number, self.name, tuple(self.code), self.depth, self.row, falls_through)
+        return Segment(
+            self.is_sub,
+            self.number,
+            self.name,
+            tuple(self.code),
+            self.depth,
+            self.row,
+            falls_through,
+            tuple(self.far_blocks),
+        )
 
     # -- expressions
 
@@ -218,6 +231,8 @@ class _Builder:
             otherwise_depth: int = yield self.statement(statement.otherwise)
             depth = max(depth, otherwise_depth)
             self.code[jump] = replace(self.code[jump], operand=self.size - jump_at)
+            if self.size - jump_at > _FARTHEST:
+                self.far_blocks.append(statement.pos)
         else:
             self.code[branch] = replace(self.code[branch], more=(self.size - start,))
         self.skips_to = self.size
@@ -232,6 +247,8 @@ class _Builder:
         depth, branch = yield self.condition(loop.condition, 0, row)
         start = self.size - 2
         body_depth: int = yield self.statement(loop.body)
+        if self.size - begin > _FARTHEST:
+            self.far_blocks.append(loop.pos)
         self.add(Op.JUMP, (begin - self.size) & 0xFFF, row)
         self.code[branch] = replace(self.code[branch], more=(self.size - start,))
         self.skips_to = self.size

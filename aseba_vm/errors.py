@@ -23,6 +23,10 @@ class SourcePos:
     def __str__(self) -> str:
         return f"{self.row + 1}:{self.col + 1}"
 
+    def moved(self, row: int, col: int) -> SourcePos:
+        """Return the place in a file in which the text begins at a row and column."""
+        return SourcePos(self.offset, self.row + row, self.col + col if self.row == 0 else self.col)
+
 
 class AsebaError(Exception):
     """Base of everything this package raises about other people's input."""

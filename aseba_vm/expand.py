@@ -114,11 +114,8 @@ class _Expander:
         return replace(argument, index=element.index)
 
     def setup(self, setup: tuple[Assignment, ...]) -> tuple[Assignment, ...]:
-        """Expand the setting of a temporary; its type is never checked."""
         return tuple(
-            replace(scalar, is_typed=False)
-            for assignment in setup
-            for scalar in self.copy(assignment.left, assignment.right, assignment.pos)
+            scalar for assignment in setup for scalar in self.copy(assignment.left, assignment.right, assignment.pos)
         )
 
     def assign(self, left: Expression, right: Expression, pos: SourcePos) -> tuple[Assignment, ...]:

@@ -83,6 +83,9 @@ MESSAGES: Mapping[str, str] = {
     "too-many-tokens": "the program is too long: more than {0} words and symbols",
     "too-many-elements": "the program is too large: more than {0} operations on single values",
     # warnings
+    "warning-unreachable": "this is never executed: it comes after a return",
+    "warning-uncalled-subroutine": "subroutine '{0}' is never called",
+    "warning-far-jump": "this block is too long for a jump: the program will not run as written",
     "warning-fall-through": "subroutine '{0}' may run on into the code after it,"
     " as its last statement does not always return",
 }

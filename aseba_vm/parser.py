@@ -341,7 +341,7 @@ class _Parser:
         """Allocate words for a value; return their address and the assignment that computes them."""
         address = self.symbols.allocate(size, pos)
         left = Access(Memory("", address, size), 0, size - 1, pos)
-        return address, (Assignment(left, value, pos, is_typed=False),)
+        return address, (Assignment(left, value, pos),)
 
     def assignment(self) -> Task[Statement]:
         """assignment = expr , ( "=" , expr | "++" | "--" | compound , expr )"""

@@ -8,6 +8,9 @@ from typing import Any
 
 from aseba_vm.errors import TargetError
 
+#: Words that 16-bit addresses can tell apart.
+LARGEST_MEMORY = 65536
+
 
 @dataclass(frozen=True, slots=True)
 class Variable:
@@ -91,7 +94,7 @@ class TargetDescription:
         Raises TargetError naming the field that is missing or has a wrong type.
         """
         try:
-            return cls(
+            target = cls(
                 name=str(data["name"]),
                 variables_size=int(data["variables_size"]),
                 bytecode_size=int(data["bytecode_size"]),
@@ -106,6 +109,11 @@ class TargetDescription:
                     for native in data["natives"]
                 ),
             )
+            sizes = [target.variables_size, target.bytecode_size, target.stack_size]
+            sizes += [variable.size for variable in target.variables]
+            if not all(0 <= size <= LARGEST_MEMORY for size in sizes):
+                raise ValueError(f"a size is not in 0..{LARGEST_MEMORY}")
+            return target
         except KeyError as err:
             raise TargetError(f"target description: field {err} is missing") from err
         except (TypeError, ValueError) as err:

@@ -119,12 +119,11 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """left = right. Not typed: the setting of a temporary for an event or a native (language spec, section 8)."""
+    """left = right."""
 
     left: Expression
     right: Expression
     pos: SourcePos
-    is_typed: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,22 +265,48 @@ class Tree:
         return "\n".join(_lines(self.body))
 
 
+def children(node: Node) -> tuple[Node, ...]:
+    """Return the nodes directly below a node, in order."""
+    found: list[Node] = []
+    for field in fields(node):
+        value = getattr(node, field.name)
+        if isinstance(value, Node):
+            found.append(value)
+        elif isinstance(value, tuple):
+            found.extend(item for item in value if isinstance(item, Node))
+    return tuple(found)
+
+
+def walk(root: Node) -> Iterator[Node]:
+    """Yield a node and all below it, parents first, in order."""
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        yield node
+        stack.extend(reversed(children(node)))
+
+
+def position_of(node: Node) -> SourcePos | None:
+    """Return the place of a node; a block has none."""
+    return None if isinstance(node, Block) else node.pos
+
+
 def _lines(root: Node) -> Iterator[str]:
     stack: list[tuple[int, Node]] = [(0, root)]
     while stack:
         depth, node = stack.pop()
         words = [type(node).__name__]
-        children: list[Node] = []
         for field in fields(node):
             value = getattr(node, field.name)
-            if isinstance(value, SourcePos) or field.name == "fault" or value is None:
-                continue
-            if isinstance(value, Node):
-                children.append(value)
-            elif isinstance(value, tuple) and value and isinstance(value[0], Node):
-                children.extend(value)
-            else:
+            is_child = isinstance(value, Node) or (isinstance(value, tuple) and value and isinstance(value[0], Node))
+            if (
+                not is_child
+                and field.name not in ("pos", "fault")
+                and value is not None
+                and value is not False
+                and value != ()
+            ):
                 words.append(f"{field.name}={value}")
-        pos = getattr(node, "pos", None)
+        pos = position_of(node)
         yield f"{'  ' * depth}{' '.join(words)}{f'  ({pos})' if pos else ''}"
-        stack.extend((depth + 1, child) for child in reversed(children))
+        stack.extend((depth + 1, child) for child in reversed(children(node)))
