@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ssl
 import time
+import traceback
 import uuid
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -231,7 +232,11 @@ class FoxgloveBridge:
             self._hurry.cancel()
 
     def _on_event(self, event: ev.Event) -> None:
-        _HANDLERS[type(event)](self, event)
+        try:
+            _HANDLERS[type(event)](self, event)
+        except Exception:
+            # One client's wish must not end the bridge of the others: it is dropped, everything else goes on.
+            self.node.get_logger().error(f"{type(event).__name__} failed:\n{traceback.format_exc()}")
 
     def _want_graph(self, event: ev.GraphWanted) -> None:
         self._wants_graph = event.wanted

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import binascii
 import math
 from typing import Any
 
@@ -78,10 +77,9 @@ def to_ros(parameter: Parameter, current: int = ParameterType.PARAMETER_NOT_SET)
         value = _float(value)
     elif code == ParameterType.PARAMETER_DOUBLE_ARRAY:
         value = tuple(_float(item) for item in (value if isinstance(value, tuple) else (value,)))
-    try:
-        return ParameterValue(type=code, **{_FIELDS[code]: value})
-    except (AssertionError, TypeError, OverflowError) as error:
-        raise UnfitValueError(f"no ROS parameter can have the value {value!r:.60}") from error
+    for item in value if isinstance(value, tuple) else (value,):
+        _check(item)
+    return ParameterValue(type=code, **{_FIELDS[code]: value})
 
 
 def _kind(value: Any, current: int) -> Any:
@@ -99,15 +97,29 @@ def _kind(value: Any, current: int) -> Any:
     return _ARRAYS[kinds.pop()]
 
 
+def _check(value: Any) -> None:
+    """What rosidl's setters let through and the middleware would choke on."""
+    if isinstance(value, int) and not -(1 << 63) <= value < 1 << 63:
+        raise UnfitValueError(f"expected an integer of 64 bits, found {value!r:.40}")
+    if isinstance(value, str) and not value.isascii():
+        try:
+            value.encode()
+        except UnicodeEncodeError as error:
+            raise UnfitValueError(f"expected Unicode text, found {value!r:.40}") from error
+
+
 def _float(value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise UnfitValueError(f"expected a number, found {value!r:.40}")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError as error:
+        raise UnfitValueError(f"expected a number, found {value!r:.40}") from error
 
 
 def _bytes(value: Any) -> list[bytes]:
     try:
         data = base64.b64decode(value, validate=True)
-    except (TypeError, binascii.Error) as error:
+    except (TypeError, ValueError) as error:
         raise UnfitValueError(f"expected base64 text, found {value!r:.40}") from error
     return [data[index : index + 1] for index in range(len(data))]

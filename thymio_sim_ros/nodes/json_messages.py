@@ -1,24 +1,25 @@
 """JSON objects ↔ ROS messages: what clients publish and call in JSON (foxglove.md section 5).
 
-Missing keys keep their defaults, unknown keys are refused; arrays are lists, byte arrays also base64 text.
+Missing keys keep their defaults, unknown keys are refused; arrays are lists, byte arrays also base64 text. The setters
+of rosidl check nothing in Jazzy (unless asked by an environment variable), hence ranges and lengths are checked here.
 """
 
 from __future__ import annotations
 
 import base64
-import binascii
 import json
 import math
 import re
+import sys
 from typing import Any
 
 from thymio_sim_ros.nodes.foxglove_types import full_name, load_type
 
 __all__ = ["JsonMessageError", "from_json", "to_json"]
 
-_ELEMENT = re.compile(r"^(?:sequence<(?P<sequence>[^,]+)(?:, \d+)?>|(?P<array>.+)\[\d+\])$")
+_LIST = re.compile(r"^(?:sequence<(?P<item>[^,]+)(?:, (?P<most>\d+))?>|(?P<cell>.+)\[(?P<exactly>\d+)\])$")
 _INTEGER = re.compile(r"^(u?)int(8|16|32|64)$")
-_TEXT = re.compile(r"^w?string(<\d+>)?$")
+_TEXT = re.compile(r"^w?string(?:<(\d+)>)?$")
 
 
 class JsonMessageError(ValueError):
@@ -49,16 +50,17 @@ def _fill(message: Any, value: Any, where: str) -> None:
         kind = fields.get(key)
         if kind is None:
             raise JsonMessageError(f"{where}: no field {key}; fields are {', '.join(fields)}")
-        try:
-            setattr(message, key, _convert(item, kind, f"{where}.{key}"))
-        except (AssertionError, TypeError, OverflowError) as error:  # rosidl's setters check bounds and lengths
-            raise JsonMessageError(f"{where}.{key}: expected {kind}, found {item!r:.40}") from error
+        setattr(message, key, _convert(item, kind, f"{where}.{key}"))
 
 
 def _convert(value: Any, kind: str, where: str) -> Any:
-    element = _ELEMENT.match(kind)
-    if element is not None:
-        return _convert_list(value, element["sequence"] or element["array"], where)
+    is_list = _LIST.match(kind)
+    if is_list is not None:
+        items = _convert_list(value, is_list["item"] or is_list["cell"], where)
+        exactly, most = is_list["exactly"], is_list["most"]
+        if (exactly and len(items) != int(exactly)) or (most and len(items) > int(most)):
+            raise JsonMessageError(f"{where}: expected {kind}, found {len(items)} elements")
+        return items
     if "/" in kind:
         message = load_type(full_name(kind))()
         _fill(message, value, where)
@@ -66,35 +68,58 @@ def _convert(value: Any, kind: str, where: str) -> Any:
     return _convert_scalar(value, kind, where)
 
 
-def _convert_list(value: Any, kind: str, where: str) -> Any:
+def _convert_list(value: Any, kind: str, where: str) -> list[Any]:
     if isinstance(value, str) and kind in ("octet", "uint8", "int8"):
         try:
             data = base64.b64decode(value, validate=True)
-        except binascii.Error as error:
+        except ValueError as error:
             raise JsonMessageError(f"{where}: expected a list or base64, found {value!r:.40}") from error
-        return [data[i : i + 1] for i in range(len(data))] if kind == "octet" else list(data)
+        if kind == "octet":
+            return [bytes([byte]) for byte in data]
+        return [byte - 256 if kind == "int8" and byte > 127 else byte for byte in data]
     if not isinstance(value, list):
         raise JsonMessageError(f"{where}: expected a list, found {value!r:.40}")
     return [_convert(item, kind, f"{where}[{index}]") for index, item in enumerate(value)]
 
 
 def _convert_scalar(value: Any, kind: str, where: str) -> Any:
-    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if kind in ("float", "double") and is_number:
-        return float(value)
-    if kind == "boolean" and isinstance(value, bool):
-        return value
-    if _TEXT.match(kind) and isinstance(value, str):
-        return value
-    if is_number and float(value).is_integer():
-        if kind == "octet" and 0 <= value < 256:
-            return bytes([int(value)])
-        bounds = _INTEGER.match(kind)
-        if bounds is not None:
-            low, high = _limits(unsigned=bool(bounds[1]), bits=int(bounds[2]))
-            if low <= value <= high:
-                return int(value)
+    is_text = _TEXT.match(kind)
+    if is_text is not None:
+        if isinstance(value, str) and _is_utf8(value) and len(value.encode()) <= int(is_text[1] or sys.maxsize):
+            return value
+    elif kind == "boolean":
+        if isinstance(value, bool):
+            return value
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+        number = _number(value, kind)
+        if number is not None:
+            return number
     raise JsonMessageError(f"{where}: expected {kind}, found {value!r:.40}")
+
+
+def _number(value: int | float, kind: str) -> float | int | bytes | None:
+    """The number as the field wants it, None where it does not fit."""
+    if kind in ("float", "double"):
+        try:
+            return float(value)
+        except OverflowError:
+            return None
+    if isinstance(value, float) and not value.is_integer():
+        return None
+    if kind == "octet":
+        return bytes([int(value)]) if 0 <= value < 256 else None
+    integer = _INTEGER.match(kind)
+    assert integer is not None, kind
+    low, high = _limits(unsigned=bool(integer[1]), bits=int(integer[2]))
+    return int(value) if low <= value <= high else None
+
+
+def _is_utf8(text: str) -> bool:
+    try:
+        text.encode()
+    except UnicodeEncodeError:  # half of a surrogate pair
+        return False
+    return True
 
 
 def _limits(*, unsigned: bool, bits: int) -> tuple[int, int]:
