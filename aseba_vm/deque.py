@@ -47,9 +47,16 @@ class _Deque:
             raise DequeFault
 
     def move(self, target: int, last: int, delta: int) -> None:
-        """Move words along the ring by ``delta``, from ``target`` on up or down to ``last``."""
+        """Move words along the ring by ``delta``, from ``target`` on up or down to ``last``.
+
+        Downwards to 0 or less the reference never ends, as ``target`` has no sign: that is a fault here.
+        """
+        if delta == 0:
+            return
         step = 1 if delta > 0 else -1
         last = wrap(last)
+        if last <= 0 and delta < 0:
+            raise DequeFault
         target &= 0xFFFF
         while target <= last if delta > 0 else target >= last:
             source = target + delta
