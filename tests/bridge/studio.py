@@ -55,12 +55,12 @@ class Studio:
 
     def channel(self, topic: str) -> ms.Channel:
         """The channel of a topic, once it is advertised."""
-        self._until(lambda: self.read() or topic in self.channels, what=f"channel {topic}")
+        self._until(lambda: topic in self.read().channels, what=f"channel {topic}")
         return self.channels[topic]
 
     def service(self, name: str) -> ms.Service:
         """A service, once it is advertised."""
-        self._until(lambda: self.read() or name in self.services, what=f"service {name}")
+        self._until(lambda: name in self.read().services, what=f"service {name}")
         return self.services[name]
 
     def subscribe(self, subscription: int, topic: str) -> None:
@@ -83,13 +83,13 @@ class Studio:
         self._until(known, what=f"parameter {name}")
         return values[0].value
 
-    def read(self) -> None:
-        """Take in what has arrived."""
+    def read(self) -> Studio:
+        """Take in what has arrived; returns itself."""
         while True:
             try:
                 message = wire.decode_server(self._connection.recv(timeout=0))
             except TimeoutError:
-                return
+                return self
             if isinstance(message, ms.Advertise):
                 self.channels.update((channel.topic, channel) for channel in message.channels)
             elif isinstance(message, ms.AdvertiseServices):

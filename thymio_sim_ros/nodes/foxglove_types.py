@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import importlib
+import importlib.util
+from pathlib import Path
 from typing import Any
 
 from rclpy.type_support import check_for_type_support
@@ -37,8 +38,10 @@ def load_type(name: str) -> Any:
             raise MissingTypeError(name, "tf2_msgs is not installed and cannot be replaced")
         return tf_messages.TFMessage
     words = name.split("/")
-    if len(words) != 3 or not all(word.isidentifier() for word in words):
+    if len(words) != 3 or words[1] not in ("msg", "srv") or not all(word.isidentifier() for word in words):
         raise MissingTypeError(name, "expected package/msg/Type")
+    if not _has_interfaces(words[0], words[1]):
+        raise MissingTypeError(name, f"there is no package {words[0]} with {words[1]} types")
     try:
         cls = getattr(importlib.import_module(".".join(words[:2])), words[2])
         if words[1] == "msg":
@@ -46,3 +49,10 @@ def load_type(name: str) -> Any:
     except (ImportError, AttributeError) as error:
         raise MissingTypeError(name, str(error)) from error
     return cls
+
+
+def _has_interfaces(package: str, kind: str) -> bool:
+    """Whether it is a package of interfaces, found out without importing it: clients choose the name."""
+    spec = importlib.util.find_spec(package)
+    folders = spec.submodule_search_locations if spec is not None else None
+    return any((Path(folder) / kind / "__init__.py").is_file() for folder in folders or ())

@@ -79,7 +79,7 @@ def to_ros(parameter: Parameter, current: int = ParameterType.PARAMETER_NOT_SET)
         value = tuple(_float(item) for item in (value if isinstance(value, tuple) else (value,)))
     for item in value if isinstance(value, tuple) else (value,):
         _check(item)
-    return ParameterValue(type=code, **{_FIELDS[code]: value})
+    return ParameterValue(type=code, **{_FIELDS[code]: list(value) if isinstance(value, tuple) else value})
 
 
 def _kind(value: Any, current: int) -> Any:
