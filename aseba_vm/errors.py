@@ -49,7 +49,7 @@ class CompileError(AsebaError):
 
     def located(self, name: str) -> str:
         """Return the message after the name of the file and the place, counted from 1."""
-        return f"{name}:{self}" if self.pos is None else f"{name}:{self.pos}: {self}"
+        return f"{name}: {self}" if self.pos is None else f"{name}:{self.pos}: {self}"
 
 
 class AeslError(AsebaError):

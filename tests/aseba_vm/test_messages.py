@@ -1,0 +1,34 @@
+import string
+
+from aseba_vm.messages import MESSAGES, wording
+from tests.aseba_vm.vectors import load
+
+
+def test_every_kind_of_error_has_a_wording():
+    kinds = {vector["expect"]["kind"] for vector in load("aseba-errors")} - {"reference-crash"}
+    assert kinds <= MESSAGES.keys()
+
+
+def test_templates_name_arguments_by_number():
+    names = {name for text in MESSAGES.values() for _, name, _, _ in string.Formatter().parse(text) if name}
+    assert all(name.lstrip("tlv").isdigit() for name in names)
+
+
+def test_tokens_are_described_for_people():
+    assert (
+        wording("expected-token", ("identifier", "end-of-input")) == "expected a name but found the end of the program"
+    )
+    assert wording("expected-identifier", (("integer", 5),)) == "expected a name but found number 5"
+
+
+def test_another_language_is_another_table():
+    german = {"lone-exclamation": "nach '!' muss '=' stehen"}
+    assert wording("lone-exclamation", (), german) == "nach '!' muss '=' stehen"
+
+
+def test_very_long_names_are_cut():
+    assert len(wording("unknown-variable", ("x" * 1_000_000,))) < 120
+
+
+def test_an_unknown_kind_is_shown_as_it_is():
+    assert wording("new-kind", (1, "a")) == "new-kind 1 a"
