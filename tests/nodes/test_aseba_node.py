@@ -197,6 +197,36 @@ def test_cmd_vel_takes_over_and_gives_back(ros, simulation, runtime):
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > lowest + 0.02)
 
 
+TWO_ROBOTS = """{"format": 1, "title": "Two", "shapes": [
+    {"kind": "rectangle", "size_x_m": 2.0, "size_y_m": 2.0, "colour": "#ffffff"}],
+    "robots": [{"name": "anna", "x_m": 0.0, "y_m": 0.5}, {"name": "bert", "x_m": 0.0, "y_m": -0.5}]}"""
+
+TALK = """<network><event size="1" name="hello"/><node name="thymio-II">
+motor.left.target = 50
+motor.right.target = 50
+onevent button.center
+if button.center == 1 then
+emit hello 21
+end
+onevent hello
+call leds.top(event.args[0], 0, 0)
+</node></network>"""
+
+
+def test_a_playground_with_other_robots_gives_each_its_program(ros, simulation, runtime):
+    sim = simulation()
+    runtime(TALK)
+    sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.01)
+    request = SetParameters.Request(parameters=[Parameter("playground", value=TWO_ROBOTS).to_parameter_msg()])
+    assert ros.call(SetParameters, "/simulator/set_parameters", request).results[0].successful
+    press = ros.publisher(Bool, "/anna/press/center")
+    heard = ros.collect(Float32MultiArray, "/bert/led/state", latched=True)
+    sim.until(lambda: all(robot.pose.x_m > 0.01 for robot in sim.world.robots.values()))
+    press.publish(Bool(data=True))
+    sim.until(lambda: heard and heard[-1].data[0] > 0.5)
+    assert ros.node.count_publishers("/motor/target") == 0
+
+
 def test_parameters_describe_themselves(ros, simulation, runtime):
     simulation()
     runtime()

@@ -7,6 +7,7 @@ its place, and the old program goes on.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -17,15 +18,18 @@ from rclpy.duration import Duration
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from std_msgs.msg import String
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.program import ProgramError, ThymioProgram, load_program
 from thymio_sim_ros.loading import NO_PROGRAM, read_program
-from thymio_sim_ros.nodes import params
+from thymio_sim_ros.nodes import params, qos
 from thymio_sim_ros.nodes.device_ports import DevicePorts
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, run_main
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.params import param
+
+SIMULATOR_STATE = "/simulator/state"
 
 
 @dataclass(frozen=True)
@@ -33,7 +37,10 @@ class RuntimeParams:
     """Parameters of the Aseba runtime node."""
 
     robots: list[str] = param(  # noqa: RUF009  (makes a field, as `field` does)
-        [""], "Namespaces of the robots that run the program; '' is the only robot", fixed=True
+        [""], "Namespaces of the robots that run the program at first; '' is the only robot", fixed=True
+    )
+    follow_simulator: bool = param(
+        True, "Whether the robots are those of /simulator/state, once there is one", fixed=True
     )
     path: str = param("", "Program: a built-in behaviour's name or an .aesl file", name="script.path")
     source: str = param("", "Program: text of an .aesl file or of one Aseba program", name="script.source")
@@ -54,12 +61,12 @@ class AsebaRuntime:
         except (ProgramError, resources.ResourceError, OSError) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
-        self.robots = [
-            DevicePorts(self.node, RobotNames(name), node_id=number, bus=self._pass_on)
-            for number, name in enumerate(self.params.robots, start=1)
-        ]
+        self._program = program
         self._accepted: ThymioProgram | None = None
-        self.load(program)
+        self.robots: list[DevicePorts] = []
+        self._set_robots(self.params.robots)
+        if self.params.follow_simulator:
+            self.node.create_subscription(String, SIMULATOR_STATE, self._on_simulator_state, qos.LATCHED)
         self.node.add_on_set_parameters_callback(self._check_parameters)
         self.node.add_post_set_parameters_callback(self._apply_parameters)
         self._jumps = self.node.get_clock().create_jump_callback(
@@ -69,6 +76,7 @@ class AsebaRuntime:
 
     def load(self, program: ThymioProgram) -> None:
         """Run this program on every robot, from its start."""
+        self._program = program
         for ports in self.robots:
             ports.load(program)
 
@@ -93,6 +101,22 @@ class AsebaRuntime:
         if self.params.source:
             return load_program(self.params.source, self.params.name or "program")
         return read_program(self.params.path or NO_PROGRAM)
+
+    def _set_robots(self, names: Sequence[str]) -> None:
+        """One device for each of these namespaces, numbered in their order; all begin anew."""
+        for ports in self.robots:
+            ports.close()
+        self.robots = [
+            DevicePorts(self.node, RobotNames(name), node_id=number, bus=self._pass_on)
+            for number, name in enumerate(names, start=1)
+        ]
+        self.load(self._program)
+
+    def _on_simulator_state(self, message: String) -> None:
+        """Another playground may have other robots."""
+        names = [robot["name"] for robot in json.loads(message.data)["robots"]]
+        if names != [ports.names.name for ports in self.robots]:
+            self._set_robots(names)
 
     def _pass_on(self, sender: DevicePorts, event: str, args: Sequence[int]) -> None:
         """Robots of one runtime hear each other directly, as on an Aseba network."""

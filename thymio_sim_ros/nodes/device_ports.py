@@ -58,9 +58,13 @@ class DevicePorts:
         }
         self._status_publisher = node.create_publisher(DiagnosticStatus, topic("aseba/status"), qos.LATCHED)
         self._any_event = node.create_publisher(Int16MultiArray, topic("aseba/events"), qos.EVENTS)
-        for sensor in sensor_names():
+        self._subscriptions = [
             node.create_subscription(Int16MultiArray, topic(f"raw/{sensor}"), self._feeder(sensor), qos.SENSOR)
-        node.create_subscription(Int16MultiArray, topic("aseba/emit"), self._on_any_emit, qos.EVENTS)
+            for sensor in sensor_names()
+        ]
+        self._subscriptions.append(
+            node.create_subscription(Int16MultiArray, topic("aseba/emit"), self._on_any_emit, qos.EVENTS)
+        )
         controls = {
             "run": self.device.resume,
             "pause": self.device.pause,
@@ -68,8 +72,10 @@ class DevicePorts:
             "stop": self.device.stop,
             "reset": self.device.reset,
         }
-        for word, act in controls.items():
+        self._services = [
             node.create_service(Trigger, topic(f"aseba/{word}"), self._controller(act))
+            for word, act in controls.items()
+        ]
 
     @property
     def is_busy(self) -> bool:
@@ -109,10 +115,17 @@ class DevicePorts:
         self._publish_status()
 
     def close(self) -> None:
-        """The robot does not go on without its program: wheels stop."""
+        """The robot does not go on without its program: wheels stop; its topics and services go."""
         self.device.stop()
         for command in self.device.take_commands():
             self._send(command)
+        self._close_events()
+        for service in self._services:
+            self._node.destroy_service(service)
+        for subscription in self._subscriptions:
+            self._node.destroy_subscription(subscription)
+        for publisher in (self._motors, *self._leds.values(), self._status_publisher, self._any_event):
+            self._node.destroy_publisher(publisher)
 
     def _feeder(self, sensor: str) -> Callable[[Int16MultiArray], None]:
         def callback(message: Int16MultiArray) -> None:
@@ -145,12 +158,15 @@ class DevicePorts:
             else:
                 self._leds[command.group].publish(Float32MultiArray(data=levels))
 
-    def _open_events(self, program: ThymioProgram) -> None:
+    def _close_events(self) -> None:
         for publisher, subscription in self._event_ports:
             self._node.destroy_publisher(publisher)
             self._node.destroy_subscription(subscription)
         self._event_ports.clear()
         self._event_publishers.clear()
+
+    def _open_events(self, program: ThymioProgram) -> None:
+        self._close_events()
         words = [topic_word(event) for event, _ in program.events]
         for (event, _size), word in zip(program.events, words, strict=True):
             if words.count(word) > 1:
