@@ -87,6 +87,7 @@ class _Reader:
         self.place: tuple[int, int] = (0, 0)
         self.plugins: list[Plugin] = []
         self.plugin_element = ""
+        self.is_untouched = False  # nothing has come since the last start of an element
 
     def read(self) -> Network:
         try:
@@ -107,6 +108,7 @@ class _Reader:
             self.plugin_element = ""
         elif depth == 4 and self.path[1:3] == ["node", "toolsPlugins"]:
             self.plugin_element = self.plugin_element or name
+        self.is_untouched = True
         self.path.append(name)
         self.starts.append(self.parser.CurrentByteIndex)
 
@@ -120,8 +122,10 @@ class _Reader:
             self.finish_node()
         elif depth == 1 and name not in ("event", "constant", "keywords"):
             self.others.append(self.raw(start))
+        self.is_untouched = False
 
     def characters(self, text: str) -> None:
+        self.is_untouched = False
         if len(self.path) == 2 and self.path[1] == "node":
             if not self.code:
                 self.place = (self.parser.CurrentLineNumber - 1, self.parser.CurrentColumnNumber)
@@ -172,7 +176,7 @@ class _Reader:
     def raw(self, start: int) -> str:
         """Return the XML text from ``start`` to the end of the element that ends here."""
         at = self.parser.CurrentByteIndex
-        is_empty = not self.data.startswith(b"</", at)
+        is_empty = self.is_untouched and self.data.endswith(b"/>", start, at)
         end = at if is_empty else self.data.index(b">", at) + 1
         return self.data[start:end].decode("utf-8", "replace")
 

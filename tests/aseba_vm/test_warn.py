@@ -1,0 +1,38 @@
+import pytest
+
+from aseba_vm import TargetDescription, Variable, compile
+from aseba_vm.targets import THYMIO_II
+
+
+def doubts(source):
+    return [warning.located("f") for warning in compile(source, THYMIO_II).warnings]
+
+
+@pytest.mark.parametrize(
+    ("source", "expected"),
+    [
+        ("var a\na = 1", []),
+        (
+            "callsub s\nsub s\nif acc[0] == 1 then return end",
+            [
+                "f:2:1: warning: subroutine 's' may run on into the code after it,"
+                " as its last statement does not always return"
+            ],
+        ),
+        ("sub s", ["f:1:1: warning: subroutine 's' is never called"]),
+        ("onevent tap\nreturn\nacc[0] = 1", ["f:3:8: warning: this is never executed: it comes after a return"]),
+        ("onevent tap\nreturn\nonevent prox", []),
+    ],
+)
+def test_doubts_are_told_in_place(source, expected):
+    assert doubts(source) == expected
+
+
+def test_a_block_too_long_for_a_jump_is_told():
+    target = TargetDescription("large", 100, 60000, 100, (Variable("a", 1),))
+    program = compile("while a == 1 do\n" + "a = 1\n" * 1100 + "end", target)
+    assert [warning.kind for warning in program.warnings] == ["warning-far-jump"]
+
+
+def test_doubts_do_not_change_the_bytecode():
+    assert compile("sub s", THYMIO_II).words == (1, 0xE000)
