@@ -132,3 +132,4 @@ class NativeCall:
 
 
 Native = Callable[[NativeCall], None]
+"""A function that does the work of a native of the target."""
