@@ -17,7 +17,7 @@ from aseba_vm.bytecode import disassemble
 from aseba_vm.compiler import Program, Stages, assemble, compile_stages
 from aseba_vm.errors import AeslError, AsebaError, CompileError, TargetError
 from aseba_vm.layout import formatted
-from aseba_vm.outbox import DivisionByZero, Emitted, NativeCalled, OutOfBounds
+from aseba_vm.outbox import Emitted, NativeCalled
 from aseba_vm.target import TargetDescription
 from aseba_vm.targets import THYMIO_II
 from aseba_vm.vm import VirtualMachine
@@ -139,9 +139,8 @@ def _execute(machine: VirtualMachine, program: Program, source: _Source, options
     fault = machine.fault
     if fault is not None:
         row = program.row_of(fault.pc)
-        reason = fault.reason if isinstance(fault, OutOfBounds | DivisionByZero) else fault.reason.replace("-", " ")
         place = options.file if row is None else f"{options.file}:{source.row + row + 1}"
-        print(f"{place}: stopped: {reason}", file=sys.stderr)
+        print(f"{place}: stopped: {fault.sentence}", file=sys.stderr)
     elif machine.is_active:
         print(f"{options.file}: still running after {options.limit} instructions", file=sys.stderr)
         machine.stop()

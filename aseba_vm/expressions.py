@@ -151,5 +151,5 @@ def _attempt(expression: Expression) -> tuple[int | None, CompileError | None]:
     try:
         simple = simplify(first_constant(expression))
     except CompileError as error:
-        return None, error
+        return None, error.with_traceback(None)
     return (simple.value if isinstance(simple, Number) else None), None

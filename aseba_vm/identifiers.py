@@ -5,8 +5,6 @@
 
 from __future__ import annotations
 
-import re
-
 # Pairs in base 36: distance from the end of the previous range, number of further code points in this one.
 _RANGES = """
 1c 9 8 p 7 p 1c 0 b 0 5 0 6 m 2 u 2 cp 5 b f 4 8 0 2 0 2f 0 17 4 2 1 3 3 2 0 7 0 2 2 2 0 2 j 2 2a 2 3u 9 4l 2 11 3 0 7
@@ -53,10 +51,3 @@ def _character_class() -> str:
 
 #: The inside of a regular-expression class that matches one letter or digit.
 LETTER_OR_DIGIT = _character_class()
-
-_NAME = re.compile(f"[{LETTER_OR_DIGIT}_][{LETTER_OR_DIGIT}_.]*")
-
-
-def is_word(text: str) -> bool:
-    """Tell whether the whole text is one word (a name, a keyword or a number)."""
-    return _NAME.fullmatch(text) is not None

@@ -82,6 +82,21 @@ MESSAGES: Mapping[str, str] = {
     # limits of this implementation
     "too-many-tokens": "the program is too long: more than {0} words and symbols",
     "too-many-elements": "the program is too large: more than {0} operations on single values",
+    # faults of the machine
+    "fault-index": "index {0} is outside an array of {1}",
+    "fault-deque": "a deque was given a wrong index or too many values",
+    "fault-division-by-zero": "division by zero",
+    "fault-sqrt-of-negative": "square root of a negative number",
+    "fault-stack-overflow": "the program needs more stack than there is",
+    "fault-stack-underflow": "damaged program: the stack is empty",
+    "fault-unknown-instruction": "damaged program: unknown instruction",
+    "fault-unknown-unary-operator": "damaged program: unknown operator with one operand",
+    "fault-unknown-binary-operator": "damaged program: unknown operator with two operands",
+    "fault-unknown-native": "damaged program: unknown native function",
+    "fault-variable-out-of-range": "damaged program: address outside the variables",
+    "fault-jump-out-of-range": "damaged program: jump outside the code",
+    "fault-emit-too-long": "damaged program: an event has too many values",
+    "fault-breakpoint-out-of-range": "a breakpoint lies outside the code",
     # warnings
     "warning-unreachable": "this is never executed: it comes after a return",
     "warning-uncalled-subroutine": "subroutine '{0}' is never called",

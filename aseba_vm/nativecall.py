@@ -32,14 +32,14 @@ class DivisionFault(NativeFault):
     """A division by zero inside a native."""
 
     def __init__(self) -> None:
-        super().__init__("division by zero")
+        super().__init__("division-by-zero")
 
 
 class DequeFault(NativeFault):
     """A deque was given a wrong index or too many values."""
 
     def __init__(self) -> None:
-        super().__init__("a deque was given a wrong index or too many values")
+        super().__init__("deque")
 
 
 class Machine(Protocol):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from aseba_vm.messages import MESSAGES, wording
+
 
 @dataclass(frozen=True, slots=True)
 class Emitted:
@@ -64,9 +66,12 @@ class OutOfBounds:
     @property
     def reason(self) -> str:
         """The fault in words."""
-        if self.size is None:
-            return "a deque was given a wrong index or too many values"
-        return f"index {self.index} is outside an array of {self.size}"
+        return wording("fault-deque", ()) if self.size is None else wording("fault-index", (self.index, self.size))
+
+    @property
+    def sentence(self) -> str:
+        """The fault in words."""
+        return self.reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,23 +83,45 @@ class DivisionByZero:
     @property
     def reason(self) -> str:
         """The fault in words."""
-        return "division by zero"
+        return wording("fault-division-by-zero", ())
+
+    @property
+    def sentence(self) -> str:
+        """The fault in words."""
+        return self.reason
 
 
 @dataclass(frozen=True, slots=True)
 class NodeSpecific:
-    """A native refused its arguments."""
+    """A native refused its arguments; ``reason`` is what it said."""
 
     pc: int
     reason: str
+
+    @property
+    def sentence(self) -> str:
+        """The fault in words."""
+        return _sentence(self.reason)
 
 
 @dataclass(frozen=True, slots=True)
 class BadCode:
-    """Bytecode that no compiler makes, or a stack that overflows; the reference stops its whole process here."""
+    """Bytecode that no compiler makes, or a stack that overflows; the reference stops its whole process here.
+
+    ``reason`` is an identifier.
+    """
 
     pc: int
     reason: str
+
+    @property
+    def sentence(self) -> str:
+        """The fault in words."""
+        return _sentence(self.reason)
+
+
+def _sentence(reason: str) -> str:
+    return wording(f"fault-{reason}", ()) if f"fault-{reason}" in MESSAGES else reason
 
 
 Fault = OutOfBounds | DivisionByZero | NodeSpecific | BadCode

@@ -281,16 +281,17 @@ class _Parser:
         if declared == 0:
             return Emit(number, 0, 0, (), keyword.pos)
         value: Expression = yield self.expressions.expression()
+        setup: tuple[Assignment, ...] = ()
         if isinstance(value, Access):
             check_address(value)
-        size = size_of(value)
+            address, size = value.variable.address + value.first, size_of(value)
+        else:
+            size = size_of(value)
+            address, setup = self.temporary(value, size, keyword.pos)
         if keyword.kind == "emit" and size != declared:
             raise CompileError("event-argument-size", (name.text, declared, size), keyword.pos)
         if size > declared:
             raise CompileError("event-argument-too-large", (name.text, declared, size), keyword.pos)
-        if isinstance(value, Access):
-            return Emit(number, value.variable.address + value.first, size, (), keyword.pos)
-        address, setup = self.temporary(value, size, keyword.pos)
         return Emit(number, address, size, setup, keyword.pos)
 
     def call(self) -> Task[Call]:

@@ -1,6 +1,9 @@
+import inspect
+import re
+
 import pytest
 
-from aseba_vm import TargetDescription, Variable, VirtualMachine, compile, outbox
+from aseba_vm import TargetDescription, Variable, VirtualMachine, compile, operations, outbox, vm
 from aseba_vm.targets import THYMIO_II
 from aseba_vm.vm import ACTIVE, STEP_BY_STEP
 
@@ -137,6 +140,14 @@ def test_a_fault_stops_the_machine_and_says_why_and_where(source, reason, row):
     assert machine.flags == STEP_BY_STEP
     machine.start_local(8)
     assert machine.run() is False
+
+
+def test_every_fault_has_a_sentence():
+    reasons = set(re.findall(r'"([a-z]+(?:-[a-z]+)+)"', inspect.getsource(vm) + inspect.getsource(operations)))
+    assert "stack-underflow" in reasons
+    assert {outbox.BadCode(0, reason).sentence for reason in reasons} & reasons == set()
+    assert outbox.NodeSpecific(0, "sqrt-of-negative").sentence == "square root of a negative number"
+    assert outbox.NodeSpecific(0, "no card").sentence == "no card"
 
 
 def test_resuming_forgets_the_fault():
