@@ -1,0 +1,234 @@
+"""The bridge's server beside the vendor's: python benchmarks/foxglove_latency.py [--seconds S] [--rate HZ] [--size B]
+
+Each library runs in a process of its own and sends the same stream; clients count here. Measured per scene: share of
+messages that arrived at healthy clients, latency from the call that publishes to the client's read, and CPU of the
+server's process per delivery, less what the same process needs to pace the stream for nobody. Libraries that are not
+installed are left out (foxglove-sdk, foxglove-websocket).
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import importlib.util
+import json
+import os
+import socket
+import statistics
+import struct
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from websockets.asyncio.client import ClientConnection, connect
+
+SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"]
+STAMP = struct.Struct("<Q")
+CATCH_UP_S = 0.1
+STUCK_S = 10.0
+"""A scene that takes so much longer than it should is given up: its server answers nobody."""
+HEADER = 1 + 4 + 8  # opcode, subscription, time
+CHANNEL = {"topic": "/t", "encoding": "cdr", "schemaName": "t", "schema": "uint8[] data", "schemaEncoding": "ros2msg"}
+
+
+# --- servers: each prints "ready" and streams until it is killed ---
+
+
+def ticks(rate: float) -> Iterator[None]:
+    """One turn per message, with absolute deadlines, for ever."""
+    print("ready", flush=True)
+    due = time.monotonic()
+    while True:
+        due = next_due(due, rate)
+        time.sleep(max(0.0, due - time.monotonic()))
+        yield
+
+
+def next_due(due: float, rate: float) -> float:
+    """The next deadline; what is more than `CATCH_UP_S` late is given up."""
+    return max(due + 1 / rate, time.monotonic() - CATCH_UP_S)
+
+
+def payload(size: int) -> bytes:
+    """The time of publishing and padding."""
+    return STAMP.pack(time.monotonic_ns()) + bytes(size - STAMP.size)
+
+
+def serve_ours(port: int, rate: float, size: int) -> None:
+    """The server of this project, fed from another thread as the node does it."""
+    from thymio_sim_ros.bridge import ServerInfo, ServerThread, events, messages
+
+    class Sink:
+        is_full = False
+
+        def post(self, event: events.Event) -> None:
+            """Nobody is interested."""
+
+    server = ServerThread(ServerInfo("ours", ()), Sink(), port=port)
+    channel = messages.Channel(1, CHANNEL["topic"], "cdr", "t", CHANNEL["schema"], "ros2msg")
+    server.post(events.AddChannels((channel,)))
+    for _ in ticks(rate):
+        server.post(events.Data(1, 0, payload(size)))
+
+
+def serve_foxglove_websocket(port: int, rate: float, size: int) -> None:
+    """The package that gave the vocabulary, in its own event loop."""
+    from foxglove_websocket.server import FoxgloveServer
+
+    async def run() -> None:
+        async with FoxgloveServer("127.0.0.1", port, "theirs") as server:
+            number = await server.add_channel(CHANNEL)
+            print("ready", flush=True)
+            due = time.monotonic()
+            while True:
+                due = next_due(due, rate)
+                await asyncio.sleep(max(0.0, due - time.monotonic()))
+                await server.send_message(number, 0, payload(size))
+
+    asyncio.run(run())
+
+
+def serve_foxglove_sdk(port: int, rate: float, size: int) -> None:
+    """The vendor's successor."""
+    import foxglove
+
+    foxglove.start_server(host="127.0.0.1", port=port)
+    schema = foxglove.Schema(name="t", encoding="ros2msg", data=CHANNEL["schema"].encode())
+    channel = foxglove.Channel(CHANNEL["topic"], schema=schema, message_encoding="cdr")
+    for _ in ticks(rate):
+        channel.log(payload(size), log_time=0)
+
+
+SERVERS: dict[str, tuple[str, Callable[[int, float, int], None]]] = {
+    "ours": ("thymio_sim_ros", serve_ours),
+    "foxglove-websocket": ("foxglove_websocket", serve_foxglove_websocket),
+    "foxglove-sdk": ("foxglove", serve_foxglove_sdk),
+}
+
+
+# --- clients and measurement ---
+
+
+@dataclass(frozen=True)
+class Result:
+    """One library in one scene; latencies in ms."""
+
+    arrived: float
+    p50: float
+    p99: float
+    cpu_s: float
+    deliveries: int
+
+
+async def subscribe(port: int) -> ClientConnection:
+    """Connect and subscribe to the only channel."""
+    while True:
+        try:
+            connection = await connect(f"ws://127.0.0.1:{port}", subprotocols=SUBPROTOCOLS, compression=None)
+            break
+        except ConnectionRefusedError:  # foxglove-websocket listens some time after it says so
+            await asyncio.sleep(0.05)
+    while True:
+        message = await connection.recv()
+        if isinstance(message, str) and json.loads(message)["op"] == "advertise":
+            channel = json.loads(message)["channels"][0]["id"]
+            await connection.send(json.dumps({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": channel}]}))
+            return connection
+
+
+async def count(connection: ClientConnection, until_s: float, latencies_ms: list[float]) -> None:
+    """Note the latency of each message until then."""
+    try:
+        async with asyncio.timeout_at(until_s):
+            while True:
+                message = await connection.recv()
+                if isinstance(message, bytes) and message[0] == 1:
+                    (sent_ns,) = STAMP.unpack_from(message, HEADER)
+                    latencies_ms.append((time.monotonic_ns() - sent_ns) / 1e6)
+    except TimeoutError:
+        return
+
+
+async def watch(port: int, seconds: float, healthy: int, stalled: int) -> list[list[float]]:
+    """Latencies seen by each healthy client."""
+    blocked = [await subscribe(port) for _ in range(stalled)]
+    for connection in blocked:
+        connection.transport.pause_reading()
+    connections = [await subscribe(port) for _ in range(healthy)]
+    until_s = asyncio.get_running_loop().time() + seconds
+    seen: list[list[float]] = [[] for _ in connections]
+    await asyncio.gather(*(count(one, until_s, latencies) for one, latencies in zip(connections, seen, strict=True)))
+    if not connections:
+        await asyncio.sleep(seconds)
+    for connection in (*connections, *blocked):
+        connection.transport.abort()
+    return seen
+
+
+def measure(library: str, options: argparse.Namespace, healthy: int, stalled: int) -> Result:
+    """Run one scene."""
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    command = [sys.executable, "-W", "ignore", __file__, "--serve", library, "--port", str(port)]
+    command += ["--rate", str(options.rate), "--size", str(options.size)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as server:
+        assert server.stdout is not None
+        try:
+            if server.stdout.readline() != "ready\n":
+                raise SystemExit(f"{library} does not start")
+            before_s = cpu_s(server.pid)
+            scene = watch(port, options.seconds, healthy, stalled)
+            try:
+                seen = asyncio.run(asyncio.wait_for(scene, options.seconds + STUCK_S))
+            except TimeoutError:
+                seen = []
+            used_s = cpu_s(server.pid) - before_s
+        finally:
+            server.kill()
+    latencies = sorted(latency for one in seen for latency in one) or [float("nan")] * 2
+    ranks = statistics.quantiles(latencies, n=100, method="inclusive")
+    deliveries = sum(len(one) for one in seen)
+    expected = options.rate * options.seconds * max(1, healthy)
+    return Result(deliveries / expected, ranks[49], ranks[98], used_s, deliveries)
+
+
+def cpu_s(process: int) -> float:
+    """CPU seconds of a process so far."""
+    with open(f"/proc/{process}/stat") as file:
+        fields = file.read().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def main() -> None:
+    """Print a table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--rate", type=float, default=1000.0, help="messages per second")
+    parser.add_argument("--size", type=int, default=1000, help="bytes per message")
+    parser.add_argument("--serve", choices=SERVERS, help=argparse.SUPPRESS)
+    parser.add_argument("--port", type=int, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.serve:
+        SERVERS[options.serve][1](options.port, options.rate, options.size)
+        return
+    scenes = {"1 client": (1, 0), "10 clients": (10, 0), "1 beside a stalled one": (1, 1)}
+    print(f"{options.rate:g} messages/s of {options.size} bytes for {options.seconds:g} s")
+    print(f"{'library':20} {'scene':24} {'arrived':>8} {'p50 ms':>8} {'p99 ms':>8} {'CPU µs/delivery':>16}")
+    for library, (module, _) in SERVERS.items():
+        if importlib.util.find_spec(module) is None:
+            print(f"{library:20} not installed")
+            continue
+        idle = measure(library, options, 0, 0)
+        for scene, (healthy, stalled) in scenes.items():
+            found = measure(library, options, healthy, stalled)
+            cost_us = (found.cpu_s - idle.cpu_s) * 1e6 / max(1, found.deliveries)
+            print(
+                f"{library:20} {scene:24} {found.arrived:8.1%} {found.p50:8.2f} {found.p99:8.2f} {cost_us:16.1f}",
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    main()
