@@ -19,7 +19,7 @@ class Studio:
     """Knows what the server has advertised; `until` is the test's way of waiting (it spins the executor)."""
 
     def __init__(self, port: int, until: Callable[..., object]) -> None:
-        self._connecting = connect(f"ws://127.0.0.1:{port}", subprotocols=SUBPROTOCOLS)  # type: ignore[arg-type]  # plain strings
+        self._connecting = connect(f"ws://127.0.0.1:{port}", subprotocols=SUBPROTOCOLS, max_queue=None)  # type: ignore[arg-type]  # plain strings
         self._until = until
         self.channels: dict[str, ms.Channel] = {}
         self.services: dict[str, ms.Service] = {}

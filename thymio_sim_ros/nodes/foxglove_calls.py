@@ -14,6 +14,8 @@ from rclpy.task import Future
 __all__ = ["CALL_TIMEOUT_S", "Calls"]
 
 CALL_TIMEOUT_S = 5.0
+_IN_FLIGHT = 5
+"""Calls of one service at a time: its middleware keeps ten requests and drops the rest without a word."""
 
 Done = Callable[[Any, str], None]
 """Called once: with the response and "", or with None and the reason."""
@@ -55,12 +57,17 @@ class Calls:
         """Send what can be sent, give up what is too old; whether calls are open still."""
         now_s = time.monotonic()
         for call in list(self._open):
-            if call.future is None and call.client.service_is_ready():
+            if now_s >= call.deadline_s:
+                self._give_up(call)
+            elif call.future is None and self._may_leave(call):
+                call.deadline_s = now_s + self._timeout_s
                 call.future = call.client.call_async(call.request)
                 call.future.add_done_callback(lambda future, call=call: self._answered(call, future))
-            elif now_s >= call.deadline_s:
-                self._give_up(call)
         return bool(self._open)
+
+    def _may_leave(self, call: _Call) -> bool:
+        in_flight = sum(1 for other in self._open if other.client is call.client and other.future is not None)
+        return in_flight < _IN_FLIGHT and bool(call.client.service_is_ready())
 
     def forget(self, name: str) -> None:
         """The service is gone: its open calls fail, its client ends."""
@@ -74,6 +81,7 @@ class Calls:
             return
         error = future.exception()
         self._finish(call, None if error else future.result(), f"service {call.name} failed: {error}" if error else "")
+        self.poll()
 
     def _give_up(self, call: _Call) -> None:
         if call.future is not None:

@@ -158,7 +158,8 @@ class FoxgloveBridge:
                 ),
             )
         except OSError as error:
-            raise StartError(f"the Foxglove bridge {error.strerror}; choose another port") from error
+            hint = "choose another with --foxglove-port, or -p port:=NUMBER for the node alone"
+            raise StartError(f"the Foxglove bridge {error.strerror}; {hint}") from error
 
     def _build(self) -> None:
         values, post = self.params, self._server.post

@@ -26,8 +26,8 @@ from thymio_sim_ros.nodes.foxglove_types import MissingTypeError, full_name, loa
 __all__ = ["ClientPublishers"]
 
 _HELD = 10
-_HELD_S = 1.0
-"""A new publisher keeps this many messages this long for subscribers that it has not met yet."""
+_SETTLE_S = 1.0
+"""A new publisher holds its last `_HELD` messages until it has met all subscribers, at most this long."""
 
 _MOTION_TYPES = frozenset(f"geometry_msgs/msg/{name}" for name in ("Twist", "TwistStamped"))
 
@@ -44,8 +44,9 @@ class _Port:
     type_name: str
     message_type: Any
     publisher: Publisher
+    settled_s: float
     users: int = 0
-    held: deque[tuple[float, Any]] = field(default_factory=lambda: deque(maxlen=_HELD))
+    held: deque[Any] = field(default_factory=lambda: deque(maxlen=_HELD))
 
 
 class ClientPublishers:
@@ -96,20 +97,14 @@ class ClientPublishers:
         except _RefusalError as error:
             self._refuse(client, f"{port.topic}: {error}")
             return
-        if port.publisher.get_subscription_count() > 0 and not port.held:
-            port.publisher.publish(message)
-        else:
-            port.held.append((time.monotonic() + _HELD_S, message))
+        port.held.append(message)
+        if not self._flush(port):
             self._wake()
 
     def poll(self) -> bool:
         """Send what was held for subscribers not met before; whether something is held still."""
-        now_s = time.monotonic()
-        for port in self._ports.values():
-            has_met = port.publisher.get_subscription_count() > 0
-            while port.held and (has_met or now_s >= port.held[0][0]):
-                port.publisher.publish(port.held.popleft()[1])
-        return any(port.held for port in self._ports.values())
+        flushed = [self._flush(port) for port in self._ports.values()]
+        return not all(flushed)
 
     def end(self) -> None:
         """End all publishers."""
@@ -117,6 +112,16 @@ class ClientPublishers:
             self._node.destroy_publisher(port.publisher)
         self._ports.clear()
         self._channels.clear()
+
+    def _flush(self, port: _Port) -> bool:
+        """Publish what is held, unless subscribers are known that the publisher has not met yet; whether it did."""
+        if port.held and time.monotonic() < port.settled_s:
+            known = self._node.count_subscribers(port.topic)
+            if not known or port.publisher.get_subscription_count() < known:
+                return False
+        while port.held:
+            port.publisher.publish(port.held.popleft())
+        return True
 
     def _port(self, channel: ClientChannel) -> _Port:
         topic = channel.topic if channel.topic.startswith("/") else f"/{channel.topic}"
@@ -139,7 +144,9 @@ class ClientPublishers:
             raise _RefusalError(f"{topic}: {error}") from error
         except RCLError as error:
             raise _RefusalError(f"{topic}: cannot publish {type_name} here, it carries another type") from error
-        port = self._ports[topic, type_name] = _Port(topic, type_name, message_type, publisher)
+        port = self._ports[topic, type_name] = _Port(
+            topic, type_name, message_type, publisher, time.monotonic() + _SETTLE_S
+        )
         return port
 
     def _refuse(self, client: int, text: str) -> None:
