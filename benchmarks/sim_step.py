@@ -30,7 +30,7 @@ def crowd(count: int) -> Playground:
     columns = math.ceil(math.sqrt(count))
     side = columns * CELL_M
     shapes: list[dict[str, object]] = [
-        {"kind": "rectangle", "size_x_m": side, "size_y_m": side, "colour": "#c0c0c0", "walls": {}}
+        {"kind": "rectangle", "size_x_m": side, "size_y_m": side, "color": "#c0c0c0", "walls": {}}
     ]
     robots = []
     for index in range(count):
@@ -39,7 +39,7 @@ def crowd(count: int) -> Playground:
         robots.append({"name": f"thymio_{index}", "x_m": x, "y_m": y, "yaw_rad": index % 6})
         if index % 2 == 0:
             place = {"x_m": x + 0.22, "y_m": y + 0.22, "size_x_m": 0.08, "size_y_m": 0.05, "height_m": 0.1}
-            shapes.append({"kind": "box", "colour": "#9fa3bd", **place})
+            shapes.append({"kind": "box", "color": "#9fa3bd", **place})
     data = {"format": 1, "title": "crowd", "shapes": shapes, "robots": robots}
     return playground.loads(json.dumps(data), f"{count} robots")
 

@@ -83,7 +83,7 @@ def test_obstacle_has_24_cylinders_and_a_track_of_6_88_m() -> None:
 def test_line_is_black_40_mm_wide_and_never_tighter_than_20_cm() -> None:
     loaded = playground.load(FOLDER / "line.json")
     (track,) = (named.shape for named in loaded.shapes if isinstance(named.shape, Track))
-    assert (track.closed, track.colour, track.width_m) == (True, "#000000", 0.04)
+    assert (track.closed, track.color, track.width_m) == (True, "#000000", 0.04)
     assert track.corner_radius_m >= 0.2
 
 

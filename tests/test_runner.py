@@ -29,7 +29,7 @@ TWO = json.dumps(
     {
         "format": 1,
         "title": "Two",
-        "shapes": [{"kind": "rectangle", "size_x_m": 2.0, "size_y_m": 2.0, "colour": "#ffffff"}],
+        "shapes": [{"kind": "rectangle", "size_x_m": 2.0, "size_y_m": 2.0, "color": "#ffffff"}],
         "robots": [{"name": "anna", "x_m": 0.0, "y_m": 0.5}, {"name": "bert", "x_m": 0.0, "y_m": -0.5}],
     }
 )

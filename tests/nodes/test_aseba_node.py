@@ -198,7 +198,7 @@ def test_cmd_vel_takes_over_and_gives_back(ros, simulation, runtime):
 
 
 TWO_ROBOTS = """{"format": 1, "title": "Two", "shapes": [
-    {"kind": "rectangle", "size_x_m": 2.0, "size_y_m": 2.0, "colour": "#ffffff"}],
+    {"kind": "rectangle", "size_x_m": 2.0, "size_y_m": 2.0, "color": "#ffffff"}],
     "robots": [{"name": "anna", "x_m": 0.0, "y_m": 0.5}, {"name": "bert", "x_m": 0.0, "y_m": -0.5}]}"""
 
 TALK = """<network><event size="1" name="hello"/><node name="thymio-II">

@@ -26,7 +26,7 @@ WALL_AHEAD = json.dumps(
         "format": 1,
         "title": "Wall ahead",
         "shapes": [
-            {"kind": "rectangle", "name": "ground", "size_x_m": 2.0, "size_y_m": 2.0, "colour": "#ffffff"},
+            {"kind": "rectangle", "name": "ground", "size_x_m": 2.0, "size_y_m": 2.0, "color": "#ffffff"},
             {
                 "kind": "box",
                 "name": "wall",
@@ -35,7 +35,7 @@ WALL_AHEAD = json.dumps(
                 "size_x_m": 0.1,
                 "size_y_m": 1.0,
                 "height_m": 0.1,
-                "colour": "#ff0000",
+                "color": "#ff0000",
             },
         ],
         "robots": [{"name": "thymio", "x_m": 0.0, "y_m": 0.0, "yaw_rad": 0.0}],

@@ -20,7 +20,7 @@ PLAYGROUNDS = REPOSITORY / "playgrounds"
 ENKI = REPOSITORY / "tests" / "data" / "enki"
 
 GREY = "#808080"
-FLOOR = {"kind": "rectangle", "name": "floor", "size_x_m": 4.0, "size_y_m": 4.0, "colour": "#ffffff"}
+FLOOR = {"kind": "rectangle", "name": "floor", "size_x_m": 4.0, "size_y_m": 4.0, "color": "#ffffff"}
 ROBOT = {"name": "thymio", "x_m": 0.0, "y_m": 0.0}
 
 
@@ -55,7 +55,7 @@ def box(
     """A grey box."""
     return {
         "kind": "box", "x_m": x_m, "y_m": y_m, "yaw_rad": yaw_rad,
-        "size_x_m": size_x_m, "size_y_m": size_y_m, "height_m": height_m, "colour": GREY,
+        "size_x_m": size_x_m, "size_y_m": size_y_m, "height_m": height_m, "color": GREY,
     }  # fmt: skip
 
 
@@ -96,7 +96,7 @@ def enki_world(entry: Mapping[str, Any], **options: Any) -> World:
                 "y_m": height / 2,
                 "size_x_m": width + 0.02,
                 "size_y_m": height + 0.02,
-                "colour": GREY,
+                "color": GREY,
                 "walls": {"height_m": 1.0},
             }
         )
@@ -114,7 +114,7 @@ def enki_world(entry: Mapping[str, Any], **options: Any) -> World:
             )
         else:
             place = {"x_m": thing["x"], "y_m": thing["y"], "radius_m": thing["radius"], "height_m": thing["height"]}
-            shapes.append({"kind": "cylinder", **place, "colour": GREY})
+            shapes.append({"kind": "cylinder", **place, "color": GREY})
     robots = [{"name": f"robot{index}", "x_m": 50.0 + index, "y_m": 50.0} for index in range(len(entry["robots"]))]
     world = World(make(shapes, robots), **options)
     for robot, start in zip(world.robots, entry["robots"], strict=True):

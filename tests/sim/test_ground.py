@@ -69,8 +69,8 @@ def test_a_measured_scene_reads_as_measured(family: str, entry: dict[str, Any]) 
 def test_there_is_no_floor_outside_the_ground() -> None:
     ground = Ground([floor(255, 0.0, 0.0, 1.0, 1.0)], [])
     assert ground.sample(2.0, 0.5) == GroundSample(0.0, 0.0)
-    assert ground.colour_at(2.0, 0.5) is None
-    assert ground.colour_at(0.5, -0.5) is None
+    assert ground.color_at(2.0, 0.5) is None
+    assert ground.color_at(0.5, -0.5) is None
 
 
 def test_a_world_without_ground_has_no_floor_anywhere() -> None:
@@ -96,15 +96,15 @@ def test_paint_covers_floor_and_later_paint_covers_earlier_paint() -> None:
         [floor(255, -1.0, -1.0, 1.0, 1.0)],
         [Paint("a", area(-0.5, -0.5, 0.5, 0.5), BLACK), Paint("b", area(0.0, -0.1, 0.1, 0.1), RED)],
     )
-    assert ground.colour_at(0.8, 0.0) == WHITE
-    assert ground.colour_at(-0.3, 0.0) == BLACK
-    assert ground.colour_at(0.05, 0.0) == RED
+    assert ground.color_at(0.8, 0.0) == WHITE
+    assert ground.color_at(-0.3, 0.0) == BLACK
+    assert ground.color_at(0.05, 0.0) == RED
     assert ground.sample(0.05, 0.0).reflectance == pytest.approx(1 / 3)
 
 
 def test_paint_beyond_the_floor_makes_no_floor() -> None:
     ground = Ground([floor(255, 0.0, 0.0, 1.0, 1.0)], [Paint("a", area(0.5, 0.4, 2.0, 0.6), BLACK)])
-    assert ground.colour_at(0.99, 0.5) == BLACK
+    assert ground.color_at(0.99, 0.5) == BLACK
     assert ground.sample(1.2, 0.5).floor == 0.0
 
 
@@ -112,7 +112,7 @@ def test_a_tilted_strip_of_paint_is_as_wide_as_it_should_be() -> None:
     along = Pose(0.0, 0.0, math.radians(30))
     strip = Paint("a", along.place_all(area(-0.5, -0.02, 0.5, 0.02)), BLACK)
     ground = Ground([floor(255, -1.0, -1.0, 1.0, 1.0)], [strip])
-    black = [ground.colour_at(*along.place((0.1, step * 0.0005))) == BLACK for step in range(-60, 61)]
+    black = [ground.color_at(*along.place((0.1, step * 0.0005))) == BLACK for step in range(-60, 61)]
     assert black.count(True) * 0.0005 == pytest.approx(0.04, abs=0.0015)
 
 
@@ -122,9 +122,9 @@ def test_a_very_large_ground_gets_coarser_pixels() -> None:
     assert ground.sample(50.0, 50.0) == GroundSample(1.0, 1.0)
 
 
-def test_more_colours_than_the_palette_holds_fall_back_to_the_nearest_grey() -> None:
+def test_more_colors_than_the_palette_holds_fall_back_to_the_nearest_grey() -> None:
     paints = [Paint(f"p{i}", area(i * 0.01, 0.0, (i + 1) * 0.01, 0.1), (i / 400,) * 3) for i in range(400)]
     ground = Ground([floor(255, 0.0, 0.0, 4.0, 0.1)], paints)
-    colour = ground.colour_at(3.995, 0.05)
-    assert colour is not None
-    assert colour[0] == pytest.approx(1.0, abs=0.01)
+    color = ground.color_at(3.995, 0.05)
+    assert color is not None
+    assert color[0] == pytest.approx(1.0, abs=0.01)

@@ -117,7 +117,7 @@ def test_wheels_stand_still_at_a_wall_and_odometry_does_not_run_on() -> None:
 
 
 def test_nothing_moves_through_a_thin_wall_or_a_post() -> None:
-    post = {"kind": "cylinder", "x_m": 0.2, "y_m": 0.01, "radius_m": 0.005, "height_m": 0.1, "colour": "#808080"}
+    post = {"kind": "cylinder", "x_m": 0.2, "y_m": 0.01, "radius_m": 0.005, "height_m": 0.1, "color": "#808080"}
     for obstacle in (box(0.2, 0.0, 0.002, 1.0), post):
         world = quiet(obstacle)
         send(world, MotorTargets(500, 500))

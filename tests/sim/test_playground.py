@@ -66,7 +66,7 @@ def test_broken_json_is_located() -> None:
 @pytest.mark.parametrize(
     ("changes", "key"),
     [
-        ({"colour": "#fff"}, "colour"),
+        ({"color": "#fff"}, "color"),
         ({"format": 2}, "format"),
         ({"format": True}, "format"),
         ({"title": None}, "title"),
@@ -77,7 +77,7 @@ def test_broken_json_is_located() -> None:
         ({"shapes": [{"kind": "pyramid"}]}, "shapes[0].kind"),
         ({"shapes": [{"name": "no_kind"}]}, "shapes[0].kind"),
         ({"shapes": [{**FLOOR, "size_z_m": 1}]}, "shapes[0].size_z_m"),
-        ({"shapes": [{**FLOOR, "colour": "white"}]}, "shapes[0].colour"),
+        ({"shapes": [{**FLOOR, "color": "white"}]}, "shapes[0].color"),
         ({"shapes": [{**FLOOR, "x_m": True}]}, "shapes[0].x_m"),
         ({"shapes": [{**FLOOR, "x_m": 1e9}]}, "shapes[0].x_m"),
         ({"shapes": [{**FLOOR, "size_x_m": 0}]}, "shapes[0].size_x_m"),
@@ -111,7 +111,7 @@ def test_what_is_wrong_is_refused_at_its_key(changes: dict[str, Any], key: str) 
     ],
 )
 def test_points_are_checked_one_by_one(points: Any, key: str) -> None:
-    track = {"kind": "track", "points_m": points, "width_m": 0.04, "colour": "#000000"}
+    track = {"kind": "track", "points_m": points, "width_m": 0.04, "color": "#000000"}
     assert refused_with(shapes=[track]).key == f"shapes[0].{key}"
 
 
@@ -123,19 +123,19 @@ def test_points_are_checked_one_by_one(points: Any, key: str) -> None:
     ],
 )
 def test_a_track_that_cannot_be_painted_is_refused(points: Any, radius: float, found: str) -> None:
-    track = {"kind": "track", "points_m": points, "width_m": 0.04, "colour": "#000000", "closed": True}
+    track = {"kind": "track", "points_m": points, "width_m": 0.04, "color": "#000000", "closed": True}
     error = refused_with(shapes=[{**track, "corner_radius_m": radius}])
     assert found in error.found
 
 
 def test_a_playground_of_too_many_parts_is_refused() -> None:
     points = [[index % 2, index / 10] for index in range(500)]
-    track = {"kind": "track", "points_m": points, "width_m": 0.04, "colour": "#000000", "corner_radius_m": 0.02}
+    track = {"kind": "track", "points_m": points, "width_m": 0.04, "color": "#000000", "corner_radius_m": 0.02}
     assert refused_with(shapes=[track]).found == "more than 10000 parts so far"
 
 
 def test_corners_that_do_not_fit_their_pieces_are_refused() -> None:
-    track = {"kind": "track", "points_m": [[0, 0], [0.1, 0], [0.1, 0.1]], "width_m": 0.04, "colour": "#000000"}
+    track = {"kind": "track", "points_m": [[0, 0], [0.1, 0], [0.1, 0.1]], "width_m": 0.04, "color": "#000000"}
     error = refused_with(shapes=[{**track, "corner_radius_m": 0.2}])
     assert (error.key, "too short" in error.found) == ("shapes[0]", True)
 
@@ -163,7 +163,7 @@ def test_hostile_text_is_refused_and_nothing_else_happens(text: str) -> None:
     [
         box(0.07, 0.0, 0.05, 0.05),
         box(0.0, 0.0, 0.01, 0.01),
-        {"kind": "cylinder", "x_m": 0.1, "y_m": 0, "radius_m": 0.03, "height_m": 0.1, "colour": "#808080"},
+        {"kind": "cylinder", "x_m": 0.1, "y_m": 0, "radius_m": 0.03, "height_m": 0.1, "color": "#808080"},
     ],
 )
 def test_a_robot_that_starts_inside_something_is_refused(thing: dict[str, Any]) -> None:

@@ -15,13 +15,13 @@ from thymio_sim_ros.sim.shapes import all_shapes
 
 WALLS = {"height_m": 0.12, "thickness_m": 0.02}
 KINDS: dict[str, dict[str, Any]] = {
-    "box": {"x_m": 1, "y_m": 2, "size_x_m": 0.3, "size_y_m": 0.2, "height_m": 0.1, "colour": GREY, "yaw_rad": 0.5},
-    "cylinder": {"x_m": 1, "y_m": 2, "radius_m": 0.1, "height_m": 0.1, "colour": GREY},
-    "octagon": {"side_m": 1.0, "colour": GREY, "walls": WALLS},
-    "rectangle": {"size_x_m": 1.0, "size_y_m": 0.5, "colour": GREY, "walls": WALLS},
-    "track": {"points_m": [[0, 0], [1, 0], [1, 1]], "width_m": 0.04, "colour": GREY, "corner_radius_m": 0.2},
-    "u_figure": {"unit_m": 0.06, "height_m": 0.12, "colour": GREY},
-    "wall": {"start_x_m": 0, "start_y_m": 0, "end_x_m": 1, "end_y_m": 1, "colour": GREY},
+    "box": {"x_m": 1, "y_m": 2, "size_x_m": 0.3, "size_y_m": 0.2, "height_m": 0.1, "color": GREY, "yaw_rad": 0.5},
+    "cylinder": {"x_m": 1, "y_m": 2, "radius_m": 0.1, "height_m": 0.1, "color": GREY},
+    "octagon": {"side_m": 1.0, "color": GREY, "walls": WALLS},
+    "rectangle": {"size_x_m": 1.0, "size_y_m": 0.5, "color": GREY, "walls": WALLS},
+    "track": {"points_m": [[0, 0], [1, 0], [1, 1]], "width_m": 0.04, "color": GREY, "corner_radius_m": 0.2},
+    "u_figure": {"unit_m": 0.06, "height_m": 0.12, "color": GREY},
+    "wall": {"start_x_m": 0, "start_y_m": 0, "end_x_m": 1, "end_y_m": 1, "color": GREY},
 }
 
 
@@ -73,9 +73,9 @@ def test_a_turned_rectangle_turns_its_walls() -> None:
     assert extent(walls, 0) == pytest.approx((-0.26, 0.26))
 
 
-def test_walls_have_the_colour_of_their_ground_unless_they_have_their_own() -> None:
-    assert built("rectangle").solids[0].colour == pytest.approx((128 / 255,) * 3)
-    assert built("rectangle", walls={"colour": "#ff0000"}).solids[0].colour == (1.0, 0.0, 0.0)
+def test_walls_have_the_color_of_their_ground_unless_they_have_their_own() -> None:
+    assert built("rectangle").solids[0].color == pytest.approx((128 / 255,) * 3)
+    assert built("rectangle", walls={"color": "#ff0000"}).solids[0].color == (1.0, 0.0, 0.0)
 
 
 def test_an_octagon_is_as_wide_as_its_side_demands() -> None:

@@ -115,7 +115,7 @@ def test_mirroring_the_world_mirrors_motion_and_readings() -> None:
     def go(sign: int) -> tuple[Pose, list[tuple[int, ...]], list[tuple[int, ...]]]:
         things = [box(0.4, sign * 0.2, 0.1, 0.3, yaw_rad=sign * 0.5), box(0.5, -sign * 0.3, 0.3, 0.1)]
         named = [{**thing, "name": f"box{index}"} for index, thing in enumerate(things)]
-        paint = {"kind": "track", "points_m": [[0, 0], [1, sign * 0.2]], "width_m": 0.05, "colour": "#000000"}
+        paint = {"kind": "track", "points_m": [[0, 0], [1, sign * 0.2]], "width_m": 0.05, "color": "#000000"}
         world = World(make([FLOOR, paint, *named]), noise=False)
         targets = (300, 280) if sign > 0 else (280, 300)
         send(world, MotorTargets(*targets))

@@ -96,8 +96,8 @@ def robot(page):
     return page.evaluate("window.thymio.partPosition('robot')")
 
 
-def colours(page) -> int:
-    """Number of different colours in a picture of the canvas."""
+def colors(page) -> int:
+    """Number of different colors in a picture of the canvas."""
     image = page.locator("canvas").first.screenshot()
     return page.evaluate(
         """async (bytes) => {
@@ -115,7 +115,7 @@ def colours(page) -> int:
 def test_the_canvas_shows_something_and_the_robot_moves(suite, page):
     open_page(page, suite())
     page.wait_for_function("window.thymio.frames() > 2")
-    assert colours(page) > 20
+    assert colors(page) > 20
     begin = robot(page)
     page.wait_for_function(
         "(begin) => { const now = window.thymio.partPosition('robot');"

@@ -17,17 +17,17 @@ from visualization_msgs.msg import Marker, MarkerArray
 from thymio_sim_ros.nodes.convert import quaternion
 from thymio_sim_ros.nodes.names import MAP_FRAME
 from thymio_sim_ros.sim.geometry import Point
-from thymio_sim_ros.sim.primitives import Box, Colour, Disc, Paint, Primitive, Solid
+from thymio_sim_ros.sim.primitives import Box, Color, Disc, Paint, Primitive, Solid
 
 LAYER_M = 0.0002
 """Each paint lies this much above the one before, so that a viewer need not guess which covers which."""
 
 
 def playground_markers(primitives: Iterable[Primitive]) -> MarkerArray:
-    """Markers of all primitives, in their order; neighbouring paint of one shape and colour is one marker."""
+    """Markers of all primitives, in their order; neighbouring paint of one shape and color is one marker."""
     markers = [Marker(action=Marker.DELETEALL)]
     layer = 0
-    for (kind, name, colour), group in itertools.groupby(primitives, key=_sort_of):
+    for (kind, name, color), group in itertools.groupby(primitives, key=_sort_of):
         outlines = []
         for primitive in group:
             if isinstance(primitive, Solid):
@@ -38,16 +38,16 @@ def playground_markers(primitives: Iterable[Primitive]) -> MarkerArray:
             continue
         layer += kind is Paint
         namespace = "paint" if kind is Paint else "floor"
-        markers.append(_patches(f"{namespace}/{name}", len(markers), outlines, colour, layer * LAYER_M))
+        markers.append(_patches(f"{namespace}/{name}", len(markers), outlines, color, layer * LAYER_M))
     return MarkerArray(markers=markers)
 
 
-def _sort_of(primitive: Primitive) -> tuple[type, str, Colour]:
-    return type(primitive), primitive.name, primitive.colour
+def _sort_of(primitive: Primitive) -> tuple[type, str, Color]:
+    return type(primitive), primitive.name, primitive.color
 
 
 def _solid(solid: Solid, number: int) -> Marker:
-    marker = _marker(f"solid/{solid.name}", number, solid.colour)
+    marker = _marker(f"solid/{solid.name}", number, solid.color)
     marker.pose.position = PointMsg(x=solid.pose.x_m, y=solid.pose.y_m, z=solid.height_m / 2)
     marker.pose.orientation = quaternion(solid.pose.yaw_rad)
     outline = solid.outline
@@ -64,10 +64,8 @@ def _solid(solid: Solid, number: int) -> Marker:
     return marker
 
 
-def _patches(
-    namespace: str, number: int, outlines: Sequence[Sequence[Point]], colour: Colour, height_m: float
-) -> Marker:
-    marker = _marker(namespace, number, colour)
+def _patches(namespace: str, number: int, outlines: Sequence[Sequence[Point]], color: Color, height_m: float) -> Marker:
+    marker = _marker(namespace, number, color)
     marker.type = Marker.TRIANGLE_LIST
     marker.scale = Vector3(x=1.0, y=1.0, z=1.0)
     marker.pose.position.z = height_m
@@ -75,8 +73,8 @@ def _patches(
     return marker
 
 
-def _marker(namespace: str, number: int, colour: Colour) -> Marker:
-    red, green, blue = colour
+def _marker(namespace: str, number: int, color: Color) -> Marker:
+    red, green, blue = color
     marker = Marker(ns=namespace, id=number, action=Marker.ADD, color=ColorRGBA(r=red, g=green, b=blue, a=1.0))
     marker.header.frame_id = MAP_FRAME
     return marker

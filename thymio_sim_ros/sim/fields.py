@@ -17,7 +17,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeVar, cast
 
-from thymio_sim_ros.sim.primitives import Colour
+from thymio_sim_ros.sim.primitives import Color
 
 __all__ = [
     "Angle",
@@ -28,7 +28,7 @@ __all__ = [
     "Points",
     "Shade",
     "Text",
-    "as_colour",
+    "as_color",
     "json_schema",
     "read",
 ]
@@ -83,13 +83,13 @@ Text = Annotated[str, Pattern(r"[^\x00-\x1f\x7f\ud800-\udfff]*", "one line of te
 Name = Annotated[
     str, Pattern(r"[A-Za-z](_?[A-Za-z0-9])*", "a ROS name: letters, digits, single underscores, a letter first", 60)
 ]
-Shade = Annotated[str, Pattern(r"#[0-9A-Fa-f]{6}", "a colour such as #1a2b3c", 7)]
+Shade = Annotated[str, Pattern(r"#[0-9A-Fa-f]{6}", "a color such as #1a2b3c", 7)]
 Points = Annotated[tuple[tuple[float, float], ...], Path(2, 1000)]
 
 _COORDINATE = Number("m", -FAR_M, FAR_M)
 
 
-def as_colour(shade: str) -> Colour:
+def as_color(shade: str) -> Color:
     """'#rrggbb' as red, green, blue from 0 to 1."""
     return (int(shade[1:3], 16) / 255, int(shade[3:5], 16) / 255, int(shade[5:7], 16) / 255)
 

@@ -16,13 +16,13 @@ import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim.geometry import Point
-from thymio_sim_ros.sim.primitives import Colour, Floor, Paint
+from thymio_sim_ros.sim.primitives import Color, Floor, Paint
 
 __all__ = ["Ground", "GroundSample"]
 
 _PIXEL_M = 0.001
 _MAX_PIXELS = 25_000_000
-_MAX_COLOURS = 254
+_MAX_COLORS = 254
 _TAPS = 9
 _TAP_STEP_M = 0.0025
 _TAP_SIGMA_M = 0.004
@@ -47,7 +47,7 @@ NO_FLOOR = GroundSample(0.0, 0.0)
 
 
 class Ground:
-    """Reflectance and colour of the ground. Invariant: the picture does not change (yet: a pen will)."""
+    """Reflectance and color of the ground. Invariant: the picture does not change (yet: a pen will)."""
 
     def __init__(self, floors: Sequence[Floor], paints: Sequence[Paint]) -> None:
         corners = [vertex for floor in floors for vertex in floor.vertices] or [(0.0, 0.0)]
@@ -58,12 +58,12 @@ class Ground:
         width = math.ceil(high_x / self.pixel_m) - self._origin[0] + 1
         height = math.ceil(high_y / self.pixel_m) - self._origin[1] + 1
         self._picture = np.zeros((height, width), dtype=np.uint8)
-        self._palette: list[Colour] = [(0.0, 0.0, 0.0)]
+        self._palette: list[Color] = [(0.0, 0.0, 0.0)]
         for floor in floors:
-            self._fill(floor.vertices, floor.colour, everywhere=True)
+            self._fill(floor.vertices, floor.color, everywhere=True)
         for paint in paints:
-            self._fill(paint.vertices, paint.colour, everywhere=False)
-        self._greys = np.array([sum(colour) / 3 for colour in self._palette])
+            self._fill(paint.vertices, paint.color, everywhere=False)
+        self._greys = np.array([sum(color) / 3 for color in self._palette])
         self._cell_m = self.pixel_m / _CELLS_PER_PIXEL
         steps = (np.arange(_TAPS) - _TAPS // 2) * _TAP_STEP_M
         weights = np.exp(-(steps**2) / (2 * _TAP_SIGMA_M**2))
@@ -85,8 +85,8 @@ class Ground:
         place = (cell_y % _TILE_CELLS, cell_x % _TILE_CELLS)
         return GroundSample(tile[0].item(place), tile[1].item(place))
 
-    def colour_at(self, x_m: float, y_m: float) -> Colour | None:
-        """The colour of a place, or None where there is no floor."""
+    def color_at(self, x_m: float, y_m: float) -> Color | None:
+        """The color of a place, or None where there is no floor."""
         column = math.floor(x_m / self.pixel_m) - self._origin[0]
         row = math.floor(y_m / self.pixel_m) - self._origin[1]
         height, width = self._picture.shape
@@ -95,9 +95,9 @@ class Ground:
         index = int(self._picture[row, column])
         return self._palette[index] if index else None
 
-    def _fill(self, vertices: Sequence[Point], colour: Colour, *, everywhere: bool) -> None:
+    def _fill(self, vertices: Sequence[Point], color: Color, *, everywhere: bool) -> None:
         """Paint the pixels whose centre lies in a convex polygon; without `everywhere` only those that are floor."""
-        index = self._index(colour)
+        index = self._index(color)
         xs = [x / self.pixel_m - self._origin[0] for x, _ in vertices]
         ys = [y / self.pixel_m - self._origin[1] for _, y in vertices]
         height, width = self._picture.shape
@@ -124,18 +124,18 @@ class Ground:
             else:
                 pixels[pixels > 0] = index
 
-    def _index(self, colour: Colour) -> int:
-        """The palette's index of a colour; when the palette is full, of the nearest grey in it."""
-        if colour in self._palette[1:]:
-            return self._palette.index(colour, 1)
-        if len(self._palette) <= _MAX_COLOURS:
-            self._palette.append(colour)
+    def _index(self, color: Color) -> int:
+        """The palette's index of a color; when the palette is full, of the nearest grey in it."""
+        if color in self._palette[1:]:
+            return self._palette.index(color, 1)
+        if len(self._palette) <= _MAX_COLORS:
+            self._palette.append(color)
             return len(self._palette) - 1
-        grey = sum(colour)
+        grey = sum(color)
         return min(range(1, len(self._palette)), key=lambda index: abs(sum(self._palette[index]) - grey))
 
     def _blur(self, tile_x: int, tile_y: int) -> tuple[_Values, _Values] | GroundSample:
-        """One tile of samples; a single one when the tile sees one colour only."""
+        """One tile of samples; a single one when the tile sees one color only."""
         columns = self._taps(tile_x, self._origin[0], self._picture.shape[1])
         rows = self._taps(tile_y, self._origin[1], self._picture.shape[0])
         first_row, last_row = int(rows.min()), int(rows.max())

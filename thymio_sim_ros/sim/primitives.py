@@ -1,7 +1,7 @@
 """What every shape is made of: solids that stop robots and reflect light, floors, and paint on floors.
 
 Shapes give primitives; physics, sensors, scene and editor know nothing else (architecture section 14).
-Colours are red, green, blue from 0 to 1.
+Colors are red, green, blue from 0 to 1.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 from thymio_sim_ros.sim.geometry import Point, Pose
 
-__all__ = ["Box", "Colour", "Disc", "Floor", "Outline", "Paint", "Polygon", "Primitive", "Solid"]
+__all__ = ["Box", "Color", "Disc", "Floor", "Outline", "Paint", "Polygon", "Primitive", "Solid"]
 
-Colour = tuple[float, float, float]
+Color = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,13 +48,13 @@ Outline = Box | Disc | Polygon
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """A thing that stands on the ground: outline, height, colour. `name` is its shape's, and may occur again."""
+    """A thing that stands on the ground: outline, height, color. `name` is its shape's, and may occur again."""
 
     name: str
     pose: Pose
     outline: Outline
     height_m: float
-    colour: Colour
+    color: Color
 
     @property
     def vertices(self) -> tuple[Point, ...]:
@@ -68,16 +68,16 @@ class Floor:
 
     name: str
     vertices: tuple[Point, ...]
-    colour: Colour
+    color: Color
 
 
 @dataclass(frozen=True, slots=True)
 class Paint:
-    """A convex patch of colour on the ground, in the world's frame; later paint covers earlier paint."""
+    """A convex patch of color on the ground, in the world's frame; later paint covers earlier paint."""
 
     name: str
     vertices: tuple[Point, ...]
-    colour: Colour
+    color: Color
 
 
 Primitive = Solid | Floor | Paint

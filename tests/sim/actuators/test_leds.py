@@ -22,7 +22,7 @@ def test_natives_set_their_group_and_saturate() -> None:
     assert groups == {group: (32,) * size for group, size in LED_GROUPS.items()}
 
 
-def test_colours_and_circle_are_also_variables() -> None:
+def test_colors_and_circle_are_also_variables() -> None:
     names = ["leds.top", "leds.bottom.left", "leds.bottom.right", "leds.circle"]
     assert [output.variables for output in ACTUATOR.aseba.outputs] == [
         ((name, 8 if name == "leds.circle" else 3),) for name in names

@@ -52,10 +52,10 @@ def test_a_robot_at_the_edge_of_a_table_reads_zero() -> None:
     assert sense(world, "ground").words == (0,) * 6
 
 
-def test_a_robot_astride_an_edge_of_colours_reads_both() -> None:
+def test_a_robot_astride_an_edge_of_colors_reads_both() -> None:
     halves = [
         {**FLOOR, "y_m": 2.0, "name": "north"},
-        {**FLOOR, "y_m": -2.0, "name": "south", "colour": "#000000"},
+        {**FLOOR, "y_m": -2.0, "name": "south", "color": "#000000"},
     ]
     world = World(make(halves, [ROBOT]), noise=False)
     assert sense(world, "ground").words[4:] == pytest.approx((938, 77), abs=3)

@@ -21,9 +21,9 @@ def _numbered(count: int) -> tuple[str, ...]:
 
 _NATIVES: tuple[tuple[str, str, tuple[str, ...], str], ...] = (
     ("leds.circle", "circle", _numbered(8), "Set the circle: front, then clockwise"),
-    ("leds.top", "top", _RGB, "Set the colour of the top"),
-    ("leds.bottom.left", "bottom_left", _RGB, "Set the colour of the bottom left"),
-    ("leds.bottom.right", "bottom_right", _RGB, "Set the colour of the bottom right"),
+    ("leds.top", "top", _RGB, "Set the color of the top"),
+    ("leds.bottom.left", "bottom_left", _RGB, "Set the color of the bottom left"),
+    ("leds.bottom.right", "bottom_right", _RGB, "Set the color of the bottom right"),
     ("leds.buttons", "buttons", _numbered(4), "Set the button lights: forward, right, backward, left"),
     ("leds.prox.h", "proximity", _numbered(8), "Set the proximity lights: front left to right, rear left and right"),
     ("leds.prox.v", "ground", _numbered(2), "Set the ground lights: left, right"),

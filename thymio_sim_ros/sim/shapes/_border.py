@@ -9,8 +9,8 @@ from thymio_sim_ros.sim.fields import Extent, Shade
 
 @dataclass(frozen=True, slots=True)
 class Walls:
-    """Walls centred on the border of a ground, half of the thickness inside; the ground's colour unless given."""
+    """Walls centred on the border of a ground, half of the thickness inside; the ground's color unless given."""
 
     height_m: Extent = 0.12
     thickness_m: Extent = 0.02
-    colour: Shade | None = None
+    color: Shade | None = None

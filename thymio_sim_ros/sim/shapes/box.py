@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from thymio_sim_ros.sim import primitives
-from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_colour
+from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_color
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.primitives import Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
@@ -20,14 +20,14 @@ class Box:
     size_x_m: Extent
     size_y_m: Extent
     height_m: Extent
-    colour: Shade
+    color: Shade
     yaw_rad: Angle = 0.0
 
     def primitives(self, name: str) -> tuple[Primitive, ...]:
         """One solid."""
         outline = primitives.Box(self.size_x_m, self.size_y_m)
         pose = Pose(self.x_m, self.y_m, self.yaw_rad)
-        return (Solid(name, pose, outline, self.height_m, as_colour(self.colour)),)
+        return (Solid(name, pose, outline, self.height_m, as_color(self.color)),)
 
 
 SHAPE = ShapeKind("box", Box)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.fields import Coordinate, Extent, Shade, as_colour
+from thymio_sim_ros.sim.fields import Coordinate, Extent, Shade, as_color
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.primitives import Disc, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
@@ -18,12 +18,12 @@ class Cylinder:
     y_m: Coordinate
     radius_m: Extent
     height_m: Extent
-    colour: Shade
+    color: Shade
 
     def primitives(self, name: str) -> tuple[Primitive, ...]:
         """One solid."""
         pose = Pose(self.x_m, self.y_m, 0.0)
-        return (Solid(name, pose, Disc(self.radius_m), self.height_m, as_colour(self.colour)),)
+        return (Solid(name, pose, Disc(self.radius_m), self.height_m, as_color(self.color)),)
 
 
 SHAPE = ShapeKind("cylinder", Cylinder)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_colour
+from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_color
 from thymio_sim_ros.sim.geometry import Point, Pose
 from thymio_sim_ros.sim.primitives import Box, Floor, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
@@ -19,7 +19,7 @@ class Octagon:
     """Ground with eight sides of one length, two of them along its x axis, centred on its pose."""
 
     side_m: Extent
-    colour: Shade
+    color: Shade
     x_m: Coordinate = 0.0
     y_m: Coordinate = 0.0
     yaw_rad: Angle = 0.0
@@ -30,7 +30,7 @@ class Octagon:
         pose = Pose(self.x_m, self.y_m, self.yaw_rad)
         circumradius = self.side_m / 2 / math.sin(_EIGHTH / 2)
         corners = tuple(_polar(circumradius, (index + 0.5) * _EIGHTH) for index in range(8))
-        floor = Floor(name, pose.place_all(corners), as_colour(self.colour))
+        floor = Floor(name, pose.place_all(corners), as_color(self.color))
         if self.walls is None:
             return (floor,)
         return (floor, *self._borders(name, pose, self.walls))
@@ -38,14 +38,14 @@ class Octagon:
     def _borders(self, name: str, pose: Pose, walls: Walls) -> tuple[Solid, ...]:
         apothem = self.side_m / 2 / math.tan(_EIGHTH / 2)
         wall = Box(walls.thickness_m, self.side_m + walls.thickness_m / 2)
-        colour = as_colour(walls.colour or self.colour)
+        color = as_color(walls.color or self.color)
         return tuple(
             Solid(
                 name,
                 Pose(*pose.place(_polar(apothem, index * _EIGHTH)), self.yaw_rad + index * _EIGHTH),
                 wall,
                 walls.height_m,
-                colour,
+                color,
             )
             for index in range(8)
         )

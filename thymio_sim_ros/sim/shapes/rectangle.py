@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_colour
+from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_color
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.primitives import Box, Floor, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
@@ -17,7 +17,7 @@ class Rectangle:
 
     size_x_m: Extent
     size_y_m: Extent
-    colour: Shade
+    color: Shade
     x_m: Coordinate = 0.0
     y_m: Coordinate = 0.0
     yaw_rad: Angle = 0.0
@@ -27,7 +27,7 @@ class Rectangle:
         """One floor, and four walls that overlap at the corners."""
         pose = Pose(self.x_m, self.y_m, self.yaw_rad)
         corners = pose.place_all(Box(self.size_x_m, self.size_y_m).vertices)
-        floor = Floor(name, corners, as_colour(self.colour))
+        floor = Floor(name, corners, as_color(self.color))
         if self.walls is None:
             return (floor,)
         return (floor, *self._borders(name, pose, self.walls))
@@ -36,9 +36,9 @@ class Rectangle:
         thick = walls.thickness_m
         along_x, along_y = Box(self.size_x_m + thick, thick), Box(thick, self.size_y_m + thick)
         x, y = self.size_x_m / 2, self.size_y_m / 2
-        colour = as_colour(walls.colour or self.colour)
+        color = as_color(walls.color or self.color)
         return tuple(
-            Solid(name, Pose(*pose.place(middle), self.yaw_rad), box, walls.height_m, colour)
+            Solid(name, Pose(*pose.place(middle), self.yaw_rad), box, walls.height_m, color)
             for middle, box in (((x, 0.0), along_y), ((0.0, y), along_x), ((-x, 0.0), along_y), ((0.0, -y), along_x))
         )
 

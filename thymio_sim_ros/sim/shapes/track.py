@@ -10,7 +10,7 @@ import itertools
 import math
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.fields import Extent, Points, Radius, Shade, as_colour
+from thymio_sim_ros.sim.fields import Extent, Points, Radius, Shade, as_color
 from thymio_sim_ros.sim.geometry import Point
 from thymio_sim_ros.sim.primitives import Paint, Primitive
 from thymio_sim_ros.sim.shapes import ShapeKind
@@ -28,20 +28,20 @@ class Track:
 
     points_m: Points
     width_m: Extent
-    colour: Shade
+    color: Shade
     closed: bool = False
     corner_radius_m: Radius = 0.0
 
     def primitives(self, name: str) -> tuple[Primitive, ...]:
         """Quadrangles of paint along the middle line; an arc shares its edges with its neighbours."""
-        half, colour = self.width_m / 2, as_colour(self.colour)
+        half, color = self.width_m / 2, as_color(self.color)
         patches = []
         for (ax, ay, a), (bx, by, b) in itertools.pairwise(self.stations()):
             if math.hypot(bx - ax, by - ay) < _SAME_PLACE_M:
                 continue
             ux, uy, vx, vy = -math.sin(a) * half, math.cos(a) * half, -math.sin(b) * half, math.cos(b) * half
             corners = ((ax - ux, ay - uy), (bx - vx, by - vy), (bx + vx, by + vy), (ax + ux, ay + uy))
-            patches.append(Paint(name, corners, colour))
+            patches.append(Paint(name, corners, color))
         return tuple(patches)
 
     def stations(self) -> tuple[_Station, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_colour
+from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_color
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.primitives import Box, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
@@ -23,7 +23,7 @@ class UFigure:
 
     unit_m: Extent
     height_m: Extent
-    colour: Shade
+    color: Shade
     x_m: Coordinate = 0.0
     y_m: Coordinate = 0.0
     yaw_rad: Angle = 0.0
@@ -31,14 +31,14 @@ class UFigure:
     def primitives(self, name: str) -> tuple[Primitive, ...]:
         """Three solids: the thin arm, the back, the thick arm."""
         pose = Pose(self.x_m, self.y_m, self.yaw_rad)
-        unit, colour = self.unit_m, as_colour(self.colour)
+        unit, color = self.unit_m, as_color(self.color)
         return tuple(
             Solid(
                 name,
                 Pose(*pose.place((x * unit, y * unit)), self.yaw_rad),
                 Box(size_x * unit, size_y * unit),
                 self.height_m,
-                colour,
+                color,
             )
             for (x, y), (size_x, size_y) in _PARTS
         )

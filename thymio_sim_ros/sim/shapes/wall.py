@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.fields import Coordinate, Extent, Shade, as_colour
+from thymio_sim_ros.sim.fields import Coordinate, Extent, Shade, as_color
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.primitives import Box, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
@@ -19,7 +19,7 @@ class Wall:
     start_y_m: Coordinate
     end_x_m: Coordinate
     end_y_m: Coordinate
-    colour: Shade
+    color: Shade
     thickness_m: Extent = 0.02
     height_m: Extent = 0.12
 
@@ -28,7 +28,7 @@ class Wall:
         dx, dy = self.end_x_m - self.start_x_m, self.end_y_m - self.start_y_m
         pose = Pose(self.start_x_m + dx / 2, self.start_y_m + dy / 2, math.atan2(dy, dx))
         outline = Box(math.hypot(dx, dy) + self.thickness_m, self.thickness_m)
-        return (Solid(name, pose, outline, self.height_m, as_colour(self.colour)),)
+        return (Solid(name, pose, outline, self.height_m, as_color(self.color)),)
 
 
 SHAPE = ShapeKind("wall", Wall)
