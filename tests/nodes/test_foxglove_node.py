@@ -524,6 +524,7 @@ def test_the_connection_graph_names_publishers_subscribers_and_providers(ros, st
     assert ms.PublishedTopic("/chat", ("/test",)) in update.published_topics
     assert ms.SubscribedTopic("/chat", ("/test",)) in update.subscribed_topics
     assert ms.AdvertisedService("/flip", ("/test",)) in update.advertised_services
+    assert "/foxglove_bridge/get_parameters" not in [service.name for service in update.advertised_services]
 
 
 def test_an_asset_that_is_not_there_is_an_error_for_its_request(studio):

@@ -178,6 +178,7 @@ class FoxgloveBridge:
             self.node, post, is_allowed=allow_list(values.client_topic_whitelist), wake=self._hurry.reset
         )
         self._seen: tuple[Any, Any] = ({}, {})
+        self._shown: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
         self._jump_handle = self.node.get_clock().create_jump_callback(
             JumpThreshold(
                 min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1), on_clock_change=True
@@ -209,10 +210,12 @@ class FoxgloveBridge:
             return
         self._seen = (topics, services)
         hidden = self.params.include_hidden
-        self._topics.update(visible(topics, self._is_topic, hidden=hidden))
+        shown = visible(topics, self._is_topic, hidden=hidden)
         offered = visible(services, self._is_service, hidden=hidden)
         if not hidden:
             offered = {name: types for name, types in offered.items() if not is_parameter_service(name)}
+        self._shown = (tuple(shown), tuple(offered))
+        self._topics.update(shown)
         self._services.update(offered)
         self._parameters.update(services)
 
@@ -222,10 +225,7 @@ class FoxgloveBridge:
             self._tell_graph()
 
     def _tell_graph(self) -> None:
-        topics, services = self._seen
-        hidden = self.params.include_hidden
-        shown = visible(topics, self._is_topic, hidden=hidden), visible(services, self._is_service, hidden=hidden)
-        self._server.post(ev.SetGraph(connection_graph(self.node, *shown)))
+        self._server.post(ev.SetGraph(connection_graph(self.node, *self._shown)))
 
     def _poll_waiting(self) -> None:
         waits = [self._calls.poll(), self._publishers.poll()]
