@@ -58,6 +58,7 @@ class AsebaDevice:
         self._events: list[EmittedEvent] = []
         self._notices: list[str] = []
         self._noticed: set[str] = set()
+        self._is_changed = True
         self._sent: list[list[int]] = []
         self._state = RUNNING
         self._fault: DeviceStatus | None = None
@@ -86,27 +87,32 @@ class AsebaDevice:
         """Replace the program; the robot is reset and the next `run` begins with the initialisation."""
         self._program = program
         self._names = [name for name, _ in program.events]
+        self._handled = frozenset(0xFFFE - event.number for event in program.program.events)
         self._last.clear()
         words = program.program.words
         self._vm.set_bytecode((*words, *[0] * (self._target.bytecode_size - len(words))))
         self.resume()
 
     def feed(self, sensor: str, words: Sequence[int]) -> None:
-        """Store a reading's words and let its events wait. KeyError: no such sensor; ValueError: wrong words."""
+        """Store a reading's words (int16) and let the events that the program handles wait.
+
+        KeyError: no such sensor; ValueError: wrong number of words.
+        """
         binding = bindings.sensors()[sensor]
         if len(words) != binding.size:
             raise ValueError(f"{len(words)} words found, expected {binding.size}")
-        new = [int(word) for word in words]
-        old = self._last.get(sensor, [0] * binding.size)
+        new = list(words)
+        memory, old, handled = self._vm.variables, self._last.get(sensor), self._handled
         begin = 0
         for slot in binding.slots:
             end = begin + slot.size
-            self._vm.write_variables(slot.address, new[begin:end])
-            if slot.edge is not None and new[begin:end] != old[begin:end]:
+            part = new[begin:end]
+            memory[slot.address : slot.address + slot.size] = part
+            if slot.edge in handled and part != (old[begin:end] if old else [0] * slot.size):
                 self._arrived.add(slot.edge)
             begin = end
         self._last[sensor] = new
-        if binding.event is not None:
+        if binding.event in handled:
             self._arrived.add(binding.event)
 
     def advance(self, now_ns: int) -> None:
@@ -115,6 +121,9 @@ class AsebaDevice:
 
     def run(self, budget: int) -> None:
         """Execute handlers until nothing waits, or so many instructions were executed."""
+        if not self.is_busy:
+            return
+        self._is_changed = True
         vm = self._vm
         end = vm.instructions + budget
         while self.is_busy and vm.instructions < end:
@@ -161,6 +170,7 @@ class AsebaDevice:
         while not self._vm.is_active and self._waits:
             self._start_next()
         self._vm.step()
+        self._is_changed = True
         self._listen()
 
     def stop(self) -> None:
@@ -178,6 +188,9 @@ class AsebaDevice:
     def take_commands(self) -> list[Command]:
         """What the program told the actuators since the last time: native calls, then changed variables."""
         commands, self._commands = self._commands, []
+        if not self._is_changed:
+            return commands
+        self._is_changed = False
         for output, sent in zip(bindings.outputs(), self._sent, strict=True):
             words = self._words(output)
             if words != sent:
@@ -213,6 +226,7 @@ class AsebaDevice:
         if wrong:
             raise ValueError(f"{name}: {wrong[0]} found, expected -32768 to 32767")
         self._vm.write_variables(address, words)
+        self._is_changed = True
 
     @property
     def _waits(self) -> bool:
@@ -294,6 +308,7 @@ class AsebaDevice:
         vm.variables[:] = [0] * len(vm.variables)
         for name, words in (("_id", (self.node_id,)), ("_productId", (PRODUCT_ID,)), ("_fwversion", FIRMWARE)):
             vm.write_variables(self._addresses[name][0], words)
+        self._is_changed = True
         vm.random_state = (self.node_id - 1) * 25173 & 0xFFFF  # robots differ, a run repeats itself
         self._begin(INIT)
         self._forget_events()

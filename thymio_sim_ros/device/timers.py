@@ -36,6 +36,9 @@ class Timers:
             self._at_ms = self._clock_ms = now_ms
             self._counts = [0] * len(self._counts)
             return ()
+        if max(self._periods) <= 0:  # no timer runs: nothing to count
+            self._at_ms = self._clock_ms = now_ms
+            return ()
         missed = self._count(self.lag_ms)
         self._clock_ms = now_ms
         early = self._count(max(0, self.lag_ms - LONGEST_LAG_MS))
