@@ -122,8 +122,18 @@ def test_each_executable_ends_with_0(ros, process, module, name):
     assert "Traceback" not in node.output
 
 
-def test_a_bad_parameter_is_one_line_and_exit_code_2(process):
-    node = process("thymio_sim_ros.nodes.simulator_node", "--ros-args", "-p", "playground:=nowhere")
-    assert node.wait() == 2
+@pytest.mark.parametrize(
+    ("module", "parameter", "told"),
+    [
+        ("simulator_node", "playground:=nowhere", "nowhere"),
+        ("simulator_node", "real_time_factor:=5000.0", "real_time_factor"),
+        ("web_node", "port:=99999", "port"),
+        ("web_node", "port:=http", "port"),
+        ("foxglove_node", "port:=-1", "port"),
+    ],
+)
+def test_a_bad_parameter_is_one_line_and_exit_code_2(process, module, parameter, told):
+    node = process(f"thymio_sim_ros.nodes.{module}", "--ros-args", "-p", parameter)
+    assert node.wait() == 2, node.output
     (line,) = node.output.splitlines()
-    assert "nowhere" in line
+    assert told in line

@@ -17,8 +17,11 @@ from dataclasses import Field, field
 from typing import Any, TypeVar
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+
+from thymio_sim_ros.nodes.life import StartError
 
 T = TypeVar("T")
 
@@ -40,12 +43,19 @@ def param(
 
 
 def declare(node: Node, defaults: T) -> T:
-    """Declare every field on the node; returns the dataclass with the values in force."""
+    """Declare every field on the node; returns the dataclass with the values in force.
+
+    A value from the command line that a descriptor refuses is a StartError.
+    """
     values = {}
     for item in dataclasses.fields(defaults):  # type: ignore[arg-type]  # T is always a dataclass
         default = getattr(defaults, item.name)
         name = item.metadata.get("name", item.name)
-        parameter = node.declare_parameter(name, default, _descriptor(item, default))
+        try:
+            parameter = node.declare_parameter(name, default, _descriptor(item, default))
+        except (InvalidParameterTypeException, InvalidParameterValueException) as error:
+            reason = " ".join(str(error).split())
+            raise StartError(f"parameter {name} of {node.get_name()}: {reason}") from error
         value = parameter.value
         values[item.name] = default if value is None else value
     return dataclasses.replace(defaults, **values)  # type: ignore[type-var]
