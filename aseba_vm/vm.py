@@ -7,10 +7,12 @@ remembers its condition rewrites its own word. Arithmetic is exact in Python and
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
+from aseba_vm.blocks import MAX_EMITTED
 from aseba_vm.bytecode import LENGTH, WAS_TRUE, Op
 from aseba_vm.compiler import Program
+from aseba_vm.engine import AUTO, Engine, new_engine
 from aseba_vm.nativecall import DequeFault, DivisionFault, Native, NativeCall, NativeFault, Signature, wrap
 from aseba_vm.natives import NATIVES
 from aseba_vm.operations import (
@@ -58,7 +60,6 @@ STEP_BY_STEP = 2
 RUNNING = 4
 
 MAX_BREAKPOINTS = 16
-MAX_EMITTED = 516
 
 _FOREVER = 1 << 62
 
@@ -74,12 +75,14 @@ class VirtualMachine:
         *,
         on_reset: Callable[[VirtualMachine], None] | None = None,
         kills_long_events: bool = False,
+        engine: str = AUTO,
     ) -> None:
         """Build an idle machine with empty memories.
 
         ``natives`` are functions by name, added to the standard ones or in their place; one that is missing pops its
         arguments and leaves a NativeCalled. ``on_reset`` is the node's share in a reset. ``kills_long_events``: an
-        event that reaches the limit of ``run`` is abandoned, as in the 2.x fork, not continued.
+        event that reaches the limit of ``run`` is abandoned, as in the 2.x fork, not continued. ``engine`` says how
+        events are run, one of :data:`aseba_vm.engine.ENGINES`; they differ in time only.
         """
         self.target = target
         self.node_id = node_id
@@ -98,14 +101,17 @@ class VirtualMachine:
         self._breakpoints: list[int] = []
         self._on_reset = on_reset
         self._kills_long_events = kills_long_events
-        functions = {**NATIVES, **(natives or {})}
-        self._natives = [(Signature.of(native), functions.get(native.name)) for native in target.natives]
+        self._functions = {**NATIVES, **(natives or {})}
+        self._natives = [(Signature.of(native), self._functions.get(native.name)) for native in target.natives]
+        self._engine: Engine | None = None
+        self.use_engine(engine)
 
     # -- state
 
     @property
     def bytecode(self) -> tuple[int, ...]:
         """The bytecode memory, unsigned words."""
+        self._settle()
         return tuple(self._words)
 
     @property
@@ -135,6 +141,7 @@ class VirtualMachine:
         """Write words and reset. Raises ValueError if they do not fit the memory."""
         if start < 0 or start + len(words) > len(self._words):
             raise ValueError(f"{len(words)} words at {start} do not fit a bytecode memory of {len(self._words)}")
+        self._settle()
         self._words[start : start + len(words)] = [word & 0xFFFF for word in words]
         self._decode(start, start + len(words))
         self.reset()
@@ -146,9 +153,12 @@ class VirtualMachine:
 
     def reset(self) -> None:
         """Stop, forget what ``when`` remembers as far as the reference does, and start the initialisation, paused."""
+        self._settle()
         self.flags = STEP_BY_STEP
         self.fault = None
         self._clear_edges()
+        if self._engine is not None:
+            self._engine.forget()
         if self._on_reset is not None:
             self._on_reset(self)
         if not self.setup(INIT_EVENT):
@@ -174,7 +184,7 @@ class VirtualMachine:
         """Execute one instruction of the active event."""
         if self.flags & ACTIVE:
             self._trace()
-            self._execute(1)
+            self.interpret(1)
             self.report_state()
 
     def report_state(self) -> None:
@@ -267,6 +277,8 @@ class VirtualMachine:
             executed, stopped = self._run_watched(limit or _FOREVER)
             if stopped:
                 return True
+        elif self._engine is not None:
+            executed = self._engine.run(limit or _FOREVER)
         else:
             executed = self._execute(limit or _FOREVER)
         self.flags &= ~RUNNING
@@ -285,12 +297,61 @@ class VirtualMachine:
                 self.report_state()
                 return executed, True
             self._trace()
-            executed += self._execute(1)
+            executed += self.interpret(1)
         return executed, False
 
     def _trace(self) -> None:
         if self.tracer is not None:
             self.tracer(self.pc)
+
+    # -- engines (see aseba_vm.engine)
+
+    def use_engine(self, name: str) -> None:
+        """Choose how events run from now on. Raises ValueError for a name that is not in ``ENGINES``."""
+        self._settle()
+        self._engine = new_engine(name, self, self._functions)
+
+    @property
+    def words(self) -> list[int]:
+        """The bytecode memory itself, for the engine."""
+        return self._words
+
+    def interpret(self, limit: int) -> int:
+        """Execute at most ``limit`` instructions without translation; return how many were. For the engine."""
+        self._settle()
+        return self._execute(limit)
+
+    def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
+        """Call a native with the words it pops; do nothing and say so if they lie outside memory. For the engine."""
+        signature, function = self._natives[number]
+        call = NativeCall(self, signature, popped)
+        if not call.is_inside_memory:
+            return False
+        if function is None:
+            self.outbox.append(call.record(number))
+            return True
+        try:
+            function(call)
+        except NativeFault as refusal:
+            call.report(refusal)
+        for fault in call.faults:
+            if isinstance(fault, DivisionFault):
+                self._stop_on(DivisionByZero(pc))
+            elif isinstance(fault, DequeFault):
+                self._stop_on(OutOfBounds(pc))
+            else:
+                self._stop_on(NodeSpecific(pc, fault.reason))
+        return True
+
+    def remember(self, memories: Iterable[tuple[int, int]]) -> None:
+        """Let BRANCHes remember their conditions: address, 0 or 1. For the engine."""
+        for pc, value in memories:
+            if self._words[pc] >> 9 & 1 != value:
+                self._remember(pc)
+
+    def _settle(self) -> None:
+        if self._engine is not None:
+            self._engine.settle()
 
     def _execute(self, limit: int) -> int:
         """Execute at most ``limit`` instructions while the event is active; return how many were."""
@@ -432,30 +493,11 @@ class VirtualMachine:
         """Call a native; return why it could not be, or an empty text, and the new index of the stack."""
         if number >= len(self._natives):
             return "unknown-native", sp
-        signature, function = self._natives[number]
-        count = signature.count
+        count = self._natives[number][0].count
         if sp + 1 < count:
             return "stack-underflow", sp
         popped = self.stack[sp - count + 1 : sp + 1][::-1]
-        sp -= count
-        call = NativeCall(self, signature, popped)
-        if not call.is_inside_memory:
-            return "variable-out-of-range", sp
-        if function is None:
-            self.outbox.append(call.record(number))
-            return "", sp
-        try:
-            function(call)
-        except NativeFault as refusal:
-            call.report(refusal)
-        for fault in call.faults:
-            if isinstance(fault, DivisionFault):
-                self._stop_on(DivisionByZero(pc))
-            elif isinstance(fault, DequeFault):
-                self._stop_on(OutOfBounds(pc))
-            else:
-                self._stop_on(NodeSpecific(pc, fault.reason))
-        return "", sp
+        return "" if self.invoke(number, pc, popped) else "variable-out-of-range", sp - count
 
     def _bad(self, pc: int, sp: int, executed: int, reason: str) -> int:
         self.pc, self.sp = pc, sp

@@ -1,0 +1,145 @@
+"""Whatever runs an event, the machine is in the same state afterwards."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from aseba_vm import CompileError, VirtualMachine, compile
+from aseba_vm.engine import ENGINES, INTERPRETER
+from aseba_vm.targets import THYMIO_II
+from tests.aseba_vm.programs import Writer
+from tests.aseba_vm.vectors import Replay, families, load
+
+EVENTS = [("ping", 1), ("pair", 2), ("nothing", 0)]
+TRANSLATORS = [name for name in ENGINES if name != INTERPRETER]
+
+
+def _state(machine):
+    return (
+        machine.pc,
+        machine.flags,
+        machine.stack[: machine.sp + 1],
+        machine.variables,
+        machine.bytecode,
+        machine.instructions,
+        machine.random_state,
+        machine.fault,
+        machine.take_messages(),
+    )
+
+
+def _compare(words, seed, engines):
+    """Run the same events in two machines, one of them changing engines, and compare them after each."""
+    machines = [VirtualMachine(THYMIO_II, engine=INTERPRETER), VirtualMachine(THYMIO_II, engine=engines[0])]
+    source = random.Random(seed)
+    for machine in machines:
+        machine.set_bytecode(words)
+    for _ in range(source.randint(3, 25)):
+        limit = source.choice((1, 3, 10, 50, 300, 300, 1000, 3000))
+        choice = source.randrange(12)
+        event, value = source.randrange(3), source.choice((0, 1, 3, -1, 32767, -32768, source.randint(-99, 99)))
+        address, local = source.randrange(128, 170), source.randrange(17)
+        engine = source.choice(engines)
+        for machine in machines:
+            if choice == 0:
+                machine.reset()
+            elif choice == 1:
+                machine.step()
+            elif choice == 2:
+                machine.write_variables(address, [value])
+            elif choice < 6:
+                machine.receive(event, 1, [value])
+            elif choice < 10:
+                machine.start_local(local)
+            if choice != 1:
+                machine.resume()
+            machine.run(limit)
+        machines[1].use_engine(engine)
+        assert _state(machines[0]) == _state(machines[1])
+
+
+@pytest.mark.parametrize("engine", TRANSLATORS)
+@pytest.mark.parametrize("family", families("aseba-execution"))
+def test_programs_run_as_on_the_reference(family, engine):
+    for vector in families("aseba-execution")[family]:
+        _replay(vector, engine, kills_long_events=False)
+
+
+@pytest.mark.parametrize("engine", TRANSLATORS)
+def test_long_events_are_killed_as_in_the_fork(engine):
+    for vector in load("aseba-execution-2x"):
+        _replay(vector, engine, kills_long_events=True)
+
+
+def _replay(vector, engine, *, kills_long_events):
+    replay = Replay(vector, kills_long_events=kills_long_events, is_traced=False)
+    replay.machine.use_engine(engine)
+    for number, (operation, expected) in enumerate(zip(vector["script"], vector["expect"], strict=False)):
+        record = replay.record(operation)
+        shown = {key: expected[key] for key in expected.keys() - {"trace", "trace_crc"}}
+        assert record == shown, (vector["id"], number, operation)
+
+
+@pytest.mark.parametrize("engines", [*([name] for name in TRANSLATORS), list(ENGINES)], ids="-".join)
+@pytest.mark.parametrize("seed", range(6))
+def test_random_programs_end_in_the_same_state(seed, engines):
+    compiled = 0
+    for number in range(60):
+        try:
+            program = compile(Writer(7000 * seed + number).program(), THYMIO_II, EVENTS, [("N", 4)])
+        except CompileError:
+            continue
+        compiled += 1
+        _compare(program.words, number, engines)
+    assert compiled >= 10
+
+
+@pytest.mark.parametrize("engines", [*([name] for name in TRANSLATORS), list(ENGINES)], ids="-".join)
+@pytest.mark.parametrize("seed", range(4))
+def test_damaged_programs_end_in_the_same_state(seed, engines):
+    source = random.Random(seed)
+    for vector in source.sample(load("aseba-compile"), 100):
+        words = list(vector["expect"]["bytecode"])
+        if vector["target"] == "thymio2" and len(words) > 1:
+            for _ in range(source.randint(1, 4)):
+                words[source.randrange(len(words))] = _likely_word(source)
+            _compare(words, seed, engines)
+
+
+@pytest.mark.parametrize("engines", [*([name] for name in TRANSLATORS), list(ENGINES)], ids="-".join)
+@pytest.mark.parametrize("seed", range(4))
+def test_random_words_end_in_the_same_state(seed, engines):
+    source = random.Random(seed)
+    for _ in range(60):
+        words = [_likely_word(source) for _ in range(source.randint(3, 120))]
+        words[:3] = [3, 0xFFFF, 3]
+        _compare(words, source.randrange(1000), engines)
+
+
+def _likely_word(source):
+    """A word, most often an instruction that makes sense."""
+    match source.randrange(10):
+        case 0 | 1:
+            return 0x1000 | source.randrange(16)
+        case 2 | 3:
+            return source.choice((0x3000, 0x4000)) | source.randrange(128, 136)
+        case 4:
+            return 0x8000 | source.randrange(18)
+        case 5:
+            return source.choice((0x9000 | source.randrange(8), 0x9FF0 | source.randrange(16)))
+        case 6:
+            return source.choice((0xA00A, 0xA10C, 0xA30B, 0xA211))
+        case 7:
+            return source.choice(
+                (0xD000 | source.randrange(60), 0xE000, 0x7000 | source.randrange(3), 0, 0xC000, 0xB001)
+            )
+        case 8:
+            return source.randrange(12)
+    return source.randrange(0x10000)
+
+
+def test_an_unknown_engine_is_refused():
+    with pytest.raises(ValueError, match="not one of"):
+        VirtualMachine(THYMIO_II, engine="steam")
