@@ -21,6 +21,10 @@ from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
+SWITCH_INTERVAL_S = 0.0005
+"""How long a thread may keep the interpreter while others wait: a tenth of Python's default, since a command that waits
+for 5 ms is 12 ticks late at 25 times real time (measured: the line follower strays 36 mm instead of 17 mm)."""
+
 SPIN_SLICE_S = 0.1
 """Longest wait in one spin: the events executor needs finite time-outs (ros-packaging.md section 3)."""
 
@@ -137,6 +141,7 @@ def run_main(
     def end(_number: int, _frame: FrameType | None) -> None:
         threads.request_end()
 
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
     signal.signal(signal.SIGINT, end)
     signal.signal(signal.SIGTERM, end)
     try:
