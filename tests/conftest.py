@@ -1,6 +1,7 @@
 """Fixtures of all tests; those that need ROS come from the package itself, as a teacher would use them."""
 
 import importlib.util
+from pathlib import Path
 
 import hypothesis
 
@@ -9,3 +10,8 @@ hypothesis.settings.load_profile("thymio")
 
 if importlib.util.find_spec("rclpy") is not None:
     pytest_plugins = ["thymio_sim_ros.testing"]
+
+
+def pytest_addoption(parser):
+    about = "run tests/aseba_vm on the vectors of this folder (plain or .gz) instead of those in tests/data/vectors"
+    parser.addoption("--vectors", metavar="DIR", type=Path, default=None, help=about)

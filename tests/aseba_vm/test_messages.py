@@ -1,12 +1,18 @@
 import string
 
 from aseba_vm.messages import MESSAGES, wording
-from tests.aseba_vm.vectors import load
+from tests.aseba_vm.vectors import as_tuple, load
 
 
 def test_every_kind_of_error_has_a_wording():
     kinds = {vector["expect"]["kind"] for vector in load("aseba-errors")} - {"reference-crash"}
     assert kinds <= MESSAGES.keys()
+
+
+def test_the_wording_is_that_of_the_specification():
+    answers = [vector["expect"] for vector in load("aseba-errors") if vector["expect"]["kind"] != "reference-crash"]
+    spoken = [wording(answer["kind"], as_tuple(answer["args"])) for answer in answers]
+    assert spoken == [answer["message"] for answer in answers]
 
 
 def test_templates_name_arguments_by_number():

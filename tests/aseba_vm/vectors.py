@@ -27,33 +27,53 @@ from aseba_vm.outbox import (
     VariablesRead,
 )
 
-DATA = Path(__file__).parents[1] / "data" / "aseba"
+SHIPPED = Path(__file__).parents[1] / "data" / "vectors"
+FILES = ("aseba-compile", "aseba-errors", "aseba-execution", "aseba-execution-2x", "aseba-aesl")
 
 Vector = dict[str, Any]
 
 
+def _path(folder: Path, name: str) -> Path | None:
+    """The file of a set, plain or compressed, or None."""
+    return next((path for suffix in ("", ".gz") if (path := folder / f"{name}.jsonl{suffix}").is_file()), None)
+
+
+def is_set(folder: Path) -> bool:
+    """Tell whether a folder holds vectors."""
+    return any(_path(folder, name) for name in FILES)
+
+
 @cache
-def targets() -> dict[str, TargetDescription]:
-    data = json.loads((DATA / "aseba-targets.json").read_text("utf-8"))
+def targets(folder: Path = SHIPPED) -> dict[str, TargetDescription]:
+    path = folder / "aseba-targets.json"
+    data = json.loads((path if path.is_file() else SHIPPED / path.name).read_text("utf-8"))
     return {name: TargetDescription.from_data(target) for name, target in data.items()}
 
 
 @cache
-def load(name: str) -> tuple[Vector, ...]:
-    with gzip.open(DATA / f"{name}.jsonl.gz", "rt", encoding="utf-8") as lines:
-        return tuple(json.loads(line) for line in lines)
+def load(name: str, folder: Path = SHIPPED) -> tuple[Vector, ...]:
+    """Vectors of a file of a set, none if the set lacks it. Each remembers its folder, for its targets."""
+    path = _path(folder, name)
+    if path is None:
+        return ()
+    data = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
+    return tuple({**json.loads(line), "folder": folder} for line in data.decode("utf-8").splitlines() if line.strip())
 
 
 def families(name: str) -> dict[str, list[Vector]]:
-    """Vectors of a file by family; the random ones in portions."""
+    """Vectors of a shipped file by family."""
     ordered = sorted(load(name), key=lambda vector: str(vector["family"]))
     return {family: list(group) for family, group in groupby(ordered, key=lambda vector: str(vector["family"]))}
+
+
+def target_of(vector: Vector) -> TargetDescription:
+    return targets(vector["folder"])[vector["target"]]
 
 
 def compiled(vector: Vector) -> Program:
     return compile(
         vector["source"],
-        targets()[vector["target"]],
+        target_of(vector),
         [(name, size) for name, size in vector["events"]],
         [(name, value) for name, value in vector["constants"]],
     )
@@ -74,6 +94,10 @@ def as_answer(program: Program) -> Vector:
 
 def as_list(value: object) -> object:
     return [as_list(item) for item in value] if isinstance(value, tuple | list) else value
+
+
+def as_tuple(value: object) -> Any:
+    return tuple(map(as_tuple, value)) if isinstance(value, list) else value
 
 
 def said(message: Message) -> Vector:
@@ -107,7 +131,7 @@ class Replay:
     """A machine that obeys the script of a vector and records what it did."""
 
     def __init__(self, vector: Vector, *, kills_long_events: bool, is_traced: bool) -> None:
-        target = targets()[vector["target"]]
+        target = target_of(vector)
         natives = {native.name: self._recorder(number, native.name) for number, native in enumerate(target.natives)}
         self.machine = VirtualMachine(target, natives, kills_long_events=kills_long_events)
         self.bytecode = vector["bytecode"]
