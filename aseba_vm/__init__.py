@@ -13,6 +13,8 @@ True
 from aseba_vm import aesl, outbox, targets
 from aseba_vm.bytecode import EventEntry, SubEntry
 from aseba_vm.compiler import Program, Stages, compile, compile_stages
+from aseba_vm.debug import Debugger
+from aseba_vm.dispatch import FirmwareDispatch, PlaygroundDispatch
 from aseba_vm.errors import AeslError, AsebaError, CompileError, SourcePos, TargetError
 from aseba_vm.nativecall import Native, NativeCall, NativeFault
 from aseba_vm.target import LocalEvent, NativeFunction, Parameter, TargetDescription, Variable
@@ -23,7 +25,9 @@ __all__ = [
     "AeslError",
     "AsebaError",
     "CompileError",
+    "Debugger",
     "EventEntry",
+    "FirmwareDispatch",
     "LocalEvent",
     "Memory",
     "Native",
@@ -31,6 +35,7 @@ __all__ = [
     "NativeFault",
     "NativeFunction",
     "Parameter",
+    "PlaygroundDispatch",
     "Program",
     "SourcePos",
     "Stages",
