@@ -216,7 +216,9 @@ class Blocks:
 def find_blocks(words: Sequence[int], memories: Memories) -> Blocks | None:
     """Return the blocks of a program, or None if its branches change words that have another meaning too."""
     size = len(words)
-    first = min(words[0], size - 1) if size else 0
+    if not size:
+        return None
+    first = min(words[0], size - 1)
     events = [words[index + 1] for index in range(1, first, 2) if index + 1 < size]
     leaders = {address for address in events if address < size}
     instructions = _reach(words, leaders)

@@ -12,12 +12,13 @@ program share its translation.
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
+from aseba_vm import engine_python, engine_wasm
 from aseba_vm.blocks import Blocks, Memories, find_blocks
 from aseba_vm.bytecode import WAS_TRUE
-from aseba_vm.engine_python import Function, translate
+from aseba_vm.engine_python import Function
 from aseba_vm.nativecall import Native, Signature
 from aseba_vm.natives import NATIVES
 from aseba_vm.outbox import Emitted
@@ -29,8 +30,10 @@ if TYPE_CHECKING:
 AUTO = "auto"
 INTERPRETER = "interpreter"
 PYTHON = "python"
-ENGINES = (AUTO, INTERPRETER, PYTHON)
-"""Names of engines: the best there is, once a program proves hot; no translation; translation at once."""
+WASM = "wasm"
+ENGINES = (AUTO, INTERPRETER, PYTHON, WASM)
+"""Names of engines: the best there is, once a program proves hot; no translation; translation at once, to Python or
+WebAssembly (which needs wasmtime)."""
 
 _ACTIVE = 1
 _KEPT_PROGRAMS = 64
@@ -40,9 +43,9 @@ _WEIRD_STRETCH = 256
 
 
 class Entry(NamedTuple):
-    """Translated code: what to call, the budget it needs to begin, the words of stack it may use."""
+    """Translated code: what makes the function of one machine, the budget it needs to begin, the words it may push."""
 
-    function: Function
+    make: Callable[[], Function]
     need: int
     depth: int
 
@@ -50,8 +53,11 @@ class Entry(NamedTuple):
 class Translation:
     """A program and its translations by address; None where it cannot be translated."""
 
-    def __init__(self, words: tuple[int, ...], memories: Memories, natives: tuple[tuple[Signature, bool], ...]) -> None:
+    def __init__(
+        self, words: tuple[int, ...], memories: Memories, natives: tuple[tuple[Signature, bool], ...], *, is_wasm: bool
+    ) -> None:
         """Find the blocks of a program; what they become is made when asked for."""
+        self._is_wasm = is_wasm
         self.natives = natives
         self.blocks: Blocks | None = find_blocks(words, memories)
         self._entries: dict[int, Entry | None] = {}
@@ -64,10 +70,6 @@ class Translation:
             kept[pc] &= ~WAS_TRUE
         return tuple(kept)
 
-    def is_block(self, pc: int) -> bool:
-        """Tell whether a block begins at ``pc``."""
-        return self.blocks is not None and pc in self.blocks.by_address
-
     def entry(self, pc: int) -> Entry | None:
         """Return the translation of the block at ``pc`` and what follows."""
         if pc not in self._entries:
@@ -79,21 +81,23 @@ class Translation:
         structure = Structure(self.blocks, pc)
         if structure.is_too_large:
             return None
-        function = translate(self.blocks, structure, self.natives)
-        return Entry(function, structure.main.need, structure.main.depth)
+        translate = engine_wasm.translate if self._is_wasm else engine_python.translate
+        make = translate(self.blocks, structure, self.natives)
+        return Entry(make, structure.main.need, structure.main.depth)
 
 
+_NOTHING = Translation((), Memories(0, 0, 0, ()), (), is_wasm=False)
 _translations: OrderedDict[object, Translation] = OrderedDict()
 
 
 def _translation(
-    words: tuple[int, ...], memories: Memories, natives: tuple[tuple[Signature, bool], ...]
+    words: tuple[int, ...], memories: Memories, natives: tuple[tuple[Signature, bool], ...], *, is_wasm: bool
 ) -> Translation:
     """Return the translation of a program, the same for the same program."""
-    key = (words, memories, tuple(is_confined for _, is_confined in natives))
+    key = (words, memories, natives, is_wasm)
     found = _translations.pop(key, None)
     if found is None:
-        found = Translation(words, memories, natives)
+        found = Translation(words, memories, natives, is_wasm=is_wasm)
         while len(_translations) >= _KEPT_PROGRAMS:
             _translations.popitem(last=False)
     _translations[key] = found
@@ -101,28 +105,30 @@ def _translation(
 
 
 class Engine:
-    """Runs the events of one machine. ``is_eager``: translate at once."""
+    """Runs the events of one machine."""
 
-    def __init__(self, machine: VirtualMachine, natives: Mapping[str, Native], *, is_eager: bool = False) -> None:
+    def __init__(
+        self, machine: VirtualMachine, natives: Mapping[str, Native], *, is_eager: bool, is_wasm: bool | None
+    ) -> None:
+        """``is_eager``: translate at once. ``is_wasm``: to WebAssembly; None: if that is possible."""
         self._machine = machine
         self._is_eager = is_eager
+        self._is_wasm = is_wasm
         target = machine.target
         signatures = tuple(Signature.of(native) for native in target.natives)
-        self._functions = [natives.get(native.name) for native in target.natives]
-        self._natives = tuple(
-            (
-                signature,
-                function is None
-                or (signature.native.name[:5] == "math." and function is NATIVES.get(signature.native.name)),
-            )
-            for signature, function in zip(signatures, self._functions, strict=True)
-        )
+        functions = [(native.name, natives.get(native.name)) for native in target.natives]
+        confined = [
+            function is None or (name.startswith("math.") and function is NATIVES.get(name))
+            for name, function in functions
+        ]
+        self._natives = tuple(zip(signatures, confined, strict=True))
         self._memories = Memories(target.variables_size, target.bytecode_size, target.stack_size, signatures)
-        self._translation: Translation | None = None
+        self._translation = _NOTHING
         self._is_known = False
         self._memory: list[int] = []
         self._is_settled = True
         self._heat: dict[int, int] = {}
+        self._made: dict[int, Function] = {}
 
     def forget(self) -> None:
         """The bytecode may have changed."""
@@ -134,7 +140,6 @@ class Engine:
         if self._is_settled:
             return
         self._is_settled = True
-        assert self._translation is not None
         assert self._translation.blocks is not None
         self._machine.remember(zip(self._translation.blocks.branches, self._memory, strict=True))
 
@@ -142,51 +147,44 @@ class Engine:
         """Execute at most ``limit`` instructions of the active event; return how many were."""
         machine = self._machine
         left = limit
-        translation = self._prepare()
-        interpreted = 0
-        is_warm = self._is_eager or self._warm(machine.pc)
+        if not self._is_eager and not self._is_warm(machine.pc):
+            left -= self._interpret(min(left, _WARM_INSTRUCTIONS))
         while left > 0 and machine.flags & _ACTIVE:
-            if not is_warm:
-                done = self._interpret(min(left, _WARM_INSTRUCTIONS))
-                interpreted += done
-                is_warm = interpreted >= _WARM_INSTRUCTIONS
-            elif translation is None:
-                done = self._interpret(left)
-            elif not translation.is_block(machine.pc):
-                done = self._interpret(1)
+            translation = self._translation if self._is_known else self._prepare()
+            if translation.blocks is None:
+                left -= self._interpret(left)
+            elif machine.pc not in translation.blocks.by_address:
+                left -= self._interpret(1)
             else:
                 entry = translation.entry(machine.pc)
                 if entry is None or machine.sp + entry.depth >= self._memories.stack:
-                    done = self._interpret(min(left, _WEIRD_STRETCH))
+                    left -= self._interpret(min(left, _WEIRD_STRETCH))
                 elif left < entry.need:
-                    done = self._interpret(left)
+                    left -= self._interpret(left)
                 else:
-                    done = self._translated(entry, left)
-            if not self._is_known:
-                translation = self._prepare()
-            left -= done
+                    left -= self._translated(entry, left)
         return limit - left
 
-    def _prepare(self) -> Translation | None:
-        """Return the translation of the program in the machine, None if it cannot have any."""
-        if not self._is_known:
-            self._is_known = True
-            words = self._machine.bytecode
-            known = self._translation
-            if known is None or known.without_memory(words) != known.canonical:
-                self._translation = _translation(words, self._memories, self._natives)
-            self._load()
-        translation = self._translation
-        return translation if translation is not None and translation.blocks is not None else None
+    def _prepare(self) -> Translation:
+        """Return the translation of the program that is in the machine now."""
+        self._is_known = True
+        words = self._machine.bytecode
+        known = self._translation
+        if known.blocks is None or known.without_memory(words) != known.canonical:
+            if self._is_wasm is None:
+                self._is_wasm = engine_wasm.is_available()
+            self._translation = _translation(words, self._memories, self._natives, is_wasm=self._is_wasm)
+            self._made.clear()
+        self._load()
+        return self._translation
 
     def _load(self) -> None:
         """Read from the bytecode what the branches remember."""
-        translation = self._translation
-        if translation is not None and translation.blocks is not None:
+        if self._translation.blocks is not None:
             words = self._machine.words
-            self._memory = [words[pc] >> 9 & 1 for pc in translation.blocks.branches]
+            self._memory = [words[pc] >> 9 & 1 for pc in self._translation.blocks.branches]
 
-    def _warm(self, pc: int) -> bool:
+    def _is_warm(self, pc: int) -> bool:
         """Count a run that begins at ``pc``; tell whether there were many."""
         heat = self._heat.get(pc, 0) + 1
         self._heat[pc] = heat
@@ -195,7 +193,7 @@ class Engine:
     def _interpret(self, limit: int) -> int:
         self.settle()
         done = self._machine.interpret(limit)
-        blocks = self._translation.blocks if self._translation is not None else None
+        blocks = self._translation.blocks
         if blocks is not None and self._is_known:
             self._load()
             if blocks.is_fragile and any(self._machine.words[pc] != word for pc, word in blocks.operands.items()):
@@ -205,7 +203,10 @@ class Engine:
     def _translated(self, entry: Entry, left: int) -> int:
         machine = self._machine
         self._is_settled = False
-        rest, pc, kind, words = entry.function(machine.variables, self._memory, left, self._call, self._emit)
+        function = self._made.get(machine.pc)
+        if function is None:
+            function = self._made[machine.pc] = entry.make()
+        rest, pc, kind, words = function(machine.variables, self._memory, left, self._call, self._emit)
         sp = machine.sp
         if words:
             machine.stack[sp + 1 : sp + 1 + len(words)] = words
@@ -234,4 +235,6 @@ def new_engine(name: str, machine: VirtualMachine, natives: Mapping[str, Native]
     """Return an engine by name, None to interpret. Raises ValueError for an unknown name."""
     if name not in ENGINES:
         raise ValueError(f"engine {name!r} is not one of {', '.join(ENGINES)}")
-    return None if name == INTERPRETER else Engine(machine, natives, is_eager=name != AUTO)
+    if name == INTERPRETER:
+        return None
+    return Engine(machine, natives, is_eager=name != AUTO, is_wasm=None if name == AUTO else name == WASM)

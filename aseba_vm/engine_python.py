@@ -57,13 +57,18 @@ class Left(Exception):  # noqa: N818  # not an error: a way out
     """Translated code is left: address, kind, instructions to charge, words on the stack."""
 
 
-def translate(blocks: Blocks, structure: Structure, natives: Sequence[tuple[Signature, bool]]) -> Function:
-    """Return the function of a structure. A native comes with whether it touches nothing but its arguments."""
+def translate(
+    blocks: Blocks, structure: Structure, natives: Sequence[tuple[Signature, bool]]
+) -> Callable[[], Function]:
+    """Return what makes the function of a structure, the same for all machines.
+
+    A native comes with whether it touches nothing but its arguments.
+    """
     source = _Writer(blocks, structure, natives).source()
     scope: dict[str, Any] = {"Left": Left}
     exec(compile(source, "<aseba>", "exec"), scope)
     function: Function = scope["run"]
-    return function
+    return lambda: function
 
 
 class _Writer:
@@ -80,7 +85,7 @@ class _Writer:
         self.stored: set[int] = set()
         self.branches: set[int] = set()
         self.changed: set[str] = set()
-        survey = _Survey(natives)
+        survey = Survey(natives)
         survey.visit(structure.main.nodes)
         for sub in structure.subs.values():
             survey.visit(sub.nodes)
@@ -143,7 +148,7 @@ class _Writer:
 
     def _runs(self, memory: str, names: dict[int, str], *, is_store: bool) -> None:
         """Copy between words of a memory and names, neighbours at once."""
-        for first, last in _runs(names):
+        for first, last in runs(names):
             group = ", ".join(names[place] for place in range(first, last + 1))
             place = f"{memory}[{first}]" if first == last else f"{memory}[{first}:{last + 1}]"
             self.say(f"{place} = {group}" if is_store else f"{group} = {place}")
@@ -331,7 +336,7 @@ class _Writer:
         self.say(f" {self._leaving(node.after, INTERPRET, uncharged + node.cost)}")
 
 
-class _Survey:
+class Survey:
     """Which words and branches a function uses, and how."""
 
     def __init__(self, natives: Sequence[tuple[Signature, bool]]) -> None:
@@ -415,15 +420,15 @@ def needs_barrier(node: Call, natives: Sequence[tuple[Signature, bool]]) -> bool
     return not is_confined or arguments(node, signature) is None
 
 
-def _runs(places: Iterable[int]) -> list[tuple[int, int]]:
+def runs(places: Iterable[int]) -> list[tuple[int, int]]:
     """Return first and last of each run of neighbours."""
-    runs: list[tuple[int, int]] = []
+    found: list[tuple[int, int]] = []
     for place in sorted(places):
-        if runs and runs[-1][1] == place - 1:
-            runs[-1] = (runs[-1][0], place)
+        if found and found[-1][1] == place - 1:
+            found[-1] = (found[-1][0], place)
         else:
-            runs.append((place, place))
-    return runs
+            found.append((place, place))
+    return found
 
 
-__all__ = ["Function", "Left", "arguments", "needs_barrier", "translate"]
+__all__ = ["Function", "Left", "Survey", "arguments", "needs_barrier", "runs", "translate"]
