@@ -1,4 +1,4 @@
-"""The command line: ``python -m aseba_vm check | compile | dis | run | fmt``.
+"""The command line: ``python -m aseba_vm check | compile | dis | run | fmt``, also installed as ``aseba``.
 
 Exit codes: 0 done, 1 the program is wrong or stopped with a fault, 2 the command line or a file is wrong.
 """
@@ -7,15 +7,18 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from aseba_vm import aesl
-from aseba_vm.bytecode import disassemble
+from aseba_vm.bytecode import describe, disassemble
 from aseba_vm.compiler import Program, Stages, assemble, compile_stages
 from aseba_vm.errors import AeslError, AsebaError, CompileError, TargetError
+from aseba_vm.excerpt import excerpt
 from aseba_vm.layout import formatted
 from aseba_vm.outbox import Emitted, NativeCalled
 from aseba_vm.target import TargetDescription
@@ -30,11 +33,13 @@ _STAGES = ("tokens", "tree", "expanded", "optimised", "code", "words")
 
 _EXAMPLES = """\
 examples:
-  python -m aseba_vm check robot.aesl
-  python -m aseba_vm compile robot.aesl --format json -o robot.json
-  python -m aseba_vm dis robot.aesl --stage tree
-  python -m aseba_vm run count.aseba --global ping=1 --raise ping=5 --show n
-  python -m aseba_vm fmt --write robot.aesl
+  aseba check robot.aesl
+  aseba compile robot.aesl --format json -o robot.json
+  aseba dis robot.aesl --stage tree
+  aseba run count.aseba --global ping=1 --raise ping=5 --show n
+  aseba fmt --write robot.aesl
+
+Without installation: python -m aseba_vm check robot.aesl
 
 A file is an .aesl file if it begins with '<', else the bare text of a program; '-' is the standard input.
 exit codes: 0 done, 1 the program is wrong or stopped with a fault, 2 wrong use or unreadable file.
@@ -64,10 +69,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return command(options)
     except AsebaError as error:
-        print(error if isinstance(error, TargetError) else _located(error, options), file=sys.stderr)
+        print(error if isinstance(error, TargetError) else _told(error, options), file=sys.stderr)
         return WRONG_USE if isinstance(error, TargetError) else WRONG_PROGRAM
     except (_UseError, OSError, UnicodeDecodeError) as error:
-        print(f"aseba_vm: {error}", file=sys.stderr)
+        print(f"aseba: {error}", file=sys.stderr)
         return WRONG_USE
 
 
@@ -109,6 +114,8 @@ def _run(options: argparse.Namespace) -> int:
     program = _compile_source(options, source)
     machine = VirtualMachine(target)
     machine.load(program)
+    if options.trace:
+        machine.tracer = partial(_trace, machine, program, source)
     _execute(machine, program, source, options)
     for name, values in options.raised:
         numbers = [number for number, (event, _) in enumerate(source.events) if event == name]
@@ -146,8 +153,16 @@ def _execute(machine: VirtualMachine, program: Program, source: _Source, options
         machine.stop()
 
 
+def _trace(machine: VirtualMachine, program: Program, source: _Source, pc: int) -> None:
+    """Show an instruction that is about to be executed: address, line, instruction, stack."""
+    row = program.row_of(pc)
+    line = "" if row is None else source.row + row + 1
+    stack = " ".join(map(str, machine.stack[: machine.sp + 1]))
+    print(f"{pc:5} {line:>5}  {describe(machine.bytecode[pc : pc + 3]):32} [{stack}]")
+
+
 def _fmt(options: argparse.Namespace) -> int:
-    text = _text(options.file)
+    text = options.text = _text(options.file)
     if _is_aesl(text):
         network = aesl.loads(text)
         nodes = tuple(replace(node, code=formatted(node.code)) for node in network.nodes)
@@ -176,7 +191,7 @@ def _is_aesl(text: str) -> bool:
 
 
 def _read(options: argparse.Namespace) -> _Source:
-    text = _text(options.file)
+    text = options.text = _text(options.file)
     events, constants = tuple(options.events), tuple(options.constants)
     if not _is_aesl(text):
         return _Source(options.file, text, events, constants)
@@ -212,12 +227,26 @@ def _compile_source(options: argparse.Namespace, source: _Source, *, with_warnin
     if with_warnings:
         for warning in program.warnings:
             moved = replace(warning, pos=warning.pos.moved(source.row, source.col))
-            print(moved.located(options.file), file=sys.stderr)
+            print(
+                moved.located(options.file), _excerpt(options, moved.pos.row, moved.pos.col), sep="\n", file=sys.stderr
+            )
     return program
 
 
-def _located(error: AsebaError, options: argparse.Namespace) -> str:
-    return error.located(options.file) if isinstance(error, CompileError | AeslError) else str(error)
+def _told(error: AsebaError, options: argparse.Namespace) -> str:
+    """The error with its place, and the line there."""
+    match error:
+        case CompileError(pos=None):
+            return error.located(options.file)
+        case CompileError(pos=pos) if pos is not None:
+            return f"{error.located(options.file)}\n{_excerpt(options, pos.row, pos.col)}"
+        case AeslError():
+            return f"{error.located(options.file)}\n{_excerpt(options, error.line - 1, error.column - 1)}"
+    return str(error)
+
+
+def _excerpt(options: argparse.Namespace, row: int, col: int) -> str:
+    return excerpt(options.text, row, col, is_coloured=sys.stderr.isatty() and "NO_COLOR" not in os.environ)
 
 
 def _as_data(program: Program) -> dict[str, object]:
@@ -237,7 +266,7 @@ def _as_data(program: Program) -> dict[str, object]:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="python -m aseba_vm",
+        prog="aseba",
         description="Compile, inspect, run and format Aseba programs.",
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -245,7 +274,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     check = _command(commands, "check", _check, "report the first error, or warnings")
     compiling = _command(commands, "compile", _compile, "write the bytecode")
-    compiling.add_argument("--format", choices=("hex", "json", "text"), default="hex", help="default: %(default)s")
+    compiling.add_argument("--format", choices=("hex", "json", "listing"), default="hex", help="default: %(default)s")
     compiling.add_argument("-o", "--output", metavar="FILE", help="default: standard output")
     dis = _command(commands, "dis", _dis, "show the bytecode or another stage of the compiler")
     dis.add_argument("--stage", choices=_STAGES, default="words", help="default: %(default)s")
@@ -260,6 +289,7 @@ def _parser() -> argparse.ArgumentParser:
         help="event to raise afterwards, with values between commas (may be repeated)",
     )
     run.add_argument("--show", metavar="VARIABLE", action="append", help="default: all variables of the program")
+    run.add_argument("--trace", action="store_true", help="show each instruction: address, line, stack before it")
     limit_help = "instructions of one event, default: %(default)s"
     run.add_argument("--limit", metavar="N", type=_positive, default=1_000_000, help=limit_help)
     fmt = commands.add_parser("fmt", help="indent the source", description="Indent the source regularly.")

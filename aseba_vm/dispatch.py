@@ -1,7 +1,7 @@
 """How events reach a machine, without a robot (VM spec, section 10.5): two policies, one interface.
 
-``raise_local(name)`` and ``receive(event, source, arguments)`` tell what happens; ``turn(limit)`` is one turn of the main
-loop. The robot itself lets a global event kill a handler; here it waits, as pupils expect of a queue.
+``raise_local(name)`` and ``receive(event, source, arguments)`` tell what happens; ``turn(limit)`` is one turn of the
+main loop. The robot itself lets a global event kill a handler; here it waits, as pupils expect of a queue.
 """
 
 from __future__ import annotations

@@ -77,7 +77,7 @@ def test_a_console_script_leads_to_a_function(target: str) -> None:
 def test_every_executable_has_a_launcher_and_a_console_script() -> None:
     assert {path.name for path in (ROOT / "resource" / "bin").iterdir()} == EXECUTABLES
     scripts = _pyproject()["project"]["scripts"]
-    assert {f"thymio_{name}" for name in EXECUTABLES} == scripts.keys() - {"thymio-sim"}
+    assert {f"thymio_{name}" for name in EXECUTABLES} == scripts.keys() - {"aseba", "thymio-sim"}
 
 
 def test_launchers_are_one_text_and_executable() -> None:

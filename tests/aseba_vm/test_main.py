@@ -36,13 +36,13 @@ def test_a_good_program_passes_the_check_silently(file, capsys):
 def test_an_error_is_told_with_file_line_and_column(file, capsys):
     name = file("var n\nn = m")
     assert main(["check", name]) == 1
-    assert capsys.readouterr().err == f"{name}:2:5: no variable is called 'm'; perhaps you meant 'n'\n"
+    assert capsys.readouterr().err == f"{name}:2:5: no variable is called 'm'; perhaps you meant 'n'\nn = m\n    ^\n"
 
 
 def test_an_error_in_an_aesl_file_is_placed_in_the_file(file, capsys):
     name = file(AESL.format(code="nothing"), "robot.aesl")
     assert main(["check", name]) == 1
-    assert capsys.readouterr().err == f"{name}:7:5: no variable is called 'nothing'\n"
+    assert capsys.readouterr().err == f"{name}:7:5: no variable is called 'nothing'\nn = nothing\n    ^\n"
 
 
 def test_a_broken_aesl_file_is_refused(file, capsys):
@@ -54,7 +54,7 @@ def test_a_broken_aesl_file_is_refused(file, capsys):
 def test_doubts_are_told_and_do_no_harm(file, capsys):
     name = file("sub s")
     assert main(["check", name]) == 0
-    assert capsys.readouterr().err == f"{name}:1:1: warning: subroutine 's' is never called\n"
+    assert capsys.readouterr().err == f"{name}:1:1: warning: subroutine 's' is never called\nsub s\n^\n"
 
 
 def test_a_program_is_written_as_words(file, capsys):
@@ -85,6 +85,33 @@ def test_a_program_is_run(file, capsys):
         "call leds.top 8 0 32",
         "n 8",
     ]
+
+
+def test_each_instruction_can_be_shown(file, capsys):
+    assert main(["run", file("var n\nn = 2 + n"), "--trace"]) == 0
+    assert [line.split() for line in capsys.readouterr().out.splitlines()] == [
+        ["3", "2", "push", "2", "[]"],
+        ["4", "2", "load", "128", "[2]"],
+        ["5", "2", "binary", "+", "[2", "0]"],
+        ["6", "2", "store", "128", "[2]"],
+        ["7", "2", "stop", "[]"],
+        ["n", "2"],
+    ]
+
+
+def test_a_program_is_written_as_a_listing(file, capsys):
+    assert main(["compile", file("var n = 1"), "--format", "listing"]) == 0
+    assert "push 1" in capsys.readouterr().out
+
+
+def test_a_terminal_gets_colour_unless_it_refuses(file, capsys, monkeypatch):
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    main(["check", file("n = 1")])
+    assert "\x1b[" in capsys.readouterr().err
+    monkeypatch.setenv("NO_COLOR", "1")
+    main(["check", file("n = 1")])
+    assert "\x1b[" not in capsys.readouterr().err
 
 
 def test_a_fault_is_told_with_its_line(file, capsys):
@@ -172,4 +199,4 @@ def test_help_is_given(arguments, capsys):
     with pytest.raises(SystemExit) as caught:
         main(arguments)
     assert caught.value.code == 0
-    assert "usage: python -m aseba_vm" in capsys.readouterr().out
+    assert "usage: aseba" in capsys.readouterr().out
