@@ -119,6 +119,17 @@ class Call(NamedTuple):
     after: Place
 
 
+class Known(NamedTuple):
+    """A native as far as a translator may rely on it.
+
+    ``is_confined``: it touches nothing but its arguments. ``is_standard``: it is the function of the specification.
+    """
+
+    signature: Signature
+    is_confined: bool
+    is_standard: bool
+
+
 Statement = Assign | AssignIndex | Emit | Call
 
 
@@ -341,6 +352,9 @@ class _Builder:
         popped = tuple(self.stack[len(self.stack) - count :][::-1])
         del self.stack[len(self.stack) - count :]
         place, cost = self.place, self.cost
+        known = arguments(popped, self.memories.natives[number]) or ()
+        if any(address + size > self.memories.variables for address, size in known):
+            return Leave(place, 0)
         keep = self._keep()
         self._begin(pc + 1)
         self.statements.append(Call(place, cost, keep, number, popped, pc, self.place))
@@ -380,3 +394,15 @@ class _Builder:
         """Begin the next statement."""
         self.place = Place(pc, tuple(atom for atom in self.stack if isinstance(atom, Const | Temp)))
         self.cost = 0
+
+
+def arguments(popped: Sequence[Expr], signature: Signature) -> list[tuple[int, int]] | None:
+    """Return address and size of each argument of a native, or None if they are not all constant."""
+    found: list[tuple[int, int]] = []
+    for place, size in enumerate(signature.sizes):
+        address = popped[place]
+        length = Const(size) if size > 0 else popped[-size]
+        if not isinstance(address, Const) or not isinstance(length, Const):
+            return None
+        found.append((address.value & 0xFFFF, length.value & 0xFFFF))
+    return found

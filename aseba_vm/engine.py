@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 from aseba_vm import engine_python, engine_wasm
-from aseba_vm.blocks import Blocks, Memories, find_blocks
+from aseba_vm.blocks import Blocks, Known, Memories, find_blocks
 from aseba_vm.bytecode import WAS_TRUE
 from aseba_vm.engine_python import Function
 from aseba_vm.nativecall import Native, Signature
@@ -54,7 +54,7 @@ class Translation:
     """A program and its translations by address; None where it cannot be translated."""
 
     def __init__(
-        self, words: tuple[int, ...], memories: Memories, natives: tuple[tuple[Signature, bool], ...], *, is_wasm: bool
+        self, words: tuple[int, ...], memories: Memories, natives: tuple[Known, ...], *, is_wasm: bool
     ) -> None:
         """Find the blocks of a program; what they become is made when asked for."""
         self._is_wasm = is_wasm
@@ -91,7 +91,7 @@ _translations: OrderedDict[object, Translation] = OrderedDict()
 
 
 def _translation(
-    words: tuple[int, ...], memories: Memories, natives: tuple[tuple[Signature, bool], ...], *, is_wasm: bool
+    words: tuple[int, ...], memories: Memories, natives: tuple[Known, ...], *, is_wasm: bool
 ) -> Translation:
     """Return the translation of a program, the same for the same program."""
     key = (words, memories, natives, is_wasm)
@@ -102,6 +102,13 @@ def _translation(
             _translations.popitem(last=False)
     _translations[key] = found
     return found
+
+
+def _known(signature: Signature, functions: Mapping[str, Native]) -> Known:
+    name = signature.native.name
+    function = functions.get(name)
+    is_standard = function is not None and function is NATIVES.get(name)
+    return Known(signature, function is None or (is_standard and name.startswith("math.")), is_standard)
 
 
 class Engine:
@@ -116,12 +123,7 @@ class Engine:
         self._is_wasm = is_wasm
         target = machine.target
         signatures = tuple(Signature.of(native) for native in target.natives)
-        functions = [(native.name, natives.get(native.name)) for native in target.natives]
-        confined = [
-            function is None or (name.startswith("math.") and function is NATIVES.get(name))
-            for name, function in functions
-        ]
-        self._natives = tuple(zip(signatures, confined, strict=True))
+        self._natives = tuple(_known(signature, natives) for signature in signatures)
         self._memories = Memories(target.variables_size, target.bytecode_size, target.stack_size, signatures)
         self._translation = _NOTHING
         self._is_known = False

@@ -21,13 +21,14 @@ from aseba_vm.blocks import (
     Emit,
     Expr,
     Index,
+    Known,
     Load,
     Place,
     Statement,
     Temp,
     Unary,
+    arguments,
 )
-from aseba_vm.nativecall import Signature
 from aseba_vm.python_expressions import Expressions
 from aseba_vm.structure import (
     INTERPRET,
@@ -57,13 +58,8 @@ class Left(Exception):  # noqa: N818  # not an error: a way out
     """Translated code is left: address, kind, instructions to charge, words on the stack."""
 
 
-def translate(
-    blocks: Blocks, structure: Structure, natives: Sequence[tuple[Signature, bool]]
-) -> Callable[[], Function]:
-    """Return what makes the function of a structure, the same for all machines.
-
-    A native comes with whether it touches nothing but its arguments.
-    """
+def translate(blocks: Blocks, structure: Structure, natives: Sequence[Known]) -> Callable[[], Function]:
+    """Return what makes the function of a structure, the same for all machines."""
     source = _Writer(blocks, structure, natives).source()
     scope: dict[str, Any] = {"Left": Left}
     exec(compile(source, "<aseba>", "exec"), scope)
@@ -74,7 +70,7 @@ def translate(
 class _Writer:
     """Writes the source of one function."""
 
-    def __init__(self, blocks: Blocks, structure: Structure, natives: Sequence[tuple[Signature, bool]]) -> None:
+    def __init__(self, blocks: Blocks, structure: Structure, natives: Sequence[Known]) -> None:
         self.structure = structure
         self.natives = natives
         self.order = {pc: place for place, pc in enumerate(blocks.branches)}
@@ -339,7 +335,7 @@ class _Writer:
 class Survey:
     """Which words and branches a function uses, and how."""
 
-    def __init__(self, natives: Sequence[tuple[Signature, bool]]) -> None:
+    def __init__(self, natives: Sequence[Known]) -> None:
         self.natives = natives
         self.scalars: set[int] = set()
         self.stored: set[int] = set()
@@ -381,7 +377,7 @@ class Survey:
             case Call(popped=popped):
                 self._expressions(*popped)
                 if not needs_barrier(node, self.natives):
-                    for address, size in arguments(node, self.natives[node.number][0]) or ():
+                    for address, size in arguments(node.popped, self.natives[node.number].signature) or ():
                         self.shared.update(range(address, address + size))
 
     def _expressions(self, *waiting: Expr) -> None:
@@ -401,23 +397,10 @@ class Survey:
                     pass
 
 
-def arguments(node: Call, signature: Signature) -> list[tuple[int, int]] | None:
-    """Return address and size of each argument of a call, or None if they are not all constant."""
-    popped = node.popped
-    found: list[tuple[int, int]] = []
-    for place, size in enumerate(signature.sizes):
-        address = popped[place]
-        length = Const(size) if size > 0 else popped[-size]
-        if not isinstance(address, Const) or not isinstance(length, Const):
-            return None
-        found.append((address.value & 0xFFFF, length.value & 0xFFFF))
-    return found
-
-
-def needs_barrier(node: Call, natives: Sequence[tuple[Signature, bool]]) -> bool:
+def needs_barrier(node: Call, natives: Sequence[Known]) -> bool:
     """Tell whether a native may touch more of memory than arguments known beforehand."""
-    signature, is_confined = natives[node.number]
-    return not is_confined or arguments(node, signature) is None
+    native = natives[node.number]
+    return not native.is_confined or arguments(node.popped, native.signature) is None
 
 
 def runs(places: Iterable[int]) -> list[tuple[int, int]]:
@@ -431,4 +414,4 @@ def runs(places: Iterable[int]) -> list[tuple[int, int]]:
     return found
 
 
-__all__ = ["Function", "Left", "Survey", "arguments", "needs_barrier", "runs", "translate"]
+__all__ = ["Function", "Left", "Survey", "needs_barrier", "runs", "translate"]

@@ -13,11 +13,11 @@ from array import array
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from aseba_vm.blocks import Assign, AssignIndex, Blocks, Branch, Call, Emit, Place, Statement
+from aseba_vm.blocks import Assign, AssignIndex, Blocks, Branch, Call, Emit, Known, Place, Statement, arguments
 from aseba_vm.engine_python import Function, Survey, runs
-from aseba_vm.nativecall import Signature
 from aseba_vm.structure import INTERPRET, Back, Check, Cost, Exit, If, Loop, Node, Routine, Structure, Visit
 from aseba_vm.wasm_expressions import WasmExpressions
+from aseba_vm.wasm_natives import inline
 
 # Where things are, in bytes: words of variables from 0 on, then memories of branches, then what was left.
 _BRANCHES = 0x20000
@@ -55,9 +55,7 @@ class _Runtime:
         return cls.instance
 
 
-def translate(
-    blocks: Blocks, structure: Structure, natives: Sequence[tuple[Signature, bool]]
-) -> Callable[[], Function]:
+def translate(blocks: Blocks, structure: Structure, natives: Sequence[Known]) -> Callable[[], Function]:
     """Return what makes the function of a structure for one machine."""
     survey = Survey(natives)
     survey.visit(structure.main.nodes)
@@ -65,7 +63,7 @@ def translate(
         survey.visit(sub.nodes)
     order = {pc: place for place, pc in enumerate(blocks.branches)}
     runtime = _Runtime.get()
-    module = runtime.wasmtime.Module(runtime.engine, _Writer(structure, order).text())
+    module = runtime.wasmtime.Module(runtime.engine, _Writer(structure, order, natives).text())
     words = _merged(runs(survey.scalars | survey.shared))
     memories = _merged(runs(order[pc] for pc in survey.branches))
     return lambda: _Instance(runtime, module, words, memories).run
@@ -176,9 +174,10 @@ def caller(wasmtime: Any, store: Any, function: Any) -> Callable[[int], int]:
 class _Writer:
     """Writes the text of a module."""
 
-    def __init__(self, structure: Structure, order: dict[int, int]) -> None:
+    def __init__(self, structure: Structure, order: dict[int, int], natives: Sequence[Known]) -> None:
         self.structure = structure
         self.order = order
+        self.natives = natives
         self.lines: list[str] = []
         self.is_sub = False
         self.temps: set[int] = set()
@@ -367,13 +366,21 @@ class _Writer:
             self.lines.append(f"(local.set $s{temp.number} {text})")
 
     def _call(self, node: Call, uncharged: int) -> None:
+        native = self.natives[node.number]
+        known = arguments(node.popped, native.signature)
+        if known is not None and native.is_standard:
+            lines = inline(native.signature.native.name, known)
+            if lines is not None:
+                self._keep(node)
+                self.lines += lines
+                return
         write, say = self.expressions, self.lines.append
         popped = [write.word(word) for word in node.popped]
         self._keep(node)
         for place, text in enumerate(popped):
             say(f"(i32.store (i32.const {_ARGUMENTS + 4 * place}) {text})")
-        arguments = f"(i32.const {node.number}) (i32.const {node.pc}) (i32.const {len(popped)})"
-        say(f"(local.set $h (call $native {arguments}))")
+        head = f"(i32.const {node.number}) (i32.const {node.pc}) (i32.const {len(popped)})"
+        say(f"(local.set $h (call $native {head}))")
         before = self._leaving(node.place, INTERPRET, uncharged)
         after = self._leaving(node.after, INTERPRET, uncharged + node.cost)
         say(f"(if (local.get $h) (then (if (i32.eq (local.get $h) (i32.const 2)) (then {before})) {after}))")

@@ -142,6 +142,45 @@ def _likely_word(source):
     return source.randrange(0x10000)
 
 
+NATIVE_CALLS = (
+    "math.copy(t[1:4], t[0:3])",
+    "math.fill(t, x)",
+    "math.fill(t[0:2], t[1])",
+    "math.addscalar(t[2:5], t[0:3], x)",
+    "math.add(t[1:4], t[0:3], t[2:5])",
+    "math.sub(t, u, t)",
+    "math.mul(t, u, t)",
+    "math.min(t, u, t)",
+    "math.max(t, u, t)",
+    "math.clamp(t, t, u, v)",
+    "math.dot(x, t, u, 33)",
+    "math.dot(x, t, u, 3)",
+    "math.dot(x, t, u, y)",
+    "math.muldiv(t, t, u, v)",
+    "math.div(t, u, v)",
+    "math.stat(t, x, y, z)",
+    "math.rand(t)",
+    "math.sqrt(x, y)",
+    "math.rot2(t[0:1], u[1:2], x)",
+    "deque.push_back(t, x)",
+    "deque.pop_front(t, y)",
+    "leds.top(x, y, z)",
+    "math.copy(x, t[y & 3])",
+)
+
+
+@pytest.mark.parametrize("engine", TRANSLATORS)
+@pytest.mark.parametrize("call", NATIVE_CALLS)
+def test_natives_do_the_same(call, engine):
+    head = "var x = -3\nvar y = 2\nvar z\nvar t[6] = [1, -2, 30000, -32768, 5, 7]\nvar u[6] = [9, 8, -7, 32767, 0, 1]\n"
+    body = (
+        f"var v[6] = [1, -1, 3, 0, 32767, 2]\nonevent ping\nx = event.args[0]\nt[y & 3] = x\ncall {call}\ny++\nx = t[2]"
+    )
+    program = compile(head + body, THYMIO_II, EVENTS)
+    for seed in range(12):
+        _compare(program.words, seed, [engine])
+
+
 def test_an_unknown_engine_is_refused():
     with pytest.raises(ValueError, match="not one of"):
         VirtualMachine(THYMIO_II, engine="steam")

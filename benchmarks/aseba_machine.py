@@ -1,0 +1,312 @@
+"""How fast events run: interpreted, translated, and on the reference's C machine where Debian's package is installed.
+
+    python benchmarks/aseba_machine.py [--rounds 5] [--json]
+
+Each program runs an event again and again in turn on every engine; the figure is the median of the rounds, in millions
+of instructions per second of processor time, and its ratio to the plain interpreter (and to the C machine).
+"""
+
+from __future__ import annotations
+
+import argparse
+import ctypes
+import json
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+from aseba_vm import VirtualMachine, compile
+from aseba_vm.blocks import Known, Memories
+from aseba_vm.engine import INTERPRETER, PYTHON, WASM, Translation
+from aseba_vm.engine_wasm import is_available
+from aseba_vm.nativecall import Signature
+from aseba_vm.targets import THYMIO_II
+
+BEHAVIOUR = """
+var speed = 200
+var state
+var i
+var weights[7] = [-2, -1, 1, 1, 2, 0, 0]
+var filtered[7]
+var left
+var right
+var count
+onevent prox
+count++
+left = speed
+right = speed
+for i in 0:6 do
+  filtered[i] = (filtered[i] * 3 + prox.horizontal[i]) / 4
+  left = left - filtered[i] * weights[i] / 16
+  right = right + filtered[i] * weights[i] / 16
+end
+if filtered[2] > 2000 then
+  state = 1
+elseif filtered[0] > 1500 or filtered[4] > 1500 then
+  state = 2
+else
+  state = 0
+end
+when state == 1 do
+  leds.count = leds.count + 1
+end
+if state == 2 then
+  left = left / 2
+  right = right / 2
+end
+if left > 500 then left = 500 end
+if left < -500 then left = -500 end
+if right > 500 then right = 500 end
+if right < -500 then right = -500 end
+motor.left.target = left
+motor.right.target = right
+""".replace("leds.count", "lit").replace("var count", "var count\nvar lit")
+
+PROGRAMS = {
+    "arithmetic": """
+        var i  var a  var b = 7
+        onevent prox
+        for i in 1:1000 do a = (a * 3 + b) % 1013 - i  b = (a ^ i) + (b >> 1) end""",
+    "array": """
+        var i  var t[50]  var s
+        onevent prox
+        for i in 0:999 do t[i % 50] = t[(i + 7) % 50] + i  s = s + t[i % 50] end""",
+    "branchy": """
+        var i  var a  var b  var c
+        onevent prox
+        for i in 0:999 do
+          if a > b then b = b + 3 else a = a + 2 end
+          when a > 1000 do c++ end
+          if c == 5 or a < 0 then c = 0  a = 0  b = 0 end
+        end""",
+    "subroutines": """
+        var i  var a  var b
+        onevent prox
+        for i in 0:999 do callsub one  callsub two end
+        sub one
+        a = a + i
+        sub two
+        if a > 100 then a = a - 100 end""",
+    "natives": """
+        var i  var t[8]  var u[8]  var d
+        onevent prox
+        for i in 0:199 do call math.fill(t, i)  call math.add(u, u, t)  call math.dot(d, u, t, 3) end""",
+    "behaviour": BEHAVIOUR,
+}
+
+#: Where Debian's package ``aseba`` is unpacked, if not installed.
+ROOT = os.environ.get("ASEBA_ROOT", "")
+
+PROX = 0xFFFE - [event.name for event in THYMIO_II.local_events].index("prox")
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--json", action="store_true", help="print JSON only")
+    arguments = parser.parse_args()
+    engines = [INTERPRETER, PYTHON, *([WASM] if is_available() else [])]
+    report = {name: _measure(source, engines, arguments.rounds) for name, source in PROGRAMS.items()}
+    report["translation"] = {
+        f"{words} words, {name}": _translation_time(words, is_wasm=name == WASM)
+        for name in engines[1:]
+        for words in (100, 300, 1000, 1500)
+    }
+    sys.stdout.write(json.dumps(report, indent=None if arguments.json else 1) + "\n")
+    if not arguments.json:
+        sys.stdout.write(_table(report))
+
+
+def _measure(source: str, engines: list[str], rounds: int) -> dict[str, float]:
+    """Return millions of instructions per second by engine."""
+    program = compile(source, THYMIO_II)
+    runners: dict[str, Callable[[], int]] = {name: _runner(program.words, name) for name in engines}
+    per_event = runners[INTERPRETER]()
+    speeds: dict[str, list[float]] = {name: [] for name in runners}
+    if not _same_variables(program.words):
+        raise RuntimeError("the machines disagree")
+    for _ in range(rounds):
+        for name, runner in runners.items():
+            speeds[name].append(_speed(runner, per_event))
+        native = _c_runner(program.words, per_event, 1000)
+        if native is not None:
+            speeds.setdefault("C", []).append(_speed(native, 1000 * per_event))
+    return {"instructions": per_event, **{name: statistics.median(values) for name, values in speeds.items()}}
+
+
+def _speed(runner: Callable[[], int], per_event: int) -> float:
+    """Run events for a tenth of a second."""
+    repeat = 1
+    while True:
+        begun = time.process_time()
+        for _ in range(repeat):
+            runner()
+        spent = time.process_time() - begun
+        if spent > 0.1:
+            return per_event * repeat / spent / 1e6
+        repeat *= 2
+
+
+def _runner(words: tuple[int, ...], engine: str) -> Callable[[], int]:
+    machine = VirtualMachine(THYMIO_II, engine=engine)
+    machine.set_bytecode(words)
+    machine.resume()
+    machine.run()
+    machine.take_messages()
+
+    def run() -> int:
+        before = machine.instructions
+        machine.setup(PROX)
+        machine.run(65535)
+        return machine.instructions - before
+
+    for _ in range(3):
+        run()
+    return run
+
+
+def _translation_time(size: int, *, is_wasm: bool) -> float:
+    """Return the milliseconds from bytecode of about ``size`` words to Python functions for all events."""
+    block = "a = (a * 3 + t[b & 3]) % 1013\nif a > b then b = b + 1 else t[1] = a end\nwhile c < 3 do c++ end\n"
+    count = 1
+    while True:
+        program = compile(f"var a\nvar b\nvar c\nvar t[4]\nonevent prox\n{block * count}", THYMIO_II)
+        if len(program.words) >= size:
+            break
+        count += 1
+    words = program.words + (0,) * (THYMIO_II.bytecode_size - len(program.words))
+    signatures = tuple(Signature.of(native) for native in THYMIO_II.natives)
+    memories = Memories(THYMIO_II.variables_size, THYMIO_II.bytecode_size, THYMIO_II.stack_size, signatures)
+    times = []
+    for _ in range(7):
+        begun = time.process_time()
+        translation = Translation(
+            words, memories, tuple(Known(signature, True, True) for signature in signatures), is_wasm=is_wasm
+        )
+        for event in program.events:
+            entry = translation.entry(event.address)
+            assert entry is not None
+            entry.make()
+        times.append(time.process_time() - begun)
+    return round(1000 * statistics.median(times), 2)
+
+
+_C_SIDE = r"""
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <aseba/vm/vm.h>
+#include <aseba/vm/natives.h>
+static uint16_t code[2048], breaks;
+static int16_t words[2048], stack[64];
+static AsebaVMState vm;
+static AsebaNativeFunctionPointer natives[] = { NATIVES };
+void AsebaSendMessage(AsebaVMState *v, uint16_t id, const void *data, uint16_t size) { breaks += size; }
+void AsebaSendVariables(AsebaVMState *v, uint16_t start, uint16_t length) {}
+void AsebaSendDescription(AsebaVMState *v) {}
+void AsebaNativeFunction(AsebaVMState *v, uint16_t id) { natives[id](v); }
+void AsebaWriteBytecode(AsebaVMState *v) {}
+void AsebaResetIntoBootloader(AsebaVMState *v) {}
+void AsebaPutVmToSleep(AsebaVMState *v) {}
+void AsebaAssert(AsebaVMState *v, AsebaAssertReason reason) { abort(); }
+void prepare(const uint16_t *program, int length) {
+    memset(&vm, 0, sizeof vm); memset(code, 0, sizeof code); memset(words, 0, sizeof words);
+    memcpy(code, program, 2 * length);
+    vm.nodeId = 1; vm.bytecodeSize = 1534; vm.bytecode = code; vm.variablesSize = 640; vm.variables = words;
+    vm.stackSize = 32; vm.stack = stack;
+    AsebaVMInit(&vm);
+    memcpy(code, program, 2 * length);
+    vm.flags = 0;
+    AsebaVMSetupEvent(&vm, 0xFFFF); AsebaVMRun(&vm, 0);
+}
+void event(int number, int times) {
+    for (int i = 0; i < times; ++i) { AsebaVMSetupEvent(&vm, number); AsebaVMRun(&vm, 65535); }
+}
+int16_t *variables(void) { return words; }
+"""
+_C_NATIVES = {
+    "math.copy": "veccopy",
+    "math.fill": "vecfill",
+    "math.addscalar": "vecaddscalar",
+    "math.add": "vecadd",
+    "math.sub": "vecsub",
+    "math.dot": "vecdot",
+}
+
+
+@cache
+def _c_library() -> ctypes.CDLL | None:
+    """Return the reference's machine behind a small interface; None without package or compiler."""
+    if not Path("/usr/include/aseba/vm/vm.h").is_file() and not ROOT:
+        return None
+    compiler = shutil.which("cc")
+    if compiler is None:
+        return None
+    names = [f"AsebaNative_{_C_NATIVES.get(native.name, 'veccopy')}" for native in THYMIO_II.natives]
+    folder = Path(tempfile.mkdtemp())
+    (folder / "machine.c").write_text(_C_SIDE.replace("NATIVES", ", ".join(names)))
+    library = folder / "machine.so"
+    flags = ["-O2", "-shared", "-fPIC", "-DASEBA_ASSERT", f"-I{ROOT}/usr/include", f"-I{ROOT}/usr/include/aseba", "-w"]
+    command = [compiler, *flags, str(folder / "machine.c"), f"{ROOT}/usr/lib/libasebavm.a", "-o", str(library)]
+    if subprocess.run(command, check=False).returncode != 0:
+        return None
+    loaded = ctypes.CDLL(str(library))
+    loaded.variables.restype = ctypes.POINTER(ctypes.c_int16)
+    return loaded
+
+
+def _c_runner(words: tuple[int, ...], per_event: int, times: int) -> Callable[[], int] | None:
+    """Return a runner of ``times`` events on the reference's machine; None without it."""
+    library = _c_library()
+    if library is None:
+        return None
+    program = (ctypes.c_uint16 * len(words))(*words)
+
+    def run() -> int:
+        library.event(PROX, times)
+        return per_event * times
+
+    library.prepare(program, len(words))
+    return run
+
+
+def _same_variables(words: tuple[int, ...]) -> bool:
+    """Tell whether three events end with the same variables here and there."""
+    library = _c_library()
+    if library is None:
+        return True
+    machine = VirtualMachine(THYMIO_II)
+    machine.set_bytecode(words)
+    machine.resume()
+    machine.run()
+    for _ in range(3):
+        machine.setup(PROX)
+        machine.run(65535)
+    library.prepare((ctypes.c_uint16 * len(words))(*words), len(words))
+    library.event(PROX, 3)
+    return list(library.variables()[0 : len(machine.variables)]) == machine.variables
+
+
+def _table(report: dict[str, dict[str, float]]) -> str:
+    lines = []
+    for name in PROGRAMS:
+        row = report[name]
+        lines.append(f"{name}, {row['instructions']} instructions per event")
+        for engine, speed in row.items():
+            if engine != "instructions":
+                against = f"{speed / row['C']:8.3f} x C" if "C" in row else ""
+                lines.append(f"  {engine:12} {speed:10.2f} M/s {speed / row[INTERPRETER]:8.2f} x plain {against}")
+    lines += [f"translation of {what}: {spent} ms" for what, spent in report["translation"].items()]
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    main()
