@@ -12,20 +12,19 @@ program share its translation.
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple, Protocol
 
 from aseba_vm import engine_python, engine_wasm
 from aseba_vm.blocks import Blocks, Known, Memories, find_blocks
 from aseba_vm.bytecode import WAS_TRUE
+from aseba_vm.codememory import CodeMemory
 from aseba_vm.engine_python import Function
 from aseba_vm.nativecall import Native, Signature
 from aseba_vm.natives import NATIVES
-from aseba_vm.outbox import Emitted
+from aseba_vm.outbox import Emitted, Message
 from aseba_vm.structure import INTERPRET, STOPPED, Structure
-
-if TYPE_CHECKING:
-    from aseba_vm.vm import VirtualMachine
+from aseba_vm.target import TargetDescription
 
 AUTO = "auto"
 INTERPRETER = "interpreter"
@@ -40,6 +39,30 @@ _KEPT_PROGRAMS = 64
 _WARM_RUNS = 2
 _WARM_INSTRUCTIONS = 2000
 _WEIRD_STRETCH = 256
+
+
+class Machine(Protocol):
+    """What the engine needs of a machine: its state, its interpreter, its natives."""
+
+    target: TargetDescription
+    variables: list[int]
+    stack: list[int]
+    pc: int
+    sp: int
+    flags: int
+    instructions: int
+    outbox: list[Message]
+    code: CodeMemory
+
+    @property
+    def bytecode(self) -> tuple[int, ...]:
+        """The words of the bytecode memory, settled."""
+
+    def interpret(self, limit: int) -> int:
+        """Execute at most ``limit`` instructions; return how many were."""
+
+    def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
+        """Call a native; return False if its arguments lie outside memory."""
 
 
 class Entry(NamedTuple):
@@ -115,7 +138,7 @@ class Engine:
     """Runs the events of one machine."""
 
     def __init__(
-        self, machine: VirtualMachine, natives: Mapping[str, Native], *, is_eager: bool, is_wasm: bool | None
+        self, machine: Machine, natives: Mapping[str, Native], *, is_eager: bool, is_wasm: bool | None
     ) -> None:
         """``is_eager``: translate at once. ``is_wasm``: to WebAssembly; None: if that is possible."""
         self._machine = machine
@@ -143,7 +166,7 @@ class Engine:
             return
         self._is_settled = True
         assert self._translation.blocks is not None
-        self._machine.remember(zip(self._translation.blocks.branches, self._memory, strict=True))
+        self._machine.code.remember(zip(self._translation.blocks.branches, self._memory, strict=True))
 
     def run(self, limit: int) -> int:
         """Execute at most ``limit`` instructions of the active event; return how many were."""
@@ -183,7 +206,7 @@ class Engine:
     def _load(self) -> None:
         """Read from the bytecode what the branches remember."""
         if self._translation.blocks is not None:
-            words = self._machine.words
+            words = self._machine.code.words
             self._memory = [words[pc] >> 9 & 1 for pc in self._translation.blocks.branches]
 
     def _is_warm(self, pc: int) -> bool:
@@ -198,7 +221,7 @@ class Engine:
         blocks = self._translation.blocks
         if blocks is not None and self._is_known:
             self._load()
-            if blocks.is_fragile and any(self._machine.words[pc] != word for pc, word in blocks.operands.items()):
+            if blocks.is_fragile and any(self._machine.code.words[pc] != word for pc, word in blocks.operands.items()):
                 self._is_known = False
         return done
 
@@ -233,7 +256,7 @@ class Engine:
         self._machine.outbox.append(Emitted(number, words))
 
 
-def new_engine(name: str, machine: VirtualMachine, natives: Mapping[str, Native]) -> Engine | None:
+def new_engine(name: str, machine: Machine, natives: Mapping[str, Native]) -> Engine | None:
     """Return an engine by name, None to interpret. Raises ValueError for an unknown name."""
     if name not in ENGINES:
         raise ValueError(f"engine {name!r} is not one of {', '.join(ENGINES)}")

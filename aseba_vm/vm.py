@@ -1,16 +1,16 @@
 """The virtual machine (VM spec, section 10): one object of state, one loop, a budget of instructions.
 
 The machine never raises for what a program does: a fault stops it, is told in the outbox and kept in ``fault``.
-Words are decoded when they are written, so that the loop meets operations with their operands ready; a BRANCH that
-remembers its condition rewrites its own word. Arithmetic is exact in Python and cut to 16 bits in :func:`wrap`.
+The loop meets operations with their operands ready (:mod:`aseba_vm.codememory`); a BRANCH that remembers its
+condition rewrites its own word. Arithmetic is exact in Python and cut to 16 bits in :func:`wrap`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from aseba_vm.blocks import MAX_EMITTED
-from aseba_vm.bytecode import LENGTH, WAS_TRUE, Op
+from aseba_vm.codememory import CodeMemory
 from aseba_vm.compiler import Program
 from aseba_vm.engine import AUTO, Engine, new_engine
 from aseba_vm.nativecall import DequeFault, DivisionFault, Native, NativeCall, NativeFault, Signature, wrap
@@ -36,8 +36,6 @@ from aseba_vm.operations import (
     WHEN,
     WHEN_FALSE,
     WHEN_TRUE,
-    Decoded,
-    decoded,
 )
 from aseba_vm.outbox import (
     BadCode,
@@ -96,8 +94,7 @@ class VirtualMachine:
         self.random_state = 0
         self.tracer: Callable[[int], None] | None = None
         self.stack: list[int] = [0] * target.stack_size
-        self._words: list[int] = [0] * target.bytecode_size
-        self._code: list[Decoded] = [(STOP, 0, 0)] * target.bytecode_size
+        self.code = CodeMemory(target.bytecode_size)
         self._breakpoints: list[int] = []
         self._on_reset = on_reset
         self._kills_long_events = kills_long_events
@@ -112,7 +109,7 @@ class VirtualMachine:
     def bytecode(self) -> tuple[int, ...]:
         """The bytecode memory, unsigned words."""
         self._settle()
-        return tuple(self._words)
+        return tuple(self.code.words)
 
     @property
     def is_active(self) -> bool:
@@ -139,11 +136,10 @@ class VirtualMachine:
 
     def set_bytecode(self, words: Sequence[int], start: int = 0) -> None:
         """Write words and reset. Raises ValueError if they do not fit the memory."""
-        if start < 0 or start + len(words) > len(self._words):
-            raise ValueError(f"{len(words)} words at {start} do not fit a bytecode memory of {len(self._words)}")
+        if start < 0 or start + len(words) > len(self.code.words):
+            raise ValueError(f"{len(words)} words at {start} do not fit a bytecode memory of {len(self.code.words)}")
         self._settle()
-        self._words[start : start + len(words)] = [word & 0xFFFF for word in words]
-        self._decode(start, start + len(words))
+        self.code.write(start, words)
         self.reset()
 
     def load(self, program: Program) -> None:
@@ -156,7 +152,7 @@ class VirtualMachine:
         self._settle()
         self.flags = STEP_BY_STEP
         self.fault = None
-        self._clear_edges()
+        self.code.clear_edges()
         if self._engine is not None:
             self._engine.forget()
         if self._on_reset is not None:
@@ -193,7 +189,7 @@ class VirtualMachine:
 
     def set_breakpoint(self, pc: int) -> None:
         """Add a breakpoint if there is room for it, and say so."""
-        if not 0 <= pc < len(self._words):
+        if not 0 <= pc < len(self.code.words):
             self._stop_on(BadCode(pc, "breakpoint-out-of-range"))
             return
         has_room = len(self._breakpoints) < MAX_BREAKPOINTS
@@ -224,7 +220,7 @@ class VirtualMachine:
 
     def address_of(self, event: int) -> int:
         """Return the address of the code of an event, 0 if there is none."""
-        words = self._words
+        words = self.code.words
         for index in range(1, min(words[0], len(words) - 1), 2) if words else ():
             if words[index] == event:
                 return words[index + 1]
@@ -311,11 +307,6 @@ class VirtualMachine:
         self._settle()
         self._engine = new_engine(name, self, self._functions)
 
-    @property
-    def words(self) -> list[int]:
-        """The bytecode memory itself, for the engine."""
-        return self._words
-
     def interpret(self, limit: int) -> int:
         """Execute at most ``limit`` instructions without translation; return how many were. For the engine."""
         self._settle()
@@ -343,19 +334,13 @@ class VirtualMachine:
                 self._stop_on(NodeSpecific(pc, fault.reason))
         return True
 
-    def remember(self, memories: Iterable[tuple[int, int]]) -> None:
-        """Let BRANCHes remember their conditions: address, 0 or 1. For the engine."""
-        for pc, value in memories:
-            if self._words[pc] >> 9 & 1 != value:
-                self._remember(pc)
-
     def _settle(self) -> None:
         if self._engine is not None:
             self._engine.settle()
 
     def _execute(self, limit: int) -> int:
         """Execute at most ``limit`` instructions while the event is active; return how many were."""
-        code, variables, stack = self._code, self.variables, self.stack
+        code, variables, stack = self.code.operations, self.variables, self.stack
         size = len(code)
         pc, sp = self.pc, self.sp
         executed = 0
@@ -390,11 +375,11 @@ class VirtualMachine:
                     sp -= 2
                     if first(stack[sp + 1], stack[sp + 2]):
                         if kind == IF_FALSE:
-                            self._remember(pc)
+                            self.code.turn(pc)
                         pc += 2
                     else:
                         if kind == IF_TRUE:
-                            self._remember(pc)
+                            self.code.turn(pc)
                         pc += second
                         if not 0 <= pc < size:
                             return self._bad(pc - second, sp, executed, "jump-out-of-range")
@@ -427,7 +412,7 @@ class VirtualMachine:
                     sp -= 2
                     is_true = bool(first(stack[sp + 1], stack[sp + 2]))
                     if is_true != (kind == WHEN_TRUE):
-                        self._remember(pc)
+                        self.code.turn(pc)
                     if is_true and kind == WHEN_FALSE:
                         pc += 2
                     else:
@@ -509,26 +494,3 @@ class VirtualMachine:
         self.flags = STEP_BY_STEP
         self.fault = fault
         self.outbox.append(fault)
-
-    # -- bytecode memory
-
-    def _remember(self, pc: int) -> None:
-        """Turn the memory of the BRANCH at ``pc`` over."""
-        self._words[pc] ^= WAS_TRUE
-        self._decode(pc, pc + 1)
-
-    def _clear_edges(self) -> None:
-        """Clear the memory of branches from the word where the reference starts its scan (VM spec, section 10.4)."""
-        words = self._words
-        pc = 2 * words[0] + 1 if words else 0
-        while pc < len(words):
-            word = words[pc]
-            if word >> 12 == Op.BRANCH and word & WAS_TRUE:
-                self._remember(pc)
-            pc += LENGTH[word >> 12]
-
-    def _decode(self, start: int, end: int) -> None:
-        """Decode the operations that words start..end-1 belong to."""
-        words = [*self._words[max(start - 2, 0) : end], *self._words[end : end + 2], 0, 0]
-        for place, pc in enumerate(range(max(start - 2, 0), end)):
-            self._code[pc] = decoded(words[place], words[place + 1], words[place + 2])

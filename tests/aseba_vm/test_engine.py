@@ -7,7 +7,7 @@ import random
 import pytest
 
 from aseba_vm import CompileError, VirtualMachine, compile
-from aseba_vm.engine import ENGINES, INTERPRETER, WASM
+from aseba_vm.engine import AUTO, ENGINES, INTERPRETER, WASM
 from aseba_vm.engine_wasm import is_available
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.programs import Writer
@@ -15,7 +15,7 @@ from tests.aseba_vm.vectors import Replay, families, load
 
 EVENTS = [("ping", 1), ("pair", 2), ("nothing", 0)]
 AVAILABLE = [name for name in ENGINES if name != WASM or is_available()]
-TRANSLATORS = [name for name in AVAILABLE if name != INTERPRETER]
+TRANSLATORS = [name for name in AVAILABLE if name not in (AUTO, INTERPRETER)]
 
 
 def _state(machine):
