@@ -11,6 +11,7 @@ program share its translation.
 
 from __future__ import annotations
 
+import logging
 from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple, Protocol
@@ -105,7 +106,11 @@ class Translation:
         if structure.is_too_large:
             return None
         translate = engine_wasm.translate if self._is_wasm else engine_python.translate
-        make = translate(self.blocks, structure, self.natives)
+        try:
+            make = translate(self.blocks, structure, self.natives)
+        except Exception:  # a defect of ours, or a wasmtime that we don't know: the interpreter can run everything
+            logging.getLogger(__name__).exception("no translation at %d: the interpreter runs it", pc)
+            return None
         return Entry(make, structure.main.need, structure.main.depth)
 
 

@@ -7,8 +7,10 @@ words of the stack into memory. Structure and rules are those of :mod:`aseba_vm.
 
 from __future__ import annotations
 
+import atexit
 import ctypes
 import importlib
+import weakref
 from array import array
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -46,6 +48,17 @@ class _Runtime:
     def __init__(self) -> None:
         self.wasmtime: Any = importlib.import_module("wasmtime")
         self.engine = self.wasmtime.Engine()
+        self._made: weakref.WeakSet[Any] = weakref.WeakSet()
+        atexit.register(self._close)
+
+    def keep(self, made: Any) -> Any:
+        """Return a module or store; it is closed before the interpreter takes wasmtime itself apart."""
+        self._made.add(made)
+        return made
+
+    def _close(self) -> None:
+        for made in [*self._made, self.engine]:
+            made.close()
 
     @classmethod
     def get(cls) -> _Runtime:
@@ -63,7 +76,7 @@ def translate(blocks: Blocks, structure: Structure, natives: Sequence[Known]) ->
         survey.visit(sub.nodes)
     order = {pc: place for place, pc in enumerate(blocks.branches)}
     runtime = _Runtime.get()
-    module = runtime.wasmtime.Module(runtime.engine, _Writer(structure, order, natives).text())
+    module = runtime.keep(runtime.wasmtime.Module(runtime.engine, _Writer(structure, order, natives).text()))
     words = _merged(runs(survey.scalars | survey.shared))
     memories = _merged(runs(order[pc] for pc in survey.branches))
     return lambda: _Instance(runtime, module, words, memories).run
@@ -92,7 +105,7 @@ class _Instance:
         self._failure: BaseException | None = None
         i32 = wasmtime.ValType.i32()
         kind = wasmtime.FuncType([i32, i32, i32], [i32])
-        store = wasmtime.Store(runtime.engine)
+        store = runtime.keep(wasmtime.Store(runtime.engine))
         imports = [wasmtime.Func(store, kind, self._native), wasmtime.Func(store, kind, self._emit)]
         exports = wasmtime.Instance(store, module, imports).exports(store)
         memory = exports["memory"]

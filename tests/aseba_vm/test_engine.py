@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import random
+import subprocess
+import sys
 
 import pytest
 
-from aseba_vm import CompileError, VirtualMachine, compile
+from aseba_vm import CompileError, VirtualMachine, compile, engine_python
 from aseba_vm.engine import AUTO, ENGINES, INTERPRETER, WASM
 from aseba_vm.engine_wasm import is_available
 from aseba_vm.targets import THYMIO_II
@@ -184,3 +186,30 @@ def test_natives_do_the_same(call, engine):
 def test_an_unknown_engine_is_refused():
     with pytest.raises(ValueError, match="not one of"):
         VirtualMachine(THYMIO_II, engine="steam")
+
+
+def test_a_translator_that_fails_leaves_the_program_to_the_interpreter(monkeypatch, caplog):
+    def broken(*_arguments):
+        raise RuntimeError("this cannot be translated")
+
+    monkeypatch.setattr(engine_python, "translate", broken)
+    program = compile("var n = 0\nwhile n < 1000 do\nn = n + 3\nend", THYMIO_II)
+    machine = VirtualMachine(THYMIO_II, engine="python")
+    machine.load(program)
+    machine.run()
+    address, _ = program.addresses["n"]
+    assert machine.variables[address] == 1002
+    assert "the interpreter runs it" in caplog.text
+
+
+@pytest.mark.skipif(not is_available(), reason="wasmtime is not installed")
+def test_a_process_with_translated_programs_ends_in_silence():
+    script = (
+        "from aseba_vm import VirtualMachine, compile\n"
+        "from aseba_vm.targets import THYMIO_II\n"
+        "machine = VirtualMachine(THYMIO_II, engine='wasm')\n"
+        "machine.load(compile('var n = 0\\nwhile n < 1000 do\\nn = n + 3\\nend', THYMIO_II))\n"
+        "machine.run()\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "", "")
