@@ -138,7 +138,15 @@ def test_a_click_on_the_centre_button_reaches_the_program(suite, page, tmp_path)
 
 
 def press(page, part):
-    """A real pointer on a part of the model; held until the page has heard of it."""
+    """A real pointer on a part of the model, once the view has settled; held until the page has heard of it."""
+    page.wait_for_function("() => window.thymio.state().markers > 0")
+    page.wait_for_function(
+        "(part) => { const now = window.thymio.partPosition(part); const last = window.lastPosition;"
+        " window.lastPosition = now;"
+        " return now && last && Math.hypot(now.x - last.x, now.y - last.y) < 0.01; }",
+        arg=part,
+        polling=300,
+    )
     position = page.evaluate("(part) => window.thymio.partPosition(part)", part)
     page.mouse.move(position["x"], position["y"])
     page.mouse.down()
