@@ -113,7 +113,7 @@ class Simulator:
                 ports = self._robots[robot]
                 ports.publish(sensor, reading)
                 self._transforms.take(ports.names, sensor, reading)
-            self._world_ports.publish_clock(result.now_ns, last=False)
+            self._world_ports.publish_clock(result.now_ns, last=self.paused)
 
     def reset(self) -> None:
         """World, time and noise as at the start."""
