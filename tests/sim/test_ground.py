@@ -128,3 +128,31 @@ def test_more_colors_than_the_palette_holds_fall_back_to_the_nearest_grey() -> N
     color = ground.color_at(3.995, 0.05)
     assert color is not None
     assert color[0] == pytest.approx(1.0, abs=0.01)
+
+
+def test_a_drawing_is_seen_at_once_and_only_where_it_is() -> None:
+    ground = Ground([floor(255, -1.0, -1.0, 1.0, 1.0)], [])
+    places = [(x * 0.01, y * 0.01) for x in range(-20, 21) for y in range(-20, 21)]
+    assert {ground.sample(*place) for place in places} == {GroundSample(1.0, 1.0)}
+    ground.draw_segment(-0.05, 0.0, 0.05, 0.0, 0.04, BLACK)
+    fresh = Ground([floor(255, -1.0, -1.0, 1.0, 1.0)], [])
+    fresh.draw_segment(-0.05, 0.0, 0.05, 0.0, 0.04, BLACK)
+    assert ground.sample(0.0, 0.0).reflectance == pytest.approx(0.0)
+    assert [ground.sample(*place) for place in places] == [fresh.sample(*place) for place in places]
+
+
+def test_an_erased_drawing_is_no_longer_seen() -> None:
+    ground = Ground([floor(255, -1.0, -1.0, 1.0, 1.0)], [])
+    ground.draw_segment(-0.05, 0.0, 0.05, 0.0, 0.04, BLACK)
+    assert ground.sample(0.0, 0.0).reflectance == pytest.approx(0.0)
+    ground.draw_segment(-0.05, 0.0, 0.05, 0.0, 0.05, None)
+    assert ground.sample(0.0, 0.0) == GroundSample(1.0, 1.0)
+
+
+def test_restoring_takes_all_drawings_away() -> None:
+    ground = Ground([floor(255, -1.0, -1.0, 1.0, 1.0)], [])
+    ground.draw_segment(-0.05, 0.0, 0.05, 0.0, 0.04, BLACK)
+    ground.sample(0.0, 0.0)
+    ground.restore()
+    assert ground.sample(0.0, 0.0) == GroundSample(1.0, 1.0)
+    assert ground.color_at(0.0, 0.0) == WHITE

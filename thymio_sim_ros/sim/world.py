@@ -53,6 +53,7 @@ class World:
     def reset(self) -> None:
         """Everything as at the start: time 0, robots at their places, the same noise again, no command waiting."""
         self._clock = SimClock()
+        self._ground.restore()
         self._physics = Physics(self.playground.solids)
         shared = Shared(self._clock, self._ground, self._physics, self._proximity_model)
         actuators, sensors = all_actuators(), all_sensors()

@@ -1,0 +1,145 @@
+"""The picture on the ground: which color each square of `pixel_m` has, and where there is no floor at all.
+
+One pixel for each millimetre (more where the ground is very large), aligned with the world's origin. Floors make
+it, paint covers floor, and a pen draws on it; what a pen has drawn can be taken away again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from thymio_sim_ros.sim.geometry import Point
+from thymio_sim_ros.sim.primitives import Color, Floor, Paint
+
+__all__ = ["Area", "Picture"]
+
+_PIXEL_M = 0.001
+_MAX_PIXELS = 25_000_000
+_MAX_COLORS = 254
+
+Area = tuple[int, int, int, int]
+"""Pixels of the picture: left, bottom, right, top; the last two not included."""
+
+
+class Picture:
+    """Colors by number; number 0 is where there is no floor. Invariant: drawing never makes nor removes floor."""
+
+    def __init__(self, floors: Sequence[Floor], paints: Sequence[Paint]) -> None:
+        corners = [vertex for floor in floors for vertex in floor.vertices] or [(0.0, 0.0)]
+        low_x, low_y = (min(corner[axis] for corner in corners) for axis in (0, 1))
+        high_x, high_y = (max(corner[axis] for corner in corners) for axis in (0, 1))
+        self.pixel_m = max(_PIXEL_M, math.sqrt((high_x - low_x) * (high_y - low_y) / _MAX_PIXELS))
+        self.origin = (math.floor(low_x / self.pixel_m), math.floor(low_y / self.pixel_m))
+        """Column and row of the first pixel, counted from the world's origin."""
+        width = math.ceil(high_x / self.pixel_m) - self.origin[0] + 1
+        height = math.ceil(high_y / self.pixel_m) - self.origin[1] + 1
+        self.pixels = np.zeros((height, width), dtype=np.uint8)
+        """Color numbers by row (y) and column (x)."""
+        self.greys = np.zeros(_MAX_COLORS + 1)
+        """Grey 0…1 of each color: the mean of its parts."""
+        self._palette: list[Color] = [(0.0, 0.0, 0.0)]
+        for floor in floors:
+            self._fill(floor.vertices, floor.color, everywhere=True)
+        for paint in paints:
+            self._fill(paint.vertices, paint.color, everywhere=False)
+        self._before: npt.NDArray[np.uint8] | None = None
+        """The pixels before anything was drawn; None while nothing is."""
+
+    def color_at(self, x_m: float, y_m: float) -> Color | None:
+        """The color of a place, or None where there is no floor."""
+        column = math.floor(x_m / self.pixel_m) - self.origin[0]
+        row = math.floor(y_m / self.pixel_m) - self.origin[1]
+        height, width = self.pixels.shape
+        if not (0 <= column < width and 0 <= row < height):
+            return None
+        number = int(self.pixels[row, column])
+        return self._palette[number] if number else None
+
+    def draw_segment(
+        self, x0_m: float, y0_m: float, x1_m: float, y1_m: float, width_m: float, color: Color | None
+    ) -> Area | None:
+        """Draw a line with round ends on the floor, at least a pixel wide; None as color takes drawings away.
+
+        Returns the pixels that may have changed, or None when there are none.
+        """
+        scale = 1.0 / self.pixel_m
+        ax, ay = x0_m * scale - self.origin[0], y0_m * scale - self.origin[1]
+        dx, dy = (x1_m - x0_m) * scale, (y1_m - y0_m) * scale
+        radius = max(width_m * scale, 1.0) / 2
+        height, width = self.pixels.shape
+        left, right = max(0, math.floor(min(ax, ax + dx) - radius)), min(width, math.ceil(max(ax, ax + dx) + radius))
+        bottom, top = max(0, math.floor(min(ay, ay + dy) - radius)), min(height, math.ceil(max(ay, ay + dy) + radius))
+        if left >= right or bottom >= top or (color is None and self._before is None):
+            return None
+        px, py = np.arange(left, right)[None, :] + (0.5 - ax), np.arange(bottom, top)[:, None] + (0.5 - ay)
+        square = dx * dx + dy * dy
+        along = np.clip((px * dx + py * dy) / square, 0.0, 1.0) if square > 0.0 else np.zeros((1, 1))
+        covered = (px - along * dx) ** 2 + (py - along * dy) ** 2 <= radius * radius
+        if self._before is None:
+            self._before = self.pixels.copy()
+        pixels, before = self.pixels[bottom:top, left:right], self._before[bottom:top, left:right]
+        if color is None:
+            pixels[covered] = before[covered]
+        else:
+            pixels[covered & (before > 0)] = self._number(color)
+        return (left, bottom, right, top)
+
+    def restore(self) -> bool:
+        """Take away all that was drawn; whether there was anything."""
+        if self._before is None:
+            return False
+        self.pixels, self._before = self._before, None
+        return True
+
+    def padded(self, top: int, bottom: int, left: int, right: int) -> npt.NDArray[np.uint8]:
+        """Rows `top`…`bottom` and columns `left`…`right` (not included), without floor beyond the picture."""
+        height, width = self.pixels.shape
+        part = np.zeros((bottom - top, right - left), dtype=np.uint8)
+        y0, y1, x0, x1 = max(top, 0), min(bottom, height), max(left, 0), min(right, width)
+        if y0 < y1 and x0 < x1:
+            part[y0 - top : y1 - top, x0 - left : x1 - left] = self.pixels[y0:y1, x0:x1]
+        return part
+
+    def _fill(self, vertices: Sequence[Point], color: Color, *, everywhere: bool) -> None:
+        """Paint the pixels whose centre lies in a convex polygon; without `everywhere` only those that are floor."""
+        number = self._number(color)
+        xs = [x / self.pixel_m - self.origin[0] for x, _ in vertices]
+        ys = [y / self.pixel_m - self.origin[1] for _, y in vertices]
+        height, width = self.pixels.shape
+        bottom, top = max(0, math.floor(min(ys))), min(height, math.ceil(max(ys)) + 1)
+        row = np.arange(bottom, top) + 0.5
+        left, right = np.full(len(row), min(xs)), np.full(len(row), max(xs))
+        outside = np.zeros(len(row), dtype=bool)
+        for this in range(len(xs)):
+            ax, ay, bx, by = xs[this - 1], ys[this - 1], xs[this], ys[this]
+            if by == ay:
+                outside |= (bx - ax) * (row - ay) < 0
+                continue
+            crossing = ax + (bx - ax) * (row - ay) / (by - ay)
+            if by > ay:
+                right = np.minimum(right, crossing)
+            else:
+                left = np.maximum(left, crossing)
+        first = np.maximum(0, np.ceil(left - 0.5)).astype(int)
+        last = np.minimum(width, np.floor(right - 0.5) + 1).astype(int)
+        for line in np.flatnonzero((first < last) & ~outside).tolist():
+            pixels = self.pixels[bottom + line, first[line] : last[line]]
+            if everywhere:
+                pixels[:] = number
+            else:
+                pixels[pixels > 0] = number
+
+    def _number(self, color: Color) -> int:
+        """The number of a color; when there are too many colors, of the nearest grey among them."""
+        if color in self._palette[1:]:
+            return self._palette.index(color, 1)
+        grey = sum(color) / 3
+        if len(self._palette) <= _MAX_COLORS:
+            self._palette.append(color)
+            self.greys[len(self._palette) - 1] = grey
+            return len(self._palette) - 1
+        return int(np.argmin(np.abs(self.greys[1:] - grey))) + 1
