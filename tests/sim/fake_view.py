@@ -32,6 +32,7 @@ class FakeView:
     obstacles: tuple[Obstacle, ...] = ()
     grounds: dict[float, GroundSample] = field(default_factory=dict)
     states: tuple[Any, ...] = ()
+    others: tuple[Any, ...] = ()
 
     def surroundings(self, reach_m: float, height_m: float) -> Surroundings:
         return Surroundings(obstacle for obstacle in self.obstacles if obstacle.height_m >= height_m)

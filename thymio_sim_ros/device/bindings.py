@@ -27,10 +27,14 @@ class Slot:
 
 @dataclass(frozen=True, slots=True)
 class SensorBinding:
-    """The variables that hold a reading's words in order, and the local event it raises."""
+    """The variables that hold a reading's words in order, and the local event it raises.
+
+    `above`: address of the variable that the first word must exceed for the event, and that must not be 0.
+    """
 
     slots: tuple[Slot, ...]
     event: int | None
+    above: int | None = None
 
     @property
     def size(self) -> int:
@@ -53,6 +57,7 @@ def sensors() -> dict[str, SensorBinding]:
         sensor.name: SensorBinding(
             tuple(_slot(name, edge=sensor.aseba.edge_events) for name, _ in sensor.aseba.variables),
             None if sensor.aseba.event is None else _event(sensor.aseba.event),
+            None if sensor.aseba.above is None else target().addresses[sensor.aseba.above][0],
         )
         for sensor in all_sensors()
         if sensor.aseba.variables or sensor.aseba.event
@@ -78,6 +83,12 @@ def outputs() -> tuple[OutputBinding, ...]:
 def natives() -> dict[str, Native]:
     """Every native function that reaches an actuator, by name."""
     return {native.name: native for actuator in all_actuators() for native in actuator.aseba.natives}
+
+
+@cache
+def at_reset() -> tuple[Command, ...]:
+    """What a reset of the robot tells its actuators."""
+    return tuple(command for actuator in all_actuators() for command in actuator.aseba.at_reset)
 
 
 def _slot(name: str, *, edge: bool) -> Slot:

@@ -9,7 +9,7 @@ that fired before come first. A reset clears all variables and switches the ligh
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from aseba_vm import VirtualMachine
@@ -20,7 +20,7 @@ from thymio_sim_ros.device.natives import native_functions
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.device.status import FAULT, INIT, PAUSED, RUNNING, STOPPED, DeviceStatus, sentence
 from thymio_sim_ros.device.timers import Timers
-from thymio_sim_ros.sim.commands import LED_GROUPS, Command, SetLeds
+from thymio_sim_ros.sim.commands import Command
 
 __all__ = ["AsebaDevice", "DeviceStatus", "EmittedEvent"]
 
@@ -112,7 +112,7 @@ class AsebaDevice:
                 self._arrived.add(slot.edge)
             begin = end
         self._last[sensor] = new
-        if binding.event in handled:
+        if binding.event in handled and (binding.above is None or new[0] > memory[binding.above] != 0):
             self._arrived.add(binding.event)
 
     def advance(self, now_ns: int) -> None:
@@ -283,15 +283,15 @@ class AsebaDevice:
         for name in ("motor.left.target", "motor.right.target"):
             self.set_variable(name, (0,))
 
-    def _send(self, command: Command, variable: str | None, words: Sequence[int]) -> None:
+    def _send(self, command: Command, writes: Mapping[str, Sequence[int]]) -> None:
+        """A native's command and the variables that it sets; what they mean is told by the command already."""
         self._commands.append(command)
-        if variable is None:
-            return
-        address, _ = self._addresses[variable]
-        self._vm.write_variables(address, words)
-        for output, sent in zip(bindings.outputs(), self._sent, strict=True):
-            if output.slots[0].address == address:
-                sent[:] = self._words(output)
+        for variable, words in writes.items():
+            address, _ = self._addresses[variable]
+            self._vm.write_variables(address, words)
+            for output, sent in zip(bindings.outputs(), self._sent, strict=True):
+                if output.slots[0].address == address:
+                    sent[:] = self._words(output)
 
     def _words(self, output: bindings.OutputBinding) -> list[int]:
         """What the variables of an output hold."""
@@ -315,5 +315,4 @@ class AsebaDevice:
         self._timers.reset()
         self._sent = [self._words(output) for output in bindings.outputs()]
         at_rest = [output.command(words) for output, words in zip(bindings.outputs(), self._sent, strict=True)]
-        dark: list[Command] = [SetLeds(group, (0,) * size) for group, size in LED_GROUPS.items()]
-        self._commands = at_rest + [command for command in dark if command not in at_rest]
+        self._commands = at_rest + [command for command in bindings.at_reset() if command not in at_rest]

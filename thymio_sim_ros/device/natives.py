@@ -6,7 +6,7 @@ nothing, say so once, and leave in their arguments what a robot without a card a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from aseba_vm import Native, NativeCall
 from thymio_sim_ros.device import bindings
@@ -22,9 +22,9 @@ ANSWERS = {"sd.open": (1, -1), "sd.write": (1, 0), "sd.read": (1, 0), "sd.seek":
 
 
 def native_functions(
-    send: Callable[[Command, str | None, Sequence[int]], None], tell: Callable[[str], None]
+    send: Callable[[Command, Mapping[str, Sequence[int]]], None], tell: Callable[[str], None]
 ) -> dict[str, Native]:
-    """Functions by name: `send` takes command, variable to copy the words to, words; `tell` a sentence."""
+    """Functions by name: `send` takes a command and the variables that the call sets; `tell` a sentence."""
     functions: dict[str, Native] = {}
     reaching = bindings.natives()
     for native in target().natives:
@@ -35,10 +35,10 @@ def native_functions(
     return functions
 
 
-def _reaching(native: aseba_face.Native, send: Callable[[Command, str | None, Sequence[int]], None]) -> Native:
+def _reaching(native: aseba_face.Native, send: Callable[[Command, Mapping[str, Sequence[int]]], None]) -> Native:
     def call_native(call: NativeCall) -> None:
         words = [call.value(argument) for argument in range(len(native.parameters))]
-        send(native.command(words), native.variable, words)
+        send(native.command(words), native.writes(words))
 
     return call_native
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from thymio_sim_ros.sim.commands import Command
@@ -14,12 +14,14 @@ __all__ = ["NO_ACTUATOR_FACE", "NO_SENSOR_FACE", "ActuatorFace", "AsebaFace", "N
 class AsebaFace:
     """A sensor: variables (name, words) that hold its reading's words in order, and the event it raises.
 
-    With `edge_events`, every variable whose value changed also raises the local event of its own name.
+    With `edge_events`, every variable whose value changed also raises the local event of its own name. With `above`,
+    the name of a variable, the event is raised only while that variable is not 0 and the first word exceeds it.
     """
 
     variables: tuple[tuple[str, int], ...] = ()
     event: str | None = None
     edge_events: bool = False
+    above: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,26 +32,34 @@ class Output:
     command: Callable[[Sequence[int]], Command]
 
 
+def _nothing(_words: Sequence[int]) -> Mapping[str, Sequence[int]]:
+    return {}
+
+
 @dataclass(frozen=True, slots=True)
 class Native:
     """A native function of one-word parameters; its arguments make one command.
 
-    `variable`, if any, is a variable of as many words that the arguments are copied to.
+    `writes` says which whole variables the call itself sets, and to what.
     """
 
     name: str
     parameters: tuple[str, ...]
     command: Callable[[Sequence[int]], Command]
     description: str = ""
-    variable: str | None = None
+    writes: Callable[[Sequence[int]], Mapping[str, Sequence[int]]] = _nothing
 
 
 @dataclass(frozen=True, slots=True)
 class ActuatorFace:
-    """An actuator: the variables it obeys, and the native functions that reach it."""
+    """An actuator: the variables it obeys, the native functions that reach it, and what a reset of the robot tells it.
+
+    A reset also tells it what its variables, now all zero, mean.
+    """
 
     outputs: tuple[Output, ...] = ()
     natives: tuple[Native, ...] = ()
+    at_reset: tuple[Command, ...] = ()
 
 
 NO_SENSOR_FACE = AsebaFace()

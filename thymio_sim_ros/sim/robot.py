@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar, cast
 
 from thymio_sim_ros.sim.actuators import Actuator
@@ -18,6 +18,7 @@ from thymio_sim_ros.sim.rays import Surroundings
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.scene import RobotSnapshot
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.sound import Sounding
 from thymio_sim_ros.sim.wheels import Wheels
 
 __all__ = ["Robot", "Shared"]
@@ -28,10 +29,13 @@ S = TypeVar("S")
 class Shared:
     """What all robots of a world share."""
 
-    __slots__ = ("clock", "ground", "physics", "proximity_model")
+    __slots__ = ("clock", "ground", "physics", "proximity_model", "robots")
 
-    def __init__(self, clock: SimClock, ground: Ground, physics: Physics, proximity_model: str) -> None:
+    def __init__(
+        self, clock: SimClock, ground: Ground, physics: Physics, proximity_model: str, robots: Mapping[str, Robot]
+    ) -> None:
         self.clock, self.ground, self.physics, self.proximity_model = clock, ground, physics, proximity_model
+        self.robots = robots
 
 
 class _View:
@@ -61,6 +65,10 @@ class _View:
     @property
     def contacts(self) -> tuple[Contact, ...]:
         return tuple(self._robot.body.touching.values())
+
+    @property
+    def others(self) -> list[Robot]:
+        return [robot for robot in self._world.robots.values() if robot is not self._robot]
 
     def surroundings(self, reach_m: float, height_m: float) -> Surroundings:
         return self._world.physics.surroundings(self._robot.body, reach_m, height_m)
@@ -103,9 +111,15 @@ class Robot:
             if actuator.update is not None:
                 view = _View(self, shared, Noise(seed, self.name, actuator.name, enabled=noise))
                 self._updates.append((actuator.update, state, view))
+        self._sounding = [state for state in self._states.values() if isinstance(state, Sounding)]
         self._sensors = [
             (sensor, _View(self, shared, Noise(seed, self.name, sensor.name, enabled=noise))) for sensor in sensors
         ]
+        self._wakes: dict[type[Any], list[int]] = {}
+        for number, (sensor, _) in enumerate(self._sensors):
+            for kind in sensor.wakes_on:
+                self._wakes.setdefault(kind, []).append(number)
+        self._woken: set[int] = set()
 
     @property
     def pose(self) -> Pose:
@@ -117,6 +131,11 @@ class Robot:
         """How its body really moves, in its own frame."""
         return Twist(self.body.speed_m_s, self.body.spin_rad_s)
 
+    @property
+    def sounding_level(self) -> float:
+        """How loud it is at `sound.NEAR_M`: the sum of all that sounds on it."""
+        return sum(state.sounding_level for state in self._sounding)
+
     def accepts(self, command: object) -> bool:
         """Whether an actuator takes this type of command."""
         return type(command) in self._accepting
@@ -125,6 +144,11 @@ class Robot:
         """Hand a command to its actuator."""
         actuator, state = self._accepting[type(command)]
         actuator.apply(state, command, self._clock.now_ns)
+        self.wake(type(command))
+
+    def wake(self, kind: type[Any]) -> None:
+        """Let the sensors that wait for this type of thing measure at the end of the tick."""
+        self._woken.update(self._wakes.get(kind, ()))
 
     def act(self, dt_s: float) -> None:
         """Run the actuators for one tick."""
@@ -137,7 +161,10 @@ class Robot:
         self.wheels.roll(self.body.covered_m_s, dt_s)
 
     def measure(self, due: Iterable[int]) -> list[tuple[str, str, Reading]]:
-        """The readings of the sensors with these numbers: (robot, sensor, reading)."""
+        """The readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""
+        if self._woken:
+            due = sorted(self._woken.union(due))
+            self._woken.clear()
         readings = []
         for number in due:
             sensor, view = self._sensors[number]

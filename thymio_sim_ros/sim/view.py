@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Protocol, TypeVar
 
 from thymio_sim_ros.sim.geometry import Pose, Twist
@@ -11,9 +12,32 @@ from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.rays import Surroundings
 from thymio_sim_ros.sim.wheels import Wheels
 
-__all__ = ["ActuatorView", "SensorView"]
+__all__ = ["ActuatorView", "OtherRobot", "SensorView"]
 
 S = TypeVar("S")
+
+
+class OtherRobot(Protocol):
+    """Another robot as a sensor notices it; nothing of it may be changed."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        ...
+
+    @property
+    def pose(self) -> Pose:
+        """Where it really is."""
+        ...
+
+    @property
+    def sounding_level(self) -> float:
+        """How loud it is at `sound.NEAR_M`."""
+        ...
+
+    def state(self, kind: type[S]) -> S:
+        """The state of its actuator whose state is a `kind`; KeyError when there is none."""
+        ...
 
 
 class SensorView(Protocol):
@@ -57,6 +81,11 @@ class SensorView(Protocol):
     @property
     def proximity_model(self) -> str:
         """ "default" or "enki" (thymio-robot.md section 7.1)."""
+        ...
+
+    @property
+    def others(self) -> Sequence[OtherRobot]:
+        """All other robots, in the order of the world."""
         ...
 
     def surroundings(self, reach_m: float, height_m: float) -> Surroundings:

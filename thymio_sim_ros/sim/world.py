@@ -55,13 +55,12 @@ class World:
         self._clock = SimClock()
         self._ground.restore()
         self._physics = Physics(self.playground.solids)
-        shared = Shared(self._clock, self._ground, self._physics, self._proximity_model)
+        self._robots: dict[str, Robot] = {}
+        shared = Shared(self._clock, self._ground, self._physics, self._proximity_model, self._robots)
         actuators, sensors = all_actuators(), all_sensors()
         self._schedules = [sensor.schedule for sensor in sensors]
-        self._robots = {
-            start.name: Robot(start, shared, actuators, sensors, seed=self._seed, noise=self._noise)
-            for start in self.playground.robots
-        }
+        for start in self.playground.robots:
+            self._robots[start.name] = Robot(start, shared, actuators, sensors, seed=self._seed, noise=self._noise)
         self._posted: list[tuple[Robot, Command]] = []
 
     @property
@@ -106,6 +105,9 @@ class World:
         contacts = self._physics.step()
         for robot in self._robots.values():
             robot.roll(_TICK_S)
+        for contact in contacts:
+            if contact.is_new:
+                self._robots[contact.robot].wake(Contact)
         return contacts
 
     def _run_sensors(self, now_ns: int) -> tuple[tuple[str, str, Reading], ...]:

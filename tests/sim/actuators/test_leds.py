@@ -27,8 +27,9 @@ def test_colors_and_circle_are_also_variables() -> None:
     assert [output.variables for output in ACTUATOR.aseba.outputs] == [
         ((name, 8 if name == "leds.circle" else 3),) for name in names
     ]
-    assert [native.variable for native in ACTUATOR.aseba.natives if native.variable] == [
-        "leds.circle", "leds.top", "leds.bottom.left", "leds.bottom.right"
+    written = [native.writes([1, 2, 3]) for native in ACTUATOR.aseba.natives]
+    assert [list(variables) for variables in written if variables] == [
+        ["leds.circle"], ["leds.top"], ["leds.bottom.left"], ["leds.bottom.right"]
     ]  # fmt: skip
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from thymio_sim_ros.sim import units
@@ -60,6 +60,10 @@ def _setter(group: str) -> Callable[[Sequence[int]], Command]:
     return set_leds
 
 
+def _copier(variable: str) -> Callable[[Sequence[int]], Mapping[str, Sequence[int]]]:
+    return lambda words: {variable: words}
+
+
 ACTUATOR = Actuator(
     name="leds",
     accepts=(SetLeds,),
@@ -73,8 +77,11 @@ ACTUATOR = Actuator(
             if name == variable
         ),
         natives=tuple(
-            Native(name, parameters, _setter(group), text, name if name in _VARIABLES else None)
+            Native(name, parameters, _setter(group), text, _copier(name))
+            if name in _VARIABLES
+            else Native(name, parameters, _setter(group), text)
             for name, group, parameters, text in _NATIVES
         ),
+        at_reset=tuple(SetLeds(group, (0,) * size) for group, size in LED_GROUPS.items()),
     ),
 )

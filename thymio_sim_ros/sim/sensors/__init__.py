@@ -2,7 +2,7 @@
 
 A module exports SENSOR. `measure` reads a view and returns a reading, or None when there is nothing new. All
 sensors that are due in a tick measure in name order, so `ground` comes before `proximity`, whose `prox` event
-then finds both stored.
+then finds both stored. A sensor of rare things has no period and is woken by what it `wakes_on`.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from thymio_sim_ros import registry
 from thymio_sim_ros.sim.aseba_face import NO_SENSOR_FACE, AsebaFace
@@ -17,18 +18,26 @@ from thymio_sim_ros.sim.clock import Schedule
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.view import SensorView
 
-__all__ = ["Sensor", "all_sensors"]
+__all__ = ["NEVER_NS", "Sensor", "all_sensors"]
+
+NEVER_NS = 1 << 62
+"""Period of a sensor that only wakes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sensor:
-    """One sensor; it measures every `period_ns`, counted from `phase_ns`."""
+    """One sensor; it measures every `period_ns`, counted from `phase_ns`.
+
+    It also measures at the end of a tick in which its robot got a command of a type in `wakes_on`, or, with `Contact`
+    in it, began to touch something.
+    """
 
     name: str
     period_ns: int
     measure: Callable[[SensorView], Reading | None]
     aseba: AsebaFace = NO_SENSOR_FACE
     phase_ns: int = 0
+    wakes_on: tuple[type[Any], ...] = ()
 
     @property
     def schedule(self) -> Schedule:
