@@ -110,7 +110,7 @@ def test_the_actuators_are() -> None:
 
 def test_the_shapes_are() -> None:
     names = [kind.name for kind in shapes.all_shapes()]
-    assert names == ["box", "cylinder", "octagon", "rectangle", "track", "u_figure", "wall"]
+    assert names == ["box", "cylinder", "octagon", "picture", "rectangle", "track", "u_figure", "wall"]
 
 
 def test_every_plug_in_is_named_after_its_module() -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, box, make
+from tests.sim.images import BLACK, WHITE, png, png_uri
 from thymio_sim_ros.sim import playground
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.playground import MAX_BYTES, PlaygroundError
@@ -182,3 +183,56 @@ def test_robots_side_by_side_are_accepted() -> None:
 def test_shapes_without_a_name_are_named_by_kind_and_place() -> None:
     unnamed = {key: value for key, value in FLOOR.items() if key != "name"}
     assert [named.name for named in make([unnamed, {**unnamed, "x_m": 5}]).shapes] == ["rectangle_0", "rectangle_1"]
+
+
+def test_the_nearest_key_and_kind_are_suggested() -> None:
+    assert refused_with(shapes=[{**FLOOR, "sise_x_m": 1.0}]).expected.startswith("'size_x_m' (one of ")
+    assert refused_with(shapes=[{"kind": "rectangel"}]).expected.startswith("'rectangle' (one of ")
+    assert refused_with(titel="x").expected.startswith("'title' (one of ")
+
+
+def with_picture(image: str) -> str:
+    return json.dumps({**GOOD, "shapes": [FLOOR, {"kind": "picture", "image": image, "size_x_m": 0.2}]})
+
+
+def test_a_picture_beside_the_file_becomes_part_of_the_playground(tmp_path: Path) -> None:
+    (tmp_path / "pictures").mkdir()
+    (tmp_path / "pictures" / "track.png").write_bytes(png([[WHITE, BLACK]]))
+    path = tmp_path / "mine.json"
+    path.write_text(with_picture("pictures/track.png"))
+    beside, inside = playground.load(path), playground.loads(with_picture(png_uri([[WHITE, BLACK]])), "mine")
+    assert beside == inside
+
+
+@pytest.mark.parametrize(
+    ("image", "expected"),
+    [
+        ("track.gif", "a file that ends in"),
+        ("nowhere.png", "a file in the playground's folder"),
+        ("../secret.png", "a file in the playground's folder"),
+        ("/etc/secret.png", "a file in the playground's folder"),
+        ("..\\secret.png", "a file in the playground's folder"),
+        ("link.png", "a file in the playground's folder"),
+        ("a\0b.png", "a file in the playground's folder"),
+        ("", "a file that ends in"),
+    ],
+)
+def test_a_picture_elsewhere_is_refused(tmp_path: Path, image: str, expected: str) -> None:
+    (tmp_path / "secret.png").write_bytes(png([[WHITE]]))
+    folder = tmp_path / "playgrounds"
+    folder.mkdir()
+    (folder / "link.png").symlink_to(tmp_path / "secret.png")
+    path = folder / "mine.json"
+    path.write_text(with_picture(image))
+    with pytest.raises(PlaygroundError) as caught:
+        playground.load(path)
+    assert (caught.value.key, expected in caught.value.expected) == ("shapes[1].image", True)
+
+
+def test_a_text_has_no_file_beside_it() -> None:
+    error = refused(with_picture("track.png"))
+    assert (error.key, error.found) == ("shapes[1].image", "the file 'track.png'")
+
+
+def test_a_picture_that_cannot_be_read_is_refused_at_its_key() -> None:
+    assert refused(with_picture("data:image/png;base64,AAAA")).key == "shapes[1].image"

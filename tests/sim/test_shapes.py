@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 
 from tests.sim.builders import GREY, make
+from tests.sim.images import BLACK, WHITE, png_uri
 from thymio_sim_ros.sim.geometry import Point, Pose, is_convex
 from thymio_sim_ros.sim.playground import Playground
-from thymio_sim_ros.sim.primitives import Box, Disc, Solid
+from thymio_sim_ros.sim.primitives import Box, Disc, Print, Solid
 from thymio_sim_ros.sim.shapes import all_shapes
 
 WALLS = {"height_m": 0.12, "thickness_m": 0.02}
@@ -18,6 +19,7 @@ KINDS: dict[str, dict[str, Any]] = {
     "box": {"x_m": 1, "y_m": 2, "size_x_m": 0.3, "size_y_m": 0.2, "height_m": 0.1, "color": GREY, "yaw_rad": 0.5},
     "cylinder": {"x_m": 1, "y_m": 2, "radius_m": 0.1, "height_m": 0.1, "color": GREY},
     "octagon": {"side_m": 1.0, "color": GREY, "walls": WALLS},
+    "picture": {"image": png_uri([[WHITE, BLACK], [BLACK, WHITE]]), "size_x_m": 0.4, "x_m": 1.0, "yaw_rad": 0.5},
     "rectangle": {"size_x_m": 1.0, "size_y_m": 0.5, "color": GREY, "walls": WALLS},
     "track": {"points_m": [[0, 0], [1, 0], [1, 1]], "width_m": 0.04, "color": GREY, "corner_radius_m": 0.2},
     "u_figure": {"unit_m": 0.06, "height_m": 0.12, "color": GREY},
@@ -54,6 +56,15 @@ def test_all_parts_are_convex_and_counter_clockwise(kind: str) -> None:
 def test_a_box_is_one_solid_at_its_pose() -> None:
     (solid,) = built("box").solids
     assert (solid.pose, solid.outline, solid.height_m) == (Pose(1.0, 2.0, 0.5), Box(0.3, 0.2), 0.1)
+
+
+def test_a_picture_keeps_its_proportions_unless_told() -> None:
+    wide = png_uri([[WHITE, BLACK, WHITE]])
+    prints = [built("picture", image=wide).paints[0], built("picture", image=wide, size_y_m=0.1).paints[0]]
+    assert [(one.size_x_m, round(one.size_y_m, 6)) for one in prints if isinstance(one, Print)] == [
+        (0.4, 0.133333),
+        (0.4, 0.1),
+    ]
 
 
 def test_a_cylinder_is_one_disc() -> None:

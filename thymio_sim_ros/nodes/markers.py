@@ -11,13 +11,17 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from geometry_msgs.msg import Point as PointMsg
 from geometry_msgs.msg import Vector3
+from sensor_msgs.msg import CompressedImage
 from std_msgs.msg import ColorRGBA
-from visualization_msgs.msg import Marker, MarkerArray
+from visualization_msgs.msg import Marker, MarkerArray, UVCoordinate
 
 from thymio_sim_ros.nodes.convert import quaternion
 from thymio_sim_ros.nodes.names import MAP_FRAME
+from thymio_sim_ros.sim import pictures
 from thymio_sim_ros.sim.geometry import Point
-from thymio_sim_ros.sim.primitives import Box, Color, Disc, Paint, Primitive, Solid
+from thymio_sim_ros.sim.mosaic import Tile, mosaic
+from thymio_sim_ros.sim.pictures import Pixels
+from thymio_sim_ros.sim.primitives import Box, Color, Disc, Floor, Paint, Primitive, Print, Solid
 
 LAYER_M = 0.0002
 """Each paint lies this much above the one before, so that a viewer need not guess which covers which."""
@@ -32,18 +36,22 @@ def playground_markers(primitives: Iterable[Primitive]) -> MarkerArray:
         for primitive in group:
             if isinstance(primitive, Solid):
                 markers.append(_solid(primitive, len(markers)))
+            elif isinstance(primitive, Print):
+                layer += 1
+                markers.append(_print(primitive, len(markers), layer * LAYER_M))
             else:
                 outlines.append(primitive.vertices)
         if not outlines:
             continue
         layer += kind is Paint
-        namespace = "paint" if kind is Paint else "floor"
+        namespace = "floor" if kind is Floor else "paint"
         markers.append(_patches(f"{namespace}/{name}", len(markers), outlines, color, layer * LAYER_M))
     return MarkerArray(markers=markers)
 
 
 def _sort_of(primitive: Primitive) -> tuple[type, str, Color]:
-    return type(primitive), primitive.name, primitive.color
+    color = (1.0, 1.0, 1.0) if isinstance(primitive, Print) else primitive.color
+    return type(primitive), primitive.name, color
 
 
 def _solid(solid: Solid, number: int) -> Marker:
@@ -71,6 +79,29 @@ def _patches(namespace: str, number: int, outlines: Sequence[Sequence[Point]], c
     marker.pose.position.z = height_m
     marker.points = [_point(corner, 0.0) for outline in outlines for corner in _fan(outline)]
     return marker
+
+
+def _print(printed: Print, number: int, height_m: float) -> Marker:
+    """The picture twice: as a texture (our page, RViz), and as a mosaic of plain colors for viewers without them."""
+    marker = _marker(f"paint/{printed.name}", number, (1.0, 1.0, 1.0))
+    marker.type = Marker.TRIANGLE_LIST
+    marker.scale = Vector3(x=printed.size_x_m, y=printed.size_y_m, z=1.0)
+    marker.pose.position = PointMsg(x=printed.pose.x_m, y=printed.pose.y_m, z=height_m)
+    marker.pose.orientation = quaternion(printed.pose.yaw_rad)
+    pixels = Pixels(printed.columns, printed.rows, printed.rgba)
+    for tile in mosaic(pixels):
+        red, green, blue, opacity = tile.color
+        marker.colors += [ColorRGBA(r=red, g=green, b=blue, a=opacity)] * 6
+        for u, v in _fan(_corners(tile)):
+            marker.points.append(PointMsg(x=u - 0.5, y=v - 0.5))
+            marker.uv_coordinates.append(UVCoordinate(u=u, v=v))
+    marker.texture_resource = f"embedded://{printed.name}"
+    marker.texture = CompressedImage(format="png", data=pictures.encode_png(pixels))
+    return marker
+
+
+def _corners(tile: Tile) -> tuple[Point, ...]:
+    return ((tile.left, tile.bottom), (tile.right, tile.bottom), (tile.right, tile.top), (tile.left, tile.top))
 
 
 def _marker(namespace: str, number: int, color: Color) -> Marker:

@@ -8,6 +8,7 @@ part of a key's name (`size_x_m`). Unknown keys, missing keys and values out of 
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import functools
 import math
 import re
@@ -24,12 +25,15 @@ __all__ = [
     "Coordinate",
     "Extent",
     "FieldError",
+    "Image",
     "Name",
     "Points",
     "Shade",
     "Text",
     "as_color",
+    "image_keys",
     "json_schema",
+    "nearest",
     "read",
 ]
 
@@ -68,6 +72,14 @@ class Pattern:
 
 
 @dataclass(frozen=True, slots=True)
+class File:
+    """A file beside the playground, or its content as a data URI; the loader turns the one into the other."""
+
+    meaning: str
+    longest: int
+
+
+@dataclass(frozen=True, slots=True)
 class Path:
     """A list of [x, y] in metres."""
 
@@ -85,6 +97,7 @@ Name = Annotated[
 ]
 Shade = Annotated[str, Pattern(r"#[0-9A-Fa-f]{6}", "a color such as #1a2b3c", 7)]
 Points = Annotated[tuple[tuple[float, float], ...], Path(2, 1000)]
+Image = Annotated[str, File("a PNG, JPEG or SVG beside this file, or a data URI of one", 6_000_000)]
 
 _COORDINATE = Number("m", -FAR_M, FAR_M)
 
@@ -101,7 +114,7 @@ def read(kind: type[T], data: object, key: str) -> T:
     rules = _rules(cast("Any", kind))
     for name in data:
         if name not in rules:
-            raise FieldError(join(key, str(name)), "an unknown key", "one of " + ", ".join(rules))
+            raise FieldError(join(key, str(name)), "an unknown key", nearest(str(name), tuple(rules)))
     values = {}
     for name, rule in rules.items():
         if name in data:
@@ -120,6 +133,18 @@ def json_schema(kind: type[Any], *, extra: Mapping[str, Any] | None = None) -> d
     return schema | ({"required": required} if required else {})
 
 
+def image_keys(kind: type[Any]) -> tuple[str, ...]:
+    """The fields that hold an `Image`."""
+    return tuple(name for name, rule in _rules(cast("Any", kind)).items() if isinstance(rule.kind[0], File))
+
+
+def nearest(word: str, words: Sequence[str]) -> str:
+    """What is expected in place of a word that is none of some: the nearest first, then all of them."""
+    near = difflib.get_close_matches(word, words, 1)
+    listed = "one of " + ", ".join(words)
+    return f"'{near[0]}' ({listed})" if near else listed
+
+
 def join(key: str, name: str) -> str:
     """The path of a member below a key."""
     return f"{key}.{name}" if key else name
@@ -133,7 +158,7 @@ def describe(value: object) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Rule:
-    kind: object
+    kind: tuple[Any, bool]
     required: bool
     expected: str
     schema: dict[str, Any]
@@ -168,7 +193,7 @@ def _unwrap(hint: Any) -> tuple[Any, bool]:
 
 
 def _value(rule: _Rule, value: object, key: str) -> object:
-    kind, optional = cast("tuple[Any, bool]", rule.kind)
+    kind, optional = rule.kind
     if value is None and optional:
         return None
     match kind:
@@ -176,6 +201,10 @@ def _value(rule: _Rule, value: object, key: str) -> object:
             return _number(kind, value, key)
         case Pattern():
             if not isinstance(value, str) or len(value) > kind.longest or not re.fullmatch(kind.expression, value):
+                raise FieldError(key, describe(value), rule.expected)
+            return value
+        case File(_, longest):
+            if not isinstance(value, str) or len(value) > longest or not value.startswith("data:"):
                 raise FieldError(key, describe(value), rule.expected)
             return value
         case Path():
@@ -207,6 +236,8 @@ def _expected(rule: Any) -> str:
             return f"a number of {unit} from {low:.6g} to {high:.6g}"
         case Pattern(_, meaning, longest):
             return f"{meaning}, at most {longest} characters"
+        case File(meaning, _):
+            return meaning
         case Path(fewest, most):
             return f"{fewest} to {most} points [x, y] in m"
     return "true or false" if rule is bool else "an object"
@@ -218,6 +249,8 @@ def _schema(rule: Any) -> dict[str, Any]:
             return {"type": "number", "minimum": low, "maximum": high, "description": unit}
         case Pattern(expression, meaning, longest):
             return {"type": "string", "pattern": f"^({expression})$", "maxLength": longest, "description": meaning}
+        case File(meaning, longest):
+            return {"type": "string", "minLength": 5, "maxLength": longest, "description": meaning}
         case Path(fewest, most):
             item = {"type": "array", "items": _schema(_COORDINATE), "minItems": 2, "maxItems": 2}
             return {"type": "array", "items": item, "minItems": fewest, "maxItems": most, "description": "x, y in m"}

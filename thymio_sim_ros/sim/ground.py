@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim.picture import Area, Picture
-from thymio_sim_ros.sim.primitives import Color, Floor, Paint
+from thymio_sim_ros.sim.primitives import Color, Floor, Mark
 
 __all__ = ["Ground", "GroundSample"]
 
@@ -45,7 +45,7 @@ NO_FLOOR = GroundSample(0.0, 0.0)
 class Ground:
     """Reflectance and color of the ground. Invariant: only `draw_segment` and `restore` change it."""
 
-    def __init__(self, floors: Sequence[Floor], paints: Sequence[Paint]) -> None:
+    def __init__(self, floors: Sequence[Floor], paints: Sequence[Mark]) -> None:
         self._picture = Picture(floors, paints)
         self._cell_m = self._picture.pixel_m / _CELLS_PER_PIXEL
         steps = (np.arange(_TAPS) - _TAPS // 2) * _TAP_STEP_M

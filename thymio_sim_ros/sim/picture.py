@@ -1,7 +1,7 @@
 """The picture on the ground: which color each square of `pixel_m` has, and where there is no floor at all.
 
 One pixel for each millimetre (more where the ground is very large), aligned with the world's origin. Floors make
-it, paint covers floor, and a pen draws on it; what a pen has drawn can be taken away again.
+it, paint and prints cover floor, and a pen draws on it; what a pen has drawn can be taken away again.
 """
 
 from __future__ import annotations
@@ -13,13 +13,17 @@ import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim.geometry import Point
-from thymio_sim_ros.sim.primitives import Color, Floor, Paint
+from thymio_sim_ros.sim.primitives import Color, Floor, Mark, Print
+from thymio_sim_ros.sim.prints import few_colors, rastered
 
 __all__ = ["Area", "Picture"]
 
 _PIXEL_M = 0.001
 _MAX_PIXELS = 25_000_000
-_MAX_COLORS = 254
+_MAX_COLORS = 65_534
+
+_SPARE_COLORS = 1000
+"""Left free by prints, for paint and pens that come later."""
 
 Area = tuple[int, int, int, int]
 """Pixels of the picture: left, bottom, right, top; the last two not included."""
@@ -28,7 +32,7 @@ Area = tuple[int, int, int, int]
 class Picture:
     """Colors by number; number 0 is where there is no floor. Invariant: drawing never makes nor removes floor."""
 
-    def __init__(self, floors: Sequence[Floor], paints: Sequence[Paint]) -> None:
+    def __init__(self, floors: Sequence[Floor], paints: Sequence[Mark]) -> None:
         corners = [vertex for floor in floors for vertex in floor.vertices] or [(0.0, 0.0)]
         low_x, low_y = (min(corner[axis] for corner in corners) for axis in (0, 1))
         high_x, high_y = (max(corner[axis] for corner in corners) for axis in (0, 1))
@@ -37,16 +41,20 @@ class Picture:
         """Column and row of the first pixel, counted from the world's origin."""
         width = math.ceil(high_x / self.pixel_m) - self.origin[0] + 1
         height = math.ceil(high_y / self.pixel_m) - self.origin[1] + 1
-        self.pixels = np.zeros((height, width), dtype=np.uint8)
+        self.pixels = np.zeros((height, width), dtype=np.uint16)
         """Color numbers by row (y) and column (x)."""
         self.greys = np.zeros(_MAX_COLORS + 1)
         """Grey 0…1 of each color: the mean of its parts."""
         self._palette: list[Color] = [(0.0, 0.0, 0.0)]
+        self._numbers: dict[Color, int] = {}
         for floor in floors:
             self._fill(floor.vertices, floor.color, everywhere=True)
         for paint in paints:
-            self._fill(paint.vertices, paint.color, everywhere=False)
-        self._before: npt.NDArray[np.uint8] | None = None
+            if isinstance(paint, Print):
+                self._print(paint)
+            else:
+                self._fill(paint.vertices, paint.color, everywhere=False)
+        self._before: npt.NDArray[np.uint16] | None = None
         """The pixels before anything was drawn; None while nothing is."""
 
     def color_at(self, x_m: float, y_m: float) -> Color | None:
@@ -95,10 +103,10 @@ class Picture:
         self.pixels, self._before = self._before, None
         return True
 
-    def padded(self, top: int, bottom: int, left: int, right: int) -> npt.NDArray[np.uint8]:
+    def padded(self, top: int, bottom: int, left: int, right: int) -> npt.NDArray[np.uint16]:
         """Rows `top`…`bottom` and columns `left`…`right` (not included), without floor beyond the picture."""
         height, width = self.pixels.shape
-        part = np.zeros((bottom - top, right - left), dtype=np.uint8)
+        part = np.zeros((bottom - top, right - left), dtype=np.uint16)
         y0, y1, x0, x1 = max(top, 0), min(bottom, height), max(left, 0), min(right, width)
         if y0 < y1 and x0 < x1:
             part[y0 - top : y1 - top, x0 - left : x1 - left] = self.pixels[y0:y1, x0:x1]
@@ -133,13 +141,29 @@ class Picture:
             else:
                 pixels[pixels > 0] = number
 
+    def _print(self, printed: Print) -> None:
+        """Put a print on the floor; what is half transparent lets half of the ground through."""
+        (left, bottom, right, top), rgba = rastered(printed, self.pixel_m, self.origin, self.pixels.shape)
+        under = self.pixels[bottom:top, left:right]
+        covered = (rgba[..., 3] > 0) & (under > 0)
+        color, opacity = rgba[covered][:, :3], rgba[covered][:, 3:] / 255
+        if (opacity < 1.0).any():
+            ground = np.array(self._palette)[under[covered]] * 255
+            color = np.rint(color * opacity + ground * (1 - opacity)).astype(np.uint8)
+        if len(color):
+            colors, which = few_colors(color, max(1, _MAX_COLORS + 1 - len(self._palette) - _SPARE_COLORS))
+            numbers = [self._number((red / 255, green / 255, blue / 255)) for red, green, blue in colors.tolist()]
+            under[covered] = np.array(numbers, dtype=np.uint16)[which]
+
     def _number(self, color: Color) -> int:
         """The number of a color; when there are too many colors, of the nearest grey among them."""
-        if color in self._palette[1:]:
-            return self._palette.index(color, 1)
+        known = self._numbers.get(color)
+        if known is not None:
+            return known
         grey = sum(color) / 3
         if len(self._palette) <= _MAX_COLORS:
+            number = self._numbers[color] = len(self._palette)
             self._palette.append(color)
-            self.greys[len(self._palette) - 1] = grey
-            return len(self._palette) - 1
+            self.greys[number] = grey
+            return number
         return int(np.argmin(np.abs(self.greys[1:] - grey))) + 1

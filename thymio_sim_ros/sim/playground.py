@@ -7,25 +7,29 @@ kind, see `sim/shapes`), `robots` (`name`, `x_m`, `y_m`, `yaw_rad`). Data only, 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
 from typing import Any, NoReturn
 
-from thymio_sim_ros.sim import thymio2
-from thymio_sim_ros.sim.fields import Angle, Coordinate, FieldError, Name, Text, describe, json_schema, read
+from thymio_sim_ros.sim import fields, pictures, thymio2
+from thymio_sim_ros.sim.fields import Angle, Coordinate, FieldError, Name, Text, describe, join, json_schema, read
 from thymio_sim_ros.sim.geometry import Pose, convex_hulls_overlap, disc_overlaps_hull
-from thymio_sim_ros.sim.primitives import Disc, Floor, Paint, Primitive, Solid
+from thymio_sim_ros.sim.primitives import Disc, Floor, Mark, Paint, Primitive, Print, Solid
 from thymio_sim_ros.sim.shapes import Shape, ShapeKind, all_shapes
 
 __all__ = ["NamedShape", "Playground", "PlaygroundError", "RobotStart", "load", "loads", "schema"]
 
 FORMAT = 1
-MAX_BYTES = 1_000_000
+MAX_BYTES = 8_000_000
+"""Largest file; pictures inside it count."""
 MAX_SHAPES = 1000
 MAX_ROBOTS = 100
 MAX_PRIMITIVES = 10_000
+
+Beside = Callable[[str], bytes]
+"""A file beside the playground by its name, or FieldError."""
 
 
 class PlaygroundError(Exception):
@@ -75,7 +79,7 @@ class Playground:
     robots: tuple[RobotStart, ...]
     solids: tuple[Solid, ...]
     floors: tuple[Floor, ...]
-    paints: tuple[Paint, ...]
+    paints: tuple[Mark, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,12 +99,12 @@ def load(path: str | Path) -> Playground:
         text = data[: MAX_BYTES + 1].decode("utf-8")
     except UnicodeDecodeError as error:
         raise PlaygroundError(str(path), "", f"a wrong byte at {error.start}", "UTF-8 text") from error
-    return _read(text, path.stem, str(path))
+    return _read(text, path.stem, str(path), _folder(path.parent))
 
 
 def loads(text: str, name: str) -> Playground:
-    """The playground of a text; errors name it as `name`."""
-    return _read(text, name, name)
+    """The playground of a text; errors name it as `name`. Its pictures are data URIs: there is no file beside it."""
+    return _read(text, name, name, _nothing_beside)
 
 
 def schema() -> dict[str, Any]:
@@ -118,11 +122,32 @@ def schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "Thymio playground", **top}
 
 
-def _read(text: str, name: str, path: str) -> Playground:
+def _nothing_beside(name: str) -> bytes:
+    raise FieldError("", f"the file '{name}'", "a data URI, as there is no folder to look in")
+
+
+def _folder(folder: Path) -> Beside:
+    """Reads files of a folder, and of no other."""
+
+    def read_file(name: str) -> bytes:
+        expected = "a file in the playground's folder"
+        try:
+            path = (folder / name).resolve()
+            if "\\" in name or not path.is_relative_to(folder.resolve()):
+                raise FieldError("", describe(name), expected)
+            with path.open("rb") as file:
+                return file.read(pictures.MAX_PICTURE_BYTES + 1)
+        except (OSError, ValueError) as error:
+            raise FieldError("", f"{describe(name)}, which cannot be read", expected) from error
+
+    return read_file
+
+
+def _read(text: str, name: str, path: str, beside: Beside) -> Playground:
     if len(text) > MAX_BYTES:
         raise PlaygroundError(path, "", f"more than {MAX_BYTES} characters", "a smaller file")
     try:
-        return _build(_parse(text), name)
+        return _build(_parse(text), name, beside)
     except FieldError as error:
         raise PlaygroundError(path, error.key, error.found, error.expected) from error
 
@@ -147,7 +172,7 @@ def _parse(text: str) -> object:
         raise FieldError("", "numbers or nesting without measure", "a playground") from error
 
 
-def _build(data: object, name: str) -> Playground:
+def _build(data: object, name: str, beside: Beside) -> Playground:
     if not isinstance(data, Mapping):
         raise FieldError("", describe(data), "an object")
     members = dict(data)
@@ -158,7 +183,7 @@ def _build(data: object, name: str) -> Playground:
     robot_items = _items(members.pop("robots", []), "robots", MAX_ROBOTS)
     titles = read(_Titles, members, "")
     kinds = {kind.name: kind for kind in all_shapes()}
-    shapes = tuple(_shape(item, index, kinds) for index, item in enumerate(shape_items))
+    shapes = tuple(_shape(item, index, kinds, beside) for index, item in enumerate(shape_items))
     robots = tuple(read(RobotStart, item, f"robots[{index}]") for index, item in enumerate(robot_items))
     _check_names(shapes, robots)
     primitives = _primitives(shapes)
@@ -172,7 +197,7 @@ def _build(data: object, name: str) -> Playground:
         robots=robots,
         solids=solids,
         floors=tuple(primitive for primitive in primitives if isinstance(primitive, Floor)),
-        paints=tuple(primitive for primitive in primitives if isinstance(primitive, Paint)),
+        paints=tuple(primitive for primitive in primitives if isinstance(primitive, Paint | Print)),
     )
 
 
@@ -184,16 +209,33 @@ def _items(value: object, key: str, most: int) -> list[object]:
     return value
 
 
-def _shape(item: object, index: int, kinds: Mapping[str, ShapeKind]) -> NamedShape:
+def _shape(item: object, index: int, kinds: Mapping[str, ShapeKind], beside: Beside) -> NamedShape:
     key = f"shapes[{index}]"
     if not isinstance(item, Mapping):
         raise FieldError(key, describe(item), "an object")
     members = dict(item)
     kind = members.pop("kind", None)
     if not isinstance(kind, str) or kind not in kinds:
-        raise FieldError(f"{key}.kind", describe(kind), "one of " + ", ".join(kinds))
+        raise FieldError(f"{key}.kind", describe(kind), fields.nearest(str(kind), tuple(kinds)))
     name = read(_Label, {"name": members.pop("name", f"{kind}_{index}")}, key).name
-    return NamedShape(kind, name, read(kinds[kind].form, members, key))
+    form = kinds[kind].form
+    for image in fields.image_keys(form):
+        if image in members:
+            members[image] = _embedded(members[image], join(key, image), beside)
+    return NamedShape(kind, name, read(form, members, key))
+
+
+def _embedded(value: object, key: str, beside: Beside) -> object:
+    """A picture's file as a data URI; anything else as it is."""
+    if not isinstance(value, str) or value.startswith("data:"):
+        return value
+    media_type = pictures.MEDIA_TYPES.get(Path(value).suffix.lower())
+    if media_type is None:
+        raise FieldError(key, describe(value), "a file that ends in " + ", ".join(pictures.MEDIA_TYPES))
+    try:
+        return pictures.data_uri(beside(value), media_type)
+    except FieldError as error:
+        raise FieldError(key, error.found, error.expected) from error
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,6 +258,8 @@ def _primitives(shapes: tuple[NamedShape, ...]) -> list[Primitive]:
     for index, named in enumerate(shapes):
         try:
             found.extend(named.shape.primitives(named.name))
+        except FieldError as error:
+            raise FieldError(f"shapes[{index}].{error.key}", error.found, error.expected) from error
         except ValueError as error:
             raise FieldError(f"shapes[{index}]", str(error), f"a {named.kind} that can be built") from error
         if len(found) > MAX_PRIMITIVES:

@@ -1,4 +1,4 @@
-"""What every shape is made of: solids that stop robots and reflect light, floors, and paint on floors.
+"""What every shape is made of: solids that stop robots and reflect light, floors, paint and pictures on floors.
 
 Shapes give primitives; physics, sensors, scene and editor know nothing else (architecture section 14).
 Colors are red, green, blue from 0 to 1.
@@ -6,11 +6,11 @@ Colors are red, green, blue from 0 to 1.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from thymio_sim_ros.sim.geometry import Point, Pose
 
-__all__ = ["Box", "Color", "Disc", "Floor", "Outline", "Paint", "Polygon", "Primitive", "Solid"]
+__all__ = ["Box", "Color", "Disc", "Floor", "Mark", "Outline", "Paint", "Polygon", "Primitive", "Print", "Solid"]
 
 Color = tuple[float, float, float]
 
@@ -80,4 +80,29 @@ class Paint:
     color: Color
 
 
-Primitive = Solid | Floor | Paint
+@dataclass(frozen=True, slots=True)
+class Print:
+    """A picture on the ground, centred on its pose; its first row is the far side (+y), its first column -x.
+
+    `rgba` holds red, green, blue, opacity (0…255) of each pixel, row by row; the ground shows through what is not
+    opaque. Like paint it covers what was painted before.
+    """
+
+    name: str
+    pose: Pose
+    size_x_m: float
+    size_y_m: float
+    columns: int
+    rows: int
+    rgba: bytes = field(repr=False)
+
+    @property
+    def vertices(self) -> tuple[Point, ...]:
+        """Corners in the world's frame, counter-clockwise from the lower left one of the picture."""
+        return self.pose.place_all(Box(self.size_x_m, self.size_y_m).vertices)
+
+
+Mark = Paint | Print
+"""What lies on floors and makes them dark or bright."""
+
+Primitive = Solid | Floor | Paint | Print

@@ -6,18 +6,18 @@ from dataclasses import dataclass
 
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.playground import Playground
-from thymio_sim_ros.sim.primitives import Floor, Paint, Solid
+from thymio_sim_ros.sim.primitives import Floor, Mark, Solid
 
 __all__ = ["RobotSnapshot", "Scene", "Snapshot"]
 
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """What does not change: solids stand on floors, paint lies on them, later paint covers earlier paint."""
+    """What does not change: solids stand on floors, paint and prints lie on them, later ones cover earlier ones."""
 
     solids: tuple[Solid, ...]
     floors: tuple[Floor, ...]
-    paints: tuple[Paint, ...]
+    paints: tuple[Mark, ...]
 
     @classmethod
     def of(cls, playground: Playground) -> Scene:

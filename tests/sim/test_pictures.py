@@ -1,0 +1,126 @@
+"""Ground pictures: what is decoded, and what is refused before it is unpacked."""
+
+from __future__ import annotations
+
+import io
+import struct
+import zlib
+
+import pytest
+
+from tests.sim.images import BLACK, CLEAR, RED, WHITE, pixels, png, png_uri, svg_uri
+from thymio_sim_ros.sim import pictures
+from thymio_sim_ros.sim.fields import FieldError
+from thymio_sim_ros.sim.pictures import MAX_PICTURE_BYTES, Pixels, data_uri
+
+image = pytest.importorskip("PIL.Image")
+
+
+def decode(uri: str, width_m: float = 0.1) -> Pixels:
+    return pictures.decode(uri, key="image", width_m=width_m)
+
+
+def refused(uri: str) -> FieldError:
+    with pytest.raises(FieldError) as caught:
+        decode(uri)
+    return caught.value
+
+
+def color_at(found: Pixels, column: int, row: int) -> tuple[int, ...]:
+    start = 4 * (row * found.columns + column)
+    return tuple(found.rgba[start : start + 4])
+
+
+def chunk(kind: bytes, data: bytes) -> bytes:
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+def png_of_size(columns: int, rows: int) -> bytes:
+    header = struct.pack(">IIBBBBB", columns, rows, 8, 2, 0, 0, 0)
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", header)
+        + chunk(b"IDAT", zlib.compress(b"\0" * 1000))
+        + chunk(b"IEND", b"")
+    )
+
+
+def test_a_png_comes_back_pixel_by_pixel() -> None:
+    rows = [[WHITE, BLACK, RED], [CLEAR, (1, 2, 3, 4), WHITE]]
+    assert decode(png_uri(rows)) == pixels(rows)
+
+
+@pytest.mark.parametrize(("mode", "value"), [("L", 128), ("I;16", 128 * 257), ("1", 1), ("P", 0)])
+def test_pngs_of_other_kinds_become_colors(mode: str, value: int) -> None:
+    out = io.BytesIO()
+    image.new(mode, (2, 2), value).save(out, "PNG")
+    grey = {"1": 255, "P": 0}.get(mode, 128)
+    assert color_at(decode(data_uri(out.getvalue(), "image/png")), 1, 1) == (grey, grey, grey, 255)
+
+
+def test_a_jpeg_is_read() -> None:
+    out = io.BytesIO()
+    image.new("RGB", (8, 8), (255, 255, 255)).save(out, "JPEG")
+    assert color_at(decode(data_uri(out.getvalue(), "image/jpeg")), 3, 3) == WHITE
+
+
+def test_an_svg_is_drawn_two_pixels_for_each_millimetre() -> None:
+    pytest.importorskip("resvg_py")
+    found = decode(svg_uri('<rect width="50" height="50" fill="#808080"/>'), 0.1)
+    assert (found.columns, found.rows) == (200, 100)
+    assert color_at(found, 50, 50) == (128, 128, 128, 255)
+    assert color_at(found, 150, 50)[3] == 0
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ("<text>Hello</text>", "<text>"),
+        ('<image href="/etc/hostname" width="10" height="10"/>', "<image>"),
+        ('<use xlink:href="other.svg#a"/>', "a reference to 'other.svg#a'"),
+        ('<filter id="f"><feTurbulence numOctaves="9999999"/></filter>', "<filter>"),
+        ("<script>alert(1)</script>", "<script>"),
+    ],
+)
+def test_an_svg_that_depends_on_something_else_is_refused(body: str, found: str) -> None:
+    error = refused(svg_uri(body))
+    assert (error.key, error.found) == ("image (SVG line 1)", found)
+
+
+def test_an_svg_that_repeats_itself_without_end_is_refused() -> None:
+    groups = [f'<g id="g{i + 1}"><use href="#g{i}"/><use href="#g{i}"/></g>' for i in range(40)]
+    assert "elements to draw" in refused(svg_uri('<rect id="g0" width="1" height="1"/>' + "".join(groups))).found
+
+
+@pytest.mark.parametrize("attributes", ["", 'viewBox="0 0 1 100000"', 'width="10" height="0"', 'viewBox="0 0 a b"'])
+def test_an_svg_without_a_sensible_size_is_refused(attributes: str) -> None:
+    assert refused(svg_uri("<rect/>", attributes)).key == "image"
+
+
+def test_entities_in_an_svg_are_refused() -> None:
+    text = '<!DOCTYPE svg [<!ENTITY a "aaaaaaaa"><!ENTITY b "&a;&a;">]><svg viewBox="0 0 1 1">&b;</svg>'
+    assert "entity 'a'" in refused(data_uri(text.encode(), "image/svg+xml")).found
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "data:image/gif;base64,R0lGODlhAQABAAAAACw=",
+        "data:image/png,plain",
+        "data:image/png;base64,###",
+        data_uri(b"no picture", "image/png"),
+        data_uri(png([[WHITE]])[:40], "image/png"),
+        data_uri(b"<svg", "image/svg+xml"),
+        data_uri(b"\xff\xfe<", "image/svg+xml"),
+        data_uri(b"<html/>", "image/svg+xml"),
+        data_uri(b"\0" * (MAX_PICTURE_BYTES + 1), "image/png"),
+        "data:",
+    ],
+)
+def test_what_is_no_picture_is_refused_with_its_key(uri: str) -> None:
+    assert refused(uri).key.startswith("image")
+
+
+@pytest.mark.parametrize("side", [8193, 60_000, 2**31 - 1])
+def test_a_picture_of_too_many_pixels_is_refused_before_it_is_unpacked(side: int) -> None:
+    assert "pixels" in refused(data_uri(png_of_size(side, side), "image/png")).found

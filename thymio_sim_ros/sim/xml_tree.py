@@ -1,0 +1,102 @@
+"""XML text as a small tree that knows its lines; whatever could grow or fetch something is refused.
+
+Used for `.playground` files and SVG pictures, which come from strangers: a document type that declares entities
+is an error, nothing is ever loaded from elsewhere, and depth and number of elements have a limit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from xml.parsers import expat
+
+__all__ = ["Element", "XmlError", "parse"]
+
+MAX_DEPTH = 200
+MAX_ELEMENTS = 100_000
+
+
+class XmlError(Exception):
+    """XML that is refused: its line (1 is the first), what was found, what was expected."""
+
+    def __init__(self, line: int, found: str, expected: str) -> None:
+        super().__init__(f"line {line}: found {found}, expected {expected}")
+        self.line = line
+        self.found = found
+        self.expected = expected
+
+
+@dataclass(slots=True)
+class Element:
+    """An element: its name without a name space's prefix, attributes likewise, children, text directly in it."""
+
+    tag: str
+    attributes: Mapping[str, str]
+    line: int
+    children: list[Element] = field(default_factory=list)
+    text: str = ""
+
+    def walk(self) -> Iterator[Element]:
+        """This element and everything below it, in the order of the text."""
+        yield self
+        for child in self.children:
+            yield from child.walk()
+
+
+def parse(data: bytes | str) -> Element:
+    """The root of a document; XmlError for text that is no XML or declares entities."""
+    return _Builder().build(data)
+
+
+class _Builder:
+    """One reading of one document."""
+
+    def __init__(self) -> None:
+        self._parser = expat.ParserCreate()
+        self._open: list[Element] = []
+        self._root: Element | None = None
+        self._count = 0
+        self._parser.buffer_text = True
+        self._parser.StartElementHandler = self._start
+        self._parser.EndElementHandler = self._end
+        self._parser.CharacterDataHandler = self._text
+        self._parser.EntityDeclHandler = self._entity
+        self._parser.ExternalEntityRefHandler = self._external
+
+    def build(self, data: bytes | str) -> Element:
+        try:
+            self._parser.Parse(data, True)
+        except expat.ExpatError as error:
+            raise XmlError(error.lineno, expat.ErrorString(error.code), "XML") from error
+        except (ValueError, LookupError) as error:
+            raise XmlError(1, "an encoding that is not known here", "UTF-8") from error
+        assert self._root is not None
+        return self._root
+
+    def _start(self, name: str, attributes: dict[str, str]) -> None:
+        line = self._parser.CurrentLineNumber
+        self._count += 1
+        if len(self._open) >= MAX_DEPTH or self._count > MAX_ELEMENTS:
+            raise XmlError(line, "elements without measure", f"at most {MAX_ELEMENTS}, {MAX_DEPTH} deep")
+        element = Element(_local(name), {_local(key): value for key, value in attributes.items()}, line)
+        if self._open:
+            self._open[-1].children.append(element)
+        else:
+            self._root = element
+        self._open.append(element)
+
+    def _end(self, _name: str) -> None:
+        self._open.pop()
+
+    def _text(self, data: str) -> None:
+        self._open[-1].text += data
+
+    def _entity(self, name: str, *_declaration: object) -> None:
+        raise XmlError(self._parser.CurrentLineNumber, f"a declaration of the entity '{name}'", "no entities")
+
+    def _external(self, *_reference: object) -> int:
+        raise XmlError(self._parser.CurrentLineNumber, "a reference to something outside", "a file that stands alone")
+
+
+def _local(name: str) -> str:
+    return name.rpartition(":")[2]
