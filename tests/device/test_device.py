@@ -6,7 +6,7 @@ import pytest
 
 from thymio_sim_ros.device.device import AsebaDevice, DeviceStatus
 from thymio_sim_ros.device.program import load_program
-from thymio_sim_ros.sim.commands import LED_GROUPS, MotorTargets, SetLeds
+from thymio_sim_ros.sim.commands import LED_GROUPS, MotorTargets, ReleaseLeds, SetLeds
 
 BUDGET = 5000
 NO_BUTTON = (0, 0, 0, 0, 0)
@@ -32,7 +32,7 @@ def test_a_new_program_darkens_the_lights_and_stops_the_wheels():
     device.load(load_program("", "none"))
     commands = device.take_commands()
     assert MotorTargets(0, 0) in commands
-    groups = [command.group for command in commands if isinstance(command, SetLeds)]
+    groups = [command.group for command in commands if isinstance(command, ReleaseLeds)]
     assert sorted(groups) == sorted(LED_GROUPS)
 
 
@@ -325,12 +325,12 @@ def test_words_of_the_wrong_number_are_refused():
 
 
 def test_what_is_not_modelled_yet_is_said_once():
-    device = device_with("var status = 5\nonevent prox\ncall sound.freq(440, 30)\ncall sd.open(1, status)")
+    device = device_with("var status = 5\nonevent prox\ncall sound.play(1)\ncall sd.open(1, status)")
     for _ in range(2):
         device.feed("proximity", NEAR)
         device.run(BUDGET)
     assert device.take_notices() == [
-        "sound.freq has no effect in this simulator yet",
+        "sound.play has no effect in this simulator yet",
         "sd.open has no effect in this simulator yet",
     ]
     assert device.get_variable("status") == (-1,)

@@ -32,6 +32,7 @@ class FakeView:
     obstacles: tuple[Obstacle, ...] = ()
     grounds: dict[float, GroundSample] = field(default_factory=dict)
     states: tuple[Any, ...] = ()
+    woken: list[type[Any]] = field(default_factory=list)
     others: tuple[Any, ...] = ()
 
     def surroundings(self, reach_m: float, height_m: float) -> Surroundings:
@@ -42,6 +43,9 @@ class FakeView:
 
     def state(self, kind: type[S]) -> S:
         return next(state for state in self.states if isinstance(state, kind))
+
+    def wake(self, kind: type[Any]) -> None:
+        self.woken.append(kind)
 
     def place(self, pose: Pose) -> None:
         self.pose = pose

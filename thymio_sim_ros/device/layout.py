@@ -41,10 +41,13 @@ def extend(base: TargetDescription, sensors: Sequence[Sensor], actuators: Sequen
         for name in [*edges, *([face.event] if face.event else [])]:
             events.setdefault(name, LocalEvent(name))
     for native in (native for actuator in actuators for native in actuator.aseba.natives):
-        parameters = tuple(Parameter(name, 1) for name in native.parameters)
+        parameters = tuple(Parameter(name, size) for name, size in native.signature)
         known = natives.setdefault(native.name, NativeFunction(native.name, parameters, native.description))
-        if [parameter.size for parameter in known.parameters] != [1] * len(parameters):
-            raise ValueError(f"native {native.name}: a plug-in declares {len(parameters)} parameters of one word")
+        sizes, expected = ([one.size for one in both] for both in (parameters, known.parameters))
+        if sizes != expected:
+            raise ValueError(
+                f"native {native.name}: a plug-in declares parameters of {sizes} words, expected {expected}"
+            )
     extended = replace(
         base,
         variables=tuple(variables.values()),

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from aseba_vm import Native, NativeCall
+from aseba_vm.nativecall import NativeFault
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.sim import aseba_face
@@ -37,8 +38,12 @@ def native_functions(
 
 def _reaching(native: aseba_face.Native, send: Callable[[Command, Mapping[str, Sequence[int]]], None]) -> Native:
     def call_native(call: NativeCall) -> None:
-        words = [call.value(argument) for argument in range(len(native.parameters))]
-        send(native.command(words), native.writes(words))
+        words = [word for argument in range(len(call.sizes)) for word in call.read(argument)]
+        try:
+            command = native.command(words)
+        except ValueError as error:
+            raise NativeFault(str(error)) from error
+        send(command, native.writes(words))
 
     return call_native
 

@@ -18,13 +18,22 @@ from geometry_msgs.msg import Twist as TwistMsg
 from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState, Joy, LaserScan, Range
-from std_msgs.msg import Bool, Float32MultiArray, Int16MultiArray, MultiArrayDimension, MultiArrayLayout
+from std_msgs.msg import (
+    Bool,
+    Float32MultiArray,
+    Int8MultiArray,
+    Int16MultiArray,
+    MultiArrayDimension,
+    MultiArrayLayout,
+    UInt8MultiArray,
+)
 
 from thymio_sim_ros.nodes import qos
 from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
 from thymio_sim_ros.sim import commands, readings
 from thymio_sim_ros.sim.geometry import Pose, Twist
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.tones import VOLUME_OFF
 
 SECOND_NS = 1_000_000_000
 
@@ -174,6 +183,26 @@ def _leds(reading: readings.LedReading, _names: RobotNames, _options: ConvertOpt
     )
 
 
+def _sound(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Float32MultiArray:
+    """[Hz, s, volume 0…1]: 0 Hz for samples, inf s for a tone without end, zeros for silence."""
+    seconds = math.inf if reading.duration_ns is None else reading.duration_ns / SECOND_NS
+    parts = layout([("frequency_hz", 1), ("duration_s", 1), ("volume", 1)])
+    return Float32MultiArray(layout=parts, data=[reading.frequency_hz, seconds, volume(reading.shift)])
+
+
+def _heard_samples(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Any:
+    return UInt8MultiArray(data=reading.samples) if reading.samples else None
+
+
+def _heard_wave(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Int8MultiArray:
+    return Int8MultiArray(data=list(reading.wave))
+
+
+def volume(shift: int) -> float:
+    """Loudness 0…1 of samples that lose so many bits."""
+    return 0.0 if shift >= VOLUME_OFF else 2.0**-shift
+
+
 def _words(reading: Any, _names: RobotNames, _options: ConvertOptions) -> Int16MultiArray:
     return Int16MultiArray(data=list(reading.words))
 
@@ -210,13 +239,18 @@ ROWS: dict[str, tuple[Row, ...]] = {
         Row("ground_truth/odom", Odometry, _truth),
     ),
     "leds": (Row("led/state", Float32MultiArray, _leds, profile=qos.LATCHED, always=True),),
+    "loudspeaker": (
+        Row("sound/state/wave", Int8MultiArray, _heard_wave, profile=qos.LATCHED, always=True, on_change=True),
+        Row("sound/state/samples", UInt8MultiArray, _heard_samples, profile=qos.EVENTS),
+        Row("sound/state", Float32MultiArray, _sound, profile=qos.EVENTS),
+    ),
 }
 """Sensor name → topics in SI units. Besides, every sensor that Aseba sees has `raw/<sensor>`."""
 
 
 def rows_of(sensor: Sensor) -> tuple[Row, ...]:
     """Topics of a sensor; one added by a plug-in has those of its words."""
-    raw = (Row(f"raw/{sensor.name}", Int16MultiArray, _words),) if sensor.aseba.variables else ()
+    raw = (Row(f"raw/{sensor.name}", Int16MultiArray, _words),) if sensor.aseba.variables or sensor.aseba.event else ()
     return ROWS.get(sensor.name, ()) + raw
 
 
@@ -226,41 +260,43 @@ class CommandError(ValueError):
 
 def body_twist(message: TwistMsg, timeout_ns: int) -> commands.BodyTwist:
     """geometry_msgs/Twist → command; linear.x and angular.z count. NaN and inf are refused."""
-    _finite(message.linear.x, "linear.x")
-    _finite(message.angular.z, "angular.z")
+    finite(message.linear.x, "linear.x")
+    finite(message.angular.z, "angular.z")
     return commands.BodyTwist(message.linear.x, message.angular.z, timeout_ns)
 
 
 def wheel_velocities(data: Any, timeout_ns: int) -> commands.WheelVelocities:
     """[left, right] in rad/s → command."""
-    values = _sized(data, 2, "[left, right] in rad/s")
+    values = sized(data, 2, "[left, right] in rad/s")
     for value in values:
-        _finite(value, "wheel speed")
+        finite(value, "wheel speed")
     return commands.WheelVelocities(float(values[0]), float(values[1]), timeout_ns)
 
 
 def motor_targets(data: Any) -> commands.MotorTargets:
     """[left, right] in Thymio units → command."""
-    left, right = _sized(data, 2, "[left, right] in Thymio units")
+    left, right = sized(data, 2, "[left, right] in Thymio units")
     return commands.MotorTargets(int(left), int(right))
 
 
 def led_levels(group: str, intensities: Any) -> commands.SetLeds:
     """Intensities 0…1 → command with levels 0…32; clamped; fewer than the group has are refused."""
     size = commands.LED_GROUPS[group]
-    values = _sized(intensities, size, f"{size} intensities 0…1")
+    values = sized(intensities, size, f"{size} intensities 0…1")
     for value in values:
-        _finite(value, "intensity")
+        finite(value, "intensity")
     return commands.SetLeds(group, tuple(round(min(max(v, 0.0), 1.0) * commands.LED_FULL) for v in values))
 
 
-def _sized(data: Any, size: int, what: str) -> list[Any]:
+def sized(data: Any, size: int, what: str) -> list[Any]:
+    """The values of an array of this size; CommandError for another."""
     values = list(data)
     if len(values) != size:
         raise CommandError(f"{len(values)} values found, expected {what}")
     return values
 
 
-def _finite(value: float, what: str) -> None:
+def finite(value: float, what: str) -> None:
+    """CommandError for NaN and infinities."""
     if not math.isfinite(value):
         raise CommandError(f"{what} is {value}, expected a finite number")

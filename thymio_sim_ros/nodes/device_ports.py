@@ -11,17 +11,16 @@ from typing import Any, Protocol
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.node import Node
-from std_msgs.msg import ColorRGBA, Float32MultiArray, Int16MultiArray
+from std_msgs.msg import Int16MultiArray
 from std_srvs.srv import Trigger
 
 from thymio_sim_ros.device.bindings import sensor_names
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.program import ThymioProgram
-from thymio_sim_ros.nodes import convert, qos
+from thymio_sim_ros.nodes import command_topics, convert, qos
 from thymio_sim_ros.nodes.names import RobotNames, topic_word
-from thymio_sim_ros.nodes.robot_ports import BODY_LEDS, WARN_EVERY_S
-from thymio_sim_ros.sim import commands
-from thymio_sim_ros.sim.commands import Command, MotorTargets, SetLeds
+from thymio_sim_ros.nodes.robot_ports import WARN_EVERY_S
+from thymio_sim_ros.sim.commands import Command
 
 RUN_BUDGET = 5000
 """Instructions per turn; a handler that needs more goes on in the next (a robot does 65535 between polls)."""
@@ -49,12 +48,10 @@ class DevicePorts:
         self._event_ports: list[tuple[Any, Any]] = []
         self._event_publishers: dict[str, Any] = {}
         topic = names.topic
-        self._motors = node.create_publisher(Int16MultiArray, topic("motor/target"), qos.COMMAND)
-        self._leds = {
-            group: node.create_publisher(ColorRGBA, topic(f"led/body/{group}"), qos.LEDS)
-            if group in BODY_LEDS
-            else node.create_publisher(Float32MultiArray, topic(f"led/{group}"), qos.LEDS)
-            for group in commands.LED_GROUPS
+        self._outputs = {
+            row.topic: (row.encode, node.create_publisher(row.type, topic(row.topic), row.profile))
+            for row in command_topics.ROWS
+            if row.encode is not None
         }
         self._status_publisher = node.create_publisher(DiagnosticStatus, topic("aseba/status"), qos.LATCHED)
         self._any_event = node.create_publisher(Int16MultiArray, topic("aseba/events"), qos.EVENTS)
@@ -124,7 +121,8 @@ class DevicePorts:
             self._node.destroy_service(service)
         for subscription in self._subscriptions:
             self._node.destroy_subscription(subscription)
-        for publisher in (self._motors, *self._leds.values(), self._status_publisher, self._any_event):
+        publishers = [publisher for _, publisher in self._outputs.values()]
+        for publisher in (*publishers, self._status_publisher, self._any_event):
             self._node.destroy_publisher(publisher)
 
     def _feeder(self, sensor: str) -> Callable[[Int16MultiArray], None]:
@@ -148,15 +146,10 @@ class DevicePorts:
         return callback
 
     def _send(self, command: Command) -> None:
-        if isinstance(command, MotorTargets):
-            self._motors.publish(Int16MultiArray(data=[command.left, command.right]))
-        elif isinstance(command, SetLeds):
-            levels = [level / commands.LED_FULL for level in command.levels]
-            if command.group in BODY_LEDS:
-                red, green, blue = levels
-                self._leds[command.group].publish(ColorRGBA(r=red, g=green, b=blue, a=1.0))
-            else:
-                self._leds[command.group].publish(Float32MultiArray(data=levels))
+        topic = command_topics.topic_of(command)
+        if topic is not None:
+            encode, publisher = self._outputs[topic]
+            publisher.publish(encode(command))
 
     def _close_events(self) -> None:
         for publisher, subscription in self._event_ports:

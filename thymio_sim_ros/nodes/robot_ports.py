@@ -14,11 +14,12 @@ from geometry_msgs.msg import PoseWithCovarianceStamped, TwistStamped
 from geometry_msgs.msg import Twist as TwistMsg
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
-from std_msgs.msg import Bool, ColorRGBA, Empty, Float32MultiArray, Float64MultiArray, Int16MultiArray, String
+from std_msgs.msg import Bool, Empty, Float64MultiArray, String
 from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import Trigger
 
-from thymio_sim_ros.nodes import convert, qos
+from thymio_sim_ros.nodes import command_topics, convert, qos
+from thymio_sim_ros.nodes.command_topics import CommandRow
 from thymio_sim_ros.nodes.convert import CommandError, ConvertOptions, Row
 from thymio_sim_ros.nodes.description import urdf
 from thymio_sim_ros.nodes.names import RobotNames
@@ -29,8 +30,6 @@ from thymio_sim_ros.sim.sensors import all_sensors
 
 Post = Callable[[Command], None]
 
-BODY_LEDS = ("top", "bottom_left", "bottom_right")
-PLAIN_LEDS = tuple(group for group in commands.LED_GROUPS if group not in BODY_LEDS)
 WARN_EVERY_S = 5.0
 
 
@@ -80,6 +79,8 @@ class RobotPorts:
             if not row.always and not publisher.get_subscription_count():
                 continue
             message = row.encode(reading, self.names, self.options)
+            if message is None:
+                continue
             if row.on_change:
                 if self._last.get(row.topic) == message:
                     continue
@@ -107,9 +108,7 @@ class RobotPorts:
             ("cmd_vel", TwistMsg, self._on_twist, qos.COMMAND),
             ("cmd_vel_stamped", TwistStamped, self._on_stamped_twist, qos.COMMAND),
             ("wheels/command", Float64MultiArray, self._on_wheels, qos.COMMAND),
-            ("motor/target", Int16MultiArray, lambda m: self._post(convert.motor_targets(m.data)), qos.COMMAND),
-            *((f"led/body/{group}", ColorRGBA, self._body_led(group), qos.LEDS) for group in BODY_LEDS),
-            *((f"led/{group}", Float32MultiArray, self._plain_led(group), qos.LEDS) for group in PLAIN_LEDS),
+            *((row.topic, row.type, self._poster(row), row.profile) for row in command_topics.ROWS),
             ("led/off", Empty, self._on_leds_off, qos.LEDS),
             *((f"press/{button}", Bool, self._press(button), qos.EVENTS) for button in commands.BUTTONS),
             ("initialpose", PoseWithCovarianceStamped, self._on_pose, qos.COMMAND),
@@ -140,11 +139,8 @@ class RobotPorts:
     def _on_wheels(self, message: Float64MultiArray) -> None:
         self._post(convert.wheel_velocities(message.data, self._timeout_ns()))
 
-    def _body_led(self, group: str) -> Callable[[ColorRGBA], None]:
-        return lambda color: self._post(convert.led_levels(group, (color.r, color.g, color.b)))
-
-    def _plain_led(self, group: str) -> Callable[[Float32MultiArray], None]:
-        return lambda message: self._post(convert.led_levels(group, message.data))
+    def _poster(self, row: CommandRow) -> Callable[[Any], None]:
+        return lambda message: self._post(row.decode(message))
 
     def _on_leds_off(self, _message: Empty) -> None:
         for group, size in commands.LED_GROUPS.items():

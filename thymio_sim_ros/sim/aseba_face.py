@@ -38,9 +38,10 @@ def _nothing(_words: Sequence[int]) -> Mapping[str, Sequence[int]]:
 
 @dataclass(frozen=True, slots=True)
 class Native:
-    """A native function of one-word parameters; its arguments make one command.
+    """A native function; the words of its arguments, one after the other, make one command.
 
-    `writes` says which whole variables the call itself sets, and to what.
+    A parameter is a name for one word, or `name:words` for an array. `writes` says which whole variables the call
+    itself sets, and to what. A ValueError of `command` is a fault of the program, with its text.
     """
 
     name: str
@@ -48,6 +49,12 @@ class Native:
     command: Callable[[Sequence[int]], Command]
     description: str = ""
     writes: Callable[[Sequence[int]], Mapping[str, Sequence[int]]] = _nothing
+
+    @property
+    def signature(self) -> tuple[tuple[str, int], ...]:
+        """Name and number of words of each parameter."""
+        parts = (parameter.partition(":") for parameter in self.parameters)
+        return tuple((name, int(words or 1)) for name, _, words in parts)
 
 
 @dataclass(frozen=True, slots=True)

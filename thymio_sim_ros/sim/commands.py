@@ -22,6 +22,8 @@ LED_GROUPS: dict[str, int] = {
     "temperature": 2,
     "microphone": 1,
     "remote": 1,
+    "battery": 3,
+    "sd": 1,
 }
 """LED groups and their number of lights (thymio-robot.md sections 6.3 and 8)."""
 
@@ -57,10 +59,87 @@ class BodyTwist:
 
 @dataclass(frozen=True, slots=True)
 class SetLeds:
-    """Brightness 0…32 of every light of one group of `LED_GROUPS`."""
+    """Brightness 0…32 of every light of one group of `LED_GROUPS`; the robot's own rules no longer touch the group."""
 
     group: str
     levels: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SetLed:
+    """Brightness 0…32 of one light by its number (thymio-robot.md section 8.2)."""
+
+    number: int
+    level: int
+
+
+@dataclass(frozen=True, slots=True)
+class ShowOnLeds:
+    """What the robot's own rules show on one group (section 8.4): as `SetLeds`, unless somebody has taken it over."""
+
+    group: str
+    levels: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ReleaseLeds:
+    """The lights of one group go off and back to the robot's own rules."""
+
+    group: str
+
+
+@dataclass(frozen=True, slots=True)
+class PlayTone:
+    """A tone of the current wave, limited to what the robot can play; `duration_ns` None: until stopped."""
+
+    frequency_hz: float
+    duration_ns: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class PlaySystemSound:
+    """One of the robot's own sounds 0…7 (thymio-robot.md section 9); another number is a short tone."""
+
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class PlaySamples:
+    """A sound of its own: unsigned 8 bit samples at 7812.5 Hz."""
+
+    samples: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class StopSound:
+    """Silence; a sound that is stopped has not finished."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetWave:
+    """The period that tones are made of: 142 samples −128…127."""
+
+    samples: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SetVolume:
+    """Volume of the loudspeaker as bits that samples lose: 0 is loudest, 8 is off (section 9)."""
+
+    shift: int
+
+
+@dataclass(frozen=True, slots=True)
+class SetPen:
+    """The pen in the pen hole, put in by an operator; None leaves a property as it is.
+
+    `color`: red, green, blue 0…1; `width_m` 0.001…0.1; `erase`: it takes drawings away instead.
+    """
+
+    down: bool | None = None
+    color: tuple[float, float, float] | None = None
+    width_m: float | None = None
+    erase: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,4 +164,22 @@ class ResetOdometry:
     """Let the wheel odometry start again from zero, here."""
 
 
-Command = MotorTargets | WheelVelocities | BodyTwist | SetLeds | PressButton | MoveRobot | ResetOdometry
+Command = (
+    MotorTargets
+    | WheelVelocities
+    | BodyTwist
+    | SetLeds
+    | SetLed
+    | ShowOnLeds
+    | ReleaseLeds
+    | PlayTone
+    | PlaySystemSound
+    | PlaySamples
+    | StopSound
+    | SetWave
+    | SetVolume
+    | SetPen
+    | PressButton
+    | MoveRobot
+    | ResetOdometry
+)

@@ -78,4 +78,39 @@ class LedReading:
     groups: tuple[tuple[str, tuple[int, ...]], ...]
 
 
-Reading = ProximityReading | GroundReading | ButtonsReading | MotorReading | PoseReading | LedReading
+@dataclass(frozen=True, slots=True)
+class LoudspeakerReading:
+    """What the loudspeaker says from `began_ns` on; sent on change.
+
+    A tone of `frequency_hz` made of `wave`, for `duration_ns` (None: until stopped); or `samples`, unsigned 8 bit at
+    7812.5 Hz, with frequency 0; or silence, with neither. Samples lose `shift` bits: 0 is loudest, 8 is off.
+    """
+
+    stamp_ns: int
+    words: tuple[int, ...]
+    began_ns: int
+    frequency_hz: float
+    duration_ns: int | None
+    wave: tuple[int, ...]
+    samples: bytes
+    shift: int
+
+
+@dataclass(frozen=True, slots=True)
+class SoundFinishedReading:
+    """A sound came to its natural end."""
+
+    stamp_ns: int
+    words: tuple[int, ...]
+
+
+Reading = (
+    ProximityReading
+    | GroundReading
+    | ButtonsReading
+    | MotorReading
+    | PoseReading
+    | LedReading
+    | LoudspeakerReading
+    | SoundFinishedReading
+)

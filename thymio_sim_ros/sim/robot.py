@@ -79,6 +79,9 @@ class _View:
     def state(self, kind: type[S]) -> S:
         return self._robot.state(kind)
 
+    def wake(self, kind: type[Any]) -> None:
+        self._robot.wake(kind)
+
     def place(self, pose: Pose) -> None:
         self._world.physics.place(self._robot.body, pose)
 

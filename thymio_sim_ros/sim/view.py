@@ -119,6 +119,10 @@ class ActuatorView(Protocol):
         """The wheels, to be driven."""
         ...
 
+    def wake(self, kind: type[Any]) -> None:
+        """Let the sensors that wake on this type measure at the end of the tick."""
+        ...
+
     def place(self, pose: Pose) -> None:
         """Put the robot somewhere, at rest."""
         ...

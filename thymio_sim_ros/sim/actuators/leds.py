@@ -1,16 +1,19 @@
-"""The lights: brightness 0…32 for each light of each group (thymio-robot.md sections 6.3 and 8)."""
+"""The lights: brightness 0…32 for each light of each group (thymio-robot.md sections 6.3 and 8).
+
+The robot's own rules show the sensors on them until somebody, a program or ROS, takes a group over.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.aseba_face import ActuatorFace, Native, Output
-from thymio_sim_ros.sim.commands import LED_FULL, LED_GROUPS, Command, SetLeds
+from thymio_sim_ros.sim.commands import LED_FULL, LED_GROUPS, Command, ReleaseLeds, SetLed, SetLeds, ShowOnLeds
 
-__all__ = ["ACTUATOR", "LedState"]
+__all__ = ["ACTUATOR", "LED_NUMBERS", "LedState"]
 
 _RGB = ("red", "green", "blue")
 
@@ -37,20 +40,56 @@ _VARIABLES = ("leds.top", "leds.bottom.left", "leds.bottom.right", "leds.circle"
 """Natives that also write the variable of their name; writing it sets the lights as well (section 8.1)."""
 
 
+def _numbers() -> tuple[tuple[str, int] | None, ...]:
+    rear, rgb = [("proximity", 6), ("proximity", 7)], range(3)
+    body = [(group, index) for group in ("top", "battery", "bottom_left", "bottom_right") for index in rgb]
+    front = [("proximity", index) for index in (0, 1, 4, 5, 2, 3)]
+    ground = [("ground", 0), ("ground", 1)]
+    circle = [("circle", index) for index in range(5)]
+    buttons = [("buttons", index) for index in (0, 2, 3, 1)]
+    last = [("circle", 5), ("circle", 6), ("temperature", 0), ("temperature", 1)]
+    single = [("remote", 0), ("microphone", 0), ("circle", 7)]
+    return (*rear, *body, ("sd", 0), None, *front, *ground, *circle, *single, *buttons, *last)
+
+
+LED_NUMBERS = _numbers()
+"""Group and index of each light by its number; 15 is none that can be set (section 8.2)."""
+
+
 @dataclass(slots=True)
 class LedState:
-    """Levels 0…32 of every group, in the order of `LED_GROUPS`."""
+    """Levels 0…32 of every group, in the order of `LED_GROUPS`; groups that the robot's own rules have lost."""
 
     levels: dict[str, tuple[int, ...]] = field(
         default_factory=lambda: {group: (0,) * size for group, size in LED_GROUPS.items()}
     )
+    taken: set[str] = field(default_factory=set)
 
 
-def _apply(state: LedState, command: SetLeds, _now_ns: int) -> None:
-    size = LED_GROUPS.get(command.group)
-    if size is None or len(command.levels) != size:
-        raise ValueError(f"SetLeds: found {command.group!r} with {len(command.levels)} levels")
-    state.levels[command.group] = tuple(max(0, min(LED_FULL, level)) for level in command.levels)
+def _apply(state: LedState, command: SetLeds | SetLed | ShowOnLeds | ReleaseLeds, _now_ns: int) -> None:
+    match command:
+        case SetLeds(group, levels):
+            state.levels[group] = _limited(group, levels)
+            state.taken.add(group)
+        case ShowOnLeds(group, levels):
+            if group not in state.taken:
+                state.levels[group] = _limited(group, levels)
+        case SetLed(number, level):
+            place = LED_NUMBERS[number] if 0 <= number < len(LED_NUMBERS) else None
+            if place is not None:
+                group, index = place
+                levels = state.levels[group]
+                state.levels[group] = _limited(group, (*levels[:index], level, *levels[index + 1 :]))
+        case ReleaseLeds(group):
+            state.levels[group] = (0,) * LED_GROUPS[group]
+            state.taken.discard(group)
+
+
+def _limited(group: str, levels: tuple[int, ...]) -> tuple[int, ...]:
+    size = LED_GROUPS.get(group)
+    if size is None or len(levels) != size:
+        raise ValueError(f"lights: found {group!r} with {len(levels)} levels")
+    return tuple(max(0, min(LED_FULL, level)) for level in levels)
 
 
 def _setter(group: str) -> Callable[[Sequence[int]], Command]:
@@ -64,9 +103,21 @@ def _copier(variable: str) -> Callable[[Sequence[int]], Mapping[str, Sequence[in
     return lambda words: {variable: words}
 
 
+def _single(words: Sequence[int]) -> Command:
+    return SetLed(words[0], units.saturate_led(words[1]))
+
+
+def _group_natives() -> Iterator[Native]:
+    for name, group, parameters, text in _NATIVES:
+        if name in _VARIABLES:
+            yield Native(name, parameters, _setter(group), text, _copier(name))
+        else:
+            yield Native(name, parameters, _setter(group), text)
+
+
 ACTUATOR = Actuator(
     name="leds",
-    accepts=(SetLeds,),
+    accepts=(SetLeds, SetLed, ShowOnLeds, ReleaseLeds),
     begin=LedState,
     apply=_apply,
     aseba=ActuatorFace(
@@ -76,12 +127,7 @@ ACTUATOR = Actuator(
             for name, group, _parameters, _text in _NATIVES
             if name == variable
         ),
-        natives=tuple(
-            Native(name, parameters, _setter(group), text, _copier(name))
-            if name in _VARIABLES
-            else Native(name, parameters, _setter(group), text)
-            for name, group, parameters, text in _NATIVES
-        ),
-        at_reset=tuple(SetLeds(group, (0,) * size) for group, size in LED_GROUPS.items()),
+        natives=(*_group_natives(), Native("_leds.set", ("led", "brightness"), _single, "Set one light by its number")),
+        at_reset=tuple(ReleaseLeds(group) for group in LED_GROUPS),
     ),
 )

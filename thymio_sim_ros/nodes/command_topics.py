@@ -1,0 +1,225 @@
+"""Commands ↔ messages, one row per topic that a robot listens to and an Aseba program speaks on.
+
+The simulator decodes what arrives, the Aseba runtime encodes what its programs command: both from these rows
+(ros-interface.md sections 4.2 and 6.3). Topics that only people and nodes speak on are rows without `encode`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from rclpy.qos import QoSProfile
+from std_msgs.msg import (
+    Bool,
+    ColorRGBA,
+    Float32,
+    Float32MultiArray,
+    Int8,
+    Int8MultiArray,
+    Int16MultiArray,
+    UInt8MultiArray,
+)
+
+from thymio_sim_ros.nodes import convert, qos
+from thymio_sim_ros.nodes.convert import SECOND_NS, CommandError
+from thymio_sim_ros.sim import commands
+from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.tones import VOLUME_OFF, WAVE_LENGTH
+
+__all__ = ["BODY_LEDS", "ROWS", "CommandRow", "led_topic", "topic_of"]
+
+BODY_LEDS = ("top", "bottom_left", "bottom_right")
+"""Groups that are one color: their topics are those of the driver."""
+
+PEN_WIDTHS_M = (0.001, 0.1)
+MOST_SAMPLES = 10 * 60 * 7813
+"""Samples of one sound: ten minutes."""
+
+
+@dataclass(frozen=True, slots=True)
+class CommandRow:
+    """One topic: `decode` gives the command of a message or raises CommandError.
+
+    `encode` gives the message of a command; the row's topic is then what `topic_of` says of the command.
+    """
+
+    topic: str
+    type: type
+    decode: Callable[[Any], Command]
+    encode: Callable[[Any], Any] | None = None
+    profile: QoSProfile = field(default_factory=lambda: qos.COMMAND)
+
+
+def led_topic(group: str) -> str:
+    """The topic of a group of lights."""
+    return f"led/body/{group}" if group in BODY_LEDS else f"led/{group}"
+
+
+def topic_of(command: Command) -> str | None:
+    """The topic on which a program's command leaves; None for one that only the runtime's own simulator knows."""
+    if isinstance(command, commands.SetLeds | commands.ReleaseLeds):
+        return led_topic(command.group)
+    return _TOPICS.get(type(command))
+
+
+_TOPICS: dict[type[Any], str] = {
+    commands.MotorTargets: "motor/target",
+    commands.SetLed: "led/single",
+    commands.ShowOnLeds: "led/own",
+    commands.PlayTone: "sound/tone",
+    commands.StopSound: "sound/tone",
+    commands.PlaySystemSound: "sound/system",
+    commands.PlaySamples: "sound/samples",
+    commands.SetWave: "sound/wave",
+    commands.SetVolume: "sound/volume",
+}
+
+
+def _encode_targets(command: commands.MotorTargets) -> Int16MultiArray:
+    return Int16MultiArray(data=[command.left, command.right])
+
+
+def _decode_targets(message: Int16MultiArray) -> Command:
+    return convert.motor_targets(message.data)
+
+
+def _encode_color(command: commands.SetLeds | commands.ReleaseLeds) -> ColorRGBA:
+    levels = command.levels if isinstance(command, commands.SetLeds) else (0, 0, 0)
+    red, green, blue = (level / commands.LED_FULL for level in levels)
+    return ColorRGBA(r=red, g=green, b=blue, a=1.0)
+
+
+def _decode_color(message: ColorRGBA, *, group: str) -> Command:
+    return convert.led_levels(group, (message.r, message.g, message.b))
+
+
+def _encode_levels(command: commands.SetLeds | commands.ReleaseLeds) -> Float32MultiArray:
+    """A group that is given back to the robot's own rules is an array of nothing."""
+    levels = command.levels if isinstance(command, commands.SetLeds) else ()
+    return Float32MultiArray(data=[level / commands.LED_FULL for level in levels])
+
+
+def _decode_levels(message: Float32MultiArray, *, group: str) -> Command:
+    return convert.led_levels(group, message.data) if len(message.data) else commands.ReleaseLeds(group)
+
+
+def _encode_single(command: commands.SetLed) -> Int16MultiArray:
+    return Int16MultiArray(data=[command.number, command.level])
+
+
+def _decode_single(message: Int16MultiArray) -> Command:
+    number, level = convert.sized(message.data, 2, "[number of the light, brightness 0…32]")
+    return commands.SetLed(int(number), int(level))
+
+
+def _encode_own(command: commands.ShowOnLeds) -> Float32MultiArray:
+    levels = [level / commands.LED_FULL for level in command.levels]
+    return Float32MultiArray(layout=convert.layout([(command.group, len(levels))]), data=levels)
+
+
+def _decode_own(message: Float32MultiArray) -> Command:
+    group = message.layout.dim[0].label if message.layout.dim else ""
+    if group not in commands.LED_GROUPS:
+        raise CommandError(f"group {group!r} found in layout.dim[0].label, expected {', '.join(commands.LED_GROUPS)}")
+    return commands.ShowOnLeds(group, convert.led_levels(group, message.data).levels)
+
+
+def _encode_tone(command: commands.PlayTone | commands.StopSound) -> Float32MultiArray:
+    if isinstance(command, commands.StopSound):
+        return Float32MultiArray(data=[0.0, -1.0])
+    return Float32MultiArray(data=[command.frequency_hz, (command.duration_ns or 0) / SECOND_NS])
+
+
+def _decode_tone(message: Float32MultiArray) -> Command:
+    """[Hz, s]; 0 s is until stopped, a negative time stops."""
+    hertz, seconds = convert.sized(message.data, 2, "[Hz, s]")
+    convert.finite(hertz, "frequency")
+    convert.finite(seconds, "duration")
+    if seconds < 0:
+        return commands.StopSound()
+    return commands.PlayTone(float(hertz), round(seconds * SECOND_NS) or None)
+
+
+def _encode_system(command: commands.PlaySystemSound) -> Int8:
+    return Int8(data=max(-128, min(127, command.number)))
+
+
+def _decode_system(message: Int8) -> Command:
+    return commands.StopSound() if message.data == -1 else commands.PlaySystemSound(int(message.data))
+
+
+def _encode_samples(command: commands.PlaySamples) -> UInt8MultiArray:
+    return UInt8MultiArray(data=command.samples)
+
+
+def _decode_samples(message: UInt8MultiArray) -> Command:
+    if len(message.data) > MOST_SAMPLES:
+        raise CommandError(f"{len(message.data)} samples found, expected at most {MOST_SAMPLES}")
+    return commands.PlaySamples(bytes(message.data))
+
+
+def _encode_wave(command: commands.SetWave) -> Int8MultiArray:
+    return Int8MultiArray(data=list(command.samples))
+
+
+def _decode_wave(message: Int8MultiArray) -> Command:
+    samples = convert.sized(message.data, WAVE_LENGTH, f"{WAVE_LENGTH} samples of one period")
+    return commands.SetWave(tuple(int(sample) for sample in samples))
+
+
+def _encode_volume(command: commands.SetVolume) -> Int8:
+    return Int8(data=command.shift)
+
+
+def _decode_volume(message: Int8) -> Command:
+    if not 0 <= message.data <= VOLUME_OFF:
+        raise CommandError(f"{message.data} found, expected 0 (loudest) to {VOLUME_OFF} (off)")
+    return commands.SetVolume(int(message.data))
+
+
+def _decode_pen_down(message: Bool) -> Command:
+    return commands.SetPen(down=bool(message.data))
+
+
+def _decode_pen_color(message: ColorRGBA) -> Command:
+    """A color to draw with; alpha 0 is the eraser."""
+    for value in (message.r, message.g, message.b, message.a):
+        convert.finite(value, "color")
+    red, green, blue = (min(max(value, 0.0), 1.0) for value in (message.r, message.g, message.b))
+    return commands.SetPen(color=(red, green, blue), erase=message.a <= 0.0)
+
+
+def _decode_pen_width(message: Float32) -> Command:
+    low, high = PEN_WIDTHS_M
+    if not math.isfinite(message.data) or not low <= message.data <= high:
+        raise CommandError(f"{message.data:g} m found, expected {low:g} to {high:g}")
+    return commands.SetPen(width_m=float(message.data))
+
+
+def _rows() -> Iterator[CommandRow]:
+    yield CommandRow("motor/target", Int16MultiArray, _decode_targets, _encode_targets)
+    for group in commands.LED_GROUPS:
+        if group in BODY_LEDS:
+            decode = partial(_decode_color, group=group)
+            yield CommandRow(led_topic(group), ColorRGBA, decode, _encode_color, qos.LEDS)
+        else:
+            decode = partial(_decode_levels, group=group)
+            yield CommandRow(led_topic(group), Float32MultiArray, decode, _encode_levels, qos.LEDS)
+    yield CommandRow("led/single", Int16MultiArray, _decode_single, _encode_single, qos.LEDS)
+    yield CommandRow("led/own", Float32MultiArray, _decode_own, _encode_own, qos.LEDS)
+    yield CommandRow("sound/tone", Float32MultiArray, _decode_tone, _encode_tone, qos.EVENTS)
+    yield CommandRow("sound/system", Int8, _decode_system, _encode_system, qos.EVENTS)
+    yield CommandRow("sound/samples", UInt8MultiArray, _decode_samples, _encode_samples, qos.EVENTS)
+    yield CommandRow("sound/wave", Int8MultiArray, _decode_wave, _encode_wave, qos.EVENTS)
+    yield CommandRow("sound/volume", Int8, _decode_volume, _encode_volume, qos.EVENTS)
+    yield CommandRow("pen/down", Bool, _decode_pen_down)
+    yield CommandRow("pen/color", ColorRGBA, _decode_pen_color)
+    yield CommandRow("pen/width", Float32, _decode_pen_width)
+
+
+ROWS = tuple(_rows())
+"""Every topic that carries commands one to one; robot_ports adds those that need more than the message."""
