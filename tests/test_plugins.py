@@ -107,6 +107,7 @@ def test_the_sensors_are() -> None:
         "leds",
         "loudspeaker",
         "motor",
+        "pen",
         "pose",
         "proximity",
         "sound_finished",
@@ -120,6 +121,7 @@ def test_the_actuators_are() -> None:
         "leds",
         "loudspeaker",
         "motors",
+        "pen",
     ]
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from thymio_sim_ros.sim.geometry import Pose, Twist
+from thymio_sim_ros.sim.geometry import Point, Pose, Twist
 from thymio_sim_ros.sim.ground import GroundSample
 from thymio_sim_ros.sim.noise import Noise
 from thymio_sim_ros.sim.physics import Contact
+from thymio_sim_ros.sim.primitives import Color
 from thymio_sim_ros.sim.rays import Obstacle, Surroundings
 from thymio_sim_ros.sim.wheels import Wheels
 
@@ -32,6 +33,7 @@ class FakeView:
     obstacles: tuple[Obstacle, ...] = ()
     grounds: dict[float, GroundSample] = field(default_factory=dict)
     states: tuple[Any, ...] = ()
+    drawn: list[tuple[Point, Point, float, Color | None]] = field(default_factory=list)
     woken: list[type[Any]] = field(default_factory=list)
     others: tuple[Any, ...] = ()
 
@@ -43,6 +45,10 @@ class FakeView:
 
     def state(self, kind: type[S]) -> S:
         return next(state for state in self.states if isinstance(state, kind))
+
+    def draw(self, start: Point, end: Point, width_m: float, color: Color | None) -> Color | None:
+        self.drawn.append((start, end, width_m, color))
+        return color
 
     def wake(self, kind: type[Any]) -> None:
         self.woken.append(kind)

@@ -27,6 +27,7 @@ from std_msgs.msg import (
 from thymio_sim_ros.nodes import convert, qos
 from thymio_sim_ros.nodes.convert import SECOND_NS, CommandError
 from thymio_sim_ros.sim import commands
+from thymio_sim_ros.sim.actuators.pen import PEN_WIDTHS_M
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.tones import VOLUME_OFF, WAVE_LENGTH
 
@@ -35,7 +36,6 @@ __all__ = ["BODY_LEDS", "ROWS", "CommandRow", "led_topic", "topic_of"]
 BODY_LEDS = ("top", "bottom_left", "bottom_right")
 """Groups that are one color: their topics are those of the driver."""
 
-PEN_WIDTHS_M = (0.001, 0.1)
 MOST_SAMPLES = 10 * 60 * 7813
 """Samples of one sound: ten minutes."""
 

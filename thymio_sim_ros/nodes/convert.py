@@ -20,6 +20,7 @@ from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState, Joy, LaserScan, Range
 from std_msgs.msg import (
     Bool,
+    ColorRGBA,
     Float32MultiArray,
     Int8MultiArray,
     Int16MultiArray,
@@ -27,6 +28,7 @@ from std_msgs.msg import (
     MultiArrayLayout,
     UInt8MultiArray,
 )
+from visualization_msgs.msg import Marker, MarkerArray
 
 from thymio_sim_ros.nodes import qos
 from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
@@ -41,6 +43,9 @@ SECOND_NS = 1_000_000_000
 PROXIMITY_MIN_M, PROXIMITY_MAX_M, PROXIMITY_FOV_RAD = 0.0215, 0.14, 0.3
 GROUND_MIN_M, GROUND_MAX_M, GROUND_FOV_RAD = 0.009, 0.03, 0.3
 LASER_STEP_RAD, LASER_ANGLE_RAD, LASER_OFFSET_M = 0.32, 0.64, 0.08
+
+TRAIL_M = 0.0015
+"""Height of what pens drew, for viewers: above all paint."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,6 +203,19 @@ def _heard_wave(reading: readings.LoudspeakerReading, _names: RobotNames, _optio
     return Int8MultiArray(data=list(reading.wave))
 
 
+def _trail(reading: readings.PenReading, names: RobotNames, _options: ConvertOptions) -> MarkerArray:
+    """What the robot's pen drew, a line strip for each stroke; DELETEALL comes first."""
+    message = MarkerArray(markers=[Marker(action=Marker.DELETEALL)])
+    for number, stroke in enumerate(reading.strokes):
+        red, green, blue = stroke.color
+        marker = Marker(ns=names.topic("pen"), id=number, action=Marker.ADD, type=Marker.LINE_STRIP)
+        marker.color = ColorRGBA(r=red, g=green, b=blue, a=1.0)
+        marker.scale.x = stroke.width_m
+        marker.points = [Point(x=x, y=y, z=TRAIL_M) for x, y in stroke.points]
+        message.markers.append(_stamped(marker, reading.stamp_ns, MAP_FRAME))
+    return message
+
+
 def volume(shift: int) -> float:
     """Loudness 0…1 of samples that lose so many bits."""
     return 0.0 if shift >= VOLUME_OFF else 2.0**-shift
@@ -239,6 +257,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
         Row("ground_truth/odom", Odometry, _truth),
     ),
     "leds": (Row("led/state", Float32MultiArray, _leds, profile=qos.LATCHED, always=True),),
+    "pen": (Row("pen/trail", MarkerArray, _trail, profile=qos.LATCHED, always=True),),
     "loudspeaker": (
         Row("sound/state/wave", Int8MultiArray, _heard_wave, profile=qos.LATCHED, always=True, on_change=True),
         Row("sound/state/samples", UInt8MultiArray, _heard_samples, profile=qos.EVENTS),

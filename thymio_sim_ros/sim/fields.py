@@ -27,6 +27,7 @@ __all__ = [
     "FieldError",
     "Image",
     "Name",
+    "PenWidth",
     "Points",
     "Shade",
     "Text",
@@ -89,6 +90,7 @@ class Path:
 
 Coordinate = Annotated[float, Number("m", -FAR_M, FAR_M)]
 Extent = Annotated[float, Number("m", 0.001, FAR_M)]
+PenWidth = Annotated[float, Number("m", 0.001, 0.1)]
 Angle = Annotated[float, Number("rad", -2 * math.pi, 2 * math.pi)]
 Radius = Annotated[float, Number("m", 0.0, FAR_M)]
 Text = Annotated[str, Pattern(r"[^\x00-\x1f\x7f\ud800-\udfff]*", "one line of text", 2000)]

@@ -14,12 +14,24 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from thymio_sim_ros.sim import fields, pictures, thymio2
-from thymio_sim_ros.sim.fields import Angle, Coordinate, FieldError, Name, Text, describe, join, json_schema, read
+from thymio_sim_ros.sim.fields import (
+    Angle,
+    Coordinate,
+    FieldError,
+    Name,
+    PenWidth,
+    Shade,
+    Text,
+    describe,
+    join,
+    json_schema,
+    read,
+)
 from thymio_sim_ros.sim.geometry import Pose, convex_hulls_overlap, disc_overlaps_hull
 from thymio_sim_ros.sim.primitives import Disc, Floor, Mark, Paint, Primitive, Print, Solid
 from thymio_sim_ros.sim.shapes import Shape, ShapeKind, all_shapes
 
-__all__ = ["NamedShape", "Playground", "PlaygroundError", "RobotStart", "load", "loads", "schema"]
+__all__ = ["NamedShape", "PenStart", "Playground", "PlaygroundError", "RobotStart", "load", "loads", "schema"]
 
 FORMAT = 1
 MAX_BYTES = 8_000_000
@@ -45,13 +57,23 @@ class PlaygroundError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
+class PenStart:
+    """A pen that a robot has at the start."""
+
+    color: Shade = "#000000"
+    width_m: PenWidth = 0.003
+    down: bool = True
+
+
+@dataclass(frozen=True, slots=True)
 class RobotStart:
-    """A robot and where it starts."""
+    """A robot, where it starts, and the pen that it has then, if any."""
 
     name: Name
     x_m: Coordinate
     y_m: Coordinate
     yaw_rad: Angle = 0.0
+    pen: PenStart | None = None
 
     @property
     def pose(self) -> Pose:

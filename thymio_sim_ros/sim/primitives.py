@@ -10,7 +10,20 @@ from dataclasses import dataclass, field
 
 from thymio_sim_ros.sim.geometry import Point, Pose
 
-__all__ = ["Box", "Color", "Disc", "Floor", "Mark", "Outline", "Paint", "Polygon", "Primitive", "Print", "Solid"]
+__all__ = [
+    "Box",
+    "Color",
+    "Disc",
+    "Floor",
+    "Mark",
+    "Outline",
+    "Paint",
+    "Polygon",
+    "Primitive",
+    "Print",
+    "Solid",
+    "Stroke",
+]
 
 Color = tuple[float, float, float]
 
@@ -106,3 +119,12 @@ Mark = Paint | Print
 """What lies on floors and makes them dark or bright."""
 
 Primitive = Solid | Floor | Paint | Print
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """A line that a pen drew, as one sees it: its points in the world's frame."""
+
+    color: Color
+    width_m: float
+    points: tuple[Point, ...]

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from thymio_sim_ros.sim.geometry import Pose, Twist
+from thymio_sim_ros.sim.primitives import Color, Stroke
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +98,22 @@ class LoudspeakerReading:
 
 
 @dataclass(frozen=True, slots=True)
+class PenReading:
+    """The pen: whether it is down, red, green, blue 0…1, width in m, whether it erases; sent on change.
+
+    `strokes`: all that it drew, the oldest first.
+    """
+
+    stamp_ns: int
+    words: tuple[int, ...]
+    down: bool
+    color: Color
+    width_m: float
+    erase: bool
+    strokes: tuple[Stroke, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class SoundFinishedReading:
     """A sound came to its natural end."""
 
@@ -112,5 +129,6 @@ Reading = (
     | PoseReading
     | LedReading
     | LoudspeakerReading
+    | PenReading
     | SoundFinishedReading
 )

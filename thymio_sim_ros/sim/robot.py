@@ -8,12 +8,14 @@ from typing import Any, TypeVar, cast
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.actuators.buttons import ButtonState
 from thymio_sim_ros.sim.actuators.leds import LedState
+from thymio_sim_ros.sim.actuators.pen import PenState
 from thymio_sim_ros.sim.clock import SimClock
-from thymio_sim_ros.sim.geometry import Pose, Twist
+from thymio_sim_ros.sim.geometry import Point, Pose, Twist
 from thymio_sim_ros.sim.ground import Ground, GroundSample
 from thymio_sim_ros.sim.noise import Noise
 from thymio_sim_ros.sim.physics import Contact, Physics, RobotBody
 from thymio_sim_ros.sim.playground import RobotStart
+from thymio_sim_ros.sim.primitives import Color
 from thymio_sim_ros.sim.rays import Surroundings
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.scene import RobotSnapshot
@@ -78,6 +80,10 @@ class _View:
 
     def state(self, kind: type[S]) -> S:
         return self._robot.state(kind)
+
+    def draw(self, start: Point, end: Point, width_m: float, color: Color | None) -> Color | None:
+        self._world.ground.draw_segment(*start, *end, width_m, color)
+        return self._world.ground.color_at(*end)
 
     def wake(self, kind: type[Any]) -> None:
         self._robot.wake(kind)
@@ -187,5 +193,6 @@ class Robot:
             pose=self.body.pose,
             wheel_angles_rad=self.wheels.angles_rad,
             leds=tuple(self.state(LedState).levels.items()),
+            strokes=self.state(PenState).strokes,
             pressed=tuple(button for button, held in self.state(ButtonState).pressed.items() if held),
         )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.playground import Playground
-from thymio_sim_ros.sim.primitives import Floor, Mark, Solid
+from thymio_sim_ros.sim.primitives import Floor, Mark, Solid, Stroke
 
 __all__ = ["RobotSnapshot", "Scene", "Snapshot"]
 
@@ -27,13 +27,17 @@ class Scene:
 
 @dataclass(frozen=True, slots=True)
 class RobotSnapshot:
-    """One robot: true pose, wheel angles left and right, levels 0…32 of its lights by group, buttons held."""
+    """One robot: true pose, wheel angles left and right, levels 0…32 of its lights by group, buttons held.
+
+    `strokes` are what its pen drew, the oldest first.
+    """
 
     name: str
     pose: Pose
     wheel_angles_rad: tuple[float, float]
     leds: tuple[tuple[str, tuple[int, ...]], ...]
     pressed: tuple[str, ...]
+    strokes: tuple[Stroke, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Protocol, TypeVar
 
-from thymio_sim_ros.sim.geometry import Pose, Twist
+from thymio_sim_ros.sim.geometry import Point, Pose, Twist
 from thymio_sim_ros.sim.ground import GroundSample
 from thymio_sim_ros.sim.noise import Noise
 from thymio_sim_ros.sim.physics import Contact
+from thymio_sim_ros.sim.primitives import Color
 from thymio_sim_ros.sim.rays import Surroundings
 from thymio_sim_ros.sim.wheels import Wheels
 
@@ -117,6 +118,15 @@ class ActuatorView(Protocol):
     @property
     def wheels(self) -> Wheels:
         """The wheels, to be driven."""
+        ...
+
+    @property
+    def pose(self) -> Pose:
+        """Where the robot really is."""
+        ...
+
+    def draw(self, start: Point, end: Point, width_m: float, color: Color | None) -> Color | None:
+        """Draw on the ground, or erase with None; the color that is now seen at the end, None where no floor is."""
         ...
 
     def wake(self, kind: type[Any]) -> None:

@@ -12,7 +12,8 @@ from types import MappingProxyType
 
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.clock import TICK_NS, SimClock
-from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.commands import Command, SetPen
+from thymio_sim_ros.sim.fields import as_color
 from thymio_sim_ros.sim.ground import Ground
 from thymio_sim_ros.sim.physics import Contact, Physics
 from thymio_sim_ros.sim.playground import Playground
@@ -60,7 +61,11 @@ class World:
         actuators, sensors = all_actuators(), all_sensors()
         self._schedules = [sensor.schedule for sensor in sensors]
         for start in self.playground.robots:
-            self._robots[start.name] = Robot(start, shared, actuators, sensors, seed=self._seed, noise=self._noise)
+            robot = Robot(start, shared, actuators, sensors, seed=self._seed, noise=self._noise)
+            self._robots[start.name] = robot
+            if start.pen is not None:
+                pen = start.pen
+                robot.apply(SetPen(pen.down, as_color(pen.color), pen.width_m))
         self._posted: list[tuple[Robot, Command]] = []
 
     @property

@@ -1,0 +1,21 @@
+"""The pen and its trail, looked at 5 times a second and told when something changed. Programs see nothing of it."""
+
+from __future__ import annotations
+
+from thymio_sim_ros.sim.actuators.pen import PenState
+from thymio_sim_ros.sim.readings import PenReading
+from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.view import SensorView
+
+__all__ = ["SENSOR"]
+
+
+def _measure(view: SensorView) -> PenReading | None:
+    state = view.state(PenState)
+    if state.changes == view.memory.get("changes", 0):
+        return None
+    view.memory["changes"] = state.changes
+    return PenReading(view.now_ns, (), state.down, state.color, state.width_m, state.erase, state.strokes)
+
+
+SENSOR = Sensor(name="pen", period_ns=200_000_000, measure=_measure)
