@@ -104,3 +104,12 @@ def test_the_runner_needs_no_ros():
     result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=False)
     assert result.returncode == 0, result.stderr
     assert "real_time_factor" in result.stdout
+
+
+def test_the_runner_starts_a_built_in_behaviour_and_names_the_others(capsys):
+    arguments = ["runner", "--playground", "base", "--behaviour", "explorer", "--seconds", "2"]
+    assert cli.main(arguments) == 0
+    assert json.loads(capsys.readouterr().out)["robots"]["thymio"]["x_m"] > 0.05
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(["runner", "--behaviour", "freindly"])
+    assert "did you mean 'friendly'?" in capsys.readouterr().err

@@ -24,6 +24,7 @@ from thymio_sim_ros.suite import ADDRESS, Suite
 EXAMPLE = """\
 example:
   thymio-sim --playground obstacle --program my_robot.aesl
+  thymio-sim --behaviour menu                                (the arrows choose, the centre button starts)
   thymio-sim runner --program my_robot.aesl --seconds 60     (no ROS, as fast as possible)
 """
 
@@ -52,7 +53,8 @@ def start_suite(argv: Sequence[str]) -> int:
     options = _suite_parser().parse_args(argv)
     suite = Suite(
         playground=options.playground,
-        program=options.program,
+        program=_program(options),
+        behaviour=options.behaviour,
         port=options.port,
         foxglove_port=options.foxglove_port,
         web=not (options.no_web or options.headless),
@@ -82,10 +84,10 @@ def start_suite(argv: Sequence[str]) -> int:
 def run_without_ros(argv: Sequence[str]) -> int:
     """World and program in lock-step, as fast as possible; prints where the robots are."""
     options = _runner_parser().parse_args(argv)
-    playground, program = _check_files(options.playground, options.program)
+    playground, program = _check_files(options.playground, _program(options))
     from thymio_sim_ros.runner import Runner
 
-    runner = Runner(playground, program, seed=options.seed)
+    runner = Runner(playground, program, behaviour=options.behaviour, seed=options.seed)
     started = time.perf_counter()
     runner.run(options.seconds)
     factor = options.seconds / max(time.perf_counter() - started, 1e-9)
@@ -146,11 +148,30 @@ def _add_world_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--program",
-        default=Suite.program,
         metavar="FILE.aesl",
-        help=f"{behaviours}, {NO_PROGRAM}, or a file (default: %(default)s)",
+        help=f"{behaviours}, {NO_PROGRAM}, or a file (default: {Suite.program}, or {NO_PROGRAM} with --behaviour)",
+    )
+    parser.add_argument(
+        "--behaviour",
+        type=_behaviour,
+        default=Suite.behaviour,
+        metavar="NAME",
+        help="what the robot is switched on with, such as menu; the program then waits in the menu",
     )
     parser.add_argument("--seed", type=int, default=Suite.seed, help="seed of all noise (default: %(default)s)")
+
+
+def _program(options: argparse.Namespace) -> str:
+    if options.program is not None:
+        return str(options.program)
+    return NO_PROGRAM if options.behaviour else Suite.program
+
+
+def _behaviour(text: str) -> str:
+    try:
+        return resources.check_behaviour(text)
+    except resources.ResourceError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def _port(text: str) -> int:

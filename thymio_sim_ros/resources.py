@@ -68,6 +68,13 @@ def find_program(name: str) -> Path:
     return _find(name, behaviours(), "program")
 
 
+def check_behaviour(name: str) -> str:
+    """The name itself; ResourceError when it is neither empty nor that of a built-in behaviour."""
+    if name and name not in behaviours():
+        raise ResourceError(_unknown(name, behaviours(), "behaviour", "not"))
+    return name
+
+
 def page() -> Path | None:
     """The folder of the built web page, or None where it has not been built."""
     for root in _roots():
@@ -85,6 +92,10 @@ def _find(name: str, shipped: dict[str, Path], kind: str) -> Path:
         return path
     if path.is_dir():
         raise ResourceError(f"{kind} '{name}' is a folder; expected a file")
+    raise ResourceError(_unknown(name, shipped, kind, "neither a file nor"))
+
+
+def _unknown(name: str, shipped: dict[str, Path], kind: str, nor: str) -> str:
     near = difflib.get_close_matches(name, shipped, 1)
     hint = f"; did you mean '{near[0]}'?" if near else ""
-    raise ResourceError(f"no {kind} '{name}': neither a file nor one of {', '.join(shipped)}{hint}")
+    return f"no {kind} '{name}': {nor} one of {', '.join(shipped)}{hint}"

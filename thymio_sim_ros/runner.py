@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from thymio_sim_ros.device import bindings
+from thymio_sim_ros.device.behaviour_host import BehaviourHost
 from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
 from thymio_sim_ros.device.program import ThymioProgram
 from thymio_sim_ros.sim.clock import TICK_NS
@@ -30,7 +31,7 @@ _SECOND_NS = 1_000_000_000
 
 
 class Runner:
-    """A world and a device for each robot that has a program.
+    """A world, and a device for each robot that has a program or a behaviour.
 
     `emitted` holds the events that the last step brought, as (robot, event), in order.
     """
@@ -40,16 +41,27 @@ class Runner:
         playground: Playground,
         programs: Mapping[str, ThymioProgram] | ThymioProgram | None = None,
         *,
+        behaviour: str = "",
         seed: int = 0,
         noise: bool = True,
     ) -> None:
-        """One program for all robots, or one by robot's name; KeyError for a name that is not there."""
+        """One program for all robots, or one by robot's name; KeyError for a name that is not there.
+
+        With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu.
+        """
         self.world = World(playground, seed=seed, noise=noise)
         if isinstance(programs, ThymioProgram):
             programs = dict.fromkeys(self.world.robots, programs)
-        self._programs = dict(programs or {})
         numbers = {name: number for number, name in enumerate(self.world.robots, start=1)}
-        self.devices = {name: AsebaDevice(node_id=numbers[name]) for name in self._programs}
+        wanted = self.world.robots if behaviour else programs or {}
+        self.devices = {name: AsebaDevice(node_id=numbers[name]) for name in wanted}
+        self.hosts = {name: BehaviourHost(device) for name, device in self.devices.items()}
+        for name, host in self.hosts.items():
+            program = (programs or {}).get(name)
+            if behaviour:
+                host.start(behaviour, program)
+            elif program is not None:
+                host.load(program)
         self.emitted: list[tuple[str, EmittedEvent]] = []
         self._start()
 
@@ -96,11 +108,12 @@ class Runner:
     def reset(self) -> None:
         """World, noise and programs as at the start."""
         self.world.reset()
+        for host in self.hosts.values():
+            host.restart()
         self._start()
 
     def _start(self) -> None:
-        for name, device in self.devices.items():
-            device.load(self._programs[name])
+        for device in self.devices.values():
             device.advance(self.now_ns)
         self._run_devices()
 
@@ -109,19 +122,21 @@ class Runner:
         for _ in range(MOST_ROUNDS):
             for device in self.devices.values():
                 device.run(BUDGET)
-            if sum(self._pass_on(name, device) for name, device in self.devices.items()) == 0:
+            if sum(self._pass_on(name, host) for name, host in self.hosts.items()) == 0:
                 break
         for name, device in self.devices.items():
             for command in device.take_commands():
                 self.world.post(name, command)
 
-    def _pass_on(self, name: str, sender: AsebaDevice) -> int:
-        """Let the others hear what a device emitted; how often one does."""
-        heard = 0
-        for event in sender.take_events():
+    def _pass_on(self, name: str, sender: BehaviourHost) -> int:
+        """Let the others hear what a device emitted, or change its program; how many have something new to do."""
+        running = sender.program
+        events = sender.take_events(self.now_ns)
+        heard = int(sender.program is not running)
+        for event in events:
             self.emitted.append((name, event))
             for device in self.devices.values():
-                if device is not sender and device.declares(event.name):
-                    device.receive_event(event.name, event.args, source=sender.node_id)
+                if device is not sender.device and device.declares(event.name):
+                    device.receive_event(event.name, event.args, source=sender.device.node_id)
                     heard += 1
         return heard

@@ -14,12 +14,14 @@ ADDRESS = "127.0.0.1"
 class Suite:
     """One start of simulator, Aseba runtime, Foxglove bridge and page.
 
-    `playground`: shipped name, path or JSON text; `program`: behaviour or path. `cmd_vel_timeout_s`: browser
-    teleop sends nothing on release, hence half a second (ros-interface.md section 13).
+    `playground`: shipped name, path or JSON text; `program`: behaviour or path; `behaviour`: what the robot is
+    switched on with instead, the program then waiting in its menu. `cmd_vel_timeout_s`: browser teleop sends nothing on
+    release, hence half a second (ros-interface.md section 13).
     """
 
     playground: str = "line"
     program: str = "line_follower"
+    behaviour: str = ""
     port: int = HTTP_PORT
     foxglove_port: int = FOXGLOVE_PORT
     web: bool = True

@@ -83,14 +83,21 @@ class AsebaDevice:
             return DeviceStatus(self._state)
         return DeviceStatus(self._state, self._event, self._program.line_of(self._vm.pc))
 
-    def load(self, program: ThymioProgram) -> None:
-        """Replace the program; the robot is reset and the next `run` begins with the initialisation."""
+    def load(self, program: ThymioProgram, *, keep_readings: bool = False) -> None:
+        """Replace the program; the robot is reset and the next `run` begins with the initialisation.
+
+        With `keep_readings` the variables of sensors keep what they hold, and a button that is held is no news.
+        """
+        readings = self._last.copy() if keep_readings else {}
         self._program = program
         self._names = [name for name, _ in program.events]
         self._handled = frozenset(0xFFFE - event.number for event in program.program.events)
         self._last.clear()
         words = program.program.words
         self._vm.set_bytecode((*words, *[0] * (self._target.bytecode_size - len(words))))
+        for sensor, reading in readings.items():
+            self.feed(sensor, reading)
+        self._arrived.clear()
         self.resume()
 
     def feed(self, sensor: str, words: Sequence[int]) -> None:

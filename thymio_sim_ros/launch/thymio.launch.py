@@ -14,7 +14,8 @@ from launch_ros.parameter_descriptions import ParameterValue
 
 ARGUMENTS = {
     "playground": ("line", "playground: a shipped name or a file"),
-    "program": ("line_follower", "Aseba program: a built-in behaviour or an .aesl file; '' for none"),
+    "program": ("line_follower", "Aseba program: a built-in behaviour, an .aesl file, or none"),
+    "behaviour": ("", "what the robot is switched on with, such as menu; '' is the program"),
     "seed": ("0", "seed of all noise"),
     "real_time_factor": ("1.0", "simulated seconds per second; 0: as fast as possible"),
     "cmd_vel_timeout": ("0.0", "seconds after which a velocity command ends; 0: never"),
@@ -38,7 +39,11 @@ def generate_launch_description() -> LaunchDescription:
         "cmd_vel_timeout": ParameterValue(value["cmd_vel_timeout"], value_type=float),
         "out_of_range": ParameterValue(range_convention, value_type=str),
     }
-    runtime = {"script.path": ParameterValue(value["program"], value_type=str), "use_sim_time": True}
+    runtime = {
+        "script.path": ParameterValue(value["program"], value_type=str),
+        "behaviour": ParameterValue(value["behaviour"], value_type=str),
+        "use_sim_time": True,
+    }
     bridge = {"port": ParameterValue(value["foxglove_port"], value_type=int), "use_sim_time": True}
     page = {
         "port": ParameterValue(value["port"], value_type=int),

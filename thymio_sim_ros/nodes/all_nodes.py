@@ -28,7 +28,8 @@ def lives(context: Context, suite: Suite) -> Iterator[Life]:
     _, playground = load_playground(suite.playground)
     robots = [names.name for names in ros_names(tuple(robot.name for robot in playground.robots)).values()]
     yield Simulator(context, simulator)
-    yield AsebaRuntime(context, RuntimeParams(robots=robots, path=suite.program), use_sim_time=True)
+    runtime = RuntimeParams(robots=robots, path=suite.program, behaviour=suite.behaviour)
+    yield AsebaRuntime(context, runtime, use_sim_time=True)
     if suite.foxglove:
         from thymio_sim_ros.nodes.foxglove_node import FoxgloveBridge
 

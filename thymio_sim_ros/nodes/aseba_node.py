@@ -2,7 +2,7 @@
 
 It knows topics, not simulators: any robot that has them will do (ros-interface.md section 6). Devices keep
 simulated time by the node's clock. The program is a parameter; a text that does not compile is refused with
-its place, and the old program goes on.
+its place, and the old program goes on. A robot without a program is switched on with its menu.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from rclpy.parameter import Parameter
 from std_msgs.msg import String
 
 from thymio_sim_ros import resources
+from thymio_sim_ros.device.behaviour_host import MENU
 from thymio_sim_ros.device.program import ProgramError, ThymioProgram, load_program
 from thymio_sim_ros.loading import NO_PROGRAM, read_program
 from thymio_sim_ros.nodes import params, qos
@@ -45,6 +46,9 @@ class RuntimeParams:
     path: str = param("", "Program: a built-in behaviour's name or an .aesl file", name="script.path")
     source: str = param("", "Program: text of an .aesl file or of one Aseba program", name="script.source")
     name: str = param("", "Name shown for a program given as text", name="script.name")
+    behaviour: str = param(
+        "", "Built-in behaviour, such as menu, that the robot is switched on with; '' is the program, or the menu"
+    )
 
 
 class AsebaRuntime:
@@ -57,11 +61,11 @@ class AsebaRuntime:
         self.node = Node("aseba_runtime", context=context, parameter_overrides=overrides)
         self.params = params.declare(self.node, defaults or RuntimeParams())
         try:
-            program = self._first_program()
+            self._program = self._first_program()
+            self._behaviour = resources.check_behaviour(self.params.behaviour)
         except (ProgramError, resources.ResourceError, OSError) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
-        self._program = program
         self._accepted: ThymioProgram | None = None
         self.robots: list[DevicePorts] = []
         self._set_robots(self.params.robots)
@@ -76,9 +80,8 @@ class AsebaRuntime:
 
     def load(self, program: ThymioProgram) -> None:
         """Run this program on every robot, from its start."""
-        self._program = program
-        for ports in self.robots:
-            ports.load(program)
+        self._program, self._behaviour = program, ""
+        self._begin()
 
     def turn(self, executor: Executor) -> None:
         """Handle messages; let handlers that used up their budget go on."""
@@ -97,10 +100,18 @@ class AsebaRuntime:
             ports.close()
         self.node.destroy_node()
 
-    def _first_program(self) -> ThymioProgram:
+    def _begin(self) -> None:
+        """Let every robot begin with the program, or with the behaviour that it is to be switched on with."""
+        for ports in self.robots:
+            if self._program is None or self._behaviour:
+                ports.start(self._behaviour or MENU, self._program)
+            else:
+                ports.load(self._program)
+
+    def _first_program(self) -> ThymioProgram | None:
         if self.params.source:
             return load_program(self.params.source, self.params.name or "program")
-        return read_program(self.params.path or NO_PROGRAM)
+        return read_program(self.params.path) if self.params.path else None
 
     def _set_robots(self, names: Sequence[str]) -> None:
         """One device for each of these namespaces, numbered in their order; all begin anew."""
@@ -110,7 +121,7 @@ class AsebaRuntime:
             DevicePorts(self.node, RobotNames(name), node_id=number, bus=self._pass_on)
             for number, name in enumerate(names, start=1)
         ]
-        self.load(self._program)
+        self._begin()
 
     def _on_simulator_state(self, message: String) -> None:
         """Another playground may have other robots."""
@@ -137,19 +148,22 @@ class AsebaRuntime:
                 name = changed.get("script.name", self.params.name)
                 self._accepted = load_program(changed["script.source"], name or "program")
             elif "script.path" in changed:
-                self._accepted = read_program(changed["script.path"])
+                self._accepted = read_program(changed["script.path"] or NO_PROGRAM)
+            resources.check_behaviour(changed.get("behaviour", ""))
         except (ProgramError, resources.ResourceError, OSError) as error:
             self._accepted = None
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
     def _apply_parameters(self, parameters: list[Parameter]) -> None:
-        name = params.changes(parameters).get("script.name")
-        if name is not None:
-            self.params = replace(self.params, name=name)
-        if self._accepted is not None:
-            program, self._accepted = self._accepted, None
-            self.load(program)
+        changed = params.changes(parameters)
+        if "script.name" in changed:
+            self.params = replace(self.params, name=changed["script.name"])
+        accepted, self._accepted = self._accepted, None
+        if accepted is not None or "behaviour" in changed:
+            self._program = accepted or self._program
+            self._behaviour = changed.get("behaviour", "")
+            self._begin()
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -14,6 +14,7 @@ from rclpy.node import Node
 from std_msgs.msg import Int16MultiArray
 from std_srvs.srv import Trigger
 
+from thymio_sim_ros.device.behaviour_host import BehaviourHost, is_internal
 from thymio_sim_ros.device.bindings import sensor_names
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.program import ThymioProgram
@@ -41,9 +42,10 @@ class DevicePorts:
     def __init__(self, node: Node, names: RobotNames, *, node_id: int, bus: Bus) -> None:
         self.names = names
         self.device = AsebaDevice(node_id=node_id)
+        self._host = BehaviourHost(self.device)
         self._node = node
         self._bus = bus
-        self._program: ThymioProgram | None = None
+        self._program = self._host.program
         self._status: DiagnosticStatus | None = None
         self._event_ports: list[tuple[Any, Any]] = []
         self._event_publishers: dict[str, Any] = {}
@@ -80,34 +82,41 @@ class DevicePorts:
         return self.device.is_busy
 
     def load(self, program: ThymioProgram) -> None:
-        """Load the program, run its beginning, and give its events their topics."""
-        self._program = program
-        self.device.load(program)
-        self._open_events(program)
+        """Load the program and run its beginning."""
+        self._host.load(program)
+        self.run()
+
+    def start(self, behaviour: str, own: ThymioProgram | None) -> None:
+        """Switch the robot on with a built-in behaviour; a program of one's own waits in its menu."""
+        self._host.start(behaviour, own)
         self.run()
 
     def restart(self) -> None:
-        """Time went back: the program starts again, as after the robot's reset."""
-        if self._program is not None:
-            self.device.load(self._program)
-            self.run()
+        """Time went back: the robot begins anew."""
+        self._host.restart()
+        self.run()
 
     def hear(self, event: str, args: Sequence[int], *, source: int) -> None:
         """A global event arrives from the bus or a topic; unknown ones are not for this robot."""
-        if self._program is not None and event in dict(self._program.events):
+        if event in dict(self._program.events):
             self.device.receive_event(event, args, source=source)
             self.run()
 
     def run(self) -> None:
         """Run what is pending, then send what came of it."""
-        self.device.advance(self._node.get_clock().now().nanoseconds)
+        now_ns = self._node.get_clock().now().nanoseconds
+        self.device.advance(now_ns)
         self.device.run(RUN_BUDGET)
+        events = self._host.take_events(now_ns)
+        if self._host.program is not self._program:
+            self._program = self._host.program
+            self._open_events(self._program)
         for command in self.device.take_commands():
             self._send(command)
-        for event in self.device.take_events():
+        for event in events:
             self._publish_event(event.name, event.args)
             self._bus(self, event.name, event.args)
-        for notice in self.device.take_notices():
+        for notice in self._host.take_notices():
             self._node.get_logger().warning(f"{self.names.name or 'robot'}: {notice}")
         self._publish_status()
 
@@ -160,8 +169,9 @@ class DevicePorts:
 
     def _open_events(self, program: ThymioProgram) -> None:
         self._close_events()
-        words = [topic_word(event) for event, _ in program.events]
-        for (event, _size), word in zip(program.events, words, strict=True):
+        events = [event for event, _ in program.events if not is_internal(event)]
+        words = [topic_word(event) for event in events]
+        for event, word in zip(events, words, strict=True):
             if words.count(word) > 1:
                 self._warn(f"event {event} shares the topic name {word} with another: use aseba/events and aseba/emit")
                 continue
@@ -184,8 +194,8 @@ class DevicePorts:
 
     def _emit(self, event: str, args: list[int]) -> None:
         """An event from ROS reaches every robot that declares it; too much data is refused."""
-        size = dict(self._program.events if self._program else ()).get(event)
-        if size is None:
+        size = dict(self._program.events).get(event)
+        if size is None or is_internal(event):
             self._warn(f"event {event} refused: the program declares {self._declared()}")
         elif len(args) > size:
             self._warn(f"event {event} refused: {len(args)} values found, expected at most {size}")
@@ -194,7 +204,7 @@ class DevicePorts:
             self.hear(event, filled, source=0)
 
     def _declared(self) -> str:
-        events = [event for event, _ in self._program.events] if self._program else []
+        events = [event for event, _ in self._program.events if not is_internal(event)]
         return ", ".join(events) or "no events"
 
     def _publish_event(self, event: str, args: Sequence[int]) -> None:
@@ -214,7 +224,7 @@ class DevicePorts:
             message=status.fault or status.state,
             values=[
                 KeyValue(key="state", value=status.state),
-                KeyValue(key="program", value=self._program.name if self._program else ""),
+                KeyValue(key="program", value=self._program.name),
                 KeyValue(key="event", value=status.event if fault else ""),
                 KeyValue(key="line", value=str(status.line) if fault and status.line else ""),
             ],

@@ -1,0 +1,215 @@
+"""The robot's menu: which program runs, and what the robot shows meanwhile (thymio-behaviours.md section 1)."""
+
+from __future__ import annotations
+
+import pytest
+
+from thymio_sim_ros.device.behaviour_host import ENTRIES, MENU, BehaviourHost, built_in, is_internal
+from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.sim.commands import BUTTONS, MotorTargets, SetLeds
+
+TICK_NS = 20_000_000
+BUDGET = 20_000
+OWN = load_program("motor.left.target = 100\nonevent button.center\ncall leds.top(1, 2, 3)", "own.aesl")
+
+COLOURS = {
+    "friendly": (0, 32, 0),
+    "explorer": (32, 32, 0),
+    "fearful": (32, 0, 0),
+    "attentive": (0, 0, 32),
+    "investigator": (0, 32, 32),
+    "obedient": (32, 0, 32),
+    "program": (0, 0, 0),
+}
+
+
+class Robot:
+    """A device with its host and a finger: one `tick` is 20 ms."""
+
+    def __init__(self):
+        self.host = BehaviourHost(AsebaDevice())
+        self.now_ns = 0
+        self.top = self.targets = None
+        self.events = []
+        self.pressed = set()
+
+    @property
+    def device(self):
+        return self.host.device
+
+    @property
+    def running(self):
+        return self.host.program.name.removesuffix(".aesl")
+
+    def tick(self, count=1):
+        for _ in range(count):
+            self.now_ns += TICK_NS
+            self.device.feed("buttons", [int(button in self.pressed) for button in BUTTONS])
+            self.device.advance(self.now_ns)
+            while self.device.is_busy:
+                self.device.run(BUDGET)
+                self.events += self.host.take_events(self.now_ns)
+            for command in self.device.take_commands():
+                if isinstance(command, SetLeds) and command.group == "top":
+                    self.top = command.levels
+                elif isinstance(command, MotorTargets):
+                    self.targets = (command.left, command.right)
+
+    def touch(self, *buttons, ticks=3):
+        self.pressed.update(buttons)
+        self.tick(ticks)
+        self.pressed.difference_update(buttons)
+        self.tick(2)
+
+
+def switched_on(behaviour=MENU, own=None):
+    robot = Robot()
+    robot.host.start(behaviour, own)
+    robot.tick()
+    return robot
+
+
+def test_every_behaviour_of_the_menu_is_a_program_that_compiles():
+    assert [built_in(name).name for name in ENTRIES.values()] == [f"{name}.aesl" for name in ENTRIES.values()]
+
+
+@pytest.mark.parametrize("arrow", ["right", "forward"])
+def test_right_and_forward_lead_round_through_all_entries(arrow):
+    robot = switched_on()
+    shown = [robot.top]
+    for _ in range(6):
+        robot.touch(arrow)
+        shown.append(robot.top)
+    order = ["friendly", "explorer", "fearful", "attentive", "investigator", "obedient", "friendly"]
+    assert shown == [COLOURS[name] for name in order]
+
+
+@pytest.mark.parametrize("arrow", ["left", "backward"])
+def test_left_and_backward_lead_the_other_way(arrow):
+    robot = switched_on()
+    robot.touch(arrow)
+    assert robot.top == COLOURS["obedient"]
+
+
+def test_a_held_arrow_moves_on_once():
+    robot = switched_on()
+    robot.touch("right", ticks=60)
+    assert robot.top == COLOURS["explorer"]
+
+
+def test_a_user_s_program_is_the_first_entry_and_black():
+    robot = switched_on(own=OWN)
+    assert robot.top == COLOURS["program"]
+    robot.touch("right")
+    assert robot.top == COLOURS["friendly"]
+    robot.touch("left")
+    robot.touch("left")
+    assert robot.top == COLOURS["obedient"]
+
+
+def test_the_centre_button_is_not_heard_for_two_seconds():
+    robot = switched_on()
+    robot.tick(94)
+    robot.touch("center")
+    assert robot.running == MENU
+    robot.tick(2)
+    robot.touch("center")
+    assert robot.running == "friendly"
+
+
+@pytest.mark.parametrize(
+    ("steps", "behaviour"),
+    [(0, "friendly"), (1, "explorer"), (2, "fearful"), (3, "attentive"), (4, "investigator"), (5, "obedient")],
+)
+def test_the_centre_button_starts_a_behaviour_and_ends_it_again(steps, behaviour):
+    robot = switched_on()
+    robot.tick(100)
+    for _ in range(steps):
+        robot.touch("right")
+    robot.touch("center", ticks=30)
+    assert robot.running == behaviour
+    robot.touch("center", ticks=30)
+    assert robot.running == MENU
+    assert robot.top == COLOURS[behaviour]
+    assert robot.targets == (0, 0)
+    robot.touch("center")
+    assert robot.running == behaviour
+
+
+def test_the_program_entry_starts_the_user_s_program_for_good():
+    robot = switched_on(own=OWN)
+    robot.tick(100)
+    robot.touch("center")
+    assert robot.running == "own"
+    assert robot.targets == (100, 0)
+    robot.touch("center")
+    assert robot.running == "own"
+    assert robot.top == (1, 2, 3)
+
+
+def test_a_program_from_a_computer_ends_a_behaviour_with_its_wheels_stopped():
+    robot = switched_on("obedient")
+    robot.touch("forward")
+    assert robot.targets == (150, 150)
+    robot.host.load(load_program("", "none"))
+    robot.tick()
+    assert robot.targets == (0, 0)
+    robot.touch("forward")
+    assert robot.targets == (0, 0)
+
+
+def asking(name, event, size, code):
+    """A user's program that declares one event."""
+    network = f'<network><event size="{size}" name="{event}"/><node name="thymio-II">{code}</node></network>'
+    return load_program(network, name)
+
+
+def test_an_own_program_may_open_the_menu_and_is_shown_there():
+    robot = Robot()
+    robot.host.load(asking("mine.aesl", "menu.back", 0, "onevent button.left\nemit menu.back"))
+    robot.tick()
+    robot.touch("left")
+    assert robot.running == MENU
+    assert robot.top == COLOURS["program"]
+    robot.touch("center")
+    assert robot.running == "mine"
+
+
+def test_what_a_program_asks_of_the_robot_is_no_event_for_others():
+    robot = switched_on()
+    robot.tick(100)
+    robot.touch("center")
+    robot.touch("center")
+    assert robot.events == []
+    assert is_internal("menu.start")
+    assert not is_internal("line")
+
+
+def test_an_entry_that_does_not_exist_is_told():
+    robot = Robot()
+    robot.host.load(asking("x.aesl", "menu.start", 1, "emit menu.start 42"))
+    robot.tick()
+    assert robot.host.take_notices() == ["menu.start 42: the robot has no such program"]
+    assert robot.running == "x"
+
+
+def test_readings_hold_through_a_change_of_program():
+    robot = switched_on()
+    robot.device.feed("ground", (0, 0, 900, 900, 900, 900))
+    robot.tick(100)
+    robot.touch("center", ticks=1)
+    assert robot.running == "friendly"
+    assert robot.device.get_variable("prox.ground.delta") == (900, 900)
+
+
+def test_a_restart_is_as_the_first_start():
+    robot = switched_on(own=OWN)
+    robot.tick(100)
+    robot.touch("center")
+    robot.host.restart()
+    robot.tick()
+    assert robot.running == MENU
+    robot.host.load(OWN)
+    robot.host.restart()
+    assert robot.running == "own"
