@@ -28,7 +28,10 @@ _TILE_CELLS = 64
 _MAX_TILES = 1024
 """Blurred tiles that are kept at once: at most 64 MB."""
 
+_UNKNOWN, _MIXED = -2, -1
+
 _Values = npt.NDArray[np.float64]
+_Indices = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +55,11 @@ class Ground:
         weights = np.exp(-(steps**2) / (2 * _TAP_SIGMA_M**2))
         self._weights: list[float] = (weights / weights.sum()).tolist()
         self._tiles: dict[tuple[int, int], tuple[_Values, _Values] | GroundSample] = {}
+        size = _TILE_CELLS // _CELLS_PER_PIXEL
+        height, width = self._picture.pixels.shape
+        self._corner = (self._picture.origin[0] // size - 1, self._picture.origin[1] // size - 1)
+        self._plain = np.full((height // size + 4, width // size + 4), _UNKNOWN, dtype=np.int32)
+        """The only color that each tile from `_corner` on sees, by row and column."""
 
     @property
     def pixel_m(self) -> float:
@@ -73,6 +81,20 @@ class Ground:
         place = (cell_y % _TILE_CELLS, cell_x % _TILE_CELLS)
         return GroundSample(tile[0].item(place), tile[1].item(place))
 
+    def sample_all(self, x_m: _Values, y_m: _Values) -> tuple[_Values, _Values]:
+        """`sample` for many places at once: reflectances and floors, the same to the last bit."""
+        cells_x = np.floor(x_m / self._cell_m).astype(np.intp)
+        cells_y = np.floor(y_m / self._cell_m).astype(np.intp)
+        colors = self._plain_colors(cells_x // _TILE_CELLS, cells_y // _TILE_CELLS)
+        reflectance, floor = self._picture.greys[colors], (colors != 0).astype(float)
+        mixed = np.flatnonzero(colors == _MIXED)
+        if len(mixed):
+            height, width = self._picture.pixels.shape
+            columns = self._taps(cells_x[mixed], self._picture.origin[0], width)
+            rows = self._taps(cells_y[mixed], self._picture.origin[1], height)
+            reflectance[mixed], floor[mixed] = self._footprints(rows, columns)
+        return reflectance, floor
+
     def color_at(self, x_m: float, y_m: float) -> Color | None:
         """The color of a place, or None where there is no floor."""
         return self._picture.color_at(x_m, y_m)
@@ -88,11 +110,15 @@ class Ground:
         if area is not None:
             for key in self._tiles_that_see(area):
                 self._tiles.pop(key, None)
+                column, row = key[0] - self._corner[0], key[1] - self._corner[1]
+                if 0 <= row < self._plain.shape[0] and 0 <= column < self._plain.shape[1]:
+                    self._plain[row, column] = _UNKNOWN
 
     def restore(self) -> None:
         """Take away all that was drawn."""
         if self._picture.restore():
             self._tiles.clear()
+            self._plain[:] = _UNKNOWN
 
     def _tiles_that_see(self, area: Area) -> list[tuple[int, int]]:
         """Tiles with a footprint that reaches into an area of the picture."""
@@ -103,30 +129,67 @@ class Ground:
         right, top = (area[2] + reach + origin_x) // size, (area[3] + reach + origin_y) // size
         return [(x, y) for y in range(bottom, top + 1) for x in range(left, right + 1)]
 
+    def _plain_colors(self, tiles_x: _Indices, tiles_y: _Indices) -> _Indices:
+        """The only color that each of these tiles sees, or _MIXED."""
+        last_row, last_column = (size - 1 for size in self._plain.shape)
+        rows = np.clip(tiles_y - self._corner[1], 0, last_row)  # beyond them there is no floor
+        columns = np.clip(tiles_x - self._corner[0], 0, last_column)
+        colors = self._plain[rows, columns]
+        unknown = np.flatnonzero(colors == _UNKNOWN)
+        if len(unknown):
+            for row, column in {(int(rows[index]), int(columns[index])) for index in unknown}:
+                seen = self._seen_by(column + self._corner[0], row + self._corner[1])[0]
+                self._plain[row, column] = seen[0, 0] if (seen == seen[0, 0]).all() else _MIXED
+            colors = self._plain[rows, columns]
+        return colors.astype(np.intp)
+
+    def _footprints(self, rows: _Indices, columns: _Indices) -> tuple[_Values, _Values]:
+        """Samples by the pixels of their taps; summed in the order of `_weigh`."""
+        height, width = self._picture.pixels.shape
+        seen = self._picture.pixels[rows.clip(0, height - 1)[:, :, None], columns.clip(0, width - 1)[:, None, :]]
+        seen[((rows < 0) | (rows == height))[:, :, None] | ((columns < 0) | (columns == width))[:, None, :]] = 0
+        grey = self._mean(self._picture.greys[seen])
+        if seen.all():
+            return grey, np.ones_like(grey)
+        return _over_floor(grey, self._mean((seen == 0).astype(float)))
+
+    def _mean(self, values: _Values) -> _Values:
+        """The weighted mean over rows and columns of taps: along the columns, then along the rows."""
+        across = self._weights[0] * values[:, :, 0]
+        for tap in range(1, _TAPS):
+            across += self._weights[tap] * values[:, :, tap]
+        mean: _Values = self._weights[0] * across[:, 0]
+        for tap in range(1, _TAPS):
+            mean += self._weights[tap] * across[:, tap]
+        return mean
+
     def _blur(self, tile_x: int, tile_y: int) -> tuple[_Values, _Values] | GroundSample:
         """One tile of samples; a single one when the tile sees one color only."""
-        height, width = self._picture.pixels.shape
-        columns = self._taps(tile_x, self._picture.origin[0], width)
-        rows = self._taps(tile_y, self._picture.origin[1], height)
-        first_row, last_row = int(rows.min()), int(rows.max())
-        first_column, last_column = int(columns.min()), int(columns.max())
-        seen = self._picture.padded(first_row, last_row + 1, first_column, last_column + 1)
+        seen, rows, columns = self._seen_by(tile_x, tile_y)
         if (seen == seen[0, 0]).all():
             return GroundSample(float(self._picture.greys[seen[0, 0]]), 1.0) if seen[0, 0] else NO_FLOOR
-        rows, columns = rows - first_row, columns - first_column
         grey = self._weigh(self._picture.greys[seen], rows, columns)
         if seen.all():
             return grey, np.ones_like(grey)
         return _over_floor(grey, self._weigh((seen == 0).astype(float), rows, columns))
 
-    def _taps(self, tile: int, origin: int, size: int) -> npt.NDArray[np.intp]:
-        """Pixel of each cell of a tile along one axis and of each tap, kept one pixel round the picture."""
-        cells = tile * _TILE_CELLS + np.arange(_TILE_CELLS) + 0.5
-        places = cells[:, None] * self._cell_m + (np.arange(_TAPS) - _TAPS // 2)[None, :] * _TAP_STEP_M
+    def _seen_by(self, tile_x: int, tile_y: int) -> tuple[npt.NDArray[np.uint16], _Indices, _Indices]:
+        """The part of the picture that a tile sees, and where in it the taps of its cells lie."""
+        height, width = self._picture.pixels.shape
+        cells = np.arange(_TILE_CELLS)
+        columns = self._taps(tile_x * _TILE_CELLS + cells, self._picture.origin[0], width)
+        rows = self._taps(tile_y * _TILE_CELLS + cells, self._picture.origin[1], height)
+        first_row, first_column = int(rows.min()), int(columns.min())
+        seen = self._picture.padded(first_row, int(rows.max()) + 1, first_column, int(columns.max()) + 1)
+        return seen, rows - first_row, columns - first_column
+
+    def _taps(self, cells: _Indices, origin: int, size: int) -> _Indices:
+        """Pixel of each tap of cells along one axis, kept one pixel round the picture."""
+        places = (cells[:, None] + 0.5) * self._cell_m + (np.arange(_TAPS) - _TAPS // 2)[None, :] * _TAP_STEP_M
         pixels = np.floor(places / self.pixel_m).astype(np.intp) - origin
         return np.clip(pixels, -1, size)
 
-    def _weigh(self, values: _Values, rows: npt.NDArray[np.intp], columns: npt.NDArray[np.intp]) -> _Values:
+    def _weigh(self, values: _Values, rows: _Indices, columns: _Indices) -> _Values:
         """The weighted mean over the taps, summed in their order: along the columns, then along the rows."""
         across = self._weights[0] * values.take(columns[:, 0], axis=1)
         for tap in range(1, _TAPS):

@@ -18,10 +18,11 @@ __all__ = ["ConvexObstacle", "DiscObstacle", "Obstacle", "Surroundings", "obstac
 class ConvexObstacle:
     """A convex polygon in the world's frame."""
 
-    __slots__ = ("bounds", "height_m", "planes")
+    __slots__ = ("bounds", "height_m", "planes", "vertices")
 
     def __init__(self, vertices: Sequence[Point], height_m: float) -> None:
         self.height_m = height_m
+        self.vertices = vertices
         xs, ys = [x for x, _ in vertices], [y for _, y in vertices]
         self.bounds = (min(xs), min(ys), max(xs), max(ys))
         planes = []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeVar, cast
 
 from thymio_sim_ros.sim.actuators import Actuator
@@ -121,11 +121,11 @@ class Robot:
                 view = _View(self, shared, Noise(seed, self.name, actuator.name, enabled=noise))
                 self._updates.append((actuator.update, state, view))
         self._sounding = [state for state in self._states.values() if isinstance(state, Sounding)]
-        self._sensors = [
+        self.sensors = [
             (sensor, _View(self, shared, Noise(seed, self.name, sensor.name, enabled=noise))) for sensor in sensors
         ]
         self._wakes: dict[type[Any], list[int]] = {}
-        for number, (sensor, _) in enumerate(self._sensors):
+        for number, (sensor, _) in enumerate(self.sensors):
             for kind in sensor.wakes_on:
                 self._wakes.setdefault(kind, []).append(number)
         self._woken: set[int] = set()
@@ -169,14 +169,24 @@ class Robot:
         """Count on the wheels what the body has moved."""
         self.wheels.roll(self.body.covered_m_s, dt_s)
 
-    def measure(self, due: Iterable[int]) -> list[tuple[str, str, Reading]]:
+    def take_woken(self) -> set[int]:
+        """The numbers of the sensors that were woken in this tick; afterwards none is."""
+        woken = self._woken
+        if woken:
+            self._woken = set()
+        return woken
+
+    def sense(self, number: int) -> Reading | None:
+        """What the sensor with this number reads now."""
+        sensor, view = self.sensors[number]
+        return sensor.measure(view)
+
+    def measure(self, due: Sequence[int]) -> list[tuple[str, str, Reading]]:
         """The readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""
-        if self._woken:
-            due = sorted(self._woken.union(due))
-            self._woken.clear()
+        woken = self.take_woken()
         readings = []
-        for number in due:
-            sensor, view = self._sensors[number]
+        for number in sorted(woken.union(due)) if woken else due:
+            sensor, view = self.sensors[number]
             reading = sensor.measure(view)
             if reading is not None:
                 readings.append((self.name, sensor.name, reading))

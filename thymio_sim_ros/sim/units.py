@@ -7,8 +7,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+import numpy.typing as npt
+
 from thymio_sim_ros.sim.commands import LED_FULL
 from thymio_sim_ros.sim.thymio2 import FULL_TARGET, MAX_SPEED_M_S, PROXIMITY_RANGE_M, PWM_LIMIT, PWM_PER_SPEED_UNIT
+
+Values = npt.NDArray[np.float64]
 
 _UNITS_PER_M_S = FULL_TARGET / MAX_SPEED_M_S * (1 + 1e-9)
 """A hair more, so that a target does not lose one when it comes back as a speed."""
@@ -55,6 +60,15 @@ def proximity_response(distance_m: float) -> float:
     return _PROXIMITY_SCALE / (distance_m * distance_m - 2.0 * _PROXIMITY_X0_M * distance_m + _PROXIMITY_C_M2)
 
 
+def proximity_responses(distances_m: Values) -> Values:
+    """`proximity_response` of many rays."""
+    near = np.minimum(distances_m, PROXIMITY_RANGE_M)
+    found = _PROXIMITY_SCALE / (near * near - 2.0 * _PROXIMITY_X0_M * near + _PROXIMITY_C_M2)
+    found[near < _PROXIMITY_X0_M] = PROXIMITY_FULL
+    found[distances_m > PROXIMITY_RANGE_M] = 0.0
+    return found
+
+
 def proximity_distance(count: float) -> float:
     """Distance in m at which one ray, or a wall across the sensor's axis, gives a count above 0; at most the range."""
     if count >= PROXIMITY_FULL:
@@ -63,9 +77,23 @@ def proximity_distance(count: float) -> float:
     return min(PROXIMITY_RANGE_M, _PROXIMITY_X0_M + math.sqrt(max(0.0, square)))
 
 
+def proximity_distances(counts: Values) -> Values:
+    """`proximity_distance` of many counts."""
+    square = _PROXIMITY_X0_M**2 - _PROXIMITY_C_M2 + _PROXIMITY_SCALE / counts
+    found: Values = np.minimum(PROXIMITY_RANGE_M, _PROXIMITY_X0_M + np.sqrt(np.maximum(0.0, square)))
+    found[counts >= PROXIMITY_FULL] = 0.0
+    return found
+
+
 def ground_response(reflectance: float) -> float:
     """Count of a ground sensor over a grey 0…1: 60 + 884 / (1 + exp(-9 (g - 0.44)))."""
     return _GROUND_BLACK + _GROUND_SPAN / (1.0 + math.exp(-_GROUND_SLOPE * (reflectance - _GROUND_MIDDLE)))
+
+
+def ground_responses(reflectances: Values) -> Values:
+    """`ground_response` of many greys."""
+    found: Values = _GROUND_BLACK + _GROUND_SPAN / (1.0 + np.exp(-_GROUND_SLOPE * (reflectances - _GROUND_MIDDLE)))
+    return found
 
 
 def saturate_led(word: int) -> int:

@@ -10,10 +10,11 @@ from thymio_sim_ros.sim.ground import GroundSample
 from thymio_sim_ros.sim.noise import Noise
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.primitives import Color
+from thymio_sim_ros.sim.raycaster import Fan, Indices, Values
 from thymio_sim_ros.sim.rays import Surroundings
 from thymio_sim_ros.sim.wheels import Wheels
 
-__all__ = ["ActuatorView", "OtherRobot", "SensorView"]
+__all__ = ["ActuatorView", "GroupView", "OtherRobot", "SensorView"]
 
 S = TypeVar("S")
 
@@ -99,6 +100,37 @@ class SensorView(Protocol):
 
     def state(self, kind: type[S]) -> S:
         """The state of the actuator whose state is a `kind`; KeyError when there is none."""
+        ...
+
+
+class GroupView(Protocol):
+    """All robots of a world as one sensor of theirs sees them at once; robots are counted in the world's order."""
+
+    def __len__(self) -> int:
+        """How many robots there are."""
+        ...
+
+    @property
+    def now_ns(self) -> int:
+        """Simulated time."""
+        ...
+
+    @property
+    def noises(self) -> Sequence[Noise]:
+        """The sensor's own generator on each robot."""
+        ...
+
+    @property
+    def proximity_model(self) -> str:
+        """As in `SensorView`."""
+        ...
+
+    def cast(self, fan: Fan) -> tuple[Indices, Values]:
+        """Rays of all robots: the numbers of the sensors that see anything, and how far their rays go (`Raycaster`)."""
+        ...
+
+    def ground_at(self, places: Values) -> tuple[Values, Values]:
+        """Reflectance and floor under points of the robots' frames, by robot and point; rows of `places` are x, y."""
         ...
 
 

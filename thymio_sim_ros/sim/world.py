@@ -6,26 +6,29 @@ give the same readings bit for bit. One thread may use a world; nothing here loc
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.clock import TICK_NS, SimClock
 from thymio_sim_ros.sim.commands import Command, SetPen
+from thymio_sim_ros.sim.crowd import CROWD, Crowd
 from thymio_sim_ros.sim.fields import as_color
 from thymio_sim_ros.sim.ground import Ground
 from thymio_sim_ros.sim.physics import Contact, Physics
 from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.raycaster import Raycaster
+from thymio_sim_ros.sim.rays import obstacle_of
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.robot import Robot, Shared
 from thymio_sim_ros.sim.scene import Scene, Snapshot
-from thymio_sim_ros.sim.sensors import all_sensors
+from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 
 __all__ = ["TICK_NS", "StepResult", "World"]
 
 _TICK_S = TICK_NS * 1e-9
-PROXIMITY_MODELS = ("default", "enki")
+PROXIMITY_MODELS = ("default", "enki", "cone")
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +36,7 @@ class StepResult:
     """What one step gave: readings as (robot, sensor, reading), by robot and then by sensor name; contacts."""
 
     now_ns: int
-    readings: tuple[tuple[str, str, Reading], ...]
+    readings: Sequence[tuple[str, str, Reading]]
     contacts: tuple[Contact, ...]
 
 
@@ -41,10 +44,18 @@ class World:
     """A playground that lives. Invariant: nothing in it changes but by `step` and `reset`."""
 
     def __init__(
-        self, playground: Playground, *, seed: int = 0, noise: bool = True, proximity_model: str = "default"
+        self,
+        playground: Playground,
+        *,
+        seed: int = 0,
+        noise: bool = True,
+        proximity_model: str = "default",
+        periods_ns: Mapping[str, int] | None = None,
     ) -> None:
+        """`periods_ns` names the sensors that measure and how often; None: all of them, as often as the robot does."""
         if proximity_model not in PROXIMITY_MODELS:
             raise ValueError(f"proximity model {proximity_model!r}: expected one of {', '.join(PROXIMITY_MODELS)}")
+        self._sensors = _chosen(all_sensors(), periods_ns)
         self.playground = playground
         self.scene = Scene.of(playground)
         self._seed, self._noise, self._proximity_model = seed, noise, proximity_model
@@ -58,7 +69,7 @@ class World:
         self._physics = Physics(self.playground.solids)
         self._robots: dict[str, Robot] = {}
         shared = Shared(self._clock, self._ground, self._physics, self._proximity_model, self._robots)
-        actuators, sensors = all_actuators(), all_sensors()
+        actuators, sensors = all_actuators(), self._sensors
         self._schedules = [sensor.schedule for sensor in sensors]
         for start in self.playground.robots:
             robot = Robot(start, shared, actuators, sensors, seed=self._seed, noise=self._noise)
@@ -67,6 +78,10 @@ class World:
                 pen = start.pen
                 robot.apply(SetPen(pen.down, as_color(pen.color), pen.width_m))
         self._posted: list[tuple[Robot, Command]] = []
+        self._crowd: Crowd | None = None
+        if len(self._robots) >= CROWD:
+            caster = Raycaster([obstacle_of(solid) for solid in self.playground.solids])
+            self._crowd = Crowd(self._robots.values(), shared, caster)
 
     @property
     def now_ns(self) -> int:
@@ -115,9 +130,24 @@ class World:
                 self._robots[contact.robot].wake(Contact)
         return contacts
 
-    def _run_sensors(self, now_ns: int) -> tuple[tuple[str, str, Reading], ...]:
+    def _run_sensors(self, now_ns: int) -> Sequence[tuple[str, str, Reading]]:
         due = [number for number, schedule in enumerate(self._schedules) if schedule.due(now_ns)]
+        if self._crowd is not None:
+            return self._crowd.measure(due)
         readings: list[tuple[str, str, Reading]] = []
         for robot in self._robots.values():
             readings.extend(robot.measure(due))
         return tuple(readings)
+
+
+def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -> tuple[Sensor, ...]:
+    """The sensors that measure; ValueError for a name that is none, or a period that is not above 0."""
+    if periods_ns is None:
+        return sensors
+    names = [sensor.name for sensor in sensors]
+    for name, period_ns in periods_ns.items():
+        if name not in names:
+            raise ValueError(f"sensor {name!r}: expected one of {', '.join(names)}")
+        if period_ns <= 0:
+            raise ValueError(f"period of {name!r}: found {period_ns} ns, expected a number above 0")
+    return tuple(replace(sensor, period_ns=periods_ns[sensor.name]) for sensor in sensors if sensor.name in periods_ns)

@@ -8,7 +8,7 @@ then finds both stored. A sensor of rare things has no period and is woken by wh
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +16,7 @@ from thymio_sim_ros import registry
 from thymio_sim_ros.sim.aseba_face import NO_SENSOR_FACE, AsebaFace
 from thymio_sim_ros.sim.clock import Schedule
 from thymio_sim_ros.sim.readings import Reading
-from thymio_sim_ros.sim.view import SensorView
+from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["NEVER_NS", "Sensor", "all_sensors"]
 
@@ -29,7 +29,7 @@ class Sensor:
     """One sensor; it measures every `period_ns`, counted from `phase_ns`.
 
     It also measures at the end of a tick in which its robot got a command of a type in `wakes_on`, or, with `Contact`
-    in it, began to touch something.
+    in it, began to touch something. `measure_all`, if there is one, gives in one go what `measure` gives one by one.
     """
 
     name: str
@@ -38,6 +38,7 @@ class Sensor:
     aseba: AsebaFace = NO_SENSOR_FACE
     phase_ns: int = 0
     wakes_on: tuple[type[Any], ...] = ()
+    measure_all: Callable[[GroupView], Sequence[Reading | None]] | None = None
 
     @property
     def schedule(self) -> Schedule:

@@ -1,9 +1,13 @@
-"""Seven horizontal proximity sensors, three rays each (thymio-robot.md section 7.1).
+"""Seven horizontal proximity sensors with rays over 30 degrees (thymio-robot.md section 7.1).
 
-A sensor's count is F(left) + F(centre) + F(right) - 2 F(centre / cos 15°), the last term only when the centre ray
-hits; F is `units.proximity_response`. Then noise, then limits. For a wall across the axis that is F(d).
-Model "default": a side ray that misses what the centre ray hits counts as centre / cos 15°, so that thin things
-are seen. Model "enki": exactly the sum, with which a thin post straight ahead is invisible.
+F is `units.proximity_response`; d are the distances of a sensor's rays, from right to left. Then noise, then limits.
+For a wall across the axis every model gives F of its distance.
+Model "enki": three rays, F(left) + F(centre) + F(right) - 2 F(centre / cos 15°), the last term only when the centre ray
+hits; a thin post straight ahead is invisible.
+Model "default": the same, but a side ray that misses what the centre ray hits counts as centre / cos 15°, so that thin
+things are seen.
+Model "cone": nine rays, the mean of F(d cos a) with a the ray's angle to the axis; it knows no jumps, and a thing that
+fills a part of the cone reads that part of F.
 `ranges_m` is the distance of a wall across the axis that would give the same count, as the robot's driver has it.
 """
 
@@ -12,8 +16,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from thymio_sim_ros.sim import thymio2, units
 from thymio_sim_ros.sim.aseba_face import AsebaFace
+from thymio_sim_ros.sim.columns import Later
+from thymio_sim_ros.sim.raycaster import Fan, Values
 from thymio_sim_ros.sim.readings import ProximityReading
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.thymio2 import (
@@ -22,24 +30,38 @@ from thymio_sim_ros.sim.thymio2 import (
     PROXIMITY_POSES,
     PROXIMITY_RANGE_M,
 )
-from thymio_sim_ros.sim.view import SensorView
+from thymio_sim_ros.sim.view import GroupView, SensorView
 
-__all__ = ["SENSOR", "response"]
+__all__ = ["SENSOR", "response", "responses"]
 
 _COUNT = len(PROXIMITY_POSES)
-_REACH_M = PROXIMITY_RANGE_M + max(math.hypot(x, y) for x, y, _ in PROXIMITY_POSES)
 _CONE_RAD = thymio2.PROXIMITY_HALF_CONE_RAD
 _COS_CONE = math.cos(_CONE_RAD)
-_MOUNTS = tuple(
-    (x, y, tuple((math.cos(yaw + side), math.sin(yaw + side)) for side in (-_CONE_RAD, 0.0, _CONE_RAD)))
-    for x, y, yaw in PROXIMITY_POSES
-)
-"""Each sensor in the robot's frame: position and the unit directions of its rays, right to left."""
+_RAYS = {"default": 3, "enki": 3, "cone": 9}
+_ANGLES_RAD = {
+    model: tuple(-_CONE_RAD + 2 * _CONE_RAD * ray / (count - 1) for ray in range(count))
+    for model, count in _RAYS.items()
+}
+_COSINES = {model: tuple(map(math.cos, angles)) for model, angles in _ANGLES_RAD.items()}
+_PLACES = tuple((x, y) for x, y, _ in PROXIMITY_POSES)
+_DIRECTIONS = {
+    model: tuple(
+        tuple((math.cos(yaw + side), math.sin(yaw + side)) for side in angles) for _, _, yaw in PROXIMITY_POSES
+    )
+    for model, angles in _ANGLES_RAD.items()
+}
+"""For each sensor the unit directions of its rays in the robot's frame, right to left."""
+_FANS = {
+    model: Fan(_PLACES, directions, PROXIMITY_RANGE_M, PROXIMITY_HEIGHT_M) for model, directions in _DIRECTIONS.items()
+}
 _NOTHING = ((0,) * _COUNT, (math.inf,) * _COUNT)
 
 
 def response(distances_m: Sequence[float], model: str) -> float:
-    """Count without noise of one sensor whose rays (right, centre, left) met things this far away, inf for nothing."""
+    """Count without noise of one sensor whose rays, right to left, met things this far away, inf for nothing."""
+    if model == "cone":
+        straight = map(float.__mul__, distances_m, _COSINES[model])
+        return math.fsum(map(_within_range, distances_m, straight)) / len(distances_m)
     right, centre, left = distances_m
     slanted = centre / _COS_CONE
     if model != "enki" and centre < math.inf:
@@ -48,14 +70,35 @@ def response(distances_m: Sequence[float], model: str) -> float:
     return total - 2.0 * units.proximity_response(slanted)
 
 
+def responses(distances_m: Values, model: str) -> Values:
+    """`response` of many sensors, one in each row."""
+    if model == "cone":
+        found = units.proximity_responses(distances_m * _COSINES[model])
+        found[distances_m > PROXIMITY_RANGE_M] = 0.0
+        mean: Values = found.sum(axis=1) / distances_m.shape[1]
+        return mean
+    right, centre, left = distances_m.T
+    slanted = centre / _COS_CONE
+    if model != "enki":
+        right, left = (np.where(np.isinf(side) & ~np.isinf(centre), slanted, side) for side in (right, left))
+    of = units.proximity_responses(np.stack((right, centre, left, slanted)))
+    total: Values = of[0] + of[1] + of[2] - 2.0 * of[3]
+    return total
+
+
+def _within_range(distance_m: float, straight_m: float) -> float:
+    return 0.0 if distance_m > PROXIMITY_RANGE_M else units.proximity_response(straight_m)
+
+
 def _measure(view: SensorView) -> ProximityReading:
-    around = view.surroundings(_REACH_M, PROXIMITY_HEIGHT_M)
+    model = view.proximity_model
+    around = view.surroundings(_FANS[model].reach_m, PROXIMITY_HEIGHT_M)
     if around.is_empty:
         return ProximityReading(view.now_ns, *_NOTHING)
-    pose, noise, model = view.pose, view.noise, view.proximity_model
+    pose, noise = view.pose, view.noise
     x, y, cos, sin = pose.x_m, pose.y_m, math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
     counts, ranges = [], []
-    for mount_x, mount_y, rays in _MOUNTS:
+    for (mount_x, mount_y), rays in zip(_PLACES, _DIRECTIONS[model], strict=True):
         origin_x, origin_y = x + cos * mount_x - sin * mount_y, y + sin * mount_x + cos * mount_y
         near = around.near(origin_x, origin_y, PROXIMITY_RANGE_M)
         count = 0
@@ -70,9 +113,29 @@ def _measure(view: SensorView) -> ProximityReading:
     return ProximityReading(view.now_ns, tuple(counts), tuple(ranges))
 
 
+def _measure_all(group: GroupView) -> Later:
+    now_ns, model = group.now_ns, group.proximity_model
+    sensors, distances = group.cast(_FANS[model])
+    counts, ranges = np.zeros(len(group) * _COUNT, dtype=int), np.full(len(group) * _COUNT, math.inf)
+    if len(sensors):
+        noises = group.noises
+        values = responses(distances, model)
+        values += [noises[robot].gauss(PROXIMITY_NOISE) for robot in (sensors // _COUNT).tolist()]
+        counts[sensors] = np.rint(np.clip(values, 0.0, units.PROXIMITY_FULL))
+        seen = np.flatnonzero(counts)
+        ranges[seen] = units.proximity_distances(counts[seen])
+
+    def make(robot: int) -> ProximityReading:
+        part = slice(robot * _COUNT, (robot + 1) * _COUNT)
+        return ProximityReading(now_ns, tuple(counts[part].tolist()), tuple(ranges[part].tolist()))
+
+    return Later(len(group), make)
+
+
 SENSOR = Sensor(
     name="proximity",
     period_ns=100_000_000,
     measure=_measure,
+    measure_all=_measure_all,
     aseba=AsebaFace(variables=(("prox.horizontal", _COUNT),), event="prox"),
 )

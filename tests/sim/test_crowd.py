@@ -1,0 +1,152 @@
+"""Robots that are measured all at once; robot by robot is the oracle."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import random
+from typing import Any
+
+import pytest
+
+from tests.sim.builders import FLOOR, box, make, run, shipped
+from thymio_sim_ros.sim import playground
+from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot, PlayTone, PressButton
+from thymio_sim_ros.sim.playground import Playground, RobotStart
+from thymio_sim_ros.sim.readings import GroundReading, ProximityReading
+from thymio_sim_ros.sim.sensors import NEVER_NS
+from thymio_sim_ros.sim.world import StepResult, World
+
+ONE_BY_ONE, AT_ONCE = 10**9, 1
+
+
+def busy(dice: random.Random, robots: int) -> Playground:
+    """Robots, boxes and posts close together, on stripes that end before the world does."""
+    places = [(column * 0.24, row * 0.24) for column in range(-3, 4) for row in range(-3, 4)]
+    dice.shuffle(places)
+    stripe: dict[str, Any] = {"kind": "track", "width_m": 0.03, "color": "#202020"}
+    shapes = [{**FLOOR, "size_x_m": 1.5, "size_y_m": 1.7}]
+    shapes += [{**stripe, "points_m": [[-1.0, y / 10], [1.0, y / 10 + 0.1]]} for y in range(-8, 8, 2)]
+    for x, y in places[robots : robots + 10]:
+        size = (dice.uniform(0.02, 0.08), dice.uniform(0.02, 0.08))
+        if dice.random() < 0.5:
+            shapes.append(box(x, y, *size, yaw_rad=dice.uniform(-3, 3), height_m=dice.choice((0.03, 0.1))))
+        else:
+            shapes.append(
+                {"kind": "cylinder", "x_m": x, "y_m": y, "radius_m": size[0], "height_m": 0.1, "color": "#808080"}
+            )
+    starts = tuple(
+        RobotStart(f"robot_{index}", x + dice.uniform(-0.03, 0.03), y + dice.uniform(-0.03, 0.03), dice.uniform(-3, 3))
+        for index, (x, y) in enumerate(places[:robots])
+    )
+    data = {"format": 1, "title": "busy", "shapes": shapes, "robots": []}
+    return dataclasses.replace(playground.loads(json.dumps(data), "busy"), robots=starts)
+
+
+def play(monkeypatch: pytest.MonkeyPatch, crowd: int, scene: Playground, **options: Any) -> list[StepResult]:
+    """Two seconds in which robots drive, are moved, and have a button pressed."""
+    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+    world = World(scene, **options)
+    dice = random.Random(1)
+    steps = []
+    for tick in range(200):
+        for robot in world.robots:
+            if dice.random() < 0.02:
+                world.post(robot, MotorTargets(dice.randint(-500, 500), dice.randint(-500, 500)))
+        if tick == 120:
+            world.post("robot_0", MoveRobot(0.02, 0.03, 1.0))
+            world.post("robot_1", PressButton("left", True))
+        steps.append(world.step())
+    return steps
+
+
+def assert_same(one: list[StepResult], other: list[StepResult]) -> None:
+    for a, b in zip(one, other, strict=True):
+        names = [[(robot, sensor) for robot, sensor, _ in step.readings] for step in (a, b)]
+        assert names[0] == names[1]
+        for (_, _, left), (_, _, right) in zip(a.readings, b.readings, strict=True):
+            if isinstance(left, ProximityReading) and isinstance(right, ProximityReading):
+                assert left.words == right.words
+                assert left.ranges_m == pytest.approx(right.ranges_m, abs=1e-9)
+            elif isinstance(left, GroundReading) and isinstance(right, GroundReading):
+                assert left.words == right.words
+                assert left.reflectances == pytest.approx(right.reflectances, abs=1e-9)
+            else:
+                assert left == right
+
+
+@pytest.mark.parametrize("model", ["default", "enki", "cone"])
+@pytest.mark.parametrize("seed", range(4))
+def test_all_at_once_reads_what_one_by_one_reads(monkeypatch: pytest.MonkeyPatch, seed: int, model: str) -> None:
+    scene = busy(random.Random(seed), 12)
+    options: dict[str, Any] = {"seed": seed, "proximity_model": model}
+    one = play(monkeypatch, ONE_BY_ONE, scene, **options)
+    assert_same(one, play(monkeypatch, AT_ONCE, scene, **options))
+    counts = [max(reading.words) for step in one for _, name, reading in step.readings if name == "proximity"]
+    assert 0 < sum(count > 0 for count in counts) < len(counts)
+
+
+def test_one_robot_may_be_a_crowd(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = shipped("obstacle")
+    runs = []
+    for crowd in (ONE_BY_ONE, AT_ONCE):
+        monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+        world = World(scene, seed=4)
+        world.post("thymio", MotorTargets(300, 250))
+        runs.append(run(world, 5.0))
+    assert_same(*runs)
+
+
+def test_a_crowd_repeats_itself_bit_for_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = busy(random.Random(9), 12)
+    assert play(monkeypatch, AT_ONCE, scene, seed=2) == play(monkeypatch, AT_ONCE, scene, seed=2)
+
+
+def test_readings_may_be_looked_at_much_later(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = busy(random.Random(9), 12)
+    late = play(monkeypatch, AT_ONCE, scene, seed=2)
+    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", AT_ONCE)
+    world = World(scene, seed=2)
+    dice = random.Random(1)
+    for tick, step in enumerate(late):
+        for robot in world.robots:
+            if dice.random() < 0.02:
+                world.post(robot, MotorTargets(dice.randint(-500, 500), dice.randint(-500, 500)))
+        if tick == 120:
+            world.post("robot_0", MoveRobot(0.02, 0.03, 1.0))
+            world.post("robot_1", PressButton("left", True))
+        assert list(world.step().readings) == list(step.readings)
+
+
+def test_a_sensor_that_is_woken_measures_on_its_robot_alone() -> None:
+    robots = [{"name": f"robot_{index}", "x_m": index * 0.3, "y_m": 0.0} for index in range(6)]
+    world = World(make([FLOOR], robots), periods_ns={"loudspeaker": NEVER_NS, "ground": 10_000_000})
+    world.step()
+    world.post("robot_2", PlayTone(440.0, None))
+    found = [row[:2] for row in world.step().readings]
+    expected = [(robot["name"], "ground") for robot in robots]
+    assert found == [*expected[:3], ("robot_2", "loudspeaker"), *expected[3:]]
+
+
+def test_only_the_chosen_sensors_measure_and_as_often_as_told() -> None:
+    world = World(make([FLOOR]), periods_ns={"ground": 30_000_000, "buttons": 50_000_000})
+    found = [(step.now_ns // 10_000_000, name) for step in run(world, 0.1) for _, name, _ in step.readings]
+    assert [tick for tick, name in found if name == "ground"] == [3, 6, 9]
+    assert [tick for tick, name in found if name == "buttons"] == [5, 10]
+    assert {name for _, name in found} == {"ground", "buttons"}
+
+
+@pytest.mark.parametrize(("periods_ns", "found"), [({"sonar": 1}, "'sonar'"), ({"ground": 0}, "found 0 ns")])
+def test_a_sensor_that_is_none_or_never_measures_is_refused(periods_ns: dict[str, int], found: str) -> None:
+    with pytest.raises(ValueError, match=found):
+        World(make([FLOOR]), periods_ns=periods_ns)
+
+
+def test_noise_of_one_robot_does_not_depend_on_how_many_there_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    near, far = {"name": "near", "x_m": 0.0, "y_m": 0.0}, {"name": "far", "x_m": 1.5, "y_m": 1.5}
+    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", 2)
+    few, many = (World(make([FLOOR, box(0.15, 0.0, 0.02, 0.5)], robots)) for robots in ([near], [near, far]))
+    for one, both in zip(run(few, 1.0), run(many, 1.0), strict=True):
+        other = {name: reading for robot, name, reading in both.readings if robot == "near"}
+        for _, name, reading in one.readings:
+            assert reading.words == other[name].words
