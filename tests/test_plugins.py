@@ -127,7 +127,9 @@ def test_the_actuators_are() -> None:
 
 def test_the_shapes_are() -> None:
     names = [kind.name for kind in shapes.all_shapes()]
-    assert names == ["box", "cylinder", "octagon", "picture", "rectangle", "track", "u_figure", "wall"]
+    assert names == [
+        "activation", "box", "cylinder", "door", "octagon", "picture", "rectangle", "track", "u_figure", "wall",
+    ]  # fmt: skip
 
 
 def test_every_plug_in_is_named_after_its_module() -> None:

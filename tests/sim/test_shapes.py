@@ -11,13 +11,17 @@ from tests.sim.builders import GREY, make
 from tests.sim.images import BLACK, WHITE, png_uri
 from thymio_sim_ros.sim.geometry import Point, Pose, is_convex
 from thymio_sim_ros.sim.playground import Playground
-from thymio_sim_ros.sim.primitives import Box, Disc, Print, Solid
+from thymio_sim_ros.sim.primitives import Box, Disc, Load, Print, Slide, Solid
 from thymio_sim_ros.sim.shapes import all_shapes
 
 WALLS = {"height_m": 0.12, "thickness_m": 0.02}
+DOOR = {"closed_x_m": 0, "closed_y_m": 0, "opened_x_m": 0.3, "opened_y_m": 0, "move_s": 2, "color": GREY}
+BLOCK = {"size_x_m": 0.2, "size_y_m": 0.02}
 KINDS: dict[str, dict[str, Any]] = {
+    "activation": {"x_m": 1, "y_m": 2, "door": "gate", "area_m": [[0, 0], [0.2, 0], [0, 0.2]], "yaw_rad": 0.5} | BLOCK,
     "box": {"x_m": 1, "y_m": 2, "size_x_m": 0.3, "size_y_m": 0.2, "height_m": 0.1, "color": GREY, "yaw_rad": 0.5},
     "cylinder": {"x_m": 1, "y_m": 2, "radius_m": 0.1, "height_m": 0.1, "color": GREY},
+    "door": {**DOOR, **BLOCK, "height_m": 0.1, "yaw_rad": 0.5},
     "octagon": {"side_m": 1.0, "color": GREY, "walls": WALLS},
     "picture": {"image": png_uri([[WHITE, BLACK], [BLACK, WHITE]]), "size_x_m": 0.4, "x_m": 1.0, "yaw_rad": 0.5},
     "rectangle": {"size_x_m": 1.0, "size_y_m": 0.5, "color": GREY, "walls": WALLS},
@@ -28,7 +32,8 @@ KINDS: dict[str, dict[str, Any]] = {
 
 
 def built(kind: str, **changes: Any) -> Playground:
-    return make([{"kind": kind, **KINDS[kind], **changes}], [])
+    gate = {"kind": "door", "name": "gate", **KINDS["door"]}
+    return make([{"kind": kind, **KINDS[kind], **changes}, *([gate] if kind == "activation" else [])], [])
 
 
 def extent(solids: tuple[Solid, ...], axis: int) -> tuple[float, float]:
@@ -150,3 +155,30 @@ def test_pieces_of_a_rounded_track_share_their_edges() -> None:
     for paint, following in zip(paints, (*paints[1:], paints[0]), strict=True):
         assert paint.vertices[1] == pytest.approx(following.vertices[0])
         assert paint.vertices[2] == pytest.approx(following.vertices[3])
+
+
+def test_a_box_or_cylinder_with_a_mass_is_movable_and_rubs_on_the_floor() -> None:
+    (solid,) = built("box", mass_kg=0.2, size_x_m=0.1, size_y_m=0.1).solids
+    assert solid.load == Load(0.2, 0.25, pytest.approx(0.03826, abs=1e-5), 0.1)
+    (solid,) = built("cylinder", mass_kg=0.2, friction=0.5, restitution=0.0).solids
+    assert solid.load == Load(0.2, 0.5, pytest.approx(0.1 * 2 / 3), 0.0)
+
+
+@pytest.mark.parametrize("kind", ["box", "cylinder", "wall", "u_figure"])
+def test_what_has_no_mass_is_fixed(kind: str) -> None:
+    assert all(solid.load is None for solid in built(kind).solids)
+
+
+def test_a_door_is_a_solid_that_slides() -> None:
+    (solid,) = built("door").solids
+    assert (solid.pose, solid.slide) == (Pose(0.0, 0.0, 0.5), Slide(Pose(0.3, 0.0, 0.5), 2.0))
+
+
+def test_an_activation_is_a_low_red_block_and_an_area_around_it() -> None:
+    playground = built("activation", yaw_rad=math.pi / 2)
+    block, (trigger,) = playground.solids[0], playground.triggers
+    assert (block.height_m, block.color) == (0.06, (1.0, 0.0, 0.0))
+    assert flat(trigger.vertices) == pytest.approx([1, 2, 1, 2.2, 0.8, 2])
+    assert trigger.door == "gate"
+    assert trigger.holds(0.95, 2.05)
+    assert not trigger.holds(1.05, 2.05)

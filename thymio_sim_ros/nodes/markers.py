@@ -21,13 +21,13 @@ from thymio_sim_ros.sim import pictures
 from thymio_sim_ros.sim.geometry import Point
 from thymio_sim_ros.sim.mosaic import Tile, mosaic
 from thymio_sim_ros.sim.pictures import Pixels
-from thymio_sim_ros.sim.primitives import Box, Color, Disc, Floor, Paint, Primitive, Print, Solid
+from thymio_sim_ros.sim.primitives import Box, Color, Disc, Drawable, Floor, Paint, Print, Solid
 
 LAYER_M = 0.0002
 """Each paint lies this much above the one before, so that a viewer need not guess which covers which."""
 
 
-def playground_markers(primitives: Iterable[Primitive]) -> MarkerArray:
+def playground_markers(primitives: Iterable[Drawable]) -> MarkerArray:
     """Markers of all primitives, in their order; neighbouring paint of one shape and color is one marker."""
     markers = [Marker(action=Marker.DELETEALL)]
     layer = 0
@@ -49,7 +49,7 @@ def playground_markers(primitives: Iterable[Primitive]) -> MarkerArray:
     return MarkerArray(markers=markers)
 
 
-def _sort_of(primitive: Primitive) -> tuple[type, str, Color]:
+def _sort_of(primitive: Drawable) -> tuple[type, str, Color]:
     color = (1.0, 1.0, 1.0) if isinstance(primitive, Print) else primitive.color
     return type(primitive), primitive.name, color
 

@@ -21,14 +21,21 @@ from typing import Annotated, Any, TypeVar, cast
 from thymio_sim_ros.sim.primitives import Color
 
 __all__ = [
+    "OBJECT_FRICTION",
+    "OBJECT_RESTITUTION",
     "Angle",
+    "Area",
     "Coordinate",
+    "Duration",
     "Extent",
     "FieldError",
+    "Friction",
     "Image",
+    "Mass",
     "Name",
     "PenWidth",
     "Points",
+    "Restitution",
     "Shade",
     "Text",
     "as_color",
@@ -42,6 +49,10 @@ T = TypeVar("T")
 
 FAR_M = 100.0
 """No coordinate lies farther from the origin."""
+OBJECT_FRICTION = 0.25
+"""Between a movable thing and the floor (thymio-robot.md section 11)."""
+OBJECT_RESTITUTION = 0.1
+"""Between a movable thing and a robot: the middle of 0…0.2 (thymio-robot.md section 11)."""
 
 
 class FieldError(Exception):
@@ -93,12 +104,17 @@ Extent = Annotated[float, Number("m", 0.001, FAR_M)]
 PenWidth = Annotated[float, Number("m", 0.001, 0.1)]
 Angle = Annotated[float, Number("rad", -2 * math.pi, 2 * math.pi)]
 Radius = Annotated[float, Number("m", 0.0, FAR_M)]
+Mass = Annotated[float, Number("kg", 0.001, 1000.0)]
+Friction = Annotated[float, Number("of the weight", 0.0, 2.0)]
+Restitution = Annotated[float, Number("of the speed", 0.0, 1.0)]
+Duration = Annotated[float, Number("s", 0.01, 3600.0)]
 Text = Annotated[str, Pattern(r"[^\x00-\x1f\x7f\ud800-\udfff]*", "one line of text", 2000)]
 Name = Annotated[
     str, Pattern(r"[A-Za-z](_?[A-Za-z0-9])*", "a ROS name: letters, digits, single underscores, a letter first", 60)
 ]
 Shade = Annotated[str, Pattern(r"#[0-9A-Fa-f]{6}", "a color such as #1a2b3c", 7)]
 Points = Annotated[tuple[tuple[float, float], ...], Path(2, 1000)]
+Area = Annotated[tuple[tuple[float, float], ...], Path(3, 1000)]
 Image = Annotated[str, File("a PNG, JPEG or SVG beside this file, or a data URI of one", 6_000_000)]
 
 _COORDINATE = Number("m", -FAR_M, FAR_M)

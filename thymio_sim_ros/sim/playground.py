@@ -28,7 +28,7 @@ from thymio_sim_ros.sim.fields import (
     read,
 )
 from thymio_sim_ros.sim.geometry import Pose, convex_hulls_overlap, disc_overlaps_hull
-from thymio_sim_ros.sim.primitives import Disc, Floor, Mark, Paint, Primitive, Print, Solid
+from thymio_sim_ros.sim.primitives import Disc, Floor, Mark, Paint, Primitive, Print, Solid, Trigger
 from thymio_sim_ros.sim.shapes import Shape, ShapeKind, all_shapes
 
 __all__ = ["NamedShape", "PenStart", "Playground", "PlaygroundError", "RobotStart", "load", "loads", "schema"]
@@ -92,7 +92,10 @@ class NamedShape:
 
 @dataclass(frozen=True, slots=True)
 class Playground:
-    """A checked playground. Invariant: names are unique, no robot starts inside a solid or another robot."""
+    """A checked playground.
+
+    Invariant: names are unique, no robot starts inside a solid or another robot, triggers name doors.
+    """
 
     name: str
     title: str
@@ -102,6 +105,7 @@ class Playground:
     solids: tuple[Solid, ...]
     floors: tuple[Floor, ...]
     paints: tuple[Mark, ...]
+    triggers: tuple[Trigger, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,6 +215,7 @@ def _build(data: object, name: str, beside: Beside) -> Playground:
     primitives = _primitives(shapes)
     solids = tuple(primitive for primitive in primitives if isinstance(primitive, Solid))
     _check_starts(robots, solids)
+    _check_doors(shapes, primitives)
     return Playground(
         name=name,
         title=titles.title,
@@ -220,6 +225,7 @@ def _build(data: object, name: str, beside: Beside) -> Playground:
         solids=solids,
         floors=tuple(primitive for primitive in primitives if isinstance(primitive, Floor)),
         paints=tuple(primitive for primitive in primitives if isinstance(primitive, Paint | Print)),
+        triggers=tuple(primitive for primitive in primitives if isinstance(primitive, Trigger)),
     )
 
 
@@ -303,3 +309,13 @@ def _check_starts(robots: tuple[RobotStart, ...], solids: tuple[Solid, ...]) -> 
         if convex_hulls_overlap(hulls[one], hulls[other]):
             found = f"'{robots[other].name}' inside '{robots[one].name}'"
             raise FieldError(f"robots[{other}]", found, "a free place")
+
+
+def _check_doors(shapes: tuple[NamedShape, ...], primitives: Iterable[Primitive]) -> None:
+    """Refuse a trigger of what is no door."""
+    doors = [primitive.name for primitive in primitives if isinstance(primitive, Solid) and primitive.slide is not None]
+    keys = {shape.name: f"shapes[{index}].door" for index, shape in enumerate(shapes)}
+    for primitive in primitives:
+        if isinstance(primitive, Trigger) and primitive.door not in doors:
+            expected = "one of the doors " + ", ".join(doors) if doors else "the name of a door; there is none"
+            raise FieldError(keys[primitive.name], describe(primitive.door), expected)

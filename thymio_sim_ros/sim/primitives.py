@@ -6,7 +6,8 @@ Colors are red, green, blue from 0 to 1.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
 
 from thymio_sim_ros.sim.geometry import Point, Pose
 
@@ -14,15 +15,19 @@ __all__ = [
     "Box",
     "Color",
     "Disc",
+    "Drawable",
     "Floor",
+    "Load",
     "Mark",
     "Outline",
     "Paint",
     "Polygon",
     "Primitive",
     "Print",
+    "Slide",
     "Solid",
     "Stroke",
+    "Trigger",
 ]
 
 Color = tuple[float, float, float]
@@ -41,12 +46,25 @@ class Box:
         x, y = self.size_x_m / 2, self.size_y_m / 2
         return ((-x, -y), (x, -y), (x, y), (-x, y))
 
+    @property
+    def mean_lever_m(self) -> float:
+        """Mean distance of its points from the middle."""
+        x, y = self.size_x_m / 2, self.size_y_m / 2
+        half = math.hypot(x, y)
+        sides = x * x / (6 * y) * math.asinh(y / x) + y * y / (6 * x) * math.asinh(x / y)
+        return half / 3 + sides
+
 
 @dataclass(frozen=True, slots=True)
 class Disc:
     """Outline: a circle centred on its pose."""
 
     radius_m: float
+
+    @property
+    def mean_lever_m(self) -> float:
+        """Mean distance of its points from the middle."""
+        return self.radius_m * 2 / 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,19 +78,50 @@ Outline = Box | Disc | Polygon
 
 
 @dataclass(frozen=True, slots=True)
+class Load:
+    """What makes a solid movable: its mass, its coefficient of friction on the floor, and how a robot bounces off it.
+
+    `lever_m` is the mean distance from its middle at which the floor holds it when it turns. `restitution` is the part
+    of the speed that is left after robot and thing have met, 0…1.
+    """
+
+    mass_kg: float
+    friction: float
+    lever_m: float
+    restitution: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Slide:
+    """What makes a solid a door: where it is when open, and how long it takes to get there."""
+
+    opened: Pose
+    duration_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class Solid:
-    """A thing that stands on the ground: outline, height, color. `name` is its shape's, and may occur again."""
+    """A thing that stands on the ground: outline, height, color.
+
+    `name` is its shape's, and may occur again, but only once for a solid with a load or a slide.
+    """
 
     name: str
     pose: Pose
     outline: Outline
     height_m: float
     color: Color
+    load: Load | None = None
+    slide: Slide | None = None
 
     @property
     def vertices(self) -> tuple[Point, ...]:
         """Corners in the world's frame; none for a disc."""
         return () if isinstance(self.outline, Disc) else self.pose.place_all(self.outline.vertices)
+
+    def at(self, pose: Pose) -> Solid:
+        """The same thing elsewhere."""
+        return replace(self, pose=pose)
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,8 +167,6 @@ class Print:
 Mark = Paint | Print
 """What lies on floors and makes them dark or bright."""
 
-Primitive = Solid | Floor | Paint | Print
-
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
@@ -128,3 +175,38 @@ class Stroke:
     color: Color
     width_m: float
     points: tuple[Point, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Trigger:
+    """An area that opens a door while the origin of any robot is in it; any polygon, in the world's frame."""
+
+    name: str
+    vertices: tuple[Point, ...]
+    door: str
+
+    @property
+    def middle(self) -> Point:
+        """The middle of its bounds."""
+        xs, ys = zip(*self.vertices, strict=True)
+        return (min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2
+
+    @property
+    def reach_m(self) -> float:
+        """No corner is farther from the middle."""
+        return max(math.dist(self.middle, vertex) for vertex in self.vertices)
+
+    def holds(self, x_m: float, y_m: float) -> bool:
+        """Whether a point lies inside, by the even-odd rule."""
+        inside = False
+        for index, (bx, by) in enumerate(self.vertices):
+            ax, ay = self.vertices[index - 1]
+            if (ay > y_m) != (by > y_m) and x_m < ax + (bx - ax) * (y_m - ay) / (by - ay):
+                inside = not inside
+        return inside
+
+
+Drawable = Solid | Floor | Paint | Print
+"""What one can see."""
+
+Primitive = Drawable | Trigger

@@ -35,8 +35,8 @@ PWM_PER_SPEED_UNIT = -1.6
 PWM_LIMIT = 801
 """Limit of motor.*.pwm (TR 2.1)."""
 
-DRIVE_FORCE_N = 1.3
-"""Force of both wheels at full target and standstill: half the weight. Own choice: TR 11 asks for a finite one."""
+DRIVE_FORCE_N = 2.65
+"""The most that the tyres can push: the weight, as rubber grips. Own choice: TR 11 asks for a finite force."""
 
 PROXIMITY_POSES: tuple[tuple[float, float, float], ...] = (
     (0.062, 0.0485, math.radians(40)),

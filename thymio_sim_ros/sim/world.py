@@ -15,8 +15,9 @@ from thymio_sim_ros.sim.clock import TICK_NS, SimClock
 from thymio_sim_ros.sim.commands import Command, SetPen
 from thymio_sim_ros.sim.crowd import CROWD, Crowd
 from thymio_sim_ros.sim.fields import as_color
+from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.ground import Ground
-from thymio_sim_ros.sim.physics import Contact, Physics
+from thymio_sim_ros.sim.physics import Contact, DoorBody, MovableBody, Physics
 from thymio_sim_ros.sim.playground import Playground
 from thymio_sim_ros.sim.raycaster import Raycaster
 from thymio_sim_ros.sim.rays import obstacle_of
@@ -66,7 +67,7 @@ class World:
         """Everything as at the start: time 0, robots at their places, the same noise again, no command waiting."""
         self._clock = SimClock()
         self._ground.restore()
-        self._physics = Physics(self.playground.solids)
+        self._physics = Physics(self.playground.solids, self.playground.triggers)
         self._robots: dict[str, Robot] = {}
         shared = Shared(self._clock, self._ground, self._physics, self._proximity_model, self._robots)
         actuators, sensors = all_actuators(), self._sensors
@@ -92,6 +93,12 @@ class World:
     def robots(self) -> Mapping[str, Robot]:
         """The robots by name, in the order of the playground."""
         return MappingProxyType(self._robots)
+
+    @property
+    def objects(self) -> Mapping[str, Pose]:
+        """Where everything that moves without wheels is: movable things, then doors, by name."""
+        moving: dict[str, MovableBody | DoorBody] = {**self._physics.movables, **self._physics.doors}
+        return MappingProxyType({name: body.pose for name, body in moving.items()})
 
     def post(self, robot: str, command: Command) -> None:
         """Let a command take effect in the next step; KeyError for an unknown robot, TypeError for no command."""

@@ -1,19 +1,30 @@
-"""A box that cannot be moved."""
+"""A box, fixed or movable."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from thymio_sim_ros.sim import primitives
-from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_color
+from thymio_sim_ros.sim.fields import (
+    OBJECT_FRICTION,
+    OBJECT_RESTITUTION,
+    Angle,
+    Coordinate,
+    Extent,
+    Friction,
+    Mass,
+    Restitution,
+    Shade,
+    as_color,
+)
 from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.primitives import Primitive, Solid
+from thymio_sim_ros.sim.primitives import Load, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
 
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A box of a size, centred on its pose."""
+    """A box of a size, centred on its pose; movable when it has a mass. `friction` is that with the floor."""
 
     x_m: Coordinate
     y_m: Coordinate
@@ -22,12 +33,18 @@ class Box:
     height_m: Extent
     color: Shade
     yaw_rad: Angle = 0.0
+    mass_kg: Mass | None = None
+    friction: Friction = OBJECT_FRICTION
+    restitution: Restitution = OBJECT_RESTITUTION
 
     def primitives(self, name: str) -> tuple[Primitive, ...]:
         """One solid."""
         outline = primitives.Box(self.size_x_m, self.size_y_m)
         pose = Pose(self.x_m, self.y_m, self.yaw_rad)
-        return (Solid(name, pose, outline, self.height_m, as_color(self.color)),)
+        load = None
+        if self.mass_kg is not None:
+            load = Load(self.mass_kg, self.friction, outline.mean_lever_m, self.restitution)
+        return (Solid(name, pose, outline, self.height_m, as_color(self.color), load),)
 
 
 SHAPE = ShapeKind("box", Box)

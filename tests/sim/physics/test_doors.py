@@ -1,0 +1,111 @@
+"""Doors: when they open, how they move, what they do to robots."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import pytest
+
+from tests.sim.builders import FLOOR, GREY, ROBOT, make, run, send, sense
+from thymio_sim_ros.sim import playground
+from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
+from thymio_sim_ros.sim.playground import PlaygroundError
+from thymio_sim_ros.sim.world import World
+
+GATE = {
+    "kind": "door", "name": "gate", "closed_x_m": 0.5, "closed_y_m": 0.0, "opened_x_m": 0.5, "opened_y_m": 0.6,
+    "size_x_m": 0.02, "size_y_m": 0.6, "height_m": 0.1, "move_s": 2.0, "color": GREY,
+}  # fmt: skip
+PLATE = {
+    "kind": "activation", "name": "plate", "x_m": -0.5, "y_m": 0.5, "size_x_m": 0.1, "size_y_m": 0.1, "door": "gate",
+    "area_m": [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]],
+}  # fmt: skip
+
+
+def build(*shapes: dict[str, Any]) -> World:
+    return World(make([FLOOR, *shapes], (ROBOT, {**ROBOT, "name": "opener", "x_m": -1.0})), noise=False)
+
+
+def enter(world: World) -> None:
+    """Put the opener on the area, beside the block."""
+    world.post("opener", MoveRobot(-0.5, 0.34, 0.0))
+
+
+def leave(world: World) -> None:
+    world.post("opener", MoveRobot(-1.0, 0.0, 0.0))
+
+
+def test_a_door_stays_closed_while_nobody_is_on_its_area() -> None:
+    world = build(GATE, PLATE)
+    run(world, 3.0)
+    assert world.objects["gate"].y_m == 0.0
+
+
+def test_a_door_opens_along_half_a_cosine() -> None:
+    world = build(GATE, PLATE)
+    enter(world)
+    found = [(run(world, 0.01), world.objects["gate"].y_m)[1] for _ in range(250)]
+    expected = [0.6 * (1 - math.cos(math.pi * min(tick, 200) / 200)) / 2 for tick in range(1, 251)]
+    assert found == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_door_turns_back_half_way_and_closes() -> None:
+    world = build(GATE, PLATE)
+    enter(world)
+    run(world, 1.0)
+    assert world.objects["gate"].y_m == pytest.approx(0.3, abs=0.01)
+    leave(world)
+    run(world, 1.1)
+    assert world.objects["gate"].y_m == 0.0
+
+
+def test_a_robot_drives_through_an_open_door_only() -> None:
+    def reached(*, is_open: bool) -> float:
+        world = build(GATE, PLATE)
+        if is_open:
+            enter(world)
+        send(world, MotorTargets(300, 300))
+        run(world, 8.0)
+        return world.robots["thymio"].pose.x_m
+
+    assert reached(is_open=False) == pytest.approx(0.41, abs=0.002)
+    assert reached(is_open=True) > 0.6
+
+
+def test_a_closing_door_pushes_a_robot_that_stands_in_its_way() -> None:
+    world = build(GATE, PLATE)
+    enter(world)
+    run(world, 2.5)
+    send(world, MoveRobot(0.5, -0.1, 0.0))
+    leave(world)
+    run(world, 3.0)
+    assert world.objects["gate"].y_m == 0.0
+    assert world.robots["thymio"].pose.y_m == pytest.approx(-0.3 - 0.055, abs=0.003)
+
+
+def test_sensors_see_a_door_where_it_is() -> None:
+    world = build({**GATE, "closed_x_m": 0.15, "opened_x_m": 0.15}, PLATE)
+    closed = sense(world, "proximity").words[2]
+    enter(world)
+    run(world, 2.5)
+    assert closed > 2000
+    assert sense(world, "proximity").words[2] == 0
+
+
+def test_one_of_several_areas_is_enough() -> None:
+    other = {**PLATE, "name": "other", "x_m": 1.5, "y_m": 1.5}
+    world = build(GATE, other, PLATE)
+    enter(world)
+    run(world, 2.5)
+    assert world.objects["gate"].y_m == 0.6
+
+
+@pytest.mark.parametrize("shapes", [[PLATE], [{**GATE, "kind": "wall"}, PLATE]], ids=["none", "a wall"])
+def test_an_activation_of_what_is_no_door_is_refused(shapes: list[dict[str, Any]]) -> None:
+    wall = {"kind": "wall", "name": "gate", "start_x_m": 0, "start_y_m": 1, "end_x_m": 1, "end_y_m": 1, "color": GREY}
+    shapes = [wall if shape["kind"] == "wall" else shape for shape in shapes]
+    text = json.dumps({"format": 1, "title": "test", "shapes": shapes, "robots": []})
+    with pytest.raises(PlaygroundError, match=r"\.door: found 'gate', expected the name of a door; there is none"):
+        playground.loads(text, "test")

@@ -1,0 +1,14 @@
+"""Bodies, contacts and what rays meet: the only package that knows pymunk.
+
+`space` steps all bodies; `robots`, `movables` and `doors` hold one kind of body each; `contact` is what they tell.
+"""
+
+from __future__ import annotations
+
+from thymio_sim_ros.sim.physics.contact import Contact
+from thymio_sim_ros.sim.physics.doors import DoorBody
+from thymio_sim_ros.sim.physics.movables import MovableBody
+from thymio_sim_ros.sim.physics.robots import RobotBody
+from thymio_sim_ros.sim.physics.space import Physics
+
+__all__ = ["Contact", "DoorBody", "MovableBody", "Physics", "RobotBody"]

@@ -1,0 +1,28 @@
+"""What two bodies that touch tell, and the constants of a step that all kinds of bodies share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from thymio_sim_ros.sim.clock import TICK_NS
+
+__all__ = ["SUB_STEPS", "SUB_STEP_S", "TICK_S", "Contact"]
+
+SUB_STEPS = 2
+TICK_S = TICK_NS * 1e-9
+SUB_STEP_S = TICK_S / SUB_STEPS
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """A robot touches a solid or another robot, named by `other`.
+
+    `speed_m_s` is the speed of approach when the contact began; `is_new` when that was in this tick.
+    """
+
+    robot: str
+    other: str
+    x_m: float
+    y_m: float
+    speed_m_s: float
+    is_new: bool

@@ -1,0 +1,97 @@
+"""The body of a box or cylinder that can be pushed.
+
+It rubs on the floor by Coulomb's law with the real g; it may bounce off a robot, but off nothing else
+(thymio-robot.md section 11, last line).
+The floor holds its turning as if all of its weight lay at the load's lever.
+"""
+
+from __future__ import annotations
+
+import math
+
+import pymunk
+
+from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.primitives import Disc, Solid
+from thymio_sim_ros.sim.rays import Obstacle, obstacle_of
+
+__all__ = ["AT_REST_M_S", "MovableBody"]
+
+_GRAVITY_M_S2 = 9.81
+AT_REST_M_S = 1e-6
+"""Slower than this, at its rim too, is at rest."""
+
+
+class MovableBody:
+    """One movable solid. Invariant: `pose` is the body's after the last tick; it changes only when it moves."""
+
+    __slots__ = ("_obstacle", "_solid", "body", "is_fallen", "is_moving", "joints", "pose", "reach_m", "shape")
+
+    def __init__(self, solid: Solid, floor: pymunk.Body) -> None:
+        load = solid.load
+        assert load is not None
+        self._solid = solid
+        self.is_moving = self.is_fallen = False
+        outline = solid.outline
+        if isinstance(outline, Disc):
+            self.reach_m = outline.radius_m
+            moment = pymunk.moment_for_circle(load.mass_kg, 0.0, outline.radius_m)
+        else:
+            self.reach_m = max(math.hypot(x, y) for x, y in outline.vertices)
+            moment = pymunk.moment_for_poly(load.mass_kg, outline.vertices)
+        self.body = pymunk.Body(load.mass_kg, moment)
+        self.shape = (
+            pymunk.Circle(self.body, outline.radius_m)
+            if isinstance(outline, Disc)
+            else pymunk.Poly(self.body, outline.vertices)
+        )
+        self.shape.elasticity = load.restitution
+        slide = pymunk.PivotJoint(floor, self.body, (0.0, 0.0), (0.0, 0.0))
+        turn = pymunk.GearJoint(floor, self.body, 0.0, 1.0)
+        slide.max_bias = turn.max_bias = 0.0
+        slide.max_force = load.friction * load.mass_kg * _GRAVITY_M_S2
+        turn.max_force = slide.max_force * load.lever_m
+        self.joints = (slide, turn)
+        self.place(solid.pose)
+
+    @property
+    def name(self) -> str:
+        """Its shape's name."""
+        return self._solid.name
+
+    @property
+    def solid(self) -> Solid:
+        """What it is, where it started."""
+        return self._solid
+
+    @property
+    def obstacle(self) -> Obstacle:
+        """What rays see of it."""
+        return self._obstacle
+
+    def place(self, pose: Pose) -> None:
+        """Put it somewhere, at rest."""
+        self._rest()
+        self.body.position, self.body.angle = (pose.x_m, pose.y_m), pose.yaw_rad
+        self._show(pose)
+        if self.body.space is not None:
+            self.body.space.reindex_shapes_for_body(self.body)
+
+    def end_tick(self) -> None:
+        """Tell the new pose, if it has moved."""
+        vx, vy = self.body.velocity
+        speed = math.hypot(vx, vy) + abs(self.body.angular_velocity) * self.reach_m
+        x_m, y_m = self.body.position
+        self.is_moving = speed > AT_REST_M_S
+        if not self.is_moving and speed > 0.0:
+            self._rest()
+        if (x_m, y_m, self.body.angle) != (self.pose.x_m, self.pose.y_m, self.pose.yaw_rad):
+            self._show(Pose(x_m, y_m, self.body.angle))
+
+    def _rest(self) -> None:
+        self.is_moving = False
+        self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
+
+    def _show(self, pose: Pose) -> None:
+        self.pose = pose
+        self._obstacle = obstacle_of(self._solid.at(pose))

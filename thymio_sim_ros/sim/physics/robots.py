@@ -1,0 +1,186 @@
+"""The body of a robot.
+
+A free robot has the speed of its wheels; its velocity points along the heading in the middle of the sub-step, so that
+its path follows arcs to the third order. pymunk moves bodies first and solves contacts and forces afterwards; a robot
+that touches something is therefore pushed by a force, which that solution takes into account: it would give the robot
+the speed of its wheels within a tick, as the reference does by decree, but never exceeds what the tyres can hold, so
+that heavy things stall it. Wheels at rest resist a push in the same way, and two robots share the difference of their
+speeds. Wheels hold the heading (thymio-robot.md section 11).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pymunk
+
+from thymio_sim_ros.sim import thymio2
+from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, TICK_S, Contact
+from thymio_sim_ros.sim.rays import ConvexObstacle
+
+__all__ = ["ROBOT_TYPE", "RobotBody"]
+
+ROBOT_TYPE = 1
+"""pymunk's collision type of robots."""
+_MOMENT_KG_M2 = 1.0
+"""Far above the real one: wheels hold the heading of a robot that hits a wall (thymio-robot.md section 11)."""
+_PUSH_N_S_M = thymio2.MASS_KG / TICK_S
+"""Force for each m/s that a robot in contact lacks: enough to make up for it in one tick."""
+_HULL = thymio2.hull()
+
+
+class RobotBody:
+    """One robot's body, pushed by its two wheels. Invariant: `pose` is the body's after the last tick."""
+
+    __slots__ = (
+        "_angle",
+        "_covered",
+        "_driven",
+        "_heading",
+        "_is_free",
+        "_obstacle",
+        "body",
+        "is_fallen",
+        "name",
+        "pose",
+        "shape",
+        "speed_m_s",
+        "spin_rad_s",
+        "touching",
+    )
+
+    def __init__(self, name: str, pose: Pose) -> None:
+        self.name = name
+        self.pose = pose
+        self.touching: dict[pymunk.Shape, Contact] = {}
+        self.speed_m_s = 0.0
+        """Speed along the heading."""
+        self.spin_rad_s = 0.0
+        """Rate of turn, counter-clockwise."""
+        self.is_fallen = False
+        """Whether it lies below the floor, out of everybody's reach, until it is placed."""
+        self._driven = self._covered = (0.0, 0.0)
+        self._is_free = True
+        self._angle = self._heading = pose.yaw_rad
+        self._obstacle: tuple[Pose, ConvexObstacle] | None = None
+        self.body = pymunk.Body(thymio2.MASS_KG, _MOMENT_KG_M2)
+        self.body.position = (pose.x_m, pose.y_m)
+        self.body.angle = pose.yaw_rad
+        self.shape = pymunk.Poly(self.body, _HULL)
+        self.shape.collision_type = ROBOT_TYPE
+        self.shape.elasticity = 1.0  # pymunk multiplies: what the other has counts
+
+    @property
+    def covered_m_s(self) -> tuple[float, float]:
+        """Speed over ground at each wheel, mean of the last tick; exactly what was driven when nothing was touched."""
+        return self._driven if self._is_free else self._covered
+
+    @property
+    def reach_m(self) -> float:
+        """No part of it is farther from its origin."""
+        return thymio2.HULL_RADIUS_M
+
+    @property
+    def obstacle(self) -> ConvexObstacle:
+        """What the rays of others see of it."""
+        if self._obstacle is None or self._obstacle[0] is not self.pose:
+            self._obstacle = (self.pose, ConvexObstacle(self.pose.place_all(_HULL), thymio2.HULL_HEIGHT_M))
+        return self._obstacle[1]
+
+    def drive(self, ground_m_s: tuple[float, float]) -> None:
+        """Speed over ground that each wheel gives from now on."""
+        self._driven = ground_m_s
+
+    def place(self, pose: Pose) -> None:
+        """Put it somewhere, at rest."""
+        body = self.body
+        body.position, body.angle = (pose.x_m, pose.y_m), pose.yaw_rad
+        body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
+        self.speed_m_s = self.spin_rad_s = 0.0
+        self._angle = pose.yaw_rad
+        self.pose = pose
+        if body.space is not None:
+            body.space.reindex_shapes_for_body(body)
+
+    def fall(self) -> None:
+        """Lose the floor: from now on the wheels turn in the air."""
+        self.is_fallen = self._is_free = True
+        self.touching.clear()
+        self.speed_m_s = self.spin_rad_s = 0.0
+
+    def glide(self) -> None:
+        """A tick without the engine, for when nothing can be touched; the same sums in the same order."""
+        left, right = self._driven
+        self.speed_m_s = speed = (left + right) / 2
+        self.spin_rad_s = spin = (right - left) / thymio2.WHEEL_TRACK_M
+        self._is_free = True
+        x_m, y_m, angle = self.pose.x_m, self.pose.y_m, self.pose.yaw_rad
+        for _ in range(SUB_STEPS):
+            heading = angle + spin / 2 * SUB_STEP_S
+            x_m += speed * math.cos(heading) * SUB_STEP_S
+            y_m += speed * math.sin(heading) * SUB_STEP_S
+            angle += spin * SUB_STEP_S
+        self._angle = angle
+        self.pose = Pose(x_m, y_m, angle)
+
+    def wake(self) -> None:
+        """Hand the pose over to the engine after gliding."""
+        self.body.position = (self.pose.x_m, self.pose.y_m)
+        self.body.angle = self._angle
+
+    def begin_tick(self) -> None:
+        """Forget what the last tick covered; contacts are no longer new."""
+        self._covered = (0.0, 0.0)
+        self._is_free = not self.touching
+        for key, contact in self.touching.items():
+            if contact.is_new:
+                self.touching[key] = replace(contact, is_new=False)
+
+    def push(self) -> None:
+        """Before a sub-step: take the speed of the wheels, as far as contacts let."""
+        left, right = self._driven
+        speed, spin = (left + right) / 2, (right - left) / thymio2.WHEEL_TRACK_M
+        body = self.body
+        if not self.touching:
+            self._heading = heading = self._angle + spin / 2 * SUB_STEP_S
+            body.velocity = (speed * math.cos(heading), speed * math.sin(heading))
+            body.angular_velocity = spin
+            self.speed_m_s, self.spin_rad_s = speed, spin
+            return
+        turning = body.angular_velocity
+        self._heading = heading = self._angle + (turning + spin / 2) * SUB_STEP_S
+        vx, vy = body.velocity
+        push_x = (speed * math.cos(heading) - vx) * _PUSH_N_S_M
+        push_y = (speed * math.sin(heading) - vy) * _PUSH_N_S_M
+        share = thymio2.DRIVE_FORCE_N / max(thymio2.DRIVE_FORCE_N, math.hypot(push_x, push_y))
+        body.force = (push_x * share, push_y * share)
+        body.torque = (spin - turning) * (_MOMENT_KG_M2 / SUB_STEP_S)
+
+    def settle(self, earlier: int) -> None:
+        """After a sub-step, `earlier` ones done: take over what contacts have made of the push."""
+        if self._is_free and not self.touching:
+            self._angle += self.spin_rad_s * SUB_STEP_S
+            return
+        body = self.body
+        if self._is_free:
+            self._is_free = False
+            left, right = self._driven
+            self._covered = (left * earlier / SUB_STEPS, right * earlier / SUB_STEPS)
+        vx, vy = body.velocity
+        self._angle = body.angle
+        self.speed_m_s = vx * math.cos(self._heading) + vy * math.sin(self._heading)
+        self.spin_rad_s = body.angular_velocity
+        half = self.spin_rad_s * thymio2.WHEEL_TRACK_M / 2
+        left, right = self._covered
+        self._covered = (
+            left + (self.speed_m_s - half) / SUB_STEPS,
+            right + (self.speed_m_s + half) / SUB_STEPS,
+        )
+
+    def end_tick(self) -> None:
+        """Tell the new pose."""
+        x_m, y_m = self.body.position
+        self._angle = self.body.angle
+        self.pose = Pose(x_m, y_m, self._angle)

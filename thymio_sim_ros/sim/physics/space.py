@@ -1,0 +1,294 @@
+"""The space of all bodies: it lets them move and collide, and knows what rays may meet.
+
+While nothing is in anybody's reach and nothing moves by itself, pymunk rests and the robots glide by the same sums.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
+from typing import Any
+
+import pymunk
+
+from thymio_sim_ros.sim import thymio2
+from thymio_sim_ros.sim.clock import TICK_NS
+from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.nearby import Mover, Nearby
+from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, Contact
+from thymio_sim_ros.sim.physics.doors import DoorBody
+from thymio_sim_ros.sim.physics.movables import AT_REST_M_S, MovableBody
+from thymio_sim_ros.sim.physics.robots import ROBOT_TYPE, RobotBody
+from thymio_sim_ros.sim.primitives import Disc, Solid, Trigger
+from thymio_sim_ros.sim.rays import Surroundings, obstacle_of
+
+__all__ = ["Physics"]
+
+_SLOP_M = 0.0002
+"""Overlap that is left between touching bodies."""
+_ITERATIONS = 40
+"""Of the solver: with fewer, mirrored worlds do not push mirrored."""
+_DROWSY_S = 0.1
+"""What has been at rest for so long costs nothing until it is touched."""
+_LONGEST_WAY_M = thymio2.MAX_SPEED_M_S * TICK_NS * 1e-9
+_SAFE_M = 0.005
+_LOOK_ROUND_TICKS = 10
+_MOST_QUIET_TICKS = 100
+_FAR_M = thymio2.HULL_RADIUS_M + _SAFE_M + _MOST_QUIET_TICKS * _LONGEST_WAY_M
+"""What is farther away does not shorten the quiet."""
+_MOST_GLIDING = 8
+"""With more robots, looking round costs more than the engine."""
+_THING_TYPE = 2
+"""pymunk's collision type of everything but robots."""
+
+
+class Physics:
+    """The bodies of a world. Invariant: only `step` and the placing methods move them."""
+
+    def __init__(self, solids: Iterable[Solid], triggers: Iterable[Trigger] = ()) -> None:
+        self._space = pymunk.Space()
+        self._space.collision_slop = _SLOP_M
+        self._space.iterations = _ITERATIONS
+        self._space.idle_speed_threshold = AT_REST_M_S
+        self._space.sleep_time_threshold = _DROWSY_S
+        self._names: dict[pymunk.Shape, str] = {}
+        self._robots: dict[pymunk.Shape, RobotBody] = {}
+        self._movables: dict[str, MovableBody] = {}
+        self._doors: dict[str, DoorBody] = {}
+        self._triggers = tuple((trigger, *trigger.middle, trigger.reach_m) for trigger in triggers)
+        self._quiet_ticks = 0
+        self._engine_ticks = 0
+        fixed = []
+        for solid in solids:
+            if solid.load is not None:
+                self._add_movable(solid)
+            elif solid.slide is not None:
+                self._doors[solid.name] = door = DoorBody(solid)
+                self._add(solid.name, door.shape, door.body)
+            else:
+                self._add(solid.name, self._fixed_shape(solid))
+                fixed.append(obstacle_of(solid))
+        self._nearby = Nearby(fixed)
+        self._list_movers()
+        begin, separate = self._on_begin, self._on_separate
+        self._space.on_collision(ROBOT_TYPE, _THING_TYPE, begin, separate=separate)
+        self._space.on_collision(ROBOT_TYPE, ROBOT_TYPE, begin, _without_bounce, separate=separate)
+
+    @property
+    def movables(self) -> Mapping[str, MovableBody]:
+        """Everything that can be pushed, by name, in the order of the playground."""
+        return MappingProxyType(self._movables)
+
+    @property
+    def doors(self) -> Mapping[str, DoorBody]:
+        """All doors by name, in the order of the playground."""
+        return MappingProxyType(self._doors)
+
+    def add_robot(self, name: str, pose: Pose) -> RobotBody:
+        """A robot's body, at rest at a pose."""
+        self._stop_gliding()
+        robot = RobotBody(name, pose)
+        self._robots[robot.shape] = robot
+        self._add(name, robot.shape, robot.body)
+        self._list_movers()
+        return robot
+
+    def remove_robot(self, robot: RobotBody) -> None:
+        """Take a robot's body away; nobody touches it any more."""
+        self._stop_gliding()
+        if not robot.is_fallen:
+            self._space.remove(robot.shape, robot.body)
+        self._forget(robot.shape)
+        del self._robots[robot.shape], self._names[robot.shape]
+        self._list_movers()
+
+    def drop_robot(self, robot: RobotBody) -> None:
+        """Let a robot fall below the floor, where nothing touches or sees it."""
+        self._stop_gliding()
+        self._space.remove(robot.shape, robot.body)
+        self._forget(robot.shape)
+        robot.fall()
+        self._list_movers()
+
+    def drop_movable(self, movable: MovableBody) -> None:
+        """Let a thing fall below the floor."""
+        self._stop_gliding()
+        self._space.remove(movable.shape, movable.body, *movable.joints)
+        self._forget(movable.shape)
+        movable.is_fallen, movable.is_moving = True, False
+        self._list_movers()
+
+    def place(self, body: RobotBody | MovableBody, pose: Pose) -> None:
+        """Put a robot or a thing somewhere, at rest; what has fallen stands on the floor again."""
+        self._stop_gliding()
+        body.place(pose)
+        if body.is_fallen:
+            body.is_fallen = False
+            self._space.add(body.body, body.shape)
+            if isinstance(body, MovableBody):
+                self._space.add(*body.joints)
+            self._list_movers()
+        self._nearby.stir()
+
+    def step(self) -> tuple[Contact, ...]:
+        """One tick; the contacts at its end, by robot and in the order in which they began."""
+        self._nearby.stir()
+        self._swing_doors()
+        if self._quiet_ticks > 0:
+            self._glide()
+            return ()
+        robots = [robot for robot in self._robots.values() if not robot.is_fallen]
+        for robot in robots:
+            robot.begin_tick()
+        for earlier in range(SUB_STEPS):
+            for robot in robots:
+                robot.push()
+            self._space.step(SUB_STEP_S)
+            for robot in robots:
+                robot.settle(earlier)
+        for robot in robots:
+            robot.end_tick()
+        for movable in self._movables.values():
+            if not (movable.is_fallen or movable.body.is_sleeping):
+                movable.end_tick()
+        for door in self._doors.values():
+            door.end_tick()
+        self._engine_ticks += 1
+        if self._engine_ticks % _LOOK_ROUND_TICKS == 0:
+            self._quiet_ticks = self._count_quiet_ticks()
+        return tuple(contact for robot in robots for contact in robot.touching.values())
+
+    def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
+        """What a robot's rays may meet within `reach_m` of its origin, at least `height_m` high."""
+        if robot.is_fallen:
+            return Surroundings(())
+        x, y = robot.pose.x_m, robot.pose.y_m
+        low_x, low_y, high_x, high_y = x - reach_m, y - reach_m, x + reach_m, y + reach_m
+        near = []
+        for obstacle in self._nearby.fixed(x, y, reach_m):
+            left, bottom, right, top = obstacle.bounds
+            if (
+                left <= high_x and right >= low_x and bottom <= high_y and top >= low_y
+                and obstacle.height_m >= height_m and obstacle.is_within(x, y, reach_m)
+            ):  # fmt: skip
+                near.append(obstacle)
+        near.extend(
+            mover.obstacle
+            for mover in self._nearby.movers(x, y, reach_m)
+            if mover is not robot and mover.obstacle.height_m >= height_m
+        )
+        return Surroundings(near)
+
+    def _swing_doors(self) -> None:
+        """Doors open while somebody is in an area of theirs, and close again."""
+        wanted_open = {
+            trigger.door
+            for trigger, x, y, reach_m in self._triggers
+            for robot in self._nearby.movers(x, y, reach_m)
+            if isinstance(robot, RobotBody) and trigger.holds(robot.pose.x_m, robot.pose.y_m)
+        }
+        for name, door in self._doors.items():
+            door.begin_tick(is_wanted_open=name in wanted_open)
+            if door.is_moving:
+                self._stop_gliding()
+
+    def _glide(self) -> None:
+        """A tick in which nothing can be touched."""
+        for robot in self._robots.values():
+            if not robot.is_fallen:
+                robot.glide()
+        self._quiet_ticks -= 1
+        if self._quiet_ticks == 0:
+            self._quiet_ticks = self._count_quiet_ticks()
+            if self._quiet_ticks == 0:
+                self._wake()
+
+    def _stop_gliding(self) -> None:
+        if self._quiet_ticks > 0:
+            self._quiet_ticks = 0
+            self._wake()
+
+    def _wake(self) -> None:
+        """Let the engine take over."""
+        for robot in self._robots.values():
+            robot.wake()
+
+    def _count_quiet_ticks(self) -> int:
+        """For how many ticks no robot can reach anything, however it drives."""
+        robots = [robot for robot in self._robots.values() if not robot.is_fallen]
+        if len(robots) > _MOST_GLIDING or any(robot.touching for robot in robots):
+            return 0
+        if any(movable.is_moving for movable in self._movables.values()):
+            return 0
+        if any(door.is_moving for door in self._doors.values()):
+            return 0
+        free_m = _FAR_M
+        for robot in robots:
+            x, y = robot.pose.x_m, robot.pose.y_m
+            for obstacle in self._nearby.fixed(x, y, _FAR_M):
+                left, bottom, right, top = obstacle.bounds
+                free_m = min(free_m, math.hypot(max(left - x, 0.0, x - right), max(bottom - y, 0.0, y - top)))
+            for mover in self._nearby.movers(x, y, 2 * _FAR_M):
+                away_m = math.hypot(mover.pose.x_m - x, mover.pose.y_m - y)
+                if isinstance(mover, RobotBody):
+                    free_m = min(free_m, away_m / 2) if mover is not robot else free_m
+                else:
+                    free_m = min(free_m, away_m - mover.reach_m)
+        return max(0, int((free_m - thymio2.HULL_RADIUS_M - _SAFE_M) / _LONGEST_WAY_M))
+
+    def _list_movers(self) -> None:
+        """Tell `nearby` who moves now."""
+        movers: list[Mover] = [robot for robot in self._robots.values() if not robot.is_fallen]
+        movers += [movable for movable in self._movables.values() if not movable.is_fallen]
+        self._nearby.replace_movers([*movers, *self._doors.values()])
+
+    def _add(self, name: str, shape: pymunk.Shape, *parts: pymunk.Body | pymunk.Constraint) -> None:
+        if not shape.collision_type:
+            shape.collision_type = _THING_TYPE
+        self._names[shape] = name
+        self._space.add(*parts, shape)
+
+    def _add_movable(self, solid: Solid) -> None:
+        movable = MovableBody(solid, self._space.static_body)
+        self._movables[solid.name] = movable
+        self._add(solid.name, movable.shape, movable.body, *movable.joints)
+
+    def _fixed_shape(self, solid: Solid) -> pymunk.Shape:
+        body = self._space.static_body
+        if isinstance(solid.outline, Disc):
+            return pymunk.Circle(body, solid.outline.radius_m, (solid.pose.x_m, solid.pose.y_m))
+        return pymunk.Poly(body, solid.vertices)
+
+    def _forget(self, shape: pymunk.Shape) -> None:
+        """Nobody touches a shape any more."""
+        for robot in self._robots.values():
+            robot.touching.pop(shape, None)
+
+    def _on_begin(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+        one, other = arbiter.shapes
+        points = arbiter.contact_point_set
+        x, y = points.points[0].point_a
+        speed = max(0.0, (_velocity(one, (x, y)) - _velocity(other, (x, y))).dot(points.normal))
+        for mine, its in ((one, other), (other, one)):
+            robot = self._robots.get(mine)
+            if robot is not None:
+                robot.touching[its] = Contact(robot.name, self._names[its], x, y, speed, True)
+
+    def _on_separate(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+        one, other = arbiter.shapes
+        for mine, its in ((one, other), (other, one)):
+            robot = self._robots.get(mine)
+            if robot is not None:
+                robot.touching.pop(its, None)
+
+
+def _without_bounce(arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+    """Robots do not bounce off each other."""
+    arbiter.restitution = 0.0
+
+
+def _velocity(shape: pymunk.Shape, point: tuple[float, float]) -> pymunk.Vec2d:
+    """Of a shape's body where it is touched."""
+    assert shape.body is not None
+    return shape.body.velocity_at_world_point(point)

@@ -1,0 +1,37 @@
+"""A door that slides between two places while somebody stands on an activation of it (playground-formats.md 1.2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from thymio_sim_ros.sim import primitives
+from thymio_sim_ros.sim.fields import Angle, Coordinate, Duration, Extent, Shade, as_color
+from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.primitives import Primitive, Slide, Solid
+from thymio_sim_ros.sim.shapes import ShapeKind
+
+
+@dataclass(frozen=True, slots=True)
+class Door:
+    """A box that starts closed and takes `move_s` from one place to the other, slowly at both ends."""
+
+    closed_x_m: Coordinate
+    closed_y_m: Coordinate
+    opened_x_m: Coordinate
+    opened_y_m: Coordinate
+    size_x_m: Extent
+    size_y_m: Extent
+    height_m: Extent
+    move_s: Duration
+    color: Shade
+    yaw_rad: Angle = 0.0
+
+    def primitives(self, name: str) -> tuple[Primitive, ...]:
+        """One solid that slides."""
+        closed = Pose(self.closed_x_m, self.closed_y_m, self.yaw_rad)
+        slide = Slide(Pose(self.opened_x_m, self.opened_y_m, self.yaw_rad), self.move_s)
+        outline = primitives.Box(self.size_x_m, self.size_y_m)
+        return (Solid(name, closed, outline, self.height_m, as_color(self.color), slide=slide),)
+
+
+SHAPE = ShapeKind("door", Door)
