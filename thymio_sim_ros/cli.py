@@ -1,4 +1,4 @@
-"""The command `thymio-sim`: start the whole suite, or run a program without ROS.
+"""The command `thymio-sim`: start the whole suite, run a program without ROS, or convert a playground.
 
 Everything a user can get wrong is checked before anything starts: one line on stderr, exit code 2.
 """
@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Sequence
 
 import thymio_sim_ros
-from thymio_sim_ros import resources
+from thymio_sim_ros import convert, resources
 from thymio_sim_ros.device.program import ProgramError, ThymioProgram
 from thymio_sim_ros.loading import NO_PROGRAM, load_playground, read_program
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
@@ -26,6 +26,7 @@ example:
   thymio-sim --playground obstacle --program my_robot.aesl
   thymio-sim --behaviour menu                                (the arrows choose, the centre button starts)
   thymio-sim runner --program my_robot.aesl --seconds 60     (no ROS, as fast as possible)
+  thymio-sim convert maze.playground -o maze.json            (from Aseba and others; no ROS)
 """
 
 USAGE_ERROR = 2
@@ -38,9 +39,10 @@ class UsageError(Exception):
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point; the exit code."""
     arguments = list(sys.argv[1:] if argv is None else argv)
-    command: Callable[[Sequence[str]], int] = start_suite
-    if arguments[:1] == ["runner"]:
-        command, arguments = run_without_ros, arguments[1:]
+    commands: dict[str, Callable[[Sequence[str]], int]] = {"runner": run_without_ros, "convert": convert.run}
+    command = commands.get(arguments[0], start_suite) if arguments else start_suite
+    if command is not start_suite:
+        arguments = arguments[1:]
     try:
         return command(arguments)
     except UsageError as error:
@@ -87,6 +89,8 @@ def run_without_ros(argv: Sequence[str]) -> int:
     playground, program = _check_files(options.playground, _program(options))
     from thymio_sim_ros.runner import Runner
 
+    for note in playground.notes:
+        print(f"thymio-sim: {options.playground}: {note}", file=sys.stderr)
     runner = Runner(playground, program, behaviour=options.behaviour, seed=options.seed)
     started = time.perf_counter()
     runner.run(options.seconds)

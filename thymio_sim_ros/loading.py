@@ -2,25 +2,47 @@
 
 from __future__ import annotations
 
+import base64
+import binascii
+import re
+import urllib.parse
+
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.sim import playground as playgrounds
-from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.playground import Playground, PlaygroundError
 
 NO_PROGRAM = "none"
 """In place of a program's name: the robot does nothing by itself."""
 
 
-def load_playground(value: str) -> tuple[str, Playground]:
-    """(name, playground) from a shipped name, a path or the JSON text itself.
+_UPLOAD = re.compile(r"data:[^;,]*(?:;name=(?P<name>[^;,]*))?;base64,(?P<content>.*)", re.DOTALL)
+_UNNAMED = "uploaded playground"
 
+
+def load_playground(value: str) -> tuple[str, Playground]:
+    """(name, playground) from a shipped name, a path, the text itself, or a file as data:;name=my.json;base64,...
+
+    Files and texts may be of any format that is read (sim/source.py).
     Raises PlaygroundError for what the file says, ResourceError for a file that is not there, OSError.
     """
-    if value.lstrip().startswith("{"):
-        loaded = playgrounds.loads(value, "uploaded playground")
+    upload = _UPLOAD.fullmatch(value)
+    if upload is not None:
+        return _load_upload(urllib.parse.unquote(upload["name"] or _UNNAMED), upload["content"])
+    if value.lstrip("\ufeff \t\r\n").startswith(("{", "<")):
+        loaded = playgrounds.loads(value, _UNNAMED)
         return loaded.title, loaded
     path = resources.find_playground(value)
     return path.stem, playgrounds.load(path)
+
+
+def _load_upload(name: str, content: str) -> tuple[str, Playground]:
+    try:
+        data = base64.b64decode(content, validate=True)
+    except (binascii.Error, ValueError) as error:
+        raise PlaygroundError(name, "", "characters that are not base64", "the file in base64") from error
+    loaded = playgrounds.loads(data, name)
+    return name, loaded
 
 
 def read_program(path: str) -> ThymioProgram:

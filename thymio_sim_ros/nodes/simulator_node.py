@@ -137,6 +137,8 @@ class Simulator:
             self._publish_state()
 
     def _set_world(self, playground: Playground) -> None:
+        for note in playground.notes:
+            self.node.get_logger().warning(f"playground {self.playground_name}: {note}")
         self.world = World(playground, seed=self.params.seed, noise=self.params.noise)
         names = ros_names(tuple(self.world.robots))
         if {robot: ports.names for robot, ports in self._robots.items()} != names:

@@ -43,6 +43,7 @@ __all__ = [
     "json_schema",
     "nearest",
     "read",
+    "write",
 ]
 
 T = TypeVar("T")
@@ -142,6 +143,16 @@ def read(kind: type[T], data: object, key: str) -> T:
     return kind(**values)
 
 
+def write(value: Any) -> dict[str, Any]:
+    """The members of a dataclass as JSON has them, without those at their default; `read` gives the same again."""
+    found = {}
+    for member in dataclasses.fields(value):
+        content = getattr(value, member.name)
+        if content != member.default:
+            found[member.name] = write(content) if dataclasses.is_dataclass(content) else _plain(content)
+    return found
+
+
 def json_schema(kind: type[Any], *, extra: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """The JSON schema of `read(kind, …)`; `extra` members are added and required."""
     rules = _rules(cast("Any", kind))
@@ -234,6 +245,10 @@ def _value(rule: _Rule, value: object, key: str) -> object:
             raise FieldError(key, describe(value), rule.expected)
         return value
     return read(kind, value, key)
+
+
+def _plain(value: object) -> object:
+    return [_plain(part) for part in value] if isinstance(value, tuple) else value
 
 
 def _number(rule: Number, value: object, key: str) -> float:

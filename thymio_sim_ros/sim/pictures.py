@@ -23,10 +23,10 @@ from types import ModuleType
 import numpy as np
 
 from thymio_sim_ros.sim import xml_tree
-from thymio_sim_ros.sim.fields import FieldError
+from thymio_sim_ros.sim.fields import FieldError, describe
 from thymio_sim_ros.sim.xml_tree import Element, XmlError
 
-__all__ = ["MAX_PICTURE_BYTES", "MEDIA_TYPES", "Pixels", "data_uri", "decode", "encode_png"]
+__all__ = ["MAX_PICTURE_BYTES", "MEDIA_TYPES", "Pixels", "css_color", "data_uri", "decode", "encode_png"]
 
 MAX_PICTURE_BYTES = 4_000_000
 """Largest picture as a file."""
@@ -85,6 +85,21 @@ def decode(uri: str, *, key: str, width_m: float) -> Pixels:
     if media_type == MEDIA_TYPES[".svg"]:
         data = _draw_svg(data, key, width_m)
     return _unpack(data, key)
+
+
+def css_color(value: object, *, key: str) -> str:
+    """'#rrggbb' for a color as CSS writes it, or as a number 0xrrggbb; FieldError names `key`."""
+    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= 0xFFFFFF:
+        return f"#{value:06x}"
+    if isinstance(value, str) and re.fullmatch(r"#[0-9A-Fa-f]{6}", value):
+        return value
+    try:
+        if not isinstance(value, str):
+            raise ValueError
+        red, green, blue = _module("PIL.ImageColor", "Pillow", key).getrgb(value.strip())[:3]
+    except ValueError as error:
+        raise FieldError(key, describe(value), "a CSS color such as #bdbbbb") from error
+    return f"#{red:02x}{green:02x}{blue:02x}"
 
 
 def encode_png(pixels: Pixels) -> bytes:

@@ -6,14 +6,13 @@ kind, see `sim/shapes`), `robots` (`name`, `x_m`, `y_m`, `yaw_rad`). Data only, 
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
-from thymio_sim_ros.sim import fields, pictures, thymio2
+from thymio_sim_ros.sim import fields, pictures, source, thymio2
 from thymio_sim_ros.sim.fields import (
     Angle,
     Coordinate,
@@ -30,18 +29,14 @@ from thymio_sim_ros.sim.fields import (
 from thymio_sim_ros.sim.geometry import Pose, convex_hulls_overlap, disc_overlaps_hull
 from thymio_sim_ros.sim.primitives import Disc, Floor, Mark, Paint, Primitive, Print, Solid, Trigger
 from thymio_sim_ros.sim.shapes import Shape, ShapeKind, all_shapes
+from thymio_sim_ros.sim.source import MAX_BYTES, Beside
 
 __all__ = ["NamedShape", "PenStart", "Playground", "PlaygroundError", "RobotStart", "load", "loads", "schema"]
 
 FORMAT = 1
-MAX_BYTES = 8_000_000
-"""Largest file; pictures inside it count."""
 MAX_SHAPES = 1000
 MAX_ROBOTS = 100
 MAX_PRIMITIVES = 10_000
-
-Beside = Callable[[str], bytes]
-"""A file beside the playground by its name, or FieldError."""
 
 
 class PlaygroundError(Exception):
@@ -106,6 +101,8 @@ class Playground:
     floors: tuple[Floor, ...]
     paints: tuple[Mark, ...]
     triggers: tuple[Trigger, ...] = ()
+    notes: tuple[str, ...] = ()
+    """What a person should know: what a converted file cannot express, what looks like a mistake."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,19 +115,21 @@ def load(path: str | Path) -> Playground:
     """The playground of a file, named after it; PlaygroundError also when it can't be read."""
     path = Path(path)
     try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise PlaygroundError(str(path), "", error.strerror or "an error", "a readable file") from error
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        found = getattr(error, "strerror", None) or "an error"
+        raise PlaygroundError(str(path), "", found, "a readable file") from error
+    return _read(data, path.stem, str(path), source.folder(path.parent))
+
+
+def loads(text: str | bytes, name: str) -> Playground:
+    """The playground of a text or a file's bytes; errors name it as `name`. There is no file beside it."""
     try:
-        text = data[: MAX_BYTES + 1].decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise PlaygroundError(str(path), "", f"a wrong byte at {error.start}", "UTF-8 text") from error
-    return _read(text, path.stem, str(path), _folder(path.parent))
-
-
-def loads(text: str, name: str) -> Playground:
-    """The playground of a text; errors name it as `name`. Its pictures are data URIs: there is no file beside it."""
-    return _read(text, name, name, _nothing_beside)
+        data = text if isinstance(text, bytes) else text.encode("utf-8")
+    except UnicodeEncodeError as error:
+        raise PlaygroundError(name, "", f"half a character at {error.start}", "UTF-8 text") from error
+    return _read(data, Path(name).stem, name, source.nothing_beside)
 
 
 def schema() -> dict[str, Any]:
@@ -148,57 +147,23 @@ def schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "Thymio playground", **top}
 
 
-def _nothing_beside(name: str) -> bytes:
-    raise FieldError("", f"the file '{name}'", "a data URI, as there is no folder to look in")
-
-
-def _folder(folder: Path) -> Beside:
-    """Reads files of a folder, and of no other."""
-
-    def read_file(name: str) -> bytes:
-        expected = "a file in the playground's folder"
-        try:
-            path = (folder / name).resolve()
-            if "\\" in name or not path.is_relative_to(folder.resolve()):
-                raise FieldError("", describe(name), expected)
-            with path.open("rb") as file:
-                return file.read(pictures.MAX_PICTURE_BYTES + 1)
-        except (OSError, ValueError) as error:
-            raise FieldError("", f"{describe(name)}, which cannot be read", expected) from error
-
-    return read_file
-
-
-def _read(text: str, name: str, path: str, beside: Beside) -> Playground:
-    if len(text) > MAX_BYTES:
-        raise PlaygroundError(path, "", f"more than {MAX_BYTES} characters", "a smaller file")
+def _read(data: bytes, name: str, path: str, beside: Beside) -> Playground:
+    places: Mapping[str, str] = {}
     try:
-        return _build(_parse(text), name, beside)
+        found = source.read_source(data, name, beside)
+        places = found.places
+        return _build(found.data, name, found.beside, found.notes)
     except FieldError as error:
-        raise PlaygroundError(path, error.key, error.found, error.expected) from error
+        raise PlaygroundError(path, _original(error.key, places), error.found, error.expected) from error
 
 
-def _parse(text: str) -> object:
-    def refuse(word: str) -> NoReturn:
-        raise FieldError("", word, "finite numbers")
-
-    def unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
-        members = dict(pairs)
-        if len(members) < len(pairs):
-            keys = [key for key, _ in pairs]
-            twice = next(key for key in keys if keys.count(key) > 1)
-            raise FieldError(twice, "the key twice", "every key once")
-        return members
-
-    try:
-        return json.loads(text, parse_constant=refuse, object_pairs_hook=unique)
-    except json.JSONDecodeError as error:
-        raise FieldError(f"line {error.lineno}, column {error.colno}", error.msg, "JSON") from error
-    except (RecursionError, ValueError) as error:
-        raise FieldError("", "numbers or nesting without measure", "a playground") from error
+def _original(key: str, places: Mapping[str, str]) -> str:
+    """A key of a converted file with its place in the original."""
+    item = key.partition(".")[0]
+    return f"{places[item]} ({key})" if item in places else key
 
 
-def _build(data: object, name: str, beside: Beside) -> Playground:
+def _build(data: object, name: str, beside: Beside, notes: tuple[str, ...]) -> Playground:
     if not isinstance(data, Mapping):
         raise FieldError("", describe(data), "an object")
     members = dict(data)
@@ -216,6 +181,7 @@ def _build(data: object, name: str, beside: Beside) -> Playground:
     solids = tuple(primitive for primitive in primitives if isinstance(primitive, Solid))
     _check_starts(robots, solids)
     _check_doors(shapes, primitives)
+    floors = tuple(primitive for primitive in primitives if isinstance(primitive, Floor))
     return Playground(
         name=name,
         title=titles.title,
@@ -223,9 +189,10 @@ def _build(data: object, name: str, beside: Beside) -> Playground:
         shapes=shapes,
         robots=robots,
         solids=solids,
-        floors=tuple(primitive for primitive in primitives if isinstance(primitive, Floor)),
+        floors=floors,
         paints=tuple(primitive for primitive in primitives if isinstance(primitive, Paint | Print)),
         triggers=tuple(primitive for primitive in primitives if isinstance(primitive, Trigger)),
+        notes=(*notes, *_off_floor(robots, floors)),
     )
 
 
@@ -293,6 +260,15 @@ def _primitives(shapes: tuple[NamedShape, ...]) -> list[Primitive]:
         if len(found) > MAX_PRIMITIVES:
             raise FieldError(f"shapes[{index}]", f"more than {MAX_PRIMITIVES} parts so far", "a simpler playground")
     return found
+
+
+def _off_floor(robots: tuple[RobotStart, ...], floors: tuple[Floor, ...]) -> list[str]:
+    """Robots that start in the air: allowed, as they may be put elsewhere, but hardly meant."""
+    return [
+        f"robots[{index}]: '{robot.name}' starts where there is no floor"
+        for index, robot in enumerate(robots)
+        if not any(floor.holds((robot.x_m, robot.y_m)) for floor in floors)
+    ]
 
 
 def _check_starts(robots: tuple[RobotStart, ...], solids: tuple[Solid, ...]) -> None:

@@ -132,6 +132,14 @@ class Floor:
     vertices: tuple[Point, ...]
     color: Color
 
+    def holds(self, point: Point) -> bool:
+        """Whether a place lies on it, edges included."""
+        x, y = point
+        return all(
+            (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= -1e-9
+            for (ax, ay), (bx, by) in zip(self.vertices, (*self.vertices[1:], self.vertices[0]), strict=True)
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Paint:

@@ -1,0 +1,184 @@
+"""Aseba's XML playgrounds (playground-formats.md part 1): element beside shape."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from tests.sim.builders import make
+from tests.sim.images import BLACK, WHITE, png
+from thymio_sim_ros.sim import playground, source, xml_tree
+from thymio_sim_ros.sim.fields import FieldError
+from thymio_sim_ros.sim.foreign import Conversion, aseba
+from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.playground import PlaygroundError
+from thymio_sim_ros.sim.primitives import Disc
+
+COLORS = '<color name="white" r="1" g="1" b="1"/><color name="orange" r="1.0" g="0.5" b="0"/>'
+WORLD = '<world w="100" h="60" color="white"/>'
+ROBOT = '<robot x="50" y="30"/>'
+
+
+def text(body: str) -> str:
+    return f"<!DOCTYPE aseba-playground>\n<aseba-playground>{COLORS}\n{body}\n</aseba-playground>"
+
+
+def converted(body: str, world: str = WORLD) -> Conversion:
+    return aseba.convert(xml_tree.parse(text(world + body)), "mine")
+
+
+def shape(body: str) -> dict[str, Any]:
+    return converted(body).shapes[1]
+
+
+def refused(body: str, world: str = WORLD) -> FieldError:
+    with pytest.raises(FieldError) as caught:
+        converted(body, world)
+    return caught.value
+
+
+def test_the_world_is_a_rectangle_whose_walls_stand_outside_its_border() -> None:
+    loaded = playground.loads(text(WORLD), "mine.playground")
+    inner_x = sorted(wall.pose.x_m for wall in loaded.solids if wall.pose.y_m == pytest.approx(0.3))
+    inner_y = sorted(wall.pose.y_m for wall in loaded.solids if wall.pose.x_m == pytest.approx(0.5))
+    assert inner_x == pytest.approx([-0.01, 1.01])
+    assert inner_y == pytest.approx([-0.01, 0.61])
+    assert loaded.floors[0].color == (1.0, 1.0, 1.0)
+
+
+def test_a_wall_is_a_box_of_centimetres() -> None:
+    found = shape('<wall x="20" y="30" l1="10" l2="2" h="5" angle="0.5" color="orange"/>')
+    assert found == {
+        "kind": "box", "name": "wall", "x_m": 0.2, "y_m": 0.3, "size_x_m": 0.1, "size_y_m": 0.02, "height_m": 0.05,
+        "yaw_rad": 0.5, "color": "#ff8000",
+    }  # fmt: skip
+
+
+def test_a_mass_makes_it_movable_in_proportion_to_the_robot() -> None:
+    assert shape('<wall x="20" y="30" l1="10" l2="2" h="5" mass="200" color="orange"/>')["mass_kg"] == 0.27
+    assert shape('<cylinder x="20" y="30" r="2" h="5" mass="0" color="orange"/>')["mass_kg"] == 0.001
+    assert "mass_kg" not in shape('<cylinder x="20" y="30" r="2" h="5" mass="-1" color="orange"/>')
+
+
+def test_a_cylinder_is_a_cylinder() -> None:
+    loaded = playground.loads(text(WORLD + '<cylinder x="20" y="30" r="2" h="5" color="orange"/>'), "mine")
+    (disc,) = (solid for solid in loaded.solids if isinstance(solid.outline, Disc))
+    assert (disc.pose, disc.outline, disc.height_m) == (Pose(0.2, 0.3, 0.0), Disc(0.02), 0.05)
+
+
+def test_an_activation_may_name_a_door_and_an_area_that_come_later() -> None:
+    found = converted(
+        '<activation x="20" y="30" l1="5" l2="4" area="a" door="d"/>'
+        '<door name="d" closedX="60" closedY="30" openedX="70" openedY="30" l1="10" l2="1" h="10" moveDuration="2" '
+        'color="orange"/><area name="a"><point x="-5" y="-5"/><point x="5" y="-5"/><point x="0" y="5"/></area>'
+    )
+    assert found.shapes[1:] == [
+        {
+            "kind": "door", "name": "d", "closed_x_m": 0.6, "closed_y_m": 0.3, "opened_x_m": 0.7, "opened_y_m": 0.3,
+            "size_x_m": 0.1, "size_y_m": 0.01, "height_m": 0.1, "move_s": 2.0, "color": "#ff8000",
+        },
+        {
+            "kind": "activation", "name": "activation", "x_m": 0.2, "y_m": 0.3, "size_x_m": 0.05, "size_y_m": 0.04,
+            "area_m": [[-0.05, -0.05], [0.05, -0.05], [0.0, 0.05]], "door": "d",
+        },
+    ]  # fmt: skip
+
+
+def test_robots_start_where_they_stand_with_ros_names() -> None:
+    found = converted('<robot x="50" y="30" angle="7" name="Thymio II"/><robot x="20" y="30"/>').robots
+    assert found == [
+        {"name": "thymio_ii", "x_m": 0.5, "y_m": 0.3, "yaw_rad": round(7 - 2 * math.pi, 9)},
+        {"name": "thymio_1", "x_m": 0.2, "y_m": 0.3, "yaw_rad": 0.0},
+    ]
+
+
+def test_the_texture_covers_the_world_with_its_first_row_on_the_far_side() -> None:
+    picture = png([[WHITE] * 10] * 4 + [[BLACK] * 10] * 2 + [[WHITE] * 10] * 14)
+    found = source.read_source(
+        text('<world w="100" h="100" color="white" groundTexture="ground.png"/>').encode(), "mine", lambda name: picture
+    )
+    assert found.beside("ground.png") == picture
+    members = found.data
+    assert isinstance(members, dict)
+    assert members["shapes"][1] == {
+        "kind": "picture", "name": "ground_picture", "image": "ground.png",
+        "x_m": 0.5, "y_m": 0.5, "size_x_m": 1.0, "size_y_m": 1.0,
+    }  # fmt: skip
+
+
+def test_the_description_is_the_english_one() -> None:
+    body = '<description lang="fr">Un labyrinthe</description><description lang="en">A\n maze.</description>'
+    assert converted(body).description == "A maze."
+
+
+@pytest.mark.parametrize(
+    ("body", "note"),
+    [
+        ('<robot type="e-puck" x="50" y="30"/>', "<robot> left out: a robot of type 'e-puck'"),
+        ('<robot x="50" y="30" port="33333"/>', "<robot>: port left out"),
+        ('<robot x="50" y="30" nodeId="2"/>', "<robot>: nodeId left out"),
+        ('<feeder x="5" y="5"/>', "<feeder> left out"),
+        ('<process command=":asebahttp"/>', "<process> left out"),
+        ('<camera x="5"/>', "<camera> left out"),
+        ("<teapot/>", "<teapot> left out: it is not known here"),
+        ('<cylinder x="20" y="30" r="2" h="5" color="mauve"/>', "no color 'mauve' is declared"),
+    ],
+)
+def test_what_cannot_be_expressed_is_told_with_its_line(body: str, note: str) -> None:
+    (found,) = converted(body).notes
+    assert found.startswith("line 3: ")
+    assert note in found
+
+
+def test_metadata_is_passed_over_without_a_word() -> None:
+    assert converted('<author name="A"/><thanks name="B"/><externalLink name="C"/>').notes == []
+
+
+@pytest.mark.parametrize(
+    ("body", "key", "found"),
+    [
+        ('<wall x="a" y="0"/>', "line 3: <wall> x", "'a'"),
+        ('<wall x="nan" y="0"/>', "line 3: <wall> x", "'nan'"),
+        ('<robot x="1e999" y="0"/>', "line 3: <robot> x", "'1e999'"),
+        ('<activation area="b" door="d"/>', "line 3: <activation>", "the area 'b'"),
+        ('<area name="a"/><activation area="a" door="d"/>', "line 3: <activation>", "the door 'd'"),
+        (WORLD, "line 2", "2 <world>"),
+    ],
+)
+def test_what_is_wrong_is_refused_with_its_line(body: str, key: str, found: str) -> None:
+    error = refused(body)
+    assert (error.key, error.found) == (key, found)
+
+
+def test_a_playground_without_a_world_is_refused() -> None:
+    assert refused("", world="").found == "0 <world>"
+
+
+def test_what_our_format_refuses_is_located_in_the_original() -> None:
+    with pytest.raises(PlaygroundError) as caught:
+        playground.loads(text(WORLD + "\n<cylinder x='20' y='30' r='0' h='5' color='white'/>"), "mine.playground")
+    assert str(caught.value) == (
+        "mine.playground: line 4: <cylinder> (shapes[1].radius_m): found 0.0, expected a number of m from 0.001 to 100"
+    )
+
+
+def test_a_robot_in_a_wall_is_located_in_the_original() -> None:
+    with pytest.raises(PlaygroundError, match=r"line 4: <robot> \(robots\[0\]\): found 'thymio_0' inside 'ground'"):
+        playground.loads(text(WORLD + "\n<robot x='1' y='1'/>"), "mine.playground")
+
+
+def test_another_xml_is_refused() -> None:
+    with pytest.raises(PlaygroundError, match="found <html>, expected <aseba-playground>"):
+        playground.loads("<html/>", "mine")
+
+
+def test_a_converted_world_is_an_ordinary_one() -> None:
+    loaded = playground.loads(text(WORLD + ROBOT), "mine")
+    again = make(
+        [{"kind": "rectangle", "name": "ground", "x_m": 0.5, "y_m": 0.3, "size_x_m": 1.02, "size_y_m": 0.62,
+          "color": "#ffffff", "walls": {"height_m": 0.1, "thickness_m": 0.02}}],
+        [{"name": "thymio_0", "x_m": 0.5, "y_m": 0.3}],
+    )  # fmt: skip
+    assert (loaded.solids, loaded.floors, loaded.robots) == (again.solids, again.floors, again.robots)

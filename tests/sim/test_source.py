@@ -1,0 +1,130 @@
+"""Which format a file has, archives, and what is never unpacked nor read."""
+
+from __future__ import annotations
+
+import io
+import json
+import struct
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from tests.sim.builders import FLOOR, ROBOT
+from tests.sim.images import BLACK, WHITE, png
+from thymio_sim_ros.sim import playground, source
+from thymio_sim_ros.sim.playground import PlaygroundError
+from thymio_sim_ros.sim.primitives import Print
+
+WORLD = (
+    '<aseba-playground><color name="w" r="1" g="1" b="1"/>'
+    '<world w="100" h="100" color="w" groundTexture="ground.png"/><robot x="50" y="50"/></aseba-playground>'
+)
+OURS = json.dumps(
+    {
+        "format": 1,
+        "title": "Ours",
+        "shapes": [FLOOR, {"kind": "picture", "image": "ground.png", "size_x_m": 1}],
+        "robots": [ROBOT],
+    }
+)
+PICTURE = png([[WHITE, BLACK]])
+
+
+def archive(**files: bytes | str) -> bytes:
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as packed:
+        for name, content in files.items():
+            packed.writestr(name, content)
+    return out.getvalue()
+
+
+def refused(data: bytes) -> PlaygroundError:
+    with pytest.raises(PlaygroundError) as caught:
+        playground.loads(data, "mine.zip")
+    return caught.value
+
+
+@pytest.mark.parametrize("home", ["", "maze/"])
+@pytest.mark.parametrize(("inner", "text"), [("world.xml", WORLD), ("mine.json", OURS), ("mine.playground", WORLD)])
+def test_an_archive_holds_a_playground_and_its_pictures(home: str, inner: str, text: str) -> None:
+    data = archive(**{home + inner: text, home + "ground.png": PICTURE})
+    loaded = playground.loads(data, "mine.playground")
+    assert (loaded.name, [type(mark) for mark in loaded.paints]) == ("mine", [Print])
+
+
+def test_an_archive_is_read_by_its_path_too(tmp_path: Path) -> None:
+    path = tmp_path / "maze.playground"
+    path.write_bytes(archive(**{"world.xml": WORLD, "ground.png": PICTURE}))
+    assert playground.load(path).title == "maze"
+
+
+def test_a_playground_file_finds_its_picture_in_its_folder(tmp_path: Path) -> None:
+    (tmp_path / "maze.playground").write_text(WORLD)
+    (tmp_path / "ground.png").write_bytes(PICTURE)
+    assert len(playground.load(tmp_path / "maze.playground").paints) == 1
+
+
+def test_a_text_alone_cannot_have_a_picture_beside_it() -> None:
+    with pytest.raises(PlaygroundError, match=r"groundTexture \(shapes\[1\].image\): found the file 'ground.png'"):
+        playground.loads(WORLD, "mine.playground")
+
+
+def test_a_byte_order_mark_does_no_harm() -> None:
+    text = b"\xef\xbb\xbf" + json.dumps({"format": 1, "title": "x", "shapes": [FLOOR]}).encode()
+    assert playground.loads(text, "mine").title == "x"
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"readme.txt": "nothing"},
+        {"a.json": OURS, "b.json": OURS},
+        {},
+    ],
+)
+def test_an_archive_without_one_playground_is_refused(files: dict[str, str]) -> None:
+    assert refused(archive(**files) if files else b"PK\x03\x04").path == "mine.zip"
+
+
+@pytest.mark.parametrize("name", ["../secret.png", "/etc/secret.png", "..\\secret.png", "folder/../ground.png"])
+def test_a_picture_outside_the_archive_is_refused(name: str) -> None:
+    data = archive(**{"world.xml": WORLD.replace("ground.png", name), name: PICTURE, "ground.png": PICTURE})
+    assert "shapes[1].image" in refused(data).key
+
+
+def test_a_picture_that_is_missing_in_the_archive_is_named() -> None:
+    error = refused(archive(**{"world.xml": WORLD}))
+    assert (error.found, error.expected) == ("'ground.png'", "a file in the archive")
+
+
+def test_an_archive_that_unpacks_without_measure_is_not_unpacked() -> None:
+    assert "more than 8000000 bytes" in refused(archive(**{"world.xml": " " * 50_000_000})).found
+    bomb = archive(**{"world.xml": WORLD, "ground.png": b"\0" * 50_000_000})
+    assert "expected" in str(refused(bomb))
+
+
+def test_an_archive_of_too_many_files_is_refused() -> None:
+    assert "201 files" in refused(archive(**{f"{i}.txt": "" for i in range(201)})).found
+
+
+def test_a_damaged_archive_is_refused() -> None:
+    data = bytearray(archive(**{"world.xml": WORLD}))
+    data[45:60] = b"\xff" * 15
+    assert refused(bytes(data)).path == "mine.zip"
+
+
+def test_an_encrypted_archive_is_refused() -> None:
+    data = bytearray(archive(**{"world.xml": WORLD}))
+    for signature, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
+        start = data.index(signature) + offset
+        struct.pack_into("<H", data, start, 1)
+    assert "cannot be unpacked" in refused(bytes(data)).found
+
+
+def test_other_json_is_taken_for_ours() -> None:
+    assert refused(b'{"answer": 42}').key == "format"
+
+
+def test_a_file_that_is_too_large_is_refused() -> None:
+    assert "more than" in refused(b" " * (source.MAX_BYTES + 1)).found

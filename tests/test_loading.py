@@ -1,0 +1,60 @@
+"""A playground by name, path, text or upload."""
+
+from __future__ import annotations
+
+import base64
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.sim.builders import FLOOR, ROBOT
+from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.sim.playground import PlaygroundError
+
+OURS = json.dumps({"format": 1, "title": "Ours", "shapes": [FLOOR], "robots": [ROBOT]})
+ASEBA = (
+    '<aseba-playground><color name="w" r="1" g="1" b="1"/><world w="100" h="100" color="w"/>'
+    '<robot x="50" y="50"/></aseba-playground>'
+)
+THESIS = json.dumps(
+    {"playground": "Base", "planes": [{"props": {"width": 50, "height": 50, "color": "#bdbbbb"}, "hasWalls": True}]}
+)
+
+
+def upload(text: str, name: str = "my%20maze.json") -> str:
+    return f"data:application/octet-stream;name={name};base64,{base64.b64encode(text.encode()).decode()}"
+
+
+@pytest.mark.parametrize(("text", "title"), [(OURS, "Ours"), (THESIS, "Base"), (ASEBA, "uploaded playground")])
+def test_a_text_of_any_format_is_named_by_its_title(text: str, title: str) -> None:
+    name, loaded = load_playground("\n " + text)
+    assert (name, loaded.title, len(loaded.robots)) == (title, title, 1)
+
+
+@pytest.mark.parametrize("text", [OURS, THESIS, ASEBA])
+def test_a_file_of_any_format_is_accepted_by_its_path(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "mine.playground"
+    path.write_text(text)
+    assert load_playground(str(path))[0] == "mine"
+
+
+@pytest.mark.parametrize("text", [OURS, THESIS, ASEBA])
+def test_an_upload_is_named_by_its_file(text: str) -> None:
+    name, loaded = load_playground(upload(text))
+    assert (name, loaded.name, len(loaded.robots)) == ("my maze.json", "my maze", 1)
+
+
+def test_errors_of_an_upload_name_its_file() -> None:
+    with pytest.raises(PlaygroundError, match=r"^my maze\.json: format: found"):
+        load_playground(upload("{}"))
+
+
+def test_errors_of_a_text_without_a_name_say_so() -> None:
+    with pytest.raises(PlaygroundError, match=r"^uploaded playground: format: found"):
+        load_playground("{}")
+
+
+def test_an_upload_that_is_not_base64_is_refused() -> None:
+    with pytest.raises(PlaygroundError, match="base64"):
+        load_playground("data:;name=a.json;base64,###")

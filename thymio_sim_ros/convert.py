@@ -1,0 +1,68 @@
+"""The command `thymio-sim convert`: playgrounds of other simulators as our JSON."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from thymio_sim_ros import resources
+from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.sim.playground import PlaygroundError
+from thymio_sim_ros.sim.playground_text import dumps
+
+__all__ = ["run"]
+
+REFUSED, INCOMPLETE = 2, 1
+
+EXAMPLE = """\
+reads: Aseba .playground files (XML, or a zip with world.xml and its pictures), the JSON of the Thymio web simulation,
+and our own JSON. Pictures become part of the result. What cannot be expressed is told on stderr.
+
+exit code: 0 converted; 1 something cannot be expressed (with --strict only, nothing is written); 2 refused
+
+example:
+  thymio-sim convert thymio-maze.playground -o maze.json && thymio-sim --playground maze.json
+"""
+
+
+def run(argv: Sequence[str]) -> int:
+    """Convert one file; the exit code."""
+    options = _parser().parse_args(argv)
+    try:
+        _, playground = load_playground(options.file)
+    except (PlaygroundError, resources.ResourceError, OSError) as error:
+        return _say(str(error), REFUSED)
+    for note in playground.notes:
+        _say(f"{options.file}: {note}", 0)
+    if options.strict and playground.notes:
+        return INCOMPLETE
+    text = dumps(playground)
+    if options.output is None:
+        sys.stdout.write(text)
+        return 0
+    try:
+        options.output.write_text(text, encoding="utf-8")
+    except OSError as error:
+        return _say(f"{options.output}: {error.strerror}; expected a file that can be written", REFUSED)
+    return 0
+
+
+def _say(text: str, code: int) -> int:
+    print(f"thymio-sim convert: {text}", file=sys.stderr)
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="thymio-sim convert",
+        description="Convert a playground of another simulator to the JSON of this one.",
+        epilog=EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("file", metavar="FILE", help="the playground to convert")
+    parser.add_argument("-o", "--output", type=Path, metavar="OUT", help="file to write (default: standard output)")
+    parser.add_argument("--strict", action="store_true", help="write nothing unless everything can be expressed")
+    return parser

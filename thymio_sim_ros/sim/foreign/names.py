@@ -1,0 +1,41 @@
+"""Names of other simulators as ROS names, each once; lengths as numbers without noise in the last digits."""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+
+__all__ = ["Names", "rounded", "turned"]
+
+_LONGEST = 50
+
+
+class Names:
+    """Gives out names: letters, digits, single underscores, a letter first, none twice."""
+
+    def __init__(self) -> None:
+        self._taken: set[str] = set()
+
+    def take(self, wanted: str, otherwise: str) -> str:
+        """The name nearest to a wanted one, or to `otherwise` if nothing of it can be kept."""
+        plain = unicodedata.normalize("NFKD", wanted).encode("ascii", "ignore").decode()
+        words = re.findall(r"[A-Za-z0-9]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", plain))
+        name = "_".join(words).lower()[:_LONGEST].strip("_")
+        if not name[:1].isalpha():
+            name = f"{otherwise}_{name}" if name else otherwise
+        found, number = name, 2
+        while found in self._taken:
+            found, number = f"{name}_{number}", number + 1
+        self._taken.add(found)
+        return found
+
+
+def rounded(value: float) -> float:
+    """Metres or radians to a nanometre: 5 cm become 0.05, not 0.05000000000000001."""
+    return round(value, 9) + 0.0
+
+
+def turned(angle_rad: float) -> float:
+    """The same direction from -π to π."""
+    return rounded(math.remainder(angle_rad, math.tau))

@@ -1,0 +1,155 @@
+"""From the bytes of a file to the data of a playground: which format it is, and the files that belong to it.
+
+Ours is JSON with "format"; the thesis' JSON has other keys; a text that begins with "<" is Aseba's XML; a zip holds
+one of these and its pictures. Everything here comes from strangers: sizes are limited before anything is unpacked,
+and a file is looked for in one folder, or in one archive, and nowhere else.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+from typing import NoReturn
+
+from thymio_sim_ros.sim import xml_tree
+from thymio_sim_ros.sim.fields import FieldError, describe
+from thymio_sim_ros.sim.foreign import aseba, thesis
+from thymio_sim_ros.sim.pictures import MAX_PICTURE_BYTES
+from thymio_sim_ros.sim.xml_tree import XmlError
+
+__all__ = ["MAX_BYTES", "Beside", "Source", "folder", "nothing_beside", "read_source"]
+
+MAX_BYTES = 8_000_000
+"""Largest file; pictures inside it count."""
+MAX_ARCHIVE_FILES = 200
+
+Beside = Callable[[str], bytes]
+"""A file beside the playground by its name, or FieldError; one byte more than `MAX_PICTURE_BYTES` at most."""
+
+_ZIP = b"PK\x03\x04"
+_BOM = b"\xef\xbb\xbf"
+_PLAYGROUND_ENDINGS = (".xml", ".playground", ".json")
+_IN_FOLDER = "a file in the playground's folder"
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Data of our format, unchecked; the files beside it; for a converted file what was lost, and places in it."""
+
+    data: object
+    beside: Beside
+    notes: tuple[str, ...] = ()
+    places: Mapping[str, str] = field(default_factory=dict)
+
+
+def read_source(data: bytes, name: str, beside: Beside) -> Source:
+    """The playground in a file's bytes; `name` is its title if it has none. Raises FieldError."""
+    if len(data) > MAX_BYTES:
+        raise FieldError("", f"more than {MAX_BYTES} bytes", "a smaller file")
+    if data.startswith(_ZIP):
+        data, beside = _unzip(data)
+    data = data.removeprefix(_BOM)
+    if data.lstrip().startswith(b"<"):
+        return _read_xml(data, name, beside)
+    try:
+        parsed = _parse_json(data.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise FieldError("", f"a wrong byte at {error.start}", "UTF-8 text") from error
+    if isinstance(parsed, Mapping) and "format" not in parsed and parsed.keys() & {"playground", *thesis.KEYS}:
+        converted = thesis.convert(parsed, name)
+        return Source(converted.data(), beside, tuple(converted.notes), converted.places)
+    return Source(parsed, beside)
+
+
+def nothing_beside(name: str) -> bytes:
+    """Of a text that came without a folder."""
+    raise FieldError("", f"the file '{name}'", "the picture itself as a data URI, or a zip that holds both")
+
+
+def folder(path: Path) -> Beside:
+    """Reads files of a folder, and of no other."""
+
+    def read_file(name: str) -> bytes:
+        try:
+            found = (path / name).resolve()
+            if "\\" in name or not found.is_relative_to(path.resolve()):
+                raise FieldError("", describe(name), _IN_FOLDER)
+            with found.open("rb") as file:
+                return file.read(MAX_PICTURE_BYTES + 1)
+        except (OSError, ValueError) as error:
+            raise FieldError("", f"{describe(name)}, which cannot be read", _IN_FOLDER) from error
+
+    return read_file
+
+
+def _read_xml(data: bytes, name: str, beside: Beside) -> Source:
+    try:
+        root = xml_tree.parse(data)
+    except XmlError as error:
+        raise FieldError(f"line {error.line}", error.found, error.expected) from error
+    converted = aseba.convert(root, name)
+    return Source(converted.data(), beside, tuple(converted.notes), converted.places)
+
+
+def _unzip(data: bytes) -> tuple[bytes, Beside]:
+    """The playground's own file in an archive, and the files beside it there."""
+    try:
+        archive = zipfile.ZipFile(io.BytesIO(data))
+    except (zipfile.BadZipFile, ValueError, NotImplementedError) as error:
+        raise FieldError("", "a broken zip archive", "a whole one") from error
+    names = [entry.filename for entry in archive.infolist() if not entry.is_dir()]
+    if len(names) > MAX_ARCHIVE_FILES:
+        raise FieldError("", f"{len(names)} files in the archive", f"at most {MAX_ARCHIVE_FILES}")
+    fitting = [name for name in names if name.lower().endswith(_PLAYGROUND_ENDINGS) and "__MACOSX" not in name]
+    chosen = [name for name in fitting if PurePosixPath(name).name == "world.xml"] or fitting
+    if len(chosen) != 1:
+        found = ", ".join(chosen[:5]) or "no playground"
+        raise FieldError("", f"{found} in the archive", "one world.xml with its pictures")
+    (inner,) = chosen
+    home = PurePosixPath(inner).parent
+
+    def read_entry(name: str) -> bytes:
+        path = home / name
+        entry = str(path)
+        if "\\" in name or path.is_absolute() or ".." in path.parts or entry not in names:
+            raise FieldError("", describe(name), "a file in the archive")
+        return _extract(archive, entry, MAX_PICTURE_BYTES + 1)
+
+    content = _extract(archive, inner, MAX_BYTES + 1)
+    if len(content) > MAX_BYTES:
+        raise FieldError(inner, f"more than {MAX_BYTES} bytes", "a smaller file")
+    return content, read_entry
+
+
+def _extract(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
+    """The first bytes of an entry; never more are unpacked, whatever the archive says about its size."""
+    try:
+        with archive.open(name) as file:
+            return file.read(most)
+    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, NotImplementedError) as error:
+        raise FieldError(describe(name), "an entry that cannot be unpacked", "a plain zip archive") from error
+
+
+def _parse_json(text: str) -> object:
+    def refuse(word: str) -> NoReturn:
+        raise FieldError("", word, "finite numbers")
+
+    def unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
+        members = dict(pairs)
+        if len(members) < len(pairs):
+            keys = [key for key, _ in pairs]
+            twice = next(key for key in keys if keys.count(key) > 1)
+            raise FieldError(twice, "the key twice", "every key once")
+        return members
+
+    try:
+        return json.loads(text, parse_constant=refuse, object_pairs_hook=unique)
+    except json.JSONDecodeError as error:
+        raise FieldError(f"line {error.lineno}, column {error.colno}", error.msg, "JSON") from error
+    except (RecursionError, ValueError) as error:
+        raise FieldError("", "numbers or nesting without measure", "a playground") from error
