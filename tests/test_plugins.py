@@ -30,6 +30,28 @@ SENSOR = Sensor(
 )
 """
 
+TOY_WOKEN_SENSOR = """
+from thymio_sim_ros.sim.commands import MotorTargets
+from thymio_sim_ros.sim.readings import ButtonsReading
+from thymio_sim_ros.sim.sensors import NEVER_NS, Sensor
+
+SENSOR = Sensor("ear", NEVER_NS, lambda view: ButtonsReading(view.now_ns, ()), wakes_on=(MotorTargets,))
+"""
+
+TOY_FEELING_SENSOR = """
+from thymio_sim_ros.sim.commands import MotorTargets
+from thymio_sim_ros.sim.readings import ButtonsReading
+from thymio_sim_ros.sim.sensors import Sensor
+
+SENSOR = Sensor(
+    name="skin",
+    period_ns=100_000_000,
+    measure=lambda view: ButtonsReading(view.now_ns, (view.memory["felt"],)),
+    wakes_on=(MotorTargets,),
+    feel=lambda view: view.memory.update(felt=view.memory.get("felt", 0) + 1),
+)
+"""
+
 TOY_SHAPE = """
 from dataclasses import dataclass
 
@@ -102,7 +124,13 @@ def add_plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Call
 def test_the_sensors_are() -> None:
     names = [sensor.name for sensor in sensors.all_sensors()]
     assert names == [
+        "accelerometer",
+        "battery",
+        "button_counts",
         "buttons",
+        "collision",
+        "comm",
+        "current",
         "ground",
         "leds",
         "loudspeaker",
@@ -110,18 +138,27 @@ def test_the_sensors_are() -> None:
         "pen",
         "pose",
         "proximity",
+        "remote",
+        "sound",
         "sound_finished",
+        "tap",
+        "temperature",
     ]
 
 
 def test_the_actuators_are() -> None:
     assert [actuator.name for actuator in actuators.all_actuators()] == [
         "buttons",
+        "comm",
         "hand",
         "leds",
         "loudspeaker",
+        "microphone",
         "motors",
         "pen",
+        "power",
+        "remote",
+        "room",
     ]
 
 
@@ -148,10 +185,16 @@ def test_programs_see_the_variables_and_events_of_the_firmware() -> None:
     assert [name for name, _ in faces["buttons"].variables] == [f"button.{button}" for button in BUTTONS]
     events = {name: face.event for name, face in faces.items() if face.event}
     assert events == {
+        "accelerometer": "acc",
         "buttons": "buttons",
+        "comm": "prox.comm",
         "motor": "motor",
         "proximity": "prox",
+        "remote": "rc5",
+        "sound": "mic",
         "sound_finished": "sound.finished",
+        "tap": "tap",
+        "temperature": "temperature",
     }
     assert [name for name, face in faces.items() if face.edge_events] == ["buttons"]
 
@@ -186,6 +229,27 @@ def test_a_new_sensor_does_not_change_what_the_others_read(add_plugin: Callable[
     before = ground()
     add_plugin(sensors, "compass", TOY_SENSOR)
     assert ground() == before
+
+
+def test_a_sensor_that_is_woken_measures_in_that_tick_only(add_plugin: Callable[[ModuleType, str, str], None]) -> None:
+    add_plugin(sensors, "ear", TOY_WOKEN_SENSOR)
+    world = World(make([FLOOR]), noise=False)
+    run(world, 0.1)
+    send(world, MotorTargets(0, 0))
+    names = [[name for _, name, _ in world.step().readings].count("ear") for _ in range(2)]
+    assert names == [1, 0]
+
+
+def test_a_sensor_that_feels_what_wakes_it_measures_at_its_own_time(
+    add_plugin: Callable[[ModuleType, str, str], None],
+) -> None:
+    add_plugin(sensors, "skin", TOY_FEELING_SENSOR)
+    world = World(make([FLOOR]), noise=False)
+    for _ in range(3):
+        send(world, MotorTargets(0, 0))
+        world.step()
+    words = [reading.words for step in run(world, 0.1) for _, name, reading in step.readings if name == "skin"]
+    assert words == [(3,)]
 
 
 def test_a_new_shape_file_is_enough(add_plugin: Callable[[ModuleType, str, str], None]) -> None:

@@ -11,6 +11,7 @@ from thymio_sim_ros.sim.noise import Noise
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.primitives import Color
 from thymio_sim_ros.sim.rays import Obstacle, Surroundings
+from thymio_sim_ros.sim.sound import Sound
 from thymio_sim_ros.sim.wheels import Wheels
 
 S = TypeVar("S")
@@ -36,6 +37,7 @@ class FakeView:
     drawn: list[tuple[Point, Point, float, Color | None]] = field(default_factory=list)
     woken: list[type[Any]] = field(default_factory=list)
     others: tuple[Any, ...] = ()
+    sounds: tuple[Sound, ...] = ()
 
     def surroundings(self, reach_m: float, height_m: float) -> Surroundings:
         return Surroundings(obstacle for obstacle in self.obstacles if obstacle.height_m >= height_m)

@@ -9,8 +9,9 @@ from thymio_sim_ros.sim.clock import TICK_NS, Pacer, Schedule, SimClock
 SECOND_NS = 1_000_000_000
 
 
-def times_due(schedule: Schedule, ticks: int) -> list[int]:
-    return [tick for tick in range(1, ticks + 1) if schedule.due(tick * TICK_NS)]
+def times_due(period_ns: int, ticks: int, phase_ns: int = 0) -> list[int]:
+    schedule = Schedule([(period_ns, phase_ns)])
+    return [tick for tick in range(1, ticks + 1) if schedule.due(tick * TICK_NS) == [0]]
 
 
 def test_the_clock_counts_ticks_of_ten_milliseconds() -> None:
@@ -19,15 +20,21 @@ def test_the_clock_counts_ticks_of_ten_milliseconds() -> None:
 
 
 def test_a_schedule_is_due_at_every_multiple_of_its_period() -> None:
-    assert times_due(Schedule(50_000_000), 15) == [5, 10, 15]
+    assert times_due(50_000_000, 15) == [5, 10, 15]
 
 
 def test_a_phase_shifts_a_schedule_and_nothing_is_due_before_it() -> None:
-    assert times_due(Schedule(50_000_000, phase_ns=10_000_000), 15) == [1, 6, 11]
+    assert times_due(50_000_000, 15, phase_ns=10_000_000) == [1, 6, 11]
 
 
 def test_a_period_that_is_no_whole_number_of_ticks_keeps_its_rate() -> None:
-    assert len(times_due(Schedule(62_500_000), 1600)) == 16 * 16
+    assert len(times_due(62_500_000, 1600)) == 16 * 16
+    assert len(times_due(16_384_000, 1000)) == 610
+
+
+def test_a_schedule_tells_all_that_is_due_in_order() -> None:
+    schedule = Schedule([(20_000_000, 0), (10_000_000, 0), (1 << 62, 0)])
+    assert [schedule.due(tick * TICK_NS) for tick in (1, 2, 3)] == [[1], [0, 1], [1]]
 
 
 def test_the_pacer_owes_one_tick_for_each_period_of_wall_time() -> None:

@@ -11,12 +11,29 @@ from collections.abc import Iterator
 import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, box, make, readings, run, send, shipped
-from thymio_sim_ros.sim.commands import BodyTwist, Command, MotorTargets, MoveRobot, PressButton, SetLeds
+from thymio_sim_ros.sim.commands import (
+    BodyTwist,
+    Clap,
+    Command,
+    EnableComm,
+    MotorTargets,
+    MoveRobot,
+    PressButton,
+    RemoteKey,
+    SetBattery,
+    SetCommPayload,
+    SetLeds,
+    SetNoiseLevel,
+    SetSoundThreshold,
+    SetTemperature,
+    Tap,
+    Tilt,
+)
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.playground import Playground
 from thymio_sim_ros.sim.world import StepResult, World
 
-FROZEN = "b69db3fff5d5fb39"
+FROZEN = "6bb8e25c452715e0"
 """Hash of `minute()`. It changes only when the simulation is meant to change; say so in the commit."""
 
 TWO = ({**ROBOT, "name": "a"}, {**ROBOT, "name": "b", "y_m": 0.3})
@@ -82,6 +99,16 @@ def test_a_log_of_commands_replays_a_run() -> None:
         lambda: SetLeds("top", (dice.randint(0, 32), 0, 0)),
         lambda: PressButton("center", pressed=dice.random() < 0.5),
         lambda: MoveRobot(dice.uniform(-1, 1), dice.uniform(-1, 1), dice.uniform(-3, 3)),
+        lambda: Tilt(dice.uniform(-1, 1), dice.uniform(-1, 1)),
+        lambda: Tap(),
+        lambda: Clap(dice.randint(0, 255)),
+        lambda: SetNoiseLevel(dice.randint(0, 255)),
+        lambda: SetTemperature(dice.uniform(0, 40)),
+        lambda: RemoteKey(dice.randint(0, 31), dice.randint(0, 127)),
+        lambda: SetBattery(dice.uniform(3, 4.2)),
+        lambda: EnableComm(dice.random() < 0.8),
+        lambda: SetCommPayload(dice.randint(0, 2047)),
+        lambda: SetSoundThreshold(dice.randint(0, 255)),
     )
     log: list[tuple[int, str, Command]] = [
         (tick, dice.choice("ab"), dice.choice(kinds)()) for tick in range(500) if dice.random() < 0.1
@@ -149,7 +176,21 @@ def test_a_line_follower_stays_on_the_line_for_whole_laps() -> None:
 def test_sensors_keep_their_rates() -> None:
     names = [name for step in run(World(make([FLOOR])), 1.0) for _, name, _ in step.readings]
     counts = {name: names.count(name) for name in sorted(set(names))}
-    assert counts == {"buttons": 50, "ground": 10, "leds": 1, "motor": 100, "pose": 20, "proximity": 10}
+    assert counts == {
+        "accelerometer": 16,
+        "battery": 1,
+        "button_counts": 1,
+        "buttons": 50,
+        "collision": 1,
+        "current": 1,
+        "ground": 10,
+        "leds": 1,
+        "motor": 100,
+        "pose": 20,
+        "proximity": 10,
+        "sound": 1,
+        "temperature": 1,
+    }
 
 
 def test_readings_come_by_robot_and_then_by_sensor_name() -> None:

@@ -6,7 +6,7 @@ wall clock, which its caller takes (architecture section 5).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
 
 __all__ = ["TICK_NS", "Pacer", "Schedule", "SimClock"]
 
@@ -30,16 +30,26 @@ class SimClock:
         return self.now_ns
 
 
-@dataclass(frozen=True, slots=True)
 class Schedule:
-    """What happens every `period_ns`, at the first tick not before each multiple; right for any period."""
+    """When things happen again and again: each every period, at the first tick not before each multiple of it.
 
-    period_ns: int
-    phase_ns: int = 0
+    Right for any period; each thing's first time is its phase, or one period when that is 0. Invariant: it is asked for
+    every tick in turn.
+    """
 
-    def due(self, now_ns: int) -> bool:
-        """Whether a multiple of the period lies in the tick that ends now."""
-        return (now_ns - self.phase_ns) % self.period_ns < TICK_NS and now_ns >= self.phase_ns
+    __slots__ = ("_next_ns", "_periods_ns")
+
+    def __init__(self, periods_and_phases_ns: Iterable[tuple[int, int]]) -> None:
+        pairs = list(periods_and_phases_ns)
+        self._periods_ns = [period for period, _ in pairs]
+        self._next_ns = [phase or period for period, phase in pairs]
+
+    def due(self, now_ns: int) -> list[int]:
+        """Numbers of the things that happen in the tick that ends now."""
+        due = [number for number, next_ns in enumerate(self._next_ns) if next_ns <= now_ns]
+        for number in due:
+            self._next_ns[number] += self._periods_ns[number]
+        return due
 
 
 class Pacer:

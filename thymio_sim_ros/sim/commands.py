@@ -6,6 +6,7 @@ Commands are posted at any time and take effect at the next tick, in the order o
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 BUTTONS = ("backward", "left", "center", "forward", "right")
@@ -164,6 +165,115 @@ class ResetOdometry:
     """Let the wheel odometry start again from zero, here."""
 
 
+@dataclass(frozen=True, slots=True)
+class Tap:
+    """A knock on the robot's body."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tilt:
+    """Hold the robot at an angle until told otherwise: rad, ±pi; roll lifts its left side, pitch lowers its front."""
+
+    roll_rad: float
+    pitch_rad: float
+
+    def __post_init__(self) -> None:
+        _check(self, -math.pi, math.pi, "roll_rad", "pitch_rad")
+
+
+@dataclass(frozen=True, slots=True)
+class Clap:
+    """A clap beside the robot, as loud as mic.intensity tells, 0…255; other robots hear it by their distance."""
+
+    intensity: int
+
+    def __post_init__(self) -> None:
+        _check(self, 0, 255, "intensity")
+
+
+@dataclass(frozen=True, slots=True)
+class SetNoiseLevel:
+    """A steady noise round this robot alone, as mic.intensity tells it, 0…255."""
+
+    intensity: int
+
+    def __post_init__(self) -> None:
+        _check(self, 0, 255, "intensity")
+
+
+@dataclass(frozen=True, slots=True)
+class SetTemperature:
+    """Temperature round the robot in °C, -40…85."""
+
+    celsius: float
+
+    def __post_init__(self) -> None:
+        _check(self, -40.0, 85.0, "celsius")
+
+
+@dataclass(frozen=True, slots=True)
+class RemoteKey:
+    """A frame of an RC5 remote control: address 0…31, command 0…127.
+
+    A frame that repeats address, command and toggle bit of the one before is the same key still held, and ignored.
+    Without a `toggle`, it is a new press.
+    """
+
+    address: int
+    command: int
+    toggle: bool | None = None
+
+    def __post_init__(self) -> None:
+        _check(self, 0, 31, "address")
+        _check(self, 0, 127, "command")
+
+
+@dataclass(frozen=True, slots=True)
+class SetBattery:
+    """Voltage of the battery, 0…5 V, and whether it is being charged."""
+
+    volts: float
+    is_charging: bool = False
+
+    def __post_init__(self) -> None:
+        _check(self, 0.0, 5.0, "volts")
+
+
+@dataclass(frozen=True, slots=True)
+class SetSoundThreshold:
+    """mic.threshold: a sound above it is told, 0 is off (int16)."""
+
+    level: int
+
+    def __post_init__(self) -> None:
+        _check(self, -0x8000, 0x7FFF, "level")
+
+
+@dataclass(frozen=True, slots=True)
+class EnableComm:
+    """Infrared communication on or off; off forgets what was sent."""
+
+    is_enabled: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SetCommPayload:
+    """prox.comm.tx: the value sent in every frame, at most 2047 counts; a negative one is no data (int16)."""
+
+    value: int
+
+    def __post_init__(self) -> None:
+        _check(self, -0x8000, 0x7FFF, "value")
+
+
+def _check(command: object, low: float, high: float, *fields: str) -> None:
+    """ValueError unless these fields lie in a range (NaN does not)."""
+    for field in fields:
+        value = getattr(command, field)
+        if not low <= value <= high:
+            raise ValueError(f"{type(command).__name__}: {field} {value} found, expected {low:g} to {high:g}")
+
+
 Command = (
     MotorTargets
     | WheelVelocities
@@ -182,4 +292,14 @@ Command = (
     | PressButton
     | MoveRobot
     | ResetOdometry
+    | Tap
+    | Tilt
+    | Clap
+    | SetNoiseLevel
+    | SetTemperature
+    | RemoteKey
+    | SetBattery
+    | SetSoundThreshold
+    | EnableComm
+    | SetCommPayload
 )

@@ -121,6 +121,96 @@ class SoundFinishedReading:
     words: tuple[int, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class AccelerometerReading:
+    """Proper acceleration in m/s² (about 9.81 upwards at rest): forward, left, up.
+
+    `words`: acc, 23 for each g: right, forward, up (thymio-robot.md section 7.3).
+    """
+
+    stamp_ns: int
+    words: tuple[int, ...]
+    acceleration_m_s2: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class TapReading:
+    """A shock was felt; `words`: acc._tap, 1."""
+
+    stamp_ns: int
+    words: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SoundReading:
+    """The microphone; `words`: mic.intensity 0…255, mic._mean 0…510. `is_loud`: above the threshold that is set."""
+
+    stamp_ns: int
+    words: tuple[int, ...]
+    is_loud: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TemperatureReading:
+    """Temperature in °C; `words` are its tenths."""
+
+    stamp_ns: int
+    words: tuple[int, ...]
+    celsius: float
+
+
+@dataclass(frozen=True, slots=True)
+class RemoteReading:
+    """A new frame of a remote control; `words`: address 0…31, command 0…127."""
+
+    stamp_ns: int
+    words: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ButtonCountsReading:
+    """The capacitive buttons inside; `words`: five counts, their slow means, their noise, in the order of `BUTTONS`."""
+
+    stamp_ns: int
+    words: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class BatteryReading:
+    """The battery: volts, charge 0…1; `words`: _vbat, whose sum times 1000/3978 is hundredths of a volt."""
+
+    stamp_ns: int
+    words: tuple[int, ...]
+    volts: float
+    charge: float
+    is_charging: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CurrentReading:
+    """The motors inside; `words`: _imot left, right (600 is about 0.4 A), _integrator left, right (±4806)."""
+
+    stamp_ns: int
+    words: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CommReading:
+    """An infrared frame was heard; `words`: the value 0…2047, then values and intensities of the seven sensors."""
+
+    stamp_ns: int
+    words: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CollisionReading:
+    """Whether the robot touches anything but the floor; sent on change. Programs see nothing of it."""
+
+    stamp_ns: int
+    words: tuple[int, ...]
+    is_touching: bool
+
+
 Reading = (
     ProximityReading
     | GroundReading
@@ -131,4 +221,14 @@ Reading = (
     | LoudspeakerReading
     | PenReading
     | SoundFinishedReading
+    | AccelerometerReading
+    | TapReading
+    | SoundReading
+    | TemperatureReading
+    | RemoteReading
+    | ButtonCountsReading
+    | BatteryReading
+    | CurrentReading
+    | CommReading
+    | CollisionReading
 )

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.actuators.buttons import ButtonState
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.actuators.pen import PenState
+from thymio_sim_ros.sim.actuators.room import RoomState
 from thymio_sim_ros.sim.clock import SimClock
 from thymio_sim_ros.sim.geometry import Point, Pose, Twist
 from thymio_sim_ros.sim.ground import Ground, GroundSample
@@ -20,7 +21,7 @@ from thymio_sim_ros.sim.rays import Surroundings
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.scene import RobotSnapshot
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sound import Sounding
+from thymio_sim_ros.sim.sound import SPEAKER_SHARE, Sound, Sounding
 from thymio_sim_ros.sim.wheels import Wheels
 
 __all__ = ["Robot", "Shared"]
@@ -31,22 +32,36 @@ S = TypeVar("S")
 class Shared:
     """What all robots of a world share."""
 
-    __slots__ = ("clock", "ground", "physics", "proximity_model", "robots")
+    __slots__ = ("_sounds", "_sounds_ns", "clock", "ground", "physics", "proximity_model", "robots")
 
     def __init__(
         self, clock: SimClock, ground: Ground, physics: Physics, proximity_model: str, robots: Mapping[str, Robot]
     ) -> None:
         self.clock, self.ground, self.physics, self.proximity_model = clock, ground, physics, proximity_model
         self.robots = robots
+        self._sounds: list[Sound] = []
+        self._sounds_ns = -1
+
+    def sounds(self) -> list[Sound]:
+        """All that sounds now; every robot is asked once per tick, however many listen."""
+        now_ns = self.clock.now_ns
+        if self._sounds_ns != now_ns:
+            self._sounds_ns = now_ns
+            self._sounds = [
+                Sound(robot.pose.x_m, robot.pose.y_m, level)
+                for robot in self.robots.values()
+                for level in robot.levels(now_ns)
+            ]
+        return self._sounds
 
 
 class _View:
     """A robot as one plug-in sees it; satisfies `SensorView` and `ActuatorView`."""
 
-    __slots__ = ("_robot", "_world", "memory", "noise", "proximity_model", "wheels")
+    __slots__ = ("_robot", "_states", "_world", "memory", "noise", "proximity_model", "wheels")
 
     def __init__(self, robot: Robot, world: Shared, noise: Noise) -> None:
-        self._robot, self._world = robot, world
+        self._robot, self._world, self._states = robot, world, robot.states
         self.noise = noise
         self.wheels = robot.wheels
         self.memory: dict[str, Any] = {}
@@ -69,6 +84,10 @@ class _View:
         return tuple(self._robot.body.touching.values())
 
     @property
+    def sounds(self) -> list[Sound]:
+        return self._world.sounds()
+
+    @property
     def others(self) -> list[Robot]:
         return [robot for robot in self._world.robots.values() if robot is not self._robot]
 
@@ -79,7 +98,8 @@ class _View:
         return self._world.ground.sample(*self._robot.body.pose.place((x_m, y_m)))
 
     def state(self, kind: type[S]) -> S:
-        return self._robot.state(kind)
+        state: S = self._states[kind]
+        return state
 
     def draw(self, start: Point, end: Point, width_m: float, color: Color | None) -> Color | None:
         self._world.ground.draw_segment(*start, *end, width_m, color)
@@ -109,18 +129,20 @@ class Robot:
         self.body: RobotBody = shared.physics.add_robot(start.name, start.pose)
         self.wheels = Wheels()
         self._clock = shared.clock
-        self._states: dict[type[Any], Any] = {}
+        self.states: dict[type[Any], Any] = {}
+        """The state of every actuator, by its type."""
         self._accepting: dict[type[Any], tuple[Actuator, Any]] = {}
         self._updates = []
         for actuator in actuators:
             state = actuator.begin()
-            self._states[type(state)] = state
+            self.states[type(state)] = state
             for kind in actuator.accepts:
                 self._accepting[kind] = (actuator, state)
             if actuator.update is not None:
                 view = _View(self, shared, Noise(seed, self.name, actuator.name, enabled=noise))
                 self._updates.append((actuator.update, state, view))
-        self._sounding = [state for state in self._states.values() if isinstance(state, Sounding)]
+        self._room = self.state(RoomState)
+        self._speakers = [state for state in self.states.values() if isinstance(state, Sounding)]
         self.sensors = [
             (sensor, _View(self, shared, Noise(seed, self.name, sensor.name, enabled=noise))) for sensor in sensors
         ]
@@ -140,10 +162,12 @@ class Robot:
         """How its body really moves, in its own frame."""
         return Twist(self.body.speed_m_s, self.body.spin_rad_s)
 
-    @property
-    def sounding_level(self) -> float:
-        """How loud it is at `sound.NEAR_M`: the sum of all that sounds on it."""
-        return sum(state.sounding_level for state in self._sounding)
+    def levels(self, now_ns: int) -> list[float]:
+        """How loud is what sounds on it."""
+        levels = [SPEAKER_SHARE * speaker.sounding_level for speaker in self._speakers if speaker.sounding_level]
+        if now_ns <= self._room.clap_ends_ns:
+            levels.append(self._room.clap_level)
+        return levels
 
     def accepts(self, command: object) -> bool:
         """Whether an actuator takes this type of command."""
@@ -169,12 +193,16 @@ class Robot:
         """Count on the wheels what the body has moved."""
         self.wheels.roll(self.body.covered_m_s, dt_s)
 
-    def take_woken(self) -> set[int]:
-        """The numbers of the sensors that were woken in this tick; afterwards none is."""
-        woken = self._woken
-        if woken:
-            self._woken = set()
-        return woken
+    def take_woken(self) -> list[int]:
+        """The numbers of the sensors that were woken to measure, in order; those that only feel do so."""
+        if not self._woken:
+            return []
+        woken, self._woken = sorted(self._woken), set()
+        for number in woken:
+            sensor, view = self.sensors[number]
+            if sensor.feel is not None:
+                sensor.feel(view)
+        return [number for number in woken if self.sensors[number][0].feel is None]
 
     def sense(self, number: int) -> Reading | None:
         """What the sensor with this number reads now."""
@@ -185,7 +213,7 @@ class Robot:
         """The readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""
         woken = self.take_woken()
         readings = []
-        for number in sorted(woken.union(due)) if woken else due:
+        for number in sorted({*woken, *due}) if woken else due:
             sensor, view = self.sensors[number]
             reading = sensor.measure(view)
             if reading is not None:
@@ -194,7 +222,8 @@ class Robot:
 
     def state(self, kind: type[S]) -> S:
         """The state of the actuator whose state is a `kind`; KeyError when there is none."""
-        return cast("S", self._states[kind])
+        state: S = self.states[kind]
+        return state
 
     def snapshot(self) -> RobotSnapshot:
         """How it looks now."""

@@ -62,6 +62,20 @@ GROUND_SENSORS: tuple[tuple[float, float], ...] = ((0.072, 0.0115), (0.072, -0.0
 GROUND_NOISE = 10.0
 """Standard deviation of a ground count (TR 7.2)."""
 
+GRAVITY_M_S2 = 9.81
+"""As the robot's driver takes it (ros-interface.md section 3)."""
+ACC_PER_G = 23
+"""Counts of acc for each g (TR 7.3)."""
+ACC_LIMIT = 32
+"""Limit of each count of acc (TR 7.3)."""
+ACC_NOISE = 0.1
+"""Standard deviation of a count before rounding. Own choice: the mean of 21 samples is steady at rest."""
+TAP_SPEED_M_S = 0.02
+"""A contact that begins faster than this is a tap (TR 7.3)."""
+
+INTEGRATOR_LIMIT = 4806
+"""Limit of _integrator (TR 2.1)."""
+
 
 def hull() -> tuple[tuple[float, float], ...]:
     """The collision outline, counter-clockwise from the front right (TR 1.1)."""

@@ -1,6 +1,6 @@
 """SI units ↔ Thymio integers: the only place where one becomes the other.
 
-Response curves: thymio-robot.md sections 2 (motors), 7.1 (proximity), 7.2 (ground), 8.1 (LEDs).
+Sources: thymio-robot.md sections 2 (motors), 7.1 (proximity), 7.2 (ground), 7.3 (acc), 7.4 (others), 8.1 (LEDs).
 """
 
 from __future__ import annotations
@@ -11,7 +11,16 @@ import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim.commands import LED_FULL
-from thymio_sim_ros.sim.thymio2 import FULL_TARGET, MAX_SPEED_M_S, PROXIMITY_RANGE_M, PWM_LIMIT, PWM_PER_SPEED_UNIT
+from thymio_sim_ros.sim.thymio2 import (
+    ACC_LIMIT,
+    ACC_PER_G,
+    FULL_TARGET,
+    GRAVITY_M_S2,
+    MAX_SPEED_M_S,
+    PROXIMITY_RANGE_M,
+    PWM_LIMIT,
+    PWM_PER_SPEED_UNIT,
+)
 
 Values = npt.NDArray[np.float64]
 
@@ -94,6 +103,26 @@ def ground_responses(reflectances: Values) -> Values:
     """`ground_response` of many greys."""
     found: Values = _GROUND_BLACK + _GROUND_SPAN / (1.0 + np.exp(-_GROUND_SLOPE * (reflectances - _GROUND_MIDDLE)))
     return found
+
+
+def acceleration_to_units(acceleration_m_s2: float) -> int:
+    """One axis of acc: 23 for each g, within ±32 (section 7.3)."""
+    return round(max(-ACC_LIMIT, min(ACC_LIMIT, acceleration_m_s2 * (ACC_PER_G / GRAVITY_M_S2))))
+
+
+def units_to_acceleration(count: int) -> float:
+    """acc as m/s²."""
+    return count * (GRAVITY_M_S2 / ACC_PER_G)
+
+
+def celsius_to_units(celsius: float) -> int:
+    """temperature: tenths of a degree (section 7.4)."""
+    return round(10.0 * celsius)
+
+
+def volts_to_units(volts: float) -> int:
+    """Each word of _vbat: their sum times 1000/3978 is hundredths of a volt (section 7.4)."""
+    return round(volts * 100.0 * 3978.0 / 1000.0 / 2.0)
 
 
 def saturate_led(word: int) -> int:

@@ -12,6 +12,7 @@ from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.primitives import Color
 from thymio_sim_ros.sim.raycaster import Fan, Indices, Values
 from thymio_sim_ros.sim.rays import Surroundings
+from thymio_sim_ros.sim.sound import Sound
 from thymio_sim_ros.sim.wheels import Wheels
 
 __all__ = ["ActuatorView", "GroupView", "OtherRobot", "SensorView"]
@@ -30,11 +31,6 @@ class OtherRobot(Protocol):
     @property
     def pose(self) -> Pose:
         """Where it really is."""
-        ...
-
-    @property
-    def sounding_level(self) -> float:
-        """How loud it is at `sound.NEAR_M`."""
         ...
 
     def state(self, kind: type[S]) -> S:
@@ -88,6 +84,11 @@ class SensorView(Protocol):
     @property
     def others(self) -> Sequence[OtherRobot]:
         """All other robots, in the order of the world."""
+        ...
+
+    @property
+    def sounds(self) -> Sequence[Sound]:
+        """All that sounds in the world now, this robot's own included."""
         ...
 
     def surroundings(self, reach_m: float, height_m: float) -> Surroundings:

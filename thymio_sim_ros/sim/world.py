@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from thymio_sim_ros.sim.actuators import all_actuators
-from thymio_sim_ros.sim.clock import TICK_NS, SimClock
+from thymio_sim_ros.sim.clock import TICK_NS, Schedule, SimClock
 from thymio_sim_ros.sim.commands import Command, SetPen
 from thymio_sim_ros.sim.crowd import CROWD, Crowd
 from thymio_sim_ros.sim.fields import as_color
@@ -71,7 +71,7 @@ class World:
         self._robots: dict[str, Robot] = {}
         shared = Shared(self._clock, self._ground, self._physics, self._proximity_model, self._robots)
         actuators, sensors = all_actuators(), self._sensors
-        self._schedules = [sensor.schedule for sensor in sensors]
+        self._schedule = Schedule((sensor.period_ns, sensor.phase_ns) for sensor in sensors)
         for start in self.playground.robots:
             robot = Robot(start, shared, actuators, sensors, seed=self._seed, noise=self._noise)
             self._robots[start.name] = robot
@@ -138,7 +138,7 @@ class World:
         return contacts
 
     def _run_sensors(self, now_ns: int) -> Sequence[tuple[str, str, Reading]]:
-        due = [number for number, schedule in enumerate(self._schedules) if schedule.due(now_ns)]
+        due = self._schedule.due(now_ns)
         if self._crowd is not None:
             return self._crowd.measure(due)
         readings: list[tuple[str, str, Reading]] = []

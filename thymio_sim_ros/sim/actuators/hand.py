@@ -1,11 +1,11 @@
-"""The operator's hand: lifts the robot to another place, or zeroes its odometry."""
+"""The operator's hand: lifts the robot to another place, holds it at an angle, knocks on it, or zeroes its odometry."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
 from thymio_sim_ros.sim.actuators import Actuator
-from thymio_sim_ros.sim.commands import MoveRobot, ResetOdometry
+from thymio_sim_ros.sim.commands import MoveRobot, ResetOdometry, Tap, Tilt
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.view import ActuatorView
 
@@ -14,13 +14,21 @@ __all__ = ["ACTUATOR", "HandState"]
 
 @dataclass(slots=True)
 class HandState:
-    """What the hand is about to do in this tick, in order."""
+    """What the hand is about to do in this tick, in order; the angle it holds the robot at; knocks so far."""
 
     waiting: list[MoveRobot | ResetOdometry] = field(default_factory=list)
+    roll_rad: float = 0.0
+    pitch_rad: float = 0.0
+    taps: int = 0
 
 
-def _apply(state: HandState, command: MoveRobot | ResetOdometry, _now_ns: int) -> None:
-    state.waiting.append(command)
+def _apply(state: HandState, command: MoveRobot | ResetOdometry | Tilt | Tap, _now_ns: int) -> None:
+    if isinstance(command, Tilt):
+        state.roll_rad, state.pitch_rad = command.roll_rad, command.pitch_rad
+    elif isinstance(command, Tap):
+        state.taps += 1
+    else:
+        state.waiting.append(command)
 
 
 def _update(state: HandState, view: ActuatorView, _dt_s: float) -> None:
@@ -34,4 +42,6 @@ def _update(state: HandState, view: ActuatorView, _dt_s: float) -> None:
     state.waiting.clear()
 
 
-ACTUATOR = Actuator(name="hand", accepts=(MoveRobot, ResetOdometry), begin=HandState, apply=_apply, update=_update)
+ACTUATOR = Actuator(
+    name="hand", accepts=(MoveRobot, ResetOdometry, Tilt, Tap), begin=HandState, apply=_apply, update=_update
+)

@@ -14,7 +14,6 @@ from typing import Any
 
 from thymio_sim_ros import registry
 from thymio_sim_ros.sim.aseba_face import NO_SENSOR_FACE, AsebaFace
-from thymio_sim_ros.sim.clock import Schedule
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.view import GroupView, SensorView
 
@@ -28,8 +27,9 @@ NEVER_NS = 1 << 62
 class Sensor:
     """One sensor; it measures every `period_ns`, counted from `phase_ns`.
 
-    It also measures at the end of a tick in which its robot got a command of a type in `wakes_on`, or, with `Contact`
-    in it, began to touch something. `measure_all`, if there is one, gives in one go what `measure` gives one by one.
+    A tick in which its robot got a command of a type in `wakes_on`, or, with `Contact` in it, began to touch something,
+    wakes it: then it measures too, or, if it has `feel`, only takes note of what happened. `measure_all`, if there is
+    one, gives in one go what `measure` gives one by one.
     """
 
     name: str
@@ -39,11 +39,7 @@ class Sensor:
     phase_ns: int = 0
     wakes_on: tuple[type[Any], ...] = ()
     measure_all: Callable[[GroupView], Sequence[Reading | None]] | None = None
-
-    @property
-    def schedule(self) -> Schedule:
-        """When it measures."""
-        return Schedule(self.period_ns, self.phase_ns)
+    feel: Callable[[SensorView], None] | None = None
 
 
 def all_sensors() -> tuple[Sensor, ...]:

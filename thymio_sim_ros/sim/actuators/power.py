@@ -1,0 +1,25 @@
+"""The battery as an operator sets it (thymio-robot.md section 7.4); it does not run down by itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from thymio_sim_ros.sim.actuators import Actuator
+from thymio_sim_ros.sim.commands import SetBattery
+
+__all__ = ["ACTUATOR", "PowerState"]
+
+
+@dataclass(slots=True)
+class PowerState:
+    """Voltage, 4.0 V at first, and whether a charger is connected."""
+
+    volts: float = 4.0
+    is_charging: bool = False
+
+
+def _apply(state: PowerState, command: SetBattery, _now_ns: int) -> None:
+    state.volts, state.is_charging = command.volts, command.is_charging
+
+
+ACTUATOR = Actuator(name="power", accepts=(SetBattery,), begin=PowerState, apply=_apply)

@@ -1,0 +1,73 @@
+"""The accelerometer, 16 times a second the mean of the time since: proper acceleration (thymio-robot.md section 7.3).
+
+At rest it is g upwards. For a robot whose left side is lifted by the roll r and whose front is lowered by the pitch p,
+with g seen in its frame: forward -g sin p, left g sin r cos p, up g cos r cos p. To this comes what its motion
+adds: forward dv / dt, left v * w (on a curve), and, when something hits it, the speed lost or won sidewards over dt.
+acc[0] is the part to the right, acc[1] forward, acc[2] upwards, 23 for each g, noise of 0.1 before rounding, ±32.
+"""
+
+from __future__ import annotations
+
+import math
+
+from thymio_sim_ros.sim import units
+from thymio_sim_ros.sim.actuators.hand import HandState
+from thymio_sim_ros.sim.aseba_face import AsebaFace
+from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.physics import Contact
+from thymio_sim_ros.sim.readings import AccelerometerReading
+from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.thymio2 import ACC_NOISE, ACC_PER_G, GRAVITY_M_S2
+from thymio_sim_ros.sim.view import SensorView
+
+__all__ = ["SENSOR", "gravity"]
+
+_PERIOD_NS = 62_500_000
+_NOISE_M_S2 = ACC_NOISE * GRAVITY_M_S2 / ACC_PER_G
+
+
+def gravity(roll_rad: float, pitch_rad: float) -> tuple[float, float, float]:
+    """What a robot at rest at an angle measures in m/s²: forward, left, up."""
+    if roll_rad == 0.0 == pitch_rad:
+        return (0.0, 0.0, GRAVITY_M_S2)
+    level = GRAVITY_M_S2 * math.cos(pitch_rad)
+    return (-GRAVITY_M_S2 * math.sin(pitch_rad), level * math.sin(roll_rad), level * math.cos(roll_rad))
+
+
+def sideways(pose: Pose, contact: Contact) -> float:
+    """Speed in m/s, to the left, that a contact's beginning takes from what it stops: away from the point touched."""
+    dx, dy = pose.x_m - contact.x_m, pose.y_m - contact.y_m
+    distance = math.hypot(dx, dy)
+    if distance == 0.0:
+        return 0.0
+    return contact.speed_m_s * (dy * math.cos(pose.yaw_rad) - dx * math.sin(pose.yaw_rad)) / distance
+
+
+def _feel(view: SensorView) -> None:
+    hits = sum(sideways(view.pose, contact) for contact in view.contacts if contact.is_new)
+    view.memory["hit_m_s"] = view.memory.get("hit_m_s", 0.0) + hits
+
+
+def _measure(view: SensorView) -> AccelerometerReading:
+    memory, twist, hand, noise = view.memory, view.twist, view.state(HandState), view.noise
+    forward, left, up = gravity(hand.roll_rad, hand.pitch_rad)
+    dt_s = (view.now_ns - memory.get("since_ns", 0)) * 1e-9
+    forward += (twist.linear_m_s - memory.get("speed_m_s", 0.0)) / dt_s
+    left += twist.linear_m_s * twist.angular_rad_s + memory.pop("hit_m_s", 0.0) / dt_s
+    memory["since_ns"], memory["speed_m_s"] = view.now_ns, twist.linear_m_s
+    right = units.acceleration_to_units(noise.gauss(_NOISE_M_S2) - left)
+    ahead = units.acceleration_to_units(noise.gauss(_NOISE_M_S2) + forward)
+    upwards = units.acceleration_to_units(noise.gauss(_NOISE_M_S2) + up)
+    to_si = units.units_to_acceleration
+    vector = (to_si(ahead), -to_si(right), to_si(upwards))
+    return AccelerometerReading(view.now_ns, (right, ahead, upwards), vector)
+
+
+SENSOR = Sensor(
+    name="accelerometer",
+    period_ns=_PERIOD_NS,
+    measure=_measure,
+    wakes_on=(Contact,),
+    feel=_feel,
+    aseba=AsebaFace(variables=(("acc", 3),), event="acc"),
+)

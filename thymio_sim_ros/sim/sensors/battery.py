@@ -1,0 +1,36 @@
+"""The battery, once a second and when it is set (thymio-robot.md section 7.4), no noise.
+
+Each of the two words is V * 198.9. `charge` grows evenly from 3.4 V, where the last light goes out, to 4.1 V of a full
+lithium cell (own choice of the upper end; section 8.4 gives the lower).
+"""
+
+from __future__ import annotations
+
+from thymio_sim_ros.sim import units
+from thymio_sim_ros.sim.actuators.power import PowerState
+from thymio_sim_ros.sim.aseba_face import AsebaFace
+from thymio_sim_ros.sim.commands import SetBattery
+from thymio_sim_ros.sim.readings import BatteryReading
+from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.view import SensorView
+
+__all__ = ["SENSOR"]
+
+_EMPTY_V, _FULL_V = 3.4, 4.1
+
+
+def _measure(view: SensorView) -> BatteryReading:
+    power = view.state(PowerState)
+    word = units.volts_to_units(power.volts)
+    charge = max(0.0, min(1.0, (power.volts - _EMPTY_V) / (_FULL_V - _EMPTY_V)))
+    return BatteryReading(view.now_ns, (word, word), power.volts, charge, power.is_charging)
+
+
+SENSOR = Sensor(
+    name="battery",
+    period_ns=1_000_000_000,
+    phase_ns=10_000_000,
+    measure=_measure,
+    wakes_on=(SetBattery,),
+    aseba=AsebaFace(variables=(("_vbat", 2),)),
+)

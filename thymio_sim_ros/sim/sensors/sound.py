@@ -1,0 +1,48 @@
+"""The microphone, 61 blocks a second of 128 8-bit samples (thymio-robot.md sections 3 and 7.4), no noise.
+
+mic.intensity is the largest minus the smallest sample of a block, 0…255, mic._mean their sum; in silence all samples
+are 128. What is heard: the operator's noise and all sounds of the world by their distances (`sim/sound.py`), energies
+added. The event `mic` comes with every block that is louder than mic.threshold, unless that is 0. Quieter blocks are
+told when they differ from the last one told, and once a second.
+"""
+
+from __future__ import annotations
+
+import math
+
+from thymio_sim_ros.sim.actuators.microphone import MicrophoneState
+from thymio_sim_ros.sim.actuators.room import RoomState
+from thymio_sim_ros.sim.aseba_face import AsebaFace
+from thymio_sim_ros.sim.readings import SoundReading
+from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.sensors._change import is_news
+from thymio_sim_ros.sim.sound import FULL_LEVEL, heard
+from thymio_sim_ros.sim.view import SensorView
+
+__all__ = ["BLOCK_NS", "SENSOR"]
+
+BLOCK_NS = 16_384_000
+"""128 samples at 7812.5 Hz (thymio-robot.md section 9)."""
+
+_SILENCE = 128
+"""A sample at rest: the middle of 8 bits. Own choice."""
+
+
+def _measure(view: SensorView) -> SoundReading | None:
+    level = float(view.state(RoomState).noise_level)
+    if sounds := view.sounds:
+        level = math.hypot(level, heard(sounds, view.pose.x_m, view.pose.y_m))
+    intensity = min(FULL_LEVEL, round(level))
+    is_loud = view.state(MicrophoneState).is_exceeded(intensity)
+    if not is_news(view, intensity) and not is_loud:
+        return None
+    smallest = _SILENCE - (intensity + 1) // 2
+    return SoundReading(view.now_ns, (intensity, 2 * smallest + intensity), is_loud)
+
+
+SENSOR = Sensor(
+    name="sound",
+    period_ns=BLOCK_NS,
+    measure=_measure,
+    aseba=AsebaFace(variables=(("mic.intensity", 1), ("mic._mean", 1)), event="mic", above="mic.threshold"),
+)

@@ -1,0 +1,26 @@
+"""Temperature, once a second: what the operator sets, in tenths of a degree (thymio-robot.md section 7.4), no noise."""
+
+from __future__ import annotations
+
+from thymio_sim_ros.sim import units
+from thymio_sim_ros.sim.actuators.room import RoomState
+from thymio_sim_ros.sim.aseba_face import AsebaFace
+from thymio_sim_ros.sim.readings import TemperatureReading
+from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.view import SensorView
+
+__all__ = ["SENSOR"]
+
+
+def _measure(view: SensorView) -> TemperatureReading:
+    celsius = view.state(RoomState).temperature_c
+    return TemperatureReading(view.now_ns, (units.celsius_to_units(celsius),), celsius)
+
+
+SENSOR = Sensor(
+    name="temperature",
+    period_ns=1_000_000_000,
+    phase_ns=10_000_000,
+    measure=_measure,
+    aseba=AsebaFace(variables=(("temperature", 1),), event="temperature"),
+)
