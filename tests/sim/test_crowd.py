@@ -30,7 +30,8 @@ def busy(dice: random.Random, robots: int) -> Playground:
     for x, y in places[robots : robots + 10]:
         size = (dice.uniform(0.02, 0.08), dice.uniform(0.02, 0.08))
         if dice.random() < 0.5:
-            shapes.append(box(x, y, *size, yaw_rad=dice.uniform(-3, 3), height_m=dice.choice((0.03, 0.1))))
+            shape = box(x, y, *size, yaw_rad=dice.uniform(-3, 3), height_m=dice.choice((0.03, 0.1)))
+            shapes.append(shape | dice.choice(({}, {"mass_kg": 0.1})))
         else:
             shapes.append(
                 {"kind": "cylinder", "x_m": x, "y_m": y, "radius_m": size[0], "height_m": 0.1, "color": "#808080"}

@@ -121,6 +121,19 @@ def test_things_that_move_are_seen_where_they_are() -> None:
         assert close(all_at_once(caster, poses, FAN), one_by_one(poses, [*fixed, *loose], FAN))
 
 
+def test_what_is_gone_or_fallen_is_not_seen_and_sees_nothing() -> None:
+    dice = random.Random(6)
+    loose, poses = things(dice, 8, 1.0), scatter(dice, 6, 1.0)
+    caster = Raycaster([], loose)
+    caster.move([None, *loose[1:]], fallen={2})
+    left = [pose for index, pose in enumerate(poses) if index != 2]
+    found = all_at_once(caster, poses, FAN)
+    assert found[4:6] == [[math.inf] * 4] * 2
+    assert close(found[:4] + found[6:], one_by_one(left, loose[1:], FAN))
+    caster.move(loose)
+    assert close(all_at_once(caster, poses, FAN), one_by_one(poses, loose, FAN))
+
+
 def test_two_fans_of_different_reach_may_take_turns() -> None:
     dice = random.Random(5)
     far = Fan([(0.0, 0.0)], [[(1.0, 0.0), (0.6, 0.8)]], range_m=0.9, height_m=0.09)

@@ -43,7 +43,7 @@ class _Group:
         return self._crowd.shared.proximity_model
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
-        return self._crowd.caster.cast(self._crowd.poses(), fan)
+        return self._crowd.cast(fan)
 
     def ground_at(self, places: Values) -> tuple[Values, Values]:
         x, y, yaw = self._crowd.poses().T[:, :, None]
@@ -57,8 +57,9 @@ class _Group:
 class Crowd:
     """The robots of a world, which stay the same. Invariant: nothing here moves them."""
 
-    def __init__(self, robots: Iterable[Robot], shared: Shared, caster: Raycaster) -> None:
-        self.shared, self.caster = shared, caster
+    def __init__(self, robots: Iterable[Robot], shared: Shared) -> None:
+        self.shared = shared
+        self._caster = Raycaster(shared.physics.fixed, shared.physics.loose())
         self._robots = tuple(robots)
         self._names = tuple(robot.name for robot in self._robots)
         self._groups = [
@@ -73,6 +74,12 @@ class Crowd:
             found = [(pose.x_m, pose.y_m, pose.yaw_rad) for pose in (robot.body.pose for robot in self._robots)]
             self._poses = (self.shared.clock.now_ns, np.array(found))
         return self._poses[1]
+
+    def cast(self, fan: Fan) -> tuple[Indices, Values]:
+        """What the rays of all robots meet now (`Raycaster.cast`)."""
+        fallen = {index for index, robot in enumerate(self._robots) if robot.body.is_fallen}
+        self._caster.move(self.shared.physics.loose(), fallen)
+        return self._caster.cast(self.poses(), fan)
 
     def measure(self, due: Sequence[int]) -> Columns:
         """The readings of the sensors with these numbers, and of those woken."""

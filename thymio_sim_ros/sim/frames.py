@@ -13,12 +13,16 @@ import numpy.typing as npt
 
 from thymio_sim_ros.sim.rays import DiscObstacle, Obstacle
 
-__all__ = ["BOX", "DISC", "Frames", "Values", "polygon_in_frame"]
+__all__ = ["BOX", "DISC", "HEIGHT", "NOWHERE_M", "Frames", "Values", "polygon_in_frame"]
 
 Values = npt.NDArray[np.float64]
 
 DISC, BOX = -2, -1
 """Kinds; a number from 0 up is that of a polygon."""
+HEIGHT = 6
+"""Where in a row the height stands."""
+NOWHERE_M = -1.0
+"""Height of what is not there."""
 _RIGHT_ANGLE = 1e-9
 
 
@@ -27,7 +31,7 @@ class Frames:
 
     __slots__ = ("kinds", "polygons", "rows")
 
-    def __init__(self, obstacles: Sequence[Obstacle]) -> None:
+    def __init__(self, obstacles: Sequence[Obstacle | None]) -> None:
         self.rows = np.zeros((len(obstacles), 7))
         self.kinds = np.full(len(obstacles), BOX, dtype=np.intp)
         self.polygons: list[Values] = []
@@ -35,8 +39,12 @@ class Frames:
         for row, obstacle in enumerate(obstacles):
             self.put(row, obstacle)
 
-    def put(self, row: int, obstacle: Obstacle) -> None:
-        """Write an obstacle into a row."""
+    def put(self, row: int, obstacle: Obstacle | None) -> None:
+        """Write an obstacle into a row; None for one that is not there."""
+        if obstacle is None:
+            self.rows[row, HEIGHT] = NOWHERE_M
+            return
+        place: tuple[float, float, float, float, float, float]
         if isinstance(obstacle, DiscObstacle):
             self.kinds[row] = DISC
             place = (obstacle.x_m, obstacle.y_m, 1.0, 0.0, obstacle.radius_m, obstacle.radius_m)

@@ -7,13 +7,13 @@ half of it. From the pairs those in the robot's reach remain, then those near a 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim import thymio2
-from thymio_sim_ros.sim.frames import BOX, DISC, Frames, Values, polygon_in_frame
+from thymio_sim_ros.sim.frames import BOX, DISC, HEIGHT, NOWHERE_M, Frames, Values, polygon_in_frame
 from thymio_sim_ros.sim.rays import Obstacle
 
 __all__ = ["Fan", "Indices", "Raycaster", "Values"]
@@ -50,18 +50,25 @@ class Fan:
 class Raycaster:
     """What rays meet in a world with always the same robots.
 
-    Their poses are told with every cast; other things that move, when they have moved.
+    Their poses are told with every cast; other things that move, when they may have moved.
     """
 
-    def __init__(self, fixed: Sequence[Obstacle], loose: Sequence[Obstacle] = ()) -> None:
+    def __init__(self, fixed: Sequence[Obstacle], loose: Sequence[Obstacle | None] = ()) -> None:
         self._frames = Frames([*fixed, *loose])
         self._fixed = len(fixed)
         self._loose = list(loose)
+        self._fallen: frozenset[int] = frozenset()
         self._lists: dict[Fan, tuple[Values, Indices, Indices]] = {}
         """For each fan: where the robots were, and the pairs that were near then."""
 
-    def move(self, loose: Sequence[Obstacle]) -> None:
-        """The things that can move, each at its place of old or elsewhere, in their first order."""
+    def move(self, loose: Sequence[Obstacle | None], fallen: Collection[int] = ()) -> None:
+        """The things that can move, each at its place of old or elsewhere, in their first order; None for what is gone.
+
+        Robots with the numbers in `fallen` neither see anything nor are seen.
+        """
+        if fallen != self._fallen:
+            self._fallen = frozenset(fallen)
+            self._lists.clear()
         for index, obstacle in enumerate(loose):
             if obstacle is not self._loose[index]:
                 self._loose[index] = obstacle
@@ -121,6 +128,7 @@ class Raycaster:
         robots[:, 2] = c * cos - s * sin
         robots[:, 3] = s * cos + c * sin
         robots[:, 4:] = half_x, half_y, thymio2.HULL_HEIGHT_M
+        robots[list(self._fallen), HEIGHT] = NOWHERE_M
         kinds = np.full(len(poses), len(self._frames.polygons), dtype=np.intp)
         return np.concatenate([self._frames.rows, robots]), np.concatenate([self._frames.kinds, kinds])
 
@@ -128,8 +136,31 @@ class Raycaster:
         """Pairs of robots and things, at least as high as the rays, that may be in reach: robot by robot."""
         found = self._lists.get(fan)
         if found is None or np.abs(poses[:, :2] - found[0]).max(initial=0.0) > _MARGIN_M / 3:
-            found = self._lists[fan] = (poses[:, :2].copy(), *_pairs(poses, frames, fan))
+            found = self._lists[fan] = (poses[:, :2].copy(), *self._pairs(poses, frames, fan))
         return found[1:]
+
+    def _pairs(self, poses: Values, frames: Values, fan: Fan) -> tuple[Indices, Indices]:
+        """Pairs whose boxes are in reach and a margin, found among things sorted by x."""
+        reach = fan.reach_m + _MARGIN_M
+        half = np.hypot(frames[:, 4], frames[:, 5])
+        wide_x = np.minimum(half, np.abs(frames[:, 2]) * frames[:, 4] + np.abs(frames[:, 3]) * frames[:, 5]) + reach
+        wide_y = np.minimum(half, np.abs(frames[:, 3]) * frames[:, 4] + np.abs(frames[:, 2]) * frames[:, 5]) + reach
+        own = len(frames) - len(poses)
+        wide_x[own:] = wide_y[own:] = half[own:] + reach  # robots turn
+        high = np.flatnonzero(frames[:, HEIGHT] >= fan.height_m)
+        order = np.argsort(poses[:, 0], kind="stable")
+        xs = poses[order, 0]
+        first = np.searchsorted(xs, frames[high, 0] - wide_x[high], side="left")
+        last = np.searchsorted(xs, frames[high, 0] + wide_x[high], side="right")
+        counts = last - first
+        thing = np.repeat(high, counts)
+        start = np.repeat(first - (np.cumsum(counts) - counts), counts)
+        robot = order[start + np.arange(len(thing))]
+        keep = np.abs(poses[robot, 1] - frames[thing, 1]) <= wide_y[thing]
+        keep &= (thing != robot + own) & (frames[own + robot, HEIGHT] > NOWHERE_M)
+        robot, thing = robot[keep], thing[keep]
+        order = np.lexsort((thing, robot))
+        return robot[order], thing[order]
 
     def _meet(self, x: Values, y: Values, dx: Values, dy: Values, near: Values, kind: Indices) -> Values:
         """How far rays go until they enter the obstacle in whose frame they are; inf if they don't."""
@@ -147,30 +178,6 @@ class Raycaster:
                 assert planes is not None
                 distances[rows] = _meet_polygon(*ray, planes)
         return distances
-
-
-def _pairs(poses: Values, frames: Values, fan: Fan) -> tuple[Indices, Indices]:
-    """Pairs whose boxes are in reach and a margin, found among things sorted by x."""
-    reach = fan.reach_m + _MARGIN_M
-    half = np.hypot(frames[:, 4], frames[:, 5])
-    wide_x = np.minimum(half, np.abs(frames[:, 2]) * frames[:, 4] + np.abs(frames[:, 3]) * frames[:, 5]) + reach
-    wide_y = np.minimum(half, np.abs(frames[:, 3]) * frames[:, 4] + np.abs(frames[:, 2]) * frames[:, 5]) + reach
-    own = len(frames) - len(poses)
-    wide_x[own:] = wide_y[own:] = half[own:] + reach  # robots turn
-    high = np.flatnonzero(frames[:, 6] >= fan.height_m)
-    order = np.argsort(poses[:, 0], kind="stable")
-    xs = poses[order, 0]
-    first = np.searchsorted(xs, frames[high, 0] - wide_x[high], side="left")
-    last = np.searchsorted(xs, frames[high, 0] + wide_x[high], side="right")
-    counts = last - first
-    thing = np.repeat(high, counts)
-    start = np.repeat(first - (np.cumsum(counts) - counts), counts)
-    robot = order[start + np.arange(len(thing))]
-    keep = np.abs(poses[robot, 1] - frames[thing, 1]) <= wide_y[thing]
-    keep &= thing != robot + own
-    robot, thing = robot[keep], thing[keep]
-    order = np.lexsort((thing, robot))
-    return robot[order], thing[order]
 
 
 def _meet_discs(x: Values, y: Values, dx: Values, dy: Values, radius: Values) -> Values:

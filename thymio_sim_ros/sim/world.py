@@ -19,8 +19,6 @@ from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.ground import Ground
 from thymio_sim_ros.sim.physics import Contact, DoorBody, MovableBody, Physics
 from thymio_sim_ros.sim.playground import Playground
-from thymio_sim_ros.sim.raycaster import Raycaster
-from thymio_sim_ros.sim.rays import obstacle_of
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.robot import Robot, Shared
 from thymio_sim_ros.sim.scene import Scene, Snapshot
@@ -79,10 +77,7 @@ class World:
                 pen = start.pen
                 robot.apply(SetPen(pen.down, as_color(pen.color), pen.width_m))
         self._posted: list[tuple[Robot, Command]] = []
-        self._crowd: Crowd | None = None
-        if len(self._robots) >= CROWD:
-            caster = Raycaster([obstacle_of(solid) for solid in self.playground.solids])
-            self._crowd = Crowd(self._robots.values(), shared, caster)
+        self._crowd = Crowd(self._robots.values(), shared) if len(self._robots) >= CROWD else None
 
     @property
     def now_ns(self) -> int:

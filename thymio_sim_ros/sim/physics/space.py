@@ -21,7 +21,7 @@ from thymio_sim_ros.sim.physics.doors import DoorBody
 from thymio_sim_ros.sim.physics.movables import AT_REST_M_S, MovableBody
 from thymio_sim_ros.sim.physics.robots import ROBOT_TYPE, RobotBody
 from thymio_sim_ros.sim.primitives import Disc, Solid, Trigger
-from thymio_sim_ros.sim.rays import Surroundings, obstacle_of
+from thymio_sim_ros.sim.rays import Obstacle, Surroundings, obstacle_of
 
 __all__ = ["Physics"]
 
@@ -69,6 +69,8 @@ class Physics:
             else:
                 self._add(solid.name, self._fixed_shape(solid))
                 fixed.append(obstacle_of(solid))
+        self.fixed: tuple[Obstacle, ...] = tuple(fixed)
+        """What rays see of everything that never moves."""
         self._nearby = Nearby(fixed)
         self._list_movers()
         begin, separate = self._on_begin, self._on_separate
@@ -84,6 +86,11 @@ class Physics:
     def doors(self) -> Mapping[str, DoorBody]:
         """All doors by name, in the order of the playground."""
         return MappingProxyType(self._doors)
+
+    def loose(self) -> list[Obstacle | None]:
+        """What rays see of movables, then of doors; None for what has fallen."""
+        found = [None if movable.is_fallen else movable.obstacle for movable in self._movables.values()]
+        return [*found, *(door.obstacle for door in self._doors.values())]
 
     def add_robot(self, name: str, pose: Pose) -> RobotBody:
         """A robot's body, at rest at a pose."""
