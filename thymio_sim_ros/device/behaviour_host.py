@@ -74,14 +74,14 @@ class BehaviourHost:
         self._first = program
         self._own = _unless_empty(program)
         self._entry = PROGRAM_ENTRY
-        self._run(program, keep_readings=False)
+        self._run(program, warm=False)
 
     def start(self, name: str, own: ThymioProgram | None = None) -> None:
         """Switch the robot on with a built-in program, such as the menu; `own` is a program that waits in its menu."""
         program = built_in(name)
         self._first, self._own = name, _unless_empty(own)
         self._entry = next((entry for entry, known in ENTRIES.items() if known == name), PROGRAM_ENTRY)
-        self._run(program, keep_readings=False)
+        self._run(program, warm=False)
         self._tell_menu(POWER_ON_TICKS)
 
     def restart(self) -> None:
@@ -107,7 +107,7 @@ class BehaviourHost:
 
     def _obey(self, event: EmittedEvent, now_ns: int) -> None:
         if event.name == _BACK:
-            self._run(built_in(MENU), keep_readings=True)
+            self._run(built_in(MENU), warm=True)
             self._tell_menu(0)
         elif event.name == _START and event.args:
             entry = event.args[0]
@@ -116,7 +116,7 @@ class BehaviourHost:
                 self._notices.append(f"{_START} {entry}: the robot has no such program")
                 return
             self._entry = entry
-            self._run(program, keep_readings=entry != PROGRAM_ENTRY)
+            self._run(program, warm=entry != PROGRAM_ENTRY)
         self.device.advance(now_ns)
 
     def _program_of(self, entry: int) -> ThymioProgram | None:
@@ -124,9 +124,9 @@ class BehaviourHost:
             return self._own
         return built_in(ENTRIES[entry]) if entry in ENTRIES else None
 
-    def _run(self, program: ThymioProgram, *, keep_readings: bool) -> None:
+    def _run(self, program: ThymioProgram, *, warm: bool) -> None:
         self.program = program
-        self.device.load(program, keep_readings=keep_readings)
+        self.device.load(program, warm=warm)
 
     def _tell_menu(self, wait: int) -> None:
         if self.device.declares(_OPEN):

@@ -1,0 +1,136 @@
+"""The six built-in behaviours against their tables, tick by tick over random histories of the senses."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+
+import pytest
+
+from tests.device.behaviour_oracle import ARROWS, ORACLES, STOP, Senses, Shown
+from thymio_sim_ros.device import bindings
+from thymio_sim_ros.device.behaviour_host import built_in
+from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.sim.commands import BUTTONS, MotorTargets, PlaySystemSound, SetLeds, StopSound
+
+TICK_NS = 20_000_000
+BUDGET = 20_000
+TICKS = 2000
+
+BORDERS = (0, 499, 500, 501, 999, 1000, 1001, 1500, 1999, 2000, 2999, 3000, 3499, 3500, 3501, 3502, 4000, 4001, 4505)
+GROUNDS = (0, 129, 130, 131, 149, 150, 151, 399, 400, 401, 450, 451, 600, 900, 1023)
+ORDERS = (2, 80, 32, 8, 81, 33, 4, 85, 17, 77, 6, 86, 16, 78, 5, 87, 13, 1, 99)
+
+
+class Bench:
+    """A device with a behaviour and nothing around it: senses in, what it shows out."""
+
+    def __init__(self, behaviour: str) -> None:
+        self.device = AsebaDevice()
+        self.device.load(built_in(behaviour))
+        self.device.advance(0)
+        self.now_ns = 0
+        self.shown = Shown()
+        self._run()
+
+    def tick(self, senses: Senses) -> Shown:
+        """What is perceived comes first, then the tick."""
+        feed(self.device, "buttons", {f"button.{name}": (int(name in senses.buttons),) for name in BUTTONS})
+        feed(self.device, "prox", {"prox.horizontal": senses.p})
+        self.device.feed("ground", (0, 0, *senses.g, *senses.g))
+        feed(self.device, "acc", {"acc": senses.acc})
+        if senses.tap:
+            feed(self.device, "tap", {"acc._tap": (1,)})
+        if senses.clap:
+            feed(self.device, "mic", {"mic.intensity": (250,)})
+        if senses.order is not None:
+            feed(self.device, "rc5", {"rc5.command": (senses.order,)})
+        if senses.sound_finished:
+            feed(self.device, "sound.finished", {})
+        if senses.frame is not None:
+            intensities, rx = senses.frame
+            feed(self.device, "prox.comm", {"prox.comm.rx._intensities": intensities, "prox.comm.rx": (rx,)})
+        self.shown.sounds = []
+        self._run()
+        self.now_ns += TICK_NS
+        self.device.advance(self.now_ns)
+        self._run()
+        return self.shown
+
+    def _run(self) -> None:
+        while self.device.is_busy:
+            self.device.run(BUDGET)
+        for command in self.device.take_commands():
+            match command:
+                case MotorTargets(left, right):
+                    self.shown.left, self.shown.right = left, right
+                case SetLeds(("top" | "bottom_left" | "bottom_right" | "circle") as group, levels):
+                    setattr(self.shown, group, levels)
+                case PlaySystemSound(number):
+                    self.shown.sounds.append(number)
+                case StopSound():
+                    self.shown.sounds.append(STOP)
+        (self.shown.tx,) = self.device.get_variable("prox.comm.tx")
+        (self.shown.threshold,) = self.device.get_variable("mic.threshold")
+
+
+def feed(device: AsebaDevice, event: str, values: dict[str, tuple[int, ...]]) -> None:
+    """A reading of the sensor that raises this event: these variables, the others of it as they are."""
+    number = 0xFFFE - target().local_event_number(event)
+    found = next(((name, one) for name, one in bindings.sensors().items() if one.event == number), None)
+    if found is None:
+        for name, words in values.items():
+            device.set_variable(name, words)
+        if number in device._handled:
+            device._arrived.add(number)
+        return
+    sensor, binding = found
+    names = {address: name for name, (address, _size) in target().addresses.items()}
+    words = [values.get(names[slot.address], device.get_variable(names[slot.address])) for slot in binding.slots]
+    device.feed(sensor, [word for part in words for word in part])
+
+
+def histories(seed: int) -> Iterator[Senses]:
+    """Random senses that dwell, jump to borders, and hold and release buttons."""
+    chance = random.Random(seed)
+    p, g, acc = [0] * 7, [900, 900], [0, 0, 23]
+    held: set[str] = set()
+    often = ("left", "backward", "forward")[seed % 3]
+    for _ in range(TICKS):
+        if chance.random() < 0.2:
+            reach = chance.choice([0, 300, 1200, 4505, 5300])
+            p = [chance.choice([0, chance.choice(BORDERS), chance.randint(0, reach)]) for _ in range(7)]
+            p[chance.randrange(5)] = chance.choice(BORDERS)
+        if chance.random() < 0.1:
+            g = [chance.choice(GROUNDS), chance.choice(GROUNDS)] if chance.random() < 0.6 else [900, 900]
+        if chance.random() < 0.05:
+            acc = chance.choice([[0, 0, 23], [1, -1, 2], [-12, 5, 18], [chance.randint(-32, 32) for _ in range(3)]])
+        before = set(held)
+        if chance.random() < 0.1:
+            held ^= {chance.choice((*ARROWS, *[often] * 6))}
+        if chance.random() < 0.004:
+            held ^= set(chance.choice([("left", "right"), ("forward", "backward")]))
+        intensities = tuple(chance.choice([0, 1400, 2999, 3000, 3001, chance.randint(1400, 4600)]) for _ in range(7))
+        if chance.random() < 0.5:
+            intensities = (0, 0, chance.choice([3000, 3001, 4000]), 0, 0, 0, 0)
+        yield Senses(
+            p=tuple(p),
+            g=(g[0], g[1]),
+            buttons=frozenset(held),
+            touched=frozenset(held - before),
+            acc=(acc[0], acc[1], acc[2]),
+            tap=chance.random() < 0.02,
+            clap=chance.random() < 0.06,
+            order=chance.choice(ORDERS) if chance.random() < 0.1 else None,
+            frame=(intensities, chance.choice([0, 1, 2, 3, 4])) if chance.random() < 0.15 else None,
+            sound_finished=chance.random() < 0.05,
+        )
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("behaviour", ORACLES)
+def test_a_behaviour_does_what_its_table_says(behaviour: str, seed: int) -> None:
+    bench, oracle = Bench(behaviour), ORACLES[behaviour]()
+    for number, senses in enumerate(histories(seed)):
+        assert bench.tick(senses) == oracle.tick(senses), (number, senses)
