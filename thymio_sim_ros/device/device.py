@@ -20,7 +20,7 @@ from thymio_sim_ros.device.natives import native_functions
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.device.status import FAULT, INIT, PAUSED, RUNNING, STOPPED, DeviceStatus, sentence
 from thymio_sim_ros.device.timers import Timers
-from thymio_sim_ros.sim.commands import Command, StopSound
+from thymio_sim_ros.sim.commands import Command
 
 __all__ = ["AsebaDevice", "DeviceStatus", "EmittedEvent"]
 
@@ -86,20 +86,16 @@ class AsebaDevice:
     def load(self, program: ThymioProgram, *, warm: bool = False) -> None:
         """Replace the program; the robot is reset and the next `run` begins with the initialisation.
 
-        `warm`, as the robot changes its own behaviours: the variables of sensors hold, a button that is still held is
-        no news, and a sound goes on.
+        `warm`, as the robot changes its own behaviours: the variables of sensors hold, and a button that is still held
+        is no news.
         """
         readings = self._last.copy() if warm else {}
-        before = self._commands if warm else []
         self._program = program
         self._names = [name for name, _ in program.events]
         self._handled = frozenset(0xFFFE - event.number for event in program.program.events)
         self._last.clear()
         words = program.program.words
         self._vm.set_bytecode((*words, *[0] * (self._target.bytecode_size - len(words))))
-        if warm:
-            silence = StopSound()
-            self._commands = before + [command for command in self._commands if command != silence]
         for sensor, reading in readings.items():
             self.feed(sensor, reading)
         self._arrived.clear()
