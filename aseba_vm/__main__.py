@@ -10,17 +10,21 @@ import json
 import os
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from aseba_vm import aesl
-from aseba_vm.bytecode import describe, disassemble
-from aseba_vm.compiler import Program, Stages, assemble, compile_stages
-from aseba_vm.errors import AeslError, AsebaError, CompileError, TargetError
+from aseba_vm.aesl_reader import MAX_EVENT_WORDS
+from aseba_vm.bytecode import describe
+from aseba_vm.compiler import Program, assemble
+from aseba_vm.errors import AeslError, CompileError, TargetError, TextError
 from aseba_vm.excerpt import excerpt
 from aseba_vm.layout import formatted
+from aseba_vm.lexer import is_name
+from aseba_vm.listing import listing
 from aseba_vm.outbox import Emitted, NativeCalled
+from aseba_vm.sources import Source, SourceError, network_of, read_text, sources_of
 from aseba_vm.target import TargetDescription
 from aseba_vm.targets import THYMIO_II
 from aseba_vm.vm import VirtualMachine
@@ -46,18 +50,6 @@ exit codes: 0 done, 1 the program is wrong or stopped with a fault, 2 wrong use 
 """
 
 
-@dataclass(frozen=True, slots=True)
-class _Source:
-    """A program and what it is compiled with; ``row`` and ``col`` are where it begins in its file."""
-
-    name: str
-    text: str
-    events: tuple[tuple[str, int], ...]
-    constants: tuple[tuple[str, int], ...]
-    row: int = 0
-    col: int = 0
-
-
 class _UseError(Exception):
     """A command line that cannot be obeyed."""
 
@@ -66,32 +58,46 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Obey a command line and return the exit code."""
     options = _parser().parse_args(arguments)
     command: Callable[[argparse.Namespace], int] = options.command
+    options.text = ""
     try:
         return command(options)
-    except AsebaError as error:
-        print(error if isinstance(error, TargetError) else _told(error, options), file=sys.stderr)
-        return WRONG_USE if isinstance(error, TargetError) else WRONG_PROGRAM
-    except (_UseError, OSError, UnicodeDecodeError) as error:
+    except SourceError as refusal:
+        print(_told(refusal, options), file=sys.stderr)
+        return WRONG_PROGRAM
+    except AeslError as error:
+        print(
+            error.located(options.file), _excerpt(options, error.line - 1, error.column - 1), sep="\n", file=sys.stderr
+        )
+        return WRONG_USE if error.kind == "aesl-other-robot" else WRONG_PROGRAM
+    except TextError as error:
+        print(error.located(options.file), file=sys.stderr)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nobody reads on, and no more is to be said
+    except OSError as error:
+        print(f"aseba: {error.filename or options.file}: {error.strerror}", file=sys.stderr)
+    except (_UseError, TargetError) as error:
         print(f"aseba: {error}", file=sys.stderr)
-        return WRONG_USE
+    return WRONG_USE
 
 
 # -- commands ----------------------------------------------------------------------------------------------------------
 
 
 def _check(options: argparse.Namespace) -> int:
-    _compile_source(options, _read(options), with_warnings=True)
+    for source in _read(options):
+        _compile_source(options, source, with_warnings=True)
     return DONE
 
 
 def _compile(options: argparse.Namespace) -> int:
-    program = _compile_source(options, _read(options), with_warnings=True)
+    source = _read(options)[0]
+    program = _compile_source(options, source, with_warnings=True)
     if options.format == "json":
         text = json.dumps(_as_data(program)) + "\n"
     elif options.format == "hex":
         text = "".join(f"{word:04x}\n" for word in program.words)
     else:
-        text = disassemble(program.words) + "\n"
+        text = _listing(options, source, program)
     if options.output is None:
         sys.stdout.write(text)
     else:
@@ -99,23 +105,28 @@ def _compile(options: argparse.Namespace) -> int:
     return DONE
 
 
+def _listing(options: argparse.Namespace, source: Source, program: Program) -> str:
+    numbers = [row + 1 for row in source.node.rows_in_file()]
+    return listing(program, source.node.code, _target(options), source.events, numbers) + "\n"
+
+
 def _dis(options: argparse.Namespace) -> int:
-    source = _read(options)
+    source = _read(options)[0]
     if options.stage == "words":
-        print(disassemble(_compile_source(options, source).words))
+        sys.stdout.write(_listing(options, source, _compile_source(options, source)))
     else:
-        print(_stages(options, source).dump(options.stage))
+        print(source.stages(_target(options)).dump(options.stage))
     return DONE
 
 
 def _run(options: argparse.Namespace) -> int:
-    source = _read(options)
+    source = _read(options)[0]
     target = _target(options)
     program = _compile_source(options, source)
     machine = VirtualMachine(target)
     machine.load(program)
     if options.trace:
-        machine.tracer = partial(_trace, machine, program, source)
+        machine.tracer = partial(_trace, machine, program, source.node.rows_in_file())
     _execute(machine, program, source, options)
     for name, values in options.raised:
         numbers = [number for number, (event, _) in enumerate(source.events) if event == name]
@@ -135,7 +146,7 @@ def _run(options: argparse.Namespace) -> int:
     return DONE if machine.fault is None else WRONG_PROGRAM
 
 
-def _execute(machine: VirtualMachine, program: Program, source: _Source, options: argparse.Namespace) -> None:
+def _execute(machine: VirtualMachine, program: Program, source: Source, options: argparse.Namespace) -> None:
     """Run the active event to its end or to the limit, and tell what it said."""
     machine.run(options.limit)
     for message in machine.take_messages():
@@ -146,103 +157,88 @@ def _execute(machine: VirtualMachine, program: Program, source: _Source, options
     fault = machine.fault
     if fault is not None:
         row = program.row_of(fault.pc)
-        place = options.file if row is None else f"{options.file}:{source.row + row + 1}"
+        place = options.file if row is None else f"{options.file}:{source.node.rows_in_file()[row] + 1}"
         print(f"{place}: stopped: {fault.sentence}", file=sys.stderr)
     elif machine.is_active:
         print(f"{options.file}: still running after {options.limit} instructions", file=sys.stderr)
         machine.stop()
 
 
-def _trace(machine: VirtualMachine, program: Program, source: _Source, pc: int) -> None:
+def _trace(machine: VirtualMachine, program: Program, rows: Sequence[int], pc: int) -> None:
     """Show an instruction that is about to be executed: address, line, instruction, stack."""
     row = program.row_of(pc)
-    line = "" if row is None else source.row + row + 1
+    line = "" if row is None else rows[row] + 1
     stack = " ".join(map(str, machine.stack[: machine.sp + 1]))
     print(f"{pc:5} {line:>5}  {describe(machine.bytecode[pc : pc + 3]):32} [{stack}]")
 
 
 def _fmt(options: argparse.Namespace) -> int:
-    text = options.text = _text(options.file)
-    if _is_aesl(text):
-        network = aesl.loads(text)
-        nodes = tuple(replace(node, code=formatted(node.code)) for node in network.nodes)
-        result = aesl.dumps(replace(network, nodes=nodes))
-    else:
-        result = formatted(text)
+    file = read_text(options.file)
+    options.text = file.text
+    network = network_of(file.text, THYMIO_II.name)
+    nodes = tuple(replace(node, code=_formatted(node, options)) for node in network.nodes)
+    result = aesl.dumps(replace(network, nodes=nodes)) if network.pieces else nodes[0].code
     if options.check:
-        return DONE if result == text else WRONG_PROGRAM
+        return DONE if result == file.text else WRONG_PROGRAM
     if options.write and options.file != "-":
-        Path(options.file).write_text(result, encoding="utf-8")
+        if result != file.text:
+            Path(options.file).write_bytes(file.encoded(result))
     else:
         sys.stdout.write(result)
     return DONE
 
 
+def _formatted(node: aesl.Node, options: argparse.Namespace) -> str:
+    try:
+        return formatted(node.code)
+    except CompileError as error:
+        raise SourceError(Source(options.file, node), error) from error
+
+
 # -- files -------------------------------------------------------------------------------------------------------------
 
 
-def _text(name: str) -> str:
-    data = sys.stdin.buffer.read() if name == "-" else Path(name).read_bytes()
-    return data.decode("utf-8-sig")
-
-
-def _is_aesl(text: str) -> bool:
-    return text.lstrip().startswith("<")
-
-
-def _read(options: argparse.Namespace) -> _Source:
-    text = options.text = _text(options.file)
-    events, constants = tuple(options.events), tuple(options.constants)
-    if not _is_aesl(text):
-        return _Source(options.file, text, events, constants)
-    network = aesl.loads(text)
+def _read(options: argparse.Namespace) -> list[Source]:
+    """The programs of the file for the chosen node, or for the target."""
+    options.text = read_text(options.file).text
     name = options.node or _target(options).name
-    node = network.node(name)
-    if node is None:
-        found = ", ".join(node.name for node in network.nodes) or "none"
-        raise _UseError(f"{options.file}: no program for a node called {name!r} (found: {found})")
-    return _Source(options.file, node.code, network.events + events, network.constants + constants, node.row, node.col)
+    network = network_of(options.text, name)
+    return sources_of(network, options.file, name, options.events, options.constants)
 
 
 def _target(options: argparse.Namespace) -> TargetDescription:
     if options.target is None:
         return THYMIO_II
     try:
-        return TargetDescription.from_data(json.loads(_text(options.target)))
-    except json.JSONDecodeError as error:
+        return TargetDescription.from_data(json.loads(read_text(options.target).text))
+    except TextError as error:
+        raise TargetError(error.located(options.target)) from error
+    except ValueError as error:
         raise TargetError(f"{options.target}: not JSON: {error}") from error
+    except TargetError as error:
+        raise TargetError(f"{options.target}: {error}") from error
 
 
-def _stages(options: argparse.Namespace, source: _Source) -> Stages:
-    """Compile, with errors placed in the file rather than in the program."""
+def _compile_source(options: argparse.Namespace, source: Source, *, with_warnings: bool = False) -> Program:
     try:
-        return compile_stages(source.text, _target(options), source.events, source.constants)
+        program = assemble(source.stages(_target(options)), _target(options))
     except CompileError as error:
-        pos = None if error.pos is None else error.pos.moved(source.row, source.col)
-        raise CompileError(error.kind, error.arguments, pos) from error
-
-
-def _compile_source(options: argparse.Namespace, source: _Source, *, with_warnings: bool = False) -> Program:
-    program = assemble(_stages(options, source), _target(options))
+        raise SourceError(source, error) from error
     if with_warnings:
         for warning in program.warnings:
-            moved = replace(warning, pos=warning.pos.moved(source.row, source.col))
-            print(
-                moved.located(options.file), _excerpt(options, moved.pos.row, moved.pos.col), sep="\n", file=sys.stderr
-            )
+            row, col = source.place(warning.pos.offset)
+            print(f"{options.file}:{row + 1}:{col + 1}: warning: {warning}", file=sys.stderr)
+            print(_excerpt(options, row, col), file=sys.stderr)
     return program
 
 
-def _told(error: AsebaError, options: argparse.Namespace) -> str:
+def _told(refusal: SourceError, options: argparse.Namespace) -> str:
     """The error with its place, and the line there."""
-    match error:
-        case CompileError(pos=None):
-            return error.located(options.file)
-        case CompileError(pos=pos) if pos is not None:
-            return f"{error.located(options.file)}\n{_excerpt(options, pos.row, pos.col)}"
-        case AeslError():
-            return f"{error.located(options.file)}\n{_excerpt(options, error.line - 1, error.column - 1)}"
-    return str(error)
+    error = refusal.error
+    if error.pos is None:
+        return error.located(options.file)
+    row, col = refusal.source.place(error.pos.offset)
+    return f"{options.file}:{row + 1}:{col + 1}: {error}\n{_excerpt(options, row, col)}"
 
 
 def _excerpt(options: argparse.Namespace, row: int, col: int) -> str:
@@ -305,7 +301,7 @@ def _parser() -> argparse.ArgumentParser:
             "--global",
             dest="events",
             metavar="NAME=WORDS",
-            type=_pair,
+            type=partial(_pair, lowest=0, highest=MAX_EVENT_WORDS),
             action="append",
             default=[],
             help="a global event (may be repeated)",
@@ -314,7 +310,7 @@ def _parser() -> argparse.ArgumentParser:
             "--constant",
             dest="constants",
             metavar="NAME=VALUE",
-            type=_pair,
+            type=partial(_pair, lowest=-0x8000, highest=0x7FFF),
             action="append",
             default=[],
             help="a constant (may be repeated)",
@@ -335,20 +331,30 @@ def _command(
 
 def _positive(text: str) -> int:
     if int(text) < 1:
-        raise ValueError(text)
+        raise argparse.ArgumentTypeError(f"found {text}, expected 1 or more")
     return int(text)
 
 
-def _pair(text: str) -> tuple[str, int]:
+def _number(text: str, lowest: int, highest: int) -> int:
+    try:
+        number = int(text)
+    except ValueError:
+        number = lowest - 1
+    if not lowest <= number <= highest:
+        raise argparse.ArgumentTypeError(f"found {text!r}, expected a number from {lowest} to {highest}")
+    return number
+
+
+def _pair(text: str, lowest: int, highest: int) -> tuple[str, int]:
     name, _, value = text.rpartition("=")
-    if not name:
-        raise ValueError(text)
-    return name, int(value)
+    if not is_name(name):
+        raise argparse.ArgumentTypeError(f"found {text!r}, expected NAME=NUMBER")
+    return name, _number(value, lowest, highest)
 
 
 def _raised(text: str) -> tuple[str, list[int]]:
     name, _, values = text.partition("=")
-    return name, [int(value) for value in values.split(",")] if values else []
+    return name, [_number(value, -0x8000, 0x7FFF) for value in values.split(",")] if values else []
 
 
 if __name__ == "__main__":

@@ -204,19 +204,24 @@ def describe(words: Sequence[int]) -> str:
 
 def disassemble(words: Sequence[int]) -> str:
     """Return a program image as text: the event table, then one line per instruction with its address."""
+    start = min(words[0], len(words)) if words else 0
+    return "\n".join([*table_lines(words), *(line_of_code(pc, code) for pc, code in instructions(words, start))])
+
+
+def table_lines(words: Sequence[int]) -> list[str]:
+    """Return the event table of an image as lines of text."""
     if not words:
-        return ""
-    start = min(words[0], len(words))
+        return []
     lines = [f"{0:5}  {words[0]:04X}            code at {words[0]}"]
-    lines += [
+    return lines + [
         f"{at:5}  {words[at]:04X} {words[at + 1]:04X}       event {words[at]} at {words[at + 1]}"
-        for at in range(1, start - 1, 2)
+        for at in range(1, min(words[0], len(words)) - 1, 2)
     ]
-    lines += [
-        f"{pc:5}  {' '.join(f'{word:04X}' for word in code):14}  {describe(code)}{_destination(pc, code)}"
-        for pc, code in instructions(words, start)
-    ]
-    return "\n".join(lines)
+
+
+def line_of_code(pc: int, words: Sequence[int]) -> str:
+    """Return one instruction as a line of text: address, words, meaning."""
+    return f"{pc:5}  {' '.join(f'{word:04X}' for word in words):14}  {describe(words)}{_destination(pc, words)}"
 
 
 def _destination(pc: int, words: Sequence[int]) -> str:

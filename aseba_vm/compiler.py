@@ -51,7 +51,8 @@ class Program:
 
     ``words`` are unsigned, ``lines`` the source row (from 0) of each word or None where the reference has no value,
     ``variables`` those of the program by address, ``allocated`` the words of variable memory in use, ``stack`` the
-    estimated depth of each event (in table order) and then of each subroutine, ``warnings`` what is probably not meant.
+    estimated depth of each event (in table order) and then of each subroutine, ``stack_need`` that of the deepest event
+    with all it calls, ``warnings`` what is probably not meant.
     """
 
     words: tuple[int, ...]
@@ -61,6 +62,7 @@ class Program:
     subs: tuple[SubEntry, ...]
     allocated: int
     stack: tuple[int, ...]
+    stack_need: int = 0
     warnings: tuple[CompileWarning, ...] = ()
 
     @property
@@ -134,5 +136,6 @@ def assemble(stages: Stages, target: TargetDescription) -> Program:
         subs=image.subs,
         allocated=stages.tree.allocated,
         stack=tuple(segment.depth for segment in (*events, *subs)),
+        stack_need=check_stack(stages.segments, target.stack_size),
         warnings=find_warnings(stages.tree, stages.segments),
     )

@@ -68,8 +68,8 @@ class Debugger:
 
     @property
     def stack_use(self) -> Use:
-        """Words of the stack that the deepest event needs by the estimate of the compiler, calls included once."""
-        return Use(max(self.program.stack, default=0), self.machine.target.stack_size)
+        """Words of the stack that the deepest event needs by the estimate of the compiler, with all that it calls."""
+        return Use(self.program.stack_need, self.machine.target.stack_size)
 
     # -- breakpoints
 

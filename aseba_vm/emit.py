@@ -56,14 +56,16 @@ def emit(tree: Tree) -> tuple[Segment, ...]:
     return tuple(builder.finish() for builder in builders if builder.is_sub or builder.code)
 
 
-def check_stack(segments: Sequence[Segment], stack_size: int) -> None:
-    """Raise CompileError if the estimate of the stack does not fit (VM spec, section 8)."""
+def check_stack(segments: Sequence[Segment], stack_size: int) -> int:
+    """Return the estimate of the deepest stack, calls included. Raises CompileError if it does not fit (VM spec, 8)."""
     subs = [segment for segment in segments if segment.is_sub]
     calls = [[code.operand for code in sub.code if code.op is Op.CALL] for sub in subs]
     call_depth = [0] * len(subs)
+    deepest = 0
     for segment in segments:
         if segment.is_sub:
             continue
+        deepest = max(deepest, segment.depth)
         if segment.depth > stack_size:
             raise CompileError("stack-overflow")
         for code in segment.code:
@@ -73,12 +75,14 @@ def check_stack(segments: Sequence[Segment], stack_size: int) -> None:
     while changed:
         changed = False
         for index, sub in enumerate(subs):
-            if call_depth[index] + sub.depth > stack_size:
+            deepest = max(deepest, call_depth[index] + sub.depth)
+            if deepest > stack_size:
                 raise CompileError("stack-overflow")
             for called in calls[index]:
                 if call_depth[called] < call_depth[index] + 1:
                     call_depth[called] = call_depth[index] + 1
                     changed = True
+    return deepest
 
 
 @dataclass(slots=True)

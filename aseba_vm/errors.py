@@ -52,21 +52,26 @@ class CompileError(AsebaError):
         return f"{name}: {self}" if self.pos is None else f"{name}:{self.pos}: {self}"
 
 
-class AeslError(AsebaError):
-    """A text that is not an .aesl file. ``line`` and ``column`` count from 1."""
+class TextError(AsebaError):
+    """A file that is not text. ``line`` and ``column`` count from 1; kind and arguments as in a CompileError."""
 
-    def __init__(self, reason: str, line: int, column: int) -> None:
-        super().__init__(reason, line, column)
-        self.reason = reason
+    def __init__(self, kind: str, arguments: tuple[Argument, ...], line: int, column: int) -> None:
+        super().__init__(kind, arguments, line, column)
+        self.kind = kind
+        self.arguments = arguments
         self.line = line
         self.column = column
 
     def __str__(self) -> str:
-        return self.reason
+        return wording(self.kind, self.arguments)
 
     def located(self, name: str) -> str:
         """Return the message after the name of the file and the place."""
-        return f"{name}:{self.line}:{self.column}: {self.reason}"
+        return f"{name}:{self.line}:{self.column}: {self}"
+
+
+class AeslError(TextError):
+    """A text that is not an .aesl file, or one that breaks its rules."""
 
 
 class TargetError(AsebaError):

@@ -114,6 +114,12 @@ def tokenise(text: str) -> tuple[Token, ...]:
     return tuple(tokens)
 
 
+def is_name(text: str) -> bool:
+    """Tell whether a program can use a text as the name of something."""
+    found = _TOKEN.fullmatch(text)
+    return found is not None and found.lastgroup == "word" and not "0" <= text[0] <= "9" and text not in KEYWORDS
+
+
 def _word(text: str, pos: SourcePos) -> Token:
     if "0" <= text[0] <= "9":
         return Token("integer", pos, value=_number(text, pos))

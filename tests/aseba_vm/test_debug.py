@@ -133,5 +133,7 @@ def test_use_of_the_memories_is_told(debugger):
     assert debugger.memory_use == Use(target.variables_end + 2, target.variables_size)
     assert debugger.bytecode_use == Use(len(debugger.program.words), target.bytecode_size)
     assert debugger.stack_use.total == target.stack_size
+    calls = _debugger("var a\ncallsub s\nsub s\ncallsub t\nreturn\nsub t\na = a + a\nreturn")
+    assert calls.stack_use.used == 4, "two return addresses, two words of the sum"
     assert Use(1, 4).share == 0.25
     assert Use(0, 0).share == 0

@@ -184,7 +184,7 @@ def test_a_file_that_is_not_text_is_code_2(tmp_path, capsys):
 
 def test_a_node_that_is_not_in_the_file_is_code_2(file, capsys):
     assert main(["check", file(AESL.format(code="1")), "--node", "e-puck"]) == 2
-    assert "found: thymio-II" in capsys.readouterr().err
+    assert "found no program for 'e-puck', only for 'thymio-II'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("arguments", [[], ["nothing"], ["run", "x", "--limit", "0"], ["check", "x", "--global", "a"]])

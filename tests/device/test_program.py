@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.device.program import MAX_CHARACTERS, ProgramError, load_program
+from aseba_vm.aesl import MAX_CHARACTERS
+from thymio_sim_ros.device.program import ProgramError, load_program
 
 AESL = """\
 <!DOCTYPE aesl-source>
@@ -48,7 +49,7 @@ def test_a_byte_order_mark_does_no_harm():
         (AESL.format(code="var a\n\tb = 1").replace("\n", "\r\n"), 6, 2, "b"),
         ("var a\r\nb = 1", 2, 1, "b"),
         ("\ufeffb = 1", 1, 1, "b"),
-        ("<network><node name='thymio-II'>var a</nodes></network>", 1, 40, "tag"),
+        ("<network><node name='thymio-II'>var a</nodes></network>", 1, 38, "expected </node>"),
     ],
 )
 def test_errors_have_their_place_in_the_file(text, line, column, word):
@@ -66,18 +67,31 @@ def test_a_file_for_another_robot_names_what_it_found():
 
 
 @pytest.mark.parametrize(
-    ("definitions", "message"),
+    ("definitions", "column", "word"),
     [
-        ('<event size="1" name="a"/><event size="2" name="a"/>', "event 'a' is defined twice"),
-        ('<constant value="1" name="A"/><constant value="1" name="A"/>', "constant 'A' is defined twice"),
-        ('<event size="300" name="a"/>', "event 'a': 300 words, expected at most 258"),
-        ('<event size="1" name=""/>', "event number 1 has no name"),
+        ('<event size="1" name="a"/><event size="2" name="a"/>', 58, "event 'a' again"),
+        ('<constant value="1" name="A"/><constant value="1" name="A"/>', 66, "constant 'A' again"),
+        ('<event size="300" name="a"/>', 23, "expected 0 to 258 words"),
+        ('<event size="1" name=""/>', 32, "the name ''"),
+        ('<constant value="40000" name="A"/>', 27, "expected -32768 to 32767"),
     ],
 )
-def test_bad_definitions_are_refused(definitions, message):
+def test_bad_definitions_are_refused_in_place(definitions, column, word):
     with pytest.raises(ProgramError) as caught:
         load_program(f'<network>{definitions}<node name="thymio-II">var a</node></network>', "a.aesl")
-    assert str(caught.value) == f"a.aesl: {message}"
+    assert (caught.value.line, caught.value.column) == (1, column)
+    assert word in caught.value.message
+
+
+def test_each_program_of_a_file_must_compile():
+    with pytest.raises(ProgramError) as caught:
+        load_program(AESL.format(code='</node>\n<node nodeId="2" name="thymio-II">a = 1'), "a.aesl")
+    assert (caught.value.line, caught.value.column) == (6, 35)
+
+
+def test_a_fault_has_its_line_in_the_file():
+    program = load_program(AESL.format(code="\nvar a<toolsPlugins>\n</toolsPlugins>\na = 1 / a"), "a.aesl")
+    assert program.line_of(len(program.program.words) - 2) == 8
 
 
 def test_an_unfinished_program_is_told_at_its_end():

@@ -1,0 +1,86 @@
+"""What an .aesl file says: events, constants and programs that the nodes of one network share (language spec, 13)."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class Plugin:
+    """Data of an editor plug-in: its name, the name of its data element (empty if it has none), and its XML text."""
+
+    name: str
+    element: str
+    xml: str
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A program: name of the node type, number of the node (0: any; the 2.x fork writes a UUID), code, plug-in data.
+
+    ``anchors`` lead from the code back to the file: an offset in the code with its row and column in the file (all from
+    0) wherever the two do not simply go on side by side: after entities, CDATA marks, comments and child elements.
+    """
+
+    name: str
+    node_id: int | str = 0
+    code: str = ""
+    plugins: tuple[Plugin, ...] = ()
+    anchors: tuple[tuple[int, int, int], ...] = field(default=(), compare=False, repr=False)
+
+    def place(self, offset: int) -> tuple[int, int]:
+        """Return row and column in the file, from 0, of a character of the code (or of its end)."""
+        offset = min(max(offset, 0), len(self.code))
+        at = bisect_right(self.anchors, offset, key=lambda anchor: anchor[0])
+        start, row, col = self.anchors[at - 1] if at else (0, 0, 0)
+        between = self.code[start:offset]
+        rows = between.count("\n")
+        return (row + rows, len(between) - between.rfind("\n") - 1) if rows else (row, col + len(between))
+
+    def rows_in_file(self) -> tuple[int, ...]:
+        """Return, for each row of the code, the row of the file in which it begins, from 0."""
+        ends = [at for at, letter in enumerate(self.code) if letter == "\n"]
+        rows: list[int] = []
+        for row, offset in enumerate((0, *(end + 1 for end in ends))):
+            at = bisect_right(self.anchors, offset, key=lambda anchor: anchor[0])
+            start, first, _ = self.anchors[at - 1] if at else (0, 0, 0)
+            rows.append(first + row - bisect_left(ends, start))
+        return tuple(rows)
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A part of a file as it was written: ``event``, ``constant``, ``keywords`` or ``node`` with what it says, or
+    ``text`` (all between them, comments and unknown elements too).
+
+    Of a node, ``opening`` is its tag, ``others`` its comments and unknown elements, ``tools`` its plug-in element.
+    """
+
+    kind: str
+    xml: str
+    value: object = None
+    opening: str = ""
+    others: str = ""
+    tools: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Network:
+    """A whole file: global events (name, words), constants (name, value), keyword flag, nodes.
+
+    ``pieces`` are the file that was read; they do not count in comparisons, and let ``dumps`` change no more of the
+    file than what was changed in the network.
+    """
+
+    events: tuple[tuple[str, int], ...] = ()
+    constants: tuple[tuple[str, int], ...] = ()
+    keywords: bool | None = None
+    nodes: tuple[Node, ...] = ()
+    pieces: tuple[Piece, ...] = field(default=(), compare=False, repr=False)
+
+    def node(self, name: str, node_id: int | str = 0) -> Node | None:
+        """Return the program for a node: its number and name if both match, else the first of that name."""
+        same_name = [node for node in self.nodes if node.name == name]
+        exact = [node for node in same_name if node.node_id == node_id]
+        return next(iter(exact or same_name), None)

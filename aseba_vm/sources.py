@@ -1,0 +1,69 @@
+"""What the command line is given: a file's text, the program in it, and what the program is compiled with."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from aseba_vm import aesl
+from aseba_vm.compiler import Stages, compile_stages
+from aseba_vm.errors import AeslError, CompileError
+from aseba_vm.target import TargetDescription
+from aseba_vm.textfile import TextFile, decoded
+
+Definitions = tuple[tuple[str, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A program and its definitions, and how to tell places in its file."""
+
+    name: str
+    node: aesl.Node
+    events: Definitions = ()
+    constants: Definitions = ()
+
+    def stages(self, target: TargetDescription) -> Stages:
+        """Compile. Raises SourceError, which has its place in the file."""
+        try:
+            return compile_stages(self.node.code, target, self.events, self.constants)
+        except CompileError as error:
+            raise SourceError(self, error) from error
+
+    def place(self, offset: int) -> tuple[int, int]:
+        """Row and column in the file, from 0."""
+        return self.node.place(offset)
+
+
+class SourceError(Exception):
+    """A program that is refused, with the file it stands in."""
+
+    def __init__(self, source: Source, error: CompileError) -> None:
+        super().__init__(source, error)
+        self.source = source
+        self.error = error
+
+
+def read_text(name: str) -> TextFile:
+    """Return the text of a file; ``-`` is the standard input. Raises OSError, TextError."""
+    return decoded(sys.stdin.buffer.read() if name == "-" else Path(name).read_bytes())
+
+
+def network_of(text: str, name: str) -> aesl.Network:
+    """Return what a text says; a bare program becomes that of a node. Raises AeslError."""
+    return aesl.loads(text, strict=True) if aesl.is_aesl(text) else aesl.bare(text, name)
+
+
+def sources_of(
+    network: aesl.Network, file: str, node: str, events: Sequence[tuple[str, int]], constants: Sequence[tuple[str, int]]
+) -> list[Source]:
+    """Return all programs of a file for nodes of a name. Raises AeslError if there are none."""
+    definitions = (*network.events, *events), (*network.constants, *constants)
+    found = [Source(file, program, *definitions) for program in network.nodes if program.name == node]
+    if not found:
+        row, col = network.nodes[0].place(0)
+        names = ", ".join(dict.fromkeys(f"'{program.name}'" for program in network.nodes))
+        raise AeslError("aesl-other-robot", (node, names), row + 1, col + 1)
+    return found

@@ -1,0 +1,40 @@
+"""Bytes of a file to its text: UTF-8 unless a byte order mark or an XML declaration says otherwise."""
+
+from __future__ import annotations
+
+import codecs
+import re
+from dataclasses import dataclass
+
+from aseba_vm.errors import TextError
+
+_MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
+_DECLARED = re.compile(rb"\s*<\?xml\s[^>]*?encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"']")
+
+
+@dataclass(frozen=True, slots=True)
+class TextFile:
+    """A text without byte order mark, and the codec that brings its bytes back."""
+
+    text: str
+    encoding: str
+
+    def encoded(self, text: str) -> bytes:
+        """Return another text in the same encoding."""
+        return text.encode(self.encoding)
+
+
+def decoded(data: bytes) -> TextFile:
+    """Return the text of a file. Raises TextError with the place of the first byte that is wrong."""
+    encoding = next((name for mark, name in _MARKS if data.startswith(mark)), None)
+    if encoding is None:
+        declared = _DECLARED.match(data)
+        encoding = declared[1].decode("ascii") if declared else "utf-8"
+    try:
+        return TextFile(data.decode(encoding), encoding)
+    except UnicodeDecodeError as error:
+        before = data[: error.start].decode(encoding, "replace")
+        place = before.count("\n") + 1, len(before) - before.rfind("\n")
+        raise TextError("text-undecodable", (f"{data[error.start]:02x}", encoding.upper()), *place) from error
+    except (LookupError, UnicodeError) as error:
+        raise TextError("text-unknown-encoding", (encoding,), 1, 1) from error
