@@ -324,13 +324,10 @@ def test_words_of_the_wrong_number_are_refused():
         AsebaDevice().feed("proximity", (1, 2, 3))
 
 
-def test_what_is_not_modelled_yet_is_said_once():
+def test_without_a_card_files_cannot_be_opened_and_sounds_not_played():
     device = device_with("var status = 5\nonevent prox\ncall sound.play(1)\ncall sd.open(1, status)")
     for _ in range(2):
         device.feed("proximity", NEAR)
         device.run(BUDGET)
-    assert device.take_notices() == [
-        "sound.play has no effect in this simulator yet",
-        "sd.open has no effect in this simulator yet",
-    ]
+    assert device.take_notices() == ["no card: p1.wav"]
     assert device.get_variable("status") == (-1,)

@@ -5,41 +5,38 @@ A sensor is declared once, in `sim/sensors`; its variables, addresses, events an
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.layout import THYMIO, target
 from thymio_sim_ros.sim.actuators import all_actuators
-from thymio_sim_ros.sim.aseba_face import Native
+from thymio_sim_ros.sim.aseba_face import AsebaFace, Native
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.sensors import all_sensors
 
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """A variable: where it lies, and the local event that a change of it raises, if any."""
+    """A variable: where it lies, its words' place in the reading, and the event that a change of it raises, if any."""
 
     address: int
     size: int
-    edge: int | None
+    begin: int = 0
+    edge: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class SensorBinding:
-    """The variables that hold a reading's words in order, and the local event it raises.
+    """The variables that hold parts of a reading of `size` words, and the local event it raises.
 
     `above`: address of the variable that the first word must exceed for the event, and that must not be 0.
     """
 
     slots: tuple[Slot, ...]
+    size: int
     event: int | None
     above: int | None = None
-
-    @property
-    def size(self) -> int:
-        """Words of a reading."""
-        return sum(slot.size for slot in self.slots)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,13 +48,15 @@ class OutputBinding:
 
 
 @cache
-def sensors() -> dict[str, SensorBinding]:
-    """Every sensor that Aseba sees, by name."""
+def sensors(layout: str = THYMIO) -> dict[str, SensorBinding]:
+    """Every sensor that Aseba sees, by name; variables that the layout lacks are left out."""
+    addresses = target(layout).addresses
     return {
         sensor.name: SensorBinding(
-            tuple(_slot(name, edge=sensor.aseba.edge_events) for name, _ in sensor.aseba.variables),
-            None if sensor.aseba.event is None else _event(sensor.aseba.event),
-            None if sensor.aseba.above is None else target().addresses[sensor.aseba.above][0],
+            tuple(_slots(sensor.aseba, layout)),
+            sum(size for _, size in sensor.aseba.variables),
+            None if sensor.aseba.event is None else _event(sensor.aseba.event, layout),
+            addresses[sensor.aseba.above][0] if sensor.aseba.above in addresses else None,
         )
         for sensor in all_sensors()
         if sensor.aseba.variables or sensor.aseba.event
@@ -70,12 +69,14 @@ def sensor_names() -> tuple[str, ...]:
 
 
 @cache
-def outputs() -> tuple[OutputBinding, ...]:
-    """Every group of variables that makes a command."""
+def outputs(layout: str = THYMIO) -> tuple[OutputBinding, ...]:
+    """Every group of variables that makes a command; groups that the layout lacks are left out."""
+    addresses = target(layout).addresses
     return tuple(
-        OutputBinding(tuple(_slot(name, edge=False) for name, _ in output.variables), output.command)
+        OutputBinding(tuple(Slot(*addresses[name]) for name, _ in output.variables), output.command)
         for actuator in all_actuators()
         for output in actuator.aseba.outputs
+        if all(name in addresses for name, _ in output.variables)
     )
 
 
@@ -91,11 +92,14 @@ def at_reset() -> tuple[Command, ...]:
     return tuple(command for actuator in all_actuators() for command in actuator.aseba.at_reset)
 
 
-def _slot(name: str, *, edge: bool) -> Slot:
-    address, size = target().addresses[name]
-    return Slot(address, size, _event(name) if edge else None)
+def _slots(face: AsebaFace, layout: str) -> Iterator[Slot]:
+    addresses, begin = target(layout).addresses, 0
+    for name, size in face.variables:
+        if name in addresses:
+            yield Slot(addresses[name][0], size, begin, _event(name, layout) if face.edge_events else None)
+        begin += size
 
 
-def _event(name: str) -> int:
+def _event(name: str, layout: str) -> int:
     """Index of a local event."""
-    return 0xFFFE - target().local_event_number(name)
+    return 0xFFFE - target(layout).local_event_number(name)

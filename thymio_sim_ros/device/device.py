@@ -1,34 +1,49 @@
 """An Aseba Thymio: readings in, machine, commands and events out. It knows no world and no ROS.
 
-Events are delivered as the firmware does (thymio-robot.md section 3): one pending flag each, the lowest number first, a
-running handler is never interrupted by a local event. Global events wait in line; one that finds a handler which has
-had its turn of instructions ends it (aseba-bytecode-vm.md section 10.5). What is fed belongs to the present: timers
-that fired before come first. A reset clears all variables and switches the lights off.
+How events meet is decided by an `EventQueue`; here a global event also ends a handler that has had its turn of
+instructions (aseba-bytecode-vm.md section 10.5). Beside the program runs what the robot does by itself: its own rules
+for lights and button sounds, its card, settings and radio. A reset clears all variables and switches the lights off.
 """
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from aseba_vm import VirtualMachine
 from aseba_vm.outbox import BadCode, DivisionByZero, Emitted, NodeSpecific, OutOfBounds
 from thymio_sim_ros.device import bindings
-from thymio_sim_ros.device.layout import FIRMWARE, PRODUCT_ID, target
+from thymio_sim_ros.device.body import RESTART, Body
+from thymio_sim_ros.device.card import Card
+from thymio_sim_ros.device.events import POLICIES, EventQueue, GlobalEvent
+from thymio_sim_ros.device.layout import LAYOUTS, target
 from thymio_sim_ros.device.natives import native_functions
+from thymio_sim_ros.device.options import DeviceOptions
+from thymio_sim_ros.device.own_rules import PERIOD_NS, OwnRules
 from thymio_sim_ros.device.program import ThymioProgram, load_program
-from thymio_sim_ros.device.status import FAULT, INIT, PAUSED, RUNNING, STOPPED, DeviceStatus, sentence
-from thymio_sim_ros.device.timers import Timers
-from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.device.settings import Settings
+from thymio_sim_ros.device.status import FAULT, INIT, OFF, PAUSED, RUNNING, STOPPED, DeviceStatus, sentence
+from thymio_sim_ros.sim.commands import (
+    LED_GROUPS,
+    Command,
+    MotorTargets,
+    PlaySamples,
+    PlaySystemSound,
+    PlayTone,
+    ReleaseLeds,
+    SetLeds,
+    StopSound,
+)
+from thymio_sim_ros.sim.tones import SHUT_DOWN
 
-__all__ = ["AsebaDevice", "DeviceStatus", "EmittedEvent"]
+__all__ = ["AsebaDevice", "DeviceOptions", "DeviceStatus", "EmittedEvent"]
 
 INT16 = range(-0x8000, 0x8000)
-TURN = 65535
-"""Instructions after which a handler can be ended by a global event (thymio-robot.md section 3)."""
-MOST_WAITING = 100
-"""Global events that may wait for a machine; more are lost, and said so."""
+SOUNDS = PlayTone | PlaySystemSound | PlaySamples | StopSound
+"""Commands with which a program uses sound."""
+DEFAULTS = DeviceOptions()
+NOTHING: Mapping[str, Sequence[int]] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,15 +57,22 @@ class EmittedEvent:
 class AsebaDevice:
     """One robot's machine with its variables. Invariant: between calls no instruction runs."""
 
-    def __init__(self, *, node_id: int = 1) -> None:
-        self.node_id = node_id
-        self._target = target()
+    def __init__(self, *, node_id: int = 1, options: DeviceOptions = DEFAULTS) -> None:
+        """CardError or SettingsError when a folder of the options cannot be used."""
+        self.layout = options.layout
+        self._target = target(self.layout)
         self._addresses = self._target.addresses
-        self._timers = Timers()
-        self._timer_events = tuple(0xFFFE - self._target.local_event_number(name) for name in ("timer0", "timer1"))
-        self._pending: set[int] = set()
-        self._arrived: set[int] = set()
-        self._incoming: deque[tuple[int, int, tuple[int, ...]]] = deque()
+        self._first_values = LAYOUTS[self.layout].first_values
+        self._sensors = bindings.sensors(self.layout)
+        self._outputs = bindings.outputs(self.layout)
+        self._queue = EventQueue(POLICIES[options.events], tuple(map(self._event_index, ("timer0", "timer1"))))
+        self._periods = self._addresses["timer.period"]
+        self._intensity = self._addresses["mic.intensity"][0]
+        self._sound_finished = self._event_index("sound.finished")
+        self._rc5 = self._event_index("rc5")
+        self._rules = OwnRules(self._addresses)
+        self._rules_ns = 0
+        self._has_used_sound = False
         self._last: dict[str, list[int]] = {}
         self._event = ""
         self._begun = 0
@@ -62,17 +84,29 @@ class AsebaDevice:
         self._sent: list[list[int]] = []
         self._state = RUNNING
         self._fault: DeviceStatus | None = None
-        self._vm = VirtualMachine(
-            self._target, native_functions(self._send, self._tell), node_id, on_reset=self._on_reset
+        self.body = Body(
+            node_id,
+            card=None if options.card is None else Card(options.card),
+            settings=Settings(options.settings_file),
+            send=self._send,
+            tell=self._tell,
         )
-        self.load(load_program("", "none"))
+        self._vm = VirtualMachine(
+            self._target, native_functions(self._send, self.body), node_id, on_reset=self._on_reset
+        )
+        self.load(load_program("", "none", self.layout))
+
+    @property
+    def node_id(self) -> int:
+        """Number of the robot in its network."""
+        return self.body.node_id
 
     @property
     def is_busy(self) -> bool:
         """Whether something waits for instructions: a handler that goes on, or an event."""
         if self._vm.is_step_by_step:
             return False
-        return self._vm.is_active or self._waits
+        return self._vm.is_active or self._queue.waits
 
     @property
     def status(self) -> DeviceStatus:
@@ -89,6 +123,8 @@ class AsebaDevice:
         `warm`, as the robot changes its own behaviours: the variables of sensors hold, and a button that is still held
         is no news.
         """
+        if program.layout != self.layout:
+            raise ValueError(f"a program for the layout {program.layout} found, expected {self.layout}")
         readings = self._last.copy() if warm else {}
         self._program = program
         self._names = [name for name, _ in program.events]
@@ -98,51 +134,64 @@ class AsebaDevice:
         self._vm.set_bytecode((*words, *[0] * (self._target.bytecode_size - len(words))))
         for sensor, reading in readings.items():
             self.feed(sensor, reading)
-        self._arrived.clear()
-        self.resume()
+        self._queue.clear()
+        self._run_again()
 
     def feed(self, sensor: str, words: Sequence[int]) -> None:
         """Store a reading's words (int16) and let the events that the program handles wait.
 
         KeyError: no such sensor; ValueError: wrong number of words.
         """
-        binding = bindings.sensors()[sensor]
+        binding = self._sensors[sensor]
         if len(words) != binding.size:
             raise ValueError(f"{len(words)} words found, expected {binding.size}")
         new = list(words)
-        memory, old, handled = self._vm.variables, self._last.get(sensor), self._handled
-        begin = 0
+        memory, old, handled, queue = self._vm.variables, self._last.get(sensor), self._handled, self._queue
         for slot in binding.slots:
-            end = begin + slot.size
+            begin, end = slot.begin, slot.begin + slot.size
             part = new[begin:end]
             memory[slot.address : slot.address + slot.size] = part
             if slot.edge in handled and part != (old[begin:end] if old else [0] * slot.size):
-                self._arrived.add(slot.edge)
-            begin = end
+                queue.arrive(slot.edge)
         self._last[sensor] = new
-        if binding.event in handled and (binding.above is None or new[0] > memory[binding.above] != 0):
-            self._arrived.add(binding.event)
+        event = binding.event
+        if event is None:
+            return
+        if event == self._rc5:
+            self._rules.flash_remote()
+        if event not in handled or (event == self._sound_finished and not self._has_used_sound):
+            return
+        if binding.above is None or new[0] > memory[binding.above] != 0:
+            queue.arrive(event)
 
     def advance(self, now_ns: int) -> None:
         """Simulated time has come so far; `run` raises the events of timers whose period ended on the way."""
-        self._pending.update(self._timer_events[index] for index in self._timers.set_clock(now_ns))
+        self._queue.advance(now_ns)
+        self.body.advance(now_ns, self._vm.variables[self._intensity])
+        if not 0 <= now_ns - self._rules_ns < PERIOD_NS:
+            self._rules_ns = now_ns - now_ns % PERIOD_NS
+            if self._state != OFF:
+                self._commands += self._rules.look(self._vm.variables)
 
     def run(self, budget: int) -> None:
         """Execute handlers until nothing waits, or so many instructions were executed."""
         if not self.is_busy:
             return
         self._is_changed = True
-        vm = self._vm
+        vm, queue = self._vm, self._queue
+        turn = queue.policy.turn
         end = vm.instructions + budget
         while self.is_busy and vm.instructions < end:
-            if not vm.is_active:
+            if not vm.is_active or (queue.policy.kills and queue.waits):
                 self._start_next()
-            elif self._incoming and vm.instructions - self._begun >= TURN:
-                self._start_incoming()
-            vm.run(min(TURN, end - vm.instructions))
+            elif queue.has_incoming and vm.instructions - self._begun >= turn:
+                self._start_global(queue.take_incoming())
+            vm.run(min(turn, end - vm.instructions))
             self._listen()
+            if queue.policy.kills and vm.is_active and not queue.waits:
+                break  # the rest of a long handler belongs to the next step
         if not vm.is_active:
-            self._notice_periods()
+            queue.notice(self._words_at(self._periods))
 
     def declares(self, event: str) -> bool:
         """Whether the program knows a global event of this name."""
@@ -157,25 +206,28 @@ class AsebaDevice:
             raise KeyError(name)
         if self._vm.is_step_by_step and (self._vm.is_active or self._state != PAUSED):
             return
-        if len(self._incoming) >= MOST_WAITING:
+        if not self._queue.receive(GlobalEvent(self._names.index(name), source, tuple(args))):
             self._tell(f"more events arrive than the program can handle: {name} is lost")
-            return
-        self._incoming.append((self._names.index(name), source, tuple(args)))
 
     def resume(self) -> None:
-        """Let events run (again)."""
-        self._vm.resume()
-        self._state, self._fault = RUNNING, None
+        """Let events run (again); a robot that is off is switched on."""
+        if self._state == OFF:
+            self._restart()
+        else:
+            self._run_again()
 
     def pause(self) -> None:
         """Execute nothing until `step` or `resume`; wheels and lights stay as they are."""
-        self._vm.pause()
-        self._state, self._fault = PAUSED, None
+        if self._state != OFF:
+            self._vm.pause()
+            self._state, self._fault = PAUSED, None
 
     def step(self) -> None:
         """Execute one instruction; between events, begin the next one that waits."""
+        if self._state == OFF:
+            return
         self.pause()
-        while not self._vm.is_active and self._waits:
+        while not self._vm.is_active and self._queue.waits:
             self._start_next()
         self._vm.step()
         self._is_changed = True
@@ -183,15 +235,25 @@ class AsebaDevice:
 
     def stop(self) -> None:
         """Abandon the handler; wheels stand still."""
-        self._vm.stop()
-        self._forget_events()
-        self._halt()
-        self._state, self._fault = STOPPED, None
+        if self._state != OFF:
+            self._vm.stop()
+            self._queue.clear()
+            self._halt()
+            self._state, self._fault = STOPPED, None
 
     def reset(self) -> None:
         """As the robot's reset: variables cleared, lights off, ready to begin anew, paused."""
         self._vm.reset()
         self._state, self._fault = PAUSED, None
+
+    def switch_off(self) -> None:
+        """Wheels and lights off, nothing runs until `resume`, `reset` or `load`."""
+        self._vm.stop()
+        self._queue.clear()
+        self._halt()
+        self.body.stop_recording()
+        self._commands += [*(ReleaseLeds(group) for group in LED_GROUPS), PlaySystemSound(SHUT_DOWN)]
+        self._state, self._fault = OFF, None
 
     def take_commands(self) -> list[Command]:
         """What the program told the actuators since the last time: native calls, then changed variables."""
@@ -199,11 +261,11 @@ class AsebaDevice:
         if not self._is_changed:
             return commands
         self._is_changed = False
-        for output, sent in zip(bindings.outputs(), self._sent, strict=True):
+        for output, sent in zip(self._outputs, self._sent, strict=True):
             words = self._words(output)
             if words != sent:
                 sent[:] = words
-                commands.append(output.command(words))
+                commands.append(self._output(output, words))
         return commands
 
     def take_events(self) -> list[EmittedEvent]:
@@ -236,70 +298,85 @@ class AsebaDevice:
         self._vm.write_variables(address, words)
         self._is_changed = True
 
-    @property
-    def _waits(self) -> bool:
-        """Whether an event, or time that is not counted yet, waits for the machine."""
-        return bool(self._pending or self._arrived or self._incoming or self._timers.lag_ms)
+    def _run_again(self) -> None:
+        self._vm.resume()
+        self._state, self._fault = RUNNING, None
+
+    def _restart(self) -> None:
+        """As after a switch off and on: unsaved settings are lost, the program begins anew."""
+        self.body.settings.restart()
+        self._vm.reset()
+        self._run_again()
 
     def _start_next(self) -> None:
         """Start the next event, or count time up to the next timer event; at the end comes what belongs to now."""
-        self._notice_periods()
-        if not self._pending and self._timers.lag_ms:
-            self._pending.update(self._timer_events[index] for index in self._timers.next_firing())
-        elif not self._timers.lag_ms:
-            self._pending |= self._arrived
-            self._arrived.clear()
-            if self._incoming:
-                self._start_incoming()
-                return
-        if self._pending:
-            index = min(self._pending)
-            self._pending.remove(index)
-            self._begin(self._target.local_events[index].name)
-            self._vm.start_local(index)
+        if not self._vm.is_active:
+            self._queue.notice(self._words_at(self._periods))
+        event = self._queue.take()
+        if isinstance(event, GlobalEvent):
+            self._start_global(event)
+        elif event is not None:
+            self._begin(self._target.local_events[event].name)
+            self._vm.receive(0xFFFE - event, self.node_id, ())
 
-    def _start_incoming(self) -> None:
-        number, source, args = self._incoming.popleft()
-        self._begin(self._names[number])
-        self._vm.receive(number, source, args)
+    def _start_global(self, event: GlobalEvent) -> None:
+        self._begin(self._names[event.number])
+        self._vm.receive(event.number, event.source, event.args)
 
     def _begin(self, event: str) -> None:
+        if self._queue.policy.kills and self._vm.is_active:
+            self._tell(f"{event} cuts off {self._event}, which takes more than {self._queue.policy.turn} instructions")
         self._event, self._begun = event, self._vm.instructions
 
-    def _notice_periods(self) -> None:
-        address, size = self._addresses["timer.period"]
-        self._timers.notice(self._vm.variables[address : address + size])
-
-    def _forget_events(self) -> None:
-        self._pending.clear()
-        self._arrived.clear()
-        self._incoming.clear()
+    def _event_index(self, name: str) -> int:
+        return 0xFFFE - self._target.local_event_number(name)
 
     def _listen(self) -> None:
         for message in self._vm.take_messages():
             if isinstance(message, Emitted):
                 if message.number < len(self._names):
                     self._events.append(EmittedEvent(self._names[message.number], message.arguments))
-            elif isinstance(message, OutOfBounds | DivisionByZero | NodeSpecific | BadCode):
+            elif isinstance(message, OutOfBounds | DivisionByZero | NodeSpecific | BadCode) and not self.body.wanted:
                 line = self._program.line_of(message.pc)
                 self._state = FAULT
                 self._fault = DeviceStatus(FAULT, self._event, line, sentence(message.reason))
-                self._forget_events()
+                self._queue.clear()
                 self._halt()
+        wanted, self.body.wanted = self.body.wanted, ""
+        if wanted == RESTART:
+            self._restart()
+        elif wanted:
+            self.switch_off()
 
     def _halt(self) -> None:
         for name in ("motor.left.target", "motor.right.target"):
             self.set_variable(name, (0,))
 
-    def _send(self, command: Command, writes: Mapping[str, Sequence[int]]) -> None:
+    def _send(self, command: Command, writes: Mapping[str, Sequence[int]] = NOTHING) -> None:
         """A native's command and the variables that it sets; what they mean is told by the command already."""
         self._commands.append(command)
+        if isinstance(command, SOUNDS):
+            self._has_used_sound = True
+            self._rules.silence()
+        elif isinstance(command, SetLeds):
+            self._rules.take(command.group)
         for variable, words in writes.items():
+            if variable not in self._addresses:
+                continue
             address, _ = self._addresses[variable]
             self._vm.write_variables(address, words)
-            for output, sent in zip(bindings.outputs(), self._sent, strict=True):
+            for output, sent in zip(self._outputs, self._sent, strict=True):
                 if output.slots[0].address == address:
                     sent[:] = self._words(output)
+
+    def _output(self, output: bindings.OutputBinding, words: Sequence[int]) -> Command:
+        """The command of variables that changed; wheels get what the settings make of it, lights are taken over."""
+        command = output.command(words)
+        if isinstance(command, MotorTargets):
+            return self.body.settings.calibrate(command)
+        if isinstance(command, SetLeds):
+            self._rules.take(command.group)
+        return command
 
     def _words(self, output: bindings.OutputBinding) -> list[int]:
         """What the variables of an output hold."""
@@ -311,16 +388,25 @@ class AsebaDevice:
             self._noticed.add(notice)
             self._notices.append(notice)
 
+    def _words_at(self, place: tuple[int, int]) -> list[int]:
+        address, size = place
+        return self._vm.variables[address : address + size]
+
     def _on_reset(self, vm: VirtualMachine) -> None:
         """The robot's share in a reset (thymio-robot.md section 4)."""
         vm.variables[:] = [0] * len(vm.variables)
-        for name, words in (("_id", (self.node_id,)), ("_productId", (PRODUCT_ID,)), ("_fwversion", FIRMWARE)):
+        vm.node_id = self.node_id
+        has_card = int(self.body.card is not None)
+        own = {"_id": (self.node_id,), "event.source": (self.node_id,), "sd.present": (has_card,)}
+        for name, words in (own | dict(self._first_values)).items():
             vm.write_variables(self._addresses[name][0], words)
         self._is_changed = True
         vm.random_state = (self.node_id - 1) * 25173 & 0xFFFF  # robots differ, a run repeats itself
-        self._begin(INIT)
-        self._forget_events()
-        self._timers.reset()
-        self._sent = [self._words(output) for output in bindings.outputs()]
-        at_rest = [output.command(words) for output, words in zip(bindings.outputs(), self._sent, strict=True)]
+        self._event, self._begun = INIT, vm.instructions
+        self._queue.reset()
+        self._rules.reset()
+        self._has_used_sound = False
+        self._sent = [self._words(output) for output in self._outputs]
+        at_rest = [output.command(words) for output, words in zip(self._outputs, self._sent, strict=True)]
         self._commands = at_rest + [command for command in bindings.at_reset() if command not in at_rest]
+        self.body.reset()

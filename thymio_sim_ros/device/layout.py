@@ -1,9 +1,13 @@
-"""The Thymio that programs are compiled for: firmware 14, and what plug-ins add behind it."""
+"""The Thymio that programs are compiled for: the layout of a robot or of the reference playground, and plug-ins.
+
+A layout says in which order variables, events and natives come (thymio-robot.md sections 4 and 6.1); programs find
+them by name, bytecode by place.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 
 from aseba_vm import LocalEvent, NativeFunction, Parameter, TargetDescription, Variable
@@ -11,25 +15,72 @@ from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.sim.actuators import Actuator, all_actuators
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 
+__all__ = ["LAYOUTS", "PLAYGROUND", "THYMIO", "Layout", "extend", "target"]
+
+THYMIO, PLAYGROUND = "thymio", "playground"
+
 PRODUCT_ID = 8
-FIRMWARE = (14, 1)
-"""Values of `_productId` and `_fwversion` (thymio-robot.md section 4)."""
+"""Value of `_productId` (section 4)."""
+
+_PLAYGROUND_VARIABLES = """
+    _id event.source event.args _productId _fwversion button.backward button.left button.center button.forward
+    button.right prox.horizontal prox.comm.rx prox.comm.tx prox.ground.ambiant prox.ground.reflected
+    prox.ground.delta motor.left.target motor.right.target motor.left.speed motor.right.speed motor.left.pwm
+    motor.right.pwm acc temperature rc5.address rc5.command mic.intensity mic.threshold timer.period sd.present
+"""
+_PLAYGROUND_NATIVES = """
+    sound.record sound.play sound.replay sound.system leds.circle leds.top leds.bottom.right leds.bottom.left
+    sound.freq leds.buttons leds.prox.h leds.prox.v leds.rc leds.sound leds.temperature sound.wave
+    prox.comm.enable sd.open sd.write sd.read sd.seek sound.duration
+"""
+_FREE_WORDS = 512
+"""Words for a program's own variables, in every layout."""
+_STANDARD = ("math.", "deque.")
+
+
+def _playground() -> TargetDescription:
+    variables = {variable.name: variable for variable in THYMIO_II.variables}
+    natives = {native.name: native for native in THYMIO_II.natives}
+    standard = [name for name in natives if name.startswith(_STANDARD)]
+    chosen = tuple(variables[name] for name in _PLAYGROUND_VARIABLES.split())
+    return replace(
+        THYMIO_II,
+        variables=chosen,
+        natives=tuple(natives[name] for name in [*standard, *_PLAYGROUND_NATIVES.split()]),
+        variables_size=sum(variable.size for variable in chosen) + _FREE_WORDS,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """One way to lay a Thymio out: its description, and what its variables hold at the start."""
+
+    base: TargetDescription
+    first_values: Mapping[str, tuple[int, ...]]
+
+
+LAYOUTS: Mapping[str, Layout] = {
+    THYMIO: Layout(THYMIO_II, {"_productId": (PRODUCT_ID,), "_fwversion": (14, 1)}),
+    PLAYGROUND: Layout(_playground(), {"_productId": (PRODUCT_ID,), "_fwversion": (11, 0), "temperature": (220,)}),
+}
+"""The robot with firmware 14, and the reference playground."""
 
 
 @cache
-def target() -> TargetDescription:
-    """The target of this installation."""
-    return extend(THYMIO_II, all_sensors(), all_actuators())
+def target(layout: str = THYMIO) -> TargetDescription:
+    """The target of this installation in one of LAYOUTS."""
+    return extend(LAYOUTS[layout].base, all_sensors(), all_actuators())
 
 
 def extend(base: TargetDescription, sensors: Sequence[Sensor], actuators: Sequence[Actuator]) -> TargetDescription:
     """The base in its own order; what only a plug-in knows comes after it, and programs keep their room.
 
-    ValueError when a plug-in gives a name that exists another size.
+    What the robot has and the base leaves out stays out. ValueError when a plug-in gives a name that exists another
+    size.
     """
-    variables = {variable.name: variable for variable in base.variables}
+    variables = {variable.name: variable for variable in (*THYMIO_II.variables, *base.variables)}
     events = {event.name: event for event in base.local_events}
-    natives = {native.name: native for native in base.natives}
+    natives = {native.name: native for native in (*THYMIO_II.natives, *base.natives)}
     faces = [sensor.aseba for sensor in sensors]
     declared = [variable for face in faces for variable in face.variables]
     declared += [pair for actuator in actuators for output in actuator.aseba.outputs for pair in output.variables]
@@ -48,10 +99,12 @@ def extend(base: TargetDescription, sensors: Sequence[Sensor], actuators: Sequen
             raise ValueError(
                 f"native {native.name}: a plug-in declares parameters of {sizes} words, expected {expected}"
             )
+    old_variables = {variable.name for known in (THYMIO_II, base) for variable in known.variables}
+    old_natives = {native.name for known in (THYMIO_II, base) for native in known.natives}
     extended = replace(
         base,
-        variables=tuple(variables.values()),
+        variables=(*base.variables, *(new for name, new in variables.items() if name not in old_variables)),
         local_events=tuple(events.values()),
-        natives=tuple(natives.values()),
+        natives=(*base.natives, *(new for name, new in natives.items() if name not in old_natives)),
     )
     return replace(extended, variables_size=base.variables_size + extended.variables_end - base.variables_end)

@@ -1,7 +1,7 @@
-"""Native functions of the Thymio as the machine calls them.
+"""Native functions of the Thymio as the machine calls them (thymio-robot.md section 6).
 
-Those that reach an actuator become commands. The others of the firmware that this simulator does not model yet do
-nothing, say so once, and leave in their arguments what a robot without a card answers (thymio-robot.md section 6.3).
+The machine itself knows `math.*` and `deque.*`. Natives that actuators declare become their commands; the others
+reach the parts of the robot's body by the table at the end.
 """
 
 from __future__ import annotations
@@ -11,32 +11,26 @@ from collections.abc import Callable, Mapping, Sequence
 from aseba_vm import Native, NativeCall
 from aseba_vm.nativecall import NativeFault
 from thymio_sim_ros.device import bindings
-from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.body import RESTART, SWITCH_OFF, Body
 from thymio_sim_ros.sim import aseba_face
 from thymio_sim_ros.sim.commands import Command
 
-STANDARD = ("math.", "deque.")
-"""Families that the machine itself knows."""
+__all__ = ["BODY_NATIVES", "native_functions"]
 
-ANSWERS = {"sd.open": (1, -1), "sd.write": (1, 0), "sd.read": (1, 0), "sd.seek": (1, -1), "sound.duration": (1, 0)}
-"""Native → the argument it answers in, and what a robot without a card says."""
+Send = Callable[[Command, Mapping[str, Sequence[int]]], None]
+"""Takes a command and the variables that the call sets."""
 
-
-def native_functions(
-    send: Callable[[Command, Mapping[str, Sequence[int]]], None], tell: Callable[[str], None]
-) -> dict[str, Native]:
-    """Functions by name: `send` takes a command and the variables that the call sets; `tell` a sentence."""
-    functions: dict[str, Native] = {}
-    reaching = bindings.natives()
-    for native in target().natives:
-        if native.name in reaching:
-            functions[native.name] = _reaching(reaching[native.name], send)
-        elif not native.name.startswith(STANDARD):
-            functions[native.name] = _without_effect(native.name, tell)
-    return functions
+DONE, FAILED = 0, -1
+"""What `sd.open` and `sd.seek` answer."""
 
 
-def _reaching(native: aseba_face.Native, send: Callable[[Command, Mapping[str, Sequence[int]]], None]) -> Native:
+def native_functions(send: Send, body: Body) -> dict[str, Native]:
+    """All functions that are not the machine's own, by name."""
+    actuators = {native.name: _commanding(native, send) for native in bindings.natives().values()}
+    return actuators | {name: _serving(serve, body) for name, serve in BODY_NATIVES.items()}
+
+
+def _commanding(native: aseba_face.Native, send: Send) -> Native:
     def call_native(call: NativeCall) -> None:
         words = [word for argument in range(len(call.sizes)) for word in call.read(argument)]
         try:
@@ -48,11 +42,110 @@ def _reaching(native: aseba_face.Native, send: Callable[[Command, Mapping[str, S
     return call_native
 
 
-def _without_effect(name: str, tell: Callable[[str], None]) -> Native:
-    def call_native(call: NativeCall) -> None:
-        if name in ANSWERS:
-            argument, answer = ANSWERS[name]
-            call.write(argument, [answer])
-        tell(f"{name} has no effect in this simulator yet")
+def _serving(serve: Callable[[NativeCall, Body], None], body: Body) -> Native:
+    return lambda call: serve(call, body)
 
-    return call_native
+
+def _reboot(_call: NativeCall, body: Body) -> None:
+    body.wanted = RESTART
+    raise NativeFault(RESTART)
+
+
+def _power_off(_call: NativeCall, body: Body) -> None:
+    body.wanted = SWITCH_OFF
+    raise NativeFault(SWITCH_OFF)
+
+
+def _read_setting(call: NativeCall, body: Body) -> None:
+    call.write(1, [body.settings[_setting(call, body)]])
+
+
+def _write_setting(call: NativeCall, body: Body) -> None:
+    body.change_setting(_setting(call, body), call.value(1))
+
+
+def _setting(call: NativeCall, body: Body) -> int:
+    address = call.value(0)
+    if not 0 <= address < len(body.settings):
+        raise NativeFault(f"out of settings: address {address} found, expected 0 to {len(body.settings) - 1}")
+    return address
+
+
+def _flash_settings(_call: NativeCall, body: Body) -> None:
+    body.flash_settings()
+
+
+def _record(call: NativeCall, body: Body) -> None:
+    body.record(call.value(0))
+
+
+def _play(call: NativeCall, body: Body) -> None:
+    body.play("p", call.value(0))
+
+
+def _replay(call: NativeCall, body: Body) -> None:
+    body.play("r", call.value(0))
+
+
+def _system_sound(call: NativeCall, body: Body) -> None:
+    body.play_system_sound(call.value(0))
+
+
+def _duration(call: NativeCall, body: Body) -> None:
+    """Tenths of a second."""
+    call.write(1, [min(32767, body.recorded_bytes(call.value(0)) * 5 // 3906)])
+
+
+def _open(call: NativeCall, body: Body) -> None:
+    number, card = call.value(0), body.card
+    if card is not None and number == -1:
+        card.close()
+        call.write(1, [DONE])
+    else:
+        call.write(1, [DONE if card is not None and card.open(number) else FAILED])
+
+
+def _write(call: NativeCall, body: Body) -> None:
+    call.write(1, [0 if body.card is None else body.card.write(call.read(0))])
+
+
+def _read(call: NativeCall, body: Body) -> None:
+    words = [] if body.card is None else body.card.read(call.sizes[0])
+    call.write(0, words)
+    call.write(1, [len(words)])
+
+
+def _seek(call: NativeCall, body: Body) -> None:
+    """Positions are words without sign, so that the second half of a large file can be reached."""
+    done = body.card is not None and body.card.seek(call.value(0) & 0xFFFF)
+    call.write(1, [DONE if done else FAILED])
+
+
+def _set_node_id(call: NativeCall, body: Body) -> None:
+    number = call.value(0)
+    if number > 0:
+        body.node_id = number
+
+
+def _set_network(call: NativeCall, body: Body) -> None:
+    body.network = (call.value(0), call.value(1))
+
+
+BODY_NATIVES: Mapping[str, Callable[[NativeCall, Body], None]] = {
+    "_system.reboot": _reboot,
+    "_system.settings.read": _read_setting,
+    "_system.settings.write": _write_setting,
+    "_system.settings.flash": _flash_settings,
+    "sound.record": _record,
+    "sound.play": _play,
+    "sound.replay": _replay,
+    "sound.system": _system_sound,
+    "sound.duration": _duration,
+    "sd.open": _open,
+    "sd.write": _write,
+    "sd.read": _read,
+    "sd.seek": _seek,
+    "_rf.nodeid": _set_node_id,
+    "_rf.setup": _set_network,
+    "_poweroff": _power_off,
+}

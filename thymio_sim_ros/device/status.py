@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-RUNNING, PAUSED, STOPPED, FAULT = "running", "paused", "stopped", "fault"
+RUNNING, PAUSED, STOPPED, FAULT, OFF = "running", "paused", "stopped", "fault", "off"
 
 INIT = "init"
 """In place of an event: the beginning of the program."""
@@ -19,7 +19,7 @@ _SENTENCES: Mapping[str, str] = {
 
 @dataclass(frozen=True, slots=True)
 class DeviceStatus:
-    """State (`running`, `paused`, `stopped`, `fault`), the event being handled, and its source line from 1.
+    """State (`running`, `paused`, `stopped`, `fault`, `off`), the event being handled, and its source line from 1.
 
     Between events, event is empty and line None. After a fault they say where it happened, and `fault` why.
     """

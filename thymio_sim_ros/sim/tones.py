@@ -13,6 +13,7 @@ __all__ = [
     "BLOCK_NS",
     "BLOCK_SAMPLES",
     "SAMPLE_NS",
+    "SHUT_DOWN",
     "SILENCE",
     "SYSTEM_SOUNDS",
     "TRIANGLE",
@@ -84,6 +85,9 @@ SYSTEM_SOUNDS: tuple[tuple[tuple[int, int], ...], ...] = (
     ((440, 7), (550, 7), (660, 7)),
 )
 """The robot's own sounds by number as (Hz, ticks of 16.384 ms)."""
+
+SHUT_DOWN = 1
+"""Number of the sound of a robot that is switched off."""
 
 UNKNOWN_SOUND = ((440, 10),)
 """What another number sounds like: 10/60 s of 440 Hz (section 6.3)."""

@@ -98,11 +98,6 @@ def test_durations_of_a_program_are_ticks(words: tuple[int, int], command: Comma
     assert native("sound.freq", words) == command
 
 
-def test_a_program_plays_and_stops_the_robot_s_own_sounds() -> None:
-    assert native("sound.system", (4,)) == PlaySystemSound(4)
-    assert native("sound.system", (-1,)) == StopSound()
-
-
 def test_a_program_s_wave_has_samples_of_8_bits() -> None:
     assert native("sound.wave", TRIANGLE) == SetWave(TRIANGLE)
     with pytest.raises(ValueError, match=r"sound.wave: sample 200 found, expected -128 to 127"):

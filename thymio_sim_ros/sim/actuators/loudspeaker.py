@@ -134,10 +134,6 @@ def _frequency(words: Sequence[int]) -> Command:
     return PlayTone(hertz, max(ticks, SHORTEST_TICKS) * BLOCK_NS if ticks else None)
 
 
-def _system(words: Sequence[int]) -> Command:
-    return StopSound() if words[0] == -1 else PlaySystemSound(words[0])
-
-
 def _wave(words: Sequence[int]) -> Command:
     wrong = next((word for word in words if not -128 <= word <= 127), None)
     if wrong is not None:
@@ -153,7 +149,6 @@ ACTUATOR = Actuator(
     update=_update,
     aseba=ActuatorFace(
         natives=(
-            Native("sound.system", ("N",), _system, "Play one of the robot's own sounds 0 to 7; -1 stops"),
             Native("sound.freq", ("Hz", "1/60s"), _frequency, "Play a tone; 0: until stopped, negative: stop"),
             Native("sound.wave", (f"wave:{WAVE_LENGTH}",), _wave, "Set the wave of tones"),
         ),

@@ -1,0 +1,115 @@
+"""The parts of a robot that its firmware itself serves: card, settings, radio, records, the switch.
+
+They live as long as the device; a reset of the program closes files, a restart also forgets unsaved settings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from thymio_sim_ros.device.card import Card
+from thymio_sim_ros.device.recorder import Recorder
+from thymio_sim_ros.device.settings import Settings
+from thymio_sim_ros.sim.commands import (
+    Command,
+    PlaySamples,
+    PlaySystemSound,
+    SetVolume,
+    StopSound,
+)
+from thymio_sim_ros.sim.tones import SYSTEM_SOUNDS
+
+__all__ = ["RESTART", "SWITCH_OFF", "Body"]
+
+RESTART, SWITCH_OFF = "restart", "off"
+"""What a program may ask of the whole robot."""
+
+Send = Callable[[Command], None]
+Tell = Callable[[str], None]
+
+
+class Body:
+    """One robot's parts. `send` takes what they tell the actuators, `tell` sentences for the user."""
+
+    def __init__(self, node_id: int, *, card: Card | None, settings: Settings, send: Send, tell: Tell) -> None:
+        self.node_id = node_id
+        self.network = (0, 0)
+        """Channel and network of the radio: robots of different ones do not hear each other."""
+        self.card = card
+        self.settings = settings
+        self.wanted = ""
+        """RESTART or SWITCH_OFF, until the device has done it."""
+        self.tell = tell
+        self._send = send
+        self._recorder: Recorder | None = None
+        self._now_ns = 0
+
+    def reset(self) -> None:
+        """The program begins anew."""
+        self.stop_recording()
+        if self.card is not None:
+            self.card.close()
+        self._send(SetVolume(self.settings.volume_shift))
+
+    def advance(self, now_ns: int, intensity: int) -> None:
+        """Time has come so far, and the microphone tells this intensity."""
+        self._now_ns = now_ns
+        if self._recorder is not None:
+            self._recorder.listen(now_ns, intensity)
+
+    def change_setting(self, address: int, value: int) -> None:
+        """Put a word into the settings; what it means holds at once."""
+        self.settings[address] = value
+        self._send(SetVolume(self.settings.volume_shift))
+
+    def flash_settings(self) -> None:
+        """Keep the settings for the next restart."""
+        complaint = self.settings.flash()
+        if complaint:
+            self.tell(complaint)
+
+    def play_system_sound(self, number: int) -> None:
+        """One of the robot's own sounds, or the card's in place of a number that is none; −1 stops."""
+        if number == -1:
+            self._send(StopSound())
+        elif 0 <= number < len(SYSTEM_SOUNDS) or not self._play_file(f"s{number}"):
+            self._send(PlaySystemSound(number))
+
+    def play(self, name: str, number: int) -> None:
+        """A sound of the card, by the letter of its kind and its number; −1 stops, and so does one that is missing."""
+        if number == -1:
+            self._send(StopSound())
+        elif not self._play_file(f"{name}{number}"):
+            self._send(StopSound())
+            self.tell(f"there is no {name}{number}.wav on the card" if self.card else f"no card: {name}{number}.wav")
+
+    def record(self, number: int) -> None:
+        """Begin to record; −1 stops and stores."""
+        self.stop_recording()
+        if number >= 0 and self.card is not None:
+            self._recorder = Recorder(number, self._now_ns)
+
+    def stop_recording(self) -> None:
+        """Store what was recorded, if something is being recorded."""
+        recorder, self._recorder = self._recorder, None
+        if (
+            recorder is not None
+            and self.card is not None
+            and not self.card.write_sound(f"r{recorder.number}", recorder.samples)
+        ):
+            self.tell(f"r{recorder.number}.wav cannot be stored on the card")
+
+    def recorded_bytes(self, number: int) -> int:
+        """Samples of a record; 0 when there is none."""
+        found = self.card.read_sound(f"r{number}") if self.card is not None else None
+        return 0 if found is None else len(found[0])
+
+    def _play_file(self, name: str) -> bool:
+        found = self.card.read_sound(name) if self.card is not None else None
+        if found is None:
+            return False
+        samples, complaint = found
+        if complaint:
+            self.tell(complaint)
+        self._send(PlaySamples(samples))
+        return True

@@ -1,0 +1,161 @@
+"""The memory card: a folder that stands for it (thymio-robot.md sections 6.3, 9 and 10).
+
+Programs name files by number only: data `uN.dat`; sounds `pN.wav` to play, `rN.wav` recorded, `sN.wav` in place of
+missing system sounds. Names are found in any case, as on the card's file system. Nothing outside the folder is
+read or written, not even where a link in it points.
+"""
+
+from __future__ import annotations
+
+import array
+import sys
+import wave
+from collections.abc import Sequence
+from pathlib import Path
+from typing import BinaryIO
+
+__all__ = ["Card", "CardError", "SoundFile"]
+
+MOST_BYTES = 64_000_000
+"""A program's data file grows no longer."""
+MOST_SAMPLES = 10 * 60 * 7813
+"""Longest sound that is read: ten minutes."""
+RATES_HZ = (7800, 8000)
+"""Rates of sounds that sound right on the robot (section 9)."""
+WRITTEN_RATE_HZ = 7812
+HEADER_BYTES = 44
+"""What the robot skips at the beginning of a sound (section 9)."""
+
+SoundFile = tuple[bytes, str]
+"""Unsigned 8 bit samples, and what is wrong with the file's format, if anything."""
+
+
+class CardError(Exception):
+    """A folder that cannot stand for a card; the text is one line."""
+
+
+class Card:
+    """A card in its slot. Invariant: at most one data file is open, and it lies in the folder."""
+
+    def __init__(self, folder: Path) -> None:
+        """CardError when the folder cannot be made or is none."""
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self.folder = folder.resolve(strict=True)
+        except OSError as error:
+            raise CardError(f"card {folder}: {error.strerror}; expected a folder, or a place for one") from error
+        self._file: BinaryIO | None = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a data file is open."""
+        return self._file is not None
+
+    def open(self, number: int) -> bool:
+        """Open data file `number`, made when there is none, at its beginning; one that is open is closed first."""
+        self.close()
+        path = self._path(f"u{number}.dat")
+        if number < 0 or path is None:
+            return False
+        try:
+            path.touch()
+            self._file = path.open("r+b", buffering=0)
+        except OSError:
+            return False
+        return True
+
+    def close(self) -> None:
+        """Close the data file, if one is open."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def write(self, words: Sequence[int]) -> int:
+        """Write words (int16, little-endian) from the position on; how many fitted."""
+        if self._file is None:
+            return 0
+        try:
+            room = max(0, MOST_BYTES - self._file.tell()) // 2
+            return (self._file.write(_as_bytes(words[:room])) or 0) // 2
+        except OSError:
+            return 0
+
+    def read(self, count: int) -> list[int]:
+        """Up to so many words from the position on; none at the end or without a file."""
+        if self._file is None:
+            return []
+        try:
+            data = self._file.read(2 * count) or b""
+        except OSError:
+            return []
+        return _as_words(data[: len(data) // 2 * 2])
+
+    def seek(self, position: int) -> bool:
+        """Go to a word (0 is the first); a later write fills what lies between with zeros."""
+        if self._file is None or position < 0:
+            return False
+        self._file.seek(2 * position)
+        return True
+
+    def read_sound(self, name: str) -> SoundFile | None:
+        """The sound of a name such as p1, or None when it is not there."""
+        path = self._path(f"{name}.wav")
+        try:
+            if path is None or not path.is_file():
+                return None
+            with path.open("rb") as file:
+                data = file.read(HEADER_BYTES + MOST_SAMPLES)
+        except OSError:
+            return None
+        return data[HEADER_BYTES:], _complaint(path)
+
+    def write_sound(self, name: str, samples: bytes) -> bool:
+        """Store unsigned 8 bit samples under a name such as r1; whether that worked."""
+        path = self._path(f"{name}.wav")
+        if path is None:
+            return False
+        try:
+            with wave.open(str(path), "wb") as file:
+                file.setnchannels(1)
+                file.setsampwidth(1)
+                file.setframerate(WRITTEN_RATE_HZ)
+                file.writeframes(samples)
+        except OSError:
+            return False
+        return True
+
+    def _path(self, name: str) -> Path | None:
+        """Where a file of this name is or would be; None when that is not in the folder."""
+        path = self.folder / name
+        if not path.exists():
+            found = sorted(other for other in self.folder.iterdir() if other.name.lower() == name)
+            path = found[0] if found else path
+        return path if path.resolve().parent == self.folder else None
+
+
+def _as_bytes(words: Sequence[int]) -> bytes:
+    values = array.array("h", words)
+    if sys.byteorder == "big":
+        values.byteswap()
+    return values.tobytes()
+
+
+def _as_words(data: bytes) -> list[int]:
+    values = array.array("h", data)
+    if sys.byteorder == "big":
+        values.byteswap()
+    return values.tolist()
+
+
+def _complaint(path: Path) -> str:
+    """Why a sound will not sound as its maker meant it: the robot plays the bytes of any file."""
+    expected = "expected 8 bit, 1 channel, 7800 to 8000 Hz"
+    try:
+        with wave.open(str(path), "rb") as file:
+            bits, channels, rate = 8 * file.getsampwidth(), file.getnchannels(), file.getframerate()
+    except (wave.Error, EOFError, OSError):
+        return f"{path.name}: no WAV file found, {expected}"
+    low, high = RATES_HZ
+    if (bits, channels) == (8, 1) and low <= rate <= high:
+        return ""
+    return f"{path.name}: {bits} bit, {channels} channels, {rate} Hz found, {expected}"

@@ -1,0 +1,270 @@
+"""What the robot itself shows while a program runs: its sensors on its lights, a sound for each button.
+
+Rules and numbers: thymio-robot.md section 8.4, 50 times a second. A rule ends when a program takes its lights over,
+and the sounds end when a program uses sound itself; after a reset all begin again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Protocol
+
+from thymio_sim_ros.sim.commands import LED_FULL, Command, PlaySystemSound, ShowOnLeds
+
+__all__ = ["PERIOD_NS", "OwnRules"]
+
+PERIOD_NS = 20_000_000
+"""Time between two looks."""
+ARROW_SOUND, CENTER_SOUND = 2, 3
+"""System sounds of the buttons (section 9)."""
+
+Levels = Mapping[str, tuple[int, ...]]
+
+
+class _Rule(Protocol):
+    """One rule: the variables that it looks at, and what it shows."""
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """Names of the variables."""
+        ...
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether it shows something else at the next look though nothing that it sees changes."""
+        ...
+
+    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+        """Levels by group for the words of its variables."""
+        ...
+
+
+class _Still:
+    """A rule without time."""
+
+    is_moving = False
+
+
+class _Proximity(_Still):
+    """Brightness between the smallest and the largest reading so far."""
+
+    variables = ("prox.horizontal", "prox.ground.delta")
+
+    def __init__(self) -> None:
+        self._low, self._high = [1200] * 7 + [0] * 2, [4000] * 7 + [900] * 2
+
+    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+        levels = [self._level(number, value) for number, value in enumerate([*words[0], *words[1]])]
+        left, center_left, center, center_right, right, rear_left, rear_right, *ground = levels
+        front = (left, center_left, center, center, center_right, right)
+        return {"proximity": (*front, rear_left, rear_right), "ground": tuple(ground)}
+
+    def _level(self, number: int, value: int) -> int:
+        low, high = self._low, self._high
+        if 0 < value < low[number]:
+            low[number] = value
+        high[number] = max(high[number], value)
+        return max(0, LED_FULL * (value - low[number]) // (high[number] - low[number]))
+
+
+class _Inclination(_Still):
+    """The light of the circle on the lowest side, once the robot is no longer level."""
+
+    variables = ("acc",)
+
+    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+        right, forward, up = words[0]
+        levels = [0] * 8
+        if up < 21 and abs(right) + abs(forward) > 10:
+            levels[_lowest(right, forward)] = max(0, min(LED_FULL, 42 - 2 * abs(up)))
+        return {"circle": tuple(levels)}
+
+
+def _lowest(right: int, forward: int) -> int:
+    """The light of the circle for acc[0] and acc[1]: 4 is the rear, 2 the right, 0 the front, 6 the left."""
+    angle = math.degrees(math.atan2(right, forward))
+    steps = sum(abs(angle) > border for border in (22, 66, 110, 154))
+    return (4 + steps if angle > 0 else 4 - steps) % 8
+
+
+class _Buttons:
+    """A touched button lights up step by step; the centre lights all four."""
+
+    variables = ("button.forward", "button.right", "button.backward", "button.left", "button.center")
+
+    def __init__(self) -> None:
+        self._levels = [0] * 4
+        self.is_moving = False
+
+    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+        *arrows, center = (word[0] for word in words)
+        self._levels = [
+            min(LED_FULL, level + 3) if touched or center else 0
+            for level, touched in zip(self._levels, arrows, strict=True)
+        ]
+        self.is_moving = any(0 < level < LED_FULL for level in self._levels)
+        return {"buttons": tuple(self._levels)}
+
+
+class _Temperature(_Still):
+    """Blue is cold, red is warm."""
+
+    variables = ("temperature",)
+
+    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+        ((tenths,),) = words
+        red = max(0, min(LED_FULL, LED_FULL * (tenths - 150) // 130))
+        return {"temperature": (red, LED_FULL - red)}
+
+
+class _Sound:
+    """The peak of what the microphone hears, fading; only while a program listens."""
+
+    variables = ("mic.intensity", "mic.threshold")
+
+    def __init__(self) -> None:
+        self._level = 0
+
+    @property
+    def is_moving(self) -> bool:
+        return self._level > 0
+
+    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+        (intensity,), (threshold,) = words
+        self._level = max(self._level - 1, intensity // 8, 0) if threshold else 0
+        return {"microphone": (min(LED_FULL, self._level),)}
+
+
+class _Remote:
+    """A short flash for each command of a remote control."""
+
+    variables = ()
+    LOOKS = 5
+    """Looks that a flash lasts, a tenth of a second. Own choice."""
+
+    def __init__(self) -> None:
+        self._left = 0
+
+    @property
+    def is_moving(self) -> bool:
+        return self._left > 0
+
+    def flash(self) -> None:
+        """A command arrived."""
+        self._left = self.LOOKS + 1
+
+    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+        self._left = max(0, self._left - 1)
+        return {"remote": (LED_FULL if self._left else 0,)}
+
+
+class _Battery:
+    """One to three lights; a single one blinks before the robot goes out."""
+
+    variables = ("_vbat",)
+    BLINK = 25
+    """Looks between on and off, half a second. Own choice."""
+
+    def __init__(self) -> None:
+        self.is_moving = False
+        self._looks = 0
+
+    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+        volts = sum(words[0]) * 1000 / 3978 / 100
+        lights = 3 if volts >= 3.9 else 2 if volts > 3.6 else 1
+        self.is_moving = volts <= 3.4
+        self._looks = self._looks + 1 if self.is_moving else 0
+        if self._looks // self.BLINK % 2:
+            lights = 0
+        return {"battery": tuple(LED_FULL if number < lights else 0 for number in range(3))}
+
+
+_RULES: tuple[Callable[[], _Rule], ...] = (_Proximity, _Inclination, _Buttons, _Temperature, _Sound, _Battery)
+
+
+def _spans(addresses: Mapping[str, tuple[int, int]]) -> list[tuple[int, int]]:
+    """Begin and end of the parts of the memory that rules look at."""
+    spans: list[tuple[int, int]] = []
+    for address, size in sorted(addresses[name] for make in _RULES for name in make().variables if name in addresses):
+        if spans and spans[-1][1] == address:
+            spans[-1] = (spans[-1][0], address + size)
+        else:
+            spans.append((address, address + size))
+    return spans
+
+
+class OwnRules:
+    """The rules of one robot. Invariant: each tells a group only when it looks different from the last time."""
+
+    def __init__(self, addresses: Mapping[str, tuple[int, int]]) -> None:
+        """`addresses`: where the variables lie; a rule that misses one of its variables is left out."""
+        self._addresses = addresses
+        self._buttons = [addresses[f"button.{button}"][0] for button in ("backward", "left", "forward", "right")]
+        self._center = addresses["button.center"][0]
+        self._spans = _spans(addresses)
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin anew, all lights dark."""
+        self._remote = _Remote()
+        rules: list[_Rule] = [*(make() for make in _RULES), self._remote]
+        self._rules = [
+            (rule, [self._addresses[name] for name in rule.variables])
+            for rule in rules
+            if all(name in self._addresses for name in rule.variables)
+        ]
+        self._seen: list[list[list[int]] | None] = [None] * len(self._rules)
+        self._shown: dict[str, tuple[int, ...]] = {}
+        self._taken: set[str] = set()
+        self._last: list[list[int]] = []
+        self._is_moving = True
+        self._pressed = (0, 0)
+        self._is_silent = False
+
+    def take(self, group: str) -> None:
+        """A program has taken these lights over."""
+        self._taken.add(group)
+
+    def silence(self) -> None:
+        """A program has used sound."""
+        self._is_silent = True
+
+    def flash_remote(self) -> None:
+        """A remote control was heard."""
+        self._remote.flash()
+        self._is_moving = True
+
+    def look(self, memory: Sequence[int]) -> Iterable[Command]:
+        """One look at the variables: what changes on lights and loudspeaker."""
+        words = [memory[begin:end] for begin, end in self._spans]
+        if words == self._last and not self._is_moving:
+            return ()
+        self._last = [list(span) for span in words]
+        commands = [*self._lights(memory), *self._sounds(memory)]
+        self._is_moving = any(rule.is_moving for rule, _ in self._rules)
+        return commands
+
+    def _lights(self, memory: Sequence[int]) -> Iterator[Command]:
+        for number, (rule, places) in enumerate(self._rules):
+            words = [list(memory[address : address + size]) for address, size in places]
+            seen = self._seen[number]
+            if words == seen and not rule.is_moving:
+                continue
+            if seen is None and places and not any(map(any, words)):
+                continue  # nothing was measured since the reset
+            self._seen[number] = words
+            for group, levels in rule.show(words).items():
+                if group not in self._taken and levels != self._shown.get(group, (0,) * len(levels)):
+                    self._shown[group] = levels
+                    yield ShowOnLeds(group, levels)
+
+    def _sounds(self, memory: Sequence[int]) -> Iterator[Command]:
+        before = self._pressed
+        arrows, center = self._pressed = (sum(memory[address] for address in self._buttons), memory[self._center])
+        if self._is_silent:
+            return
+        if arrows > before[0]:
+            yield PlaySystemSound(ARROW_SOUND)
+        if center > before[1]:
+            yield PlaySystemSound(CENTER_SOUND)

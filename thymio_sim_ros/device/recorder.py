@@ -1,0 +1,42 @@
+"""What `sound.record` stores: the loudness that the microphone told, since a simulated robot has nothing finer.
+
+For each tick of the sound (128 samples) the record holds a square wave whose swing is `mic.intensity`.
+"""
+
+from __future__ import annotations
+
+from thymio_sim_ros.sim.tones import BLOCK_NS, BLOCK_SAMPLES, SILENCE
+
+__all__ = ["Recorder"]
+
+_HALF_PERIOD = 8
+"""Samples above and then below the middle: a tone of 488 Hz."""
+MOST_BLOCKS = 10 * 60 * 61
+"""Ticks in a record, ten minutes; what comes later is lost."""
+
+
+class Recorder:
+    """A record that is being made. Invariant: it holds every whole tick since the beginning."""
+
+    def __init__(self, number: int, now_ns: int) -> None:
+        self.number = number
+        self._next_ns = now_ns + BLOCK_NS
+        self._blocks: list[int] = []
+
+    @property
+    def samples(self) -> bytes:
+        """The record so far, unsigned 8 bit."""
+        return b"".join(_block(intensity) for intensity in self._blocks)
+
+    def listen(self, now_ns: int, intensity: int) -> None:
+        """Time has come so far, and the microphone tells this intensity."""
+        while now_ns >= self._next_ns:
+            self._next_ns += BLOCK_NS
+            if len(self._blocks) < MOST_BLOCKS:
+                self._blocks.append(max(0, min(255, intensity)))
+
+
+def _block(intensity: int) -> bytes:
+    low = SILENCE - (intensity + 1) // 2
+    period = bytes([low + intensity] * _HALF_PERIOD + [low] * _HALF_PERIOD)
+    return period * (BLOCK_SAMPLES // len(period))

@@ -1,0 +1,112 @@
+"""The robot's settings: 92 words that survive a restart once they are flashed (thymio-robot.md section 6.3).
+
+With a file they are kept there as JSON, by the names of their parts; without, as long as the device lives.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from thymio_sim_ros.sim.commands import MotorTargets
+from thymio_sim_ros.sim.tones import VOLUME_OFF
+
+__all__ = ["PARTS", "Settings", "SettingsError"]
+
+PARTS: tuple[tuple[str, int, int], ...] = (
+    ("sound_shift", 1, 0),
+    ("prox_min", 7, 0),
+    ("mot256", 2, 256),
+    ("prox_ground_max", 2, 0),
+    ("spare", 80, 0),
+)
+"""Name, words and first value of each part, in the order of their addresses."""
+_MOTORS = 8
+"""Address of the first motor's calibration."""
+_FULL = 256
+_MOST_CORRECTION = 50
+_MOST_TARGET = 1000
+"""Limits of calibrations, and of targets before them (section 2)."""
+INT16 = range(-0x8000, 0x8000)
+
+
+class SettingsError(Exception):
+    """A file that cannot hold settings; the text is one line."""
+
+
+class Settings:
+    """The words in force, and those that were flashed."""
+
+    def __init__(self, file: Path | None = None) -> None:
+        """SettingsError when the file is there and holds something else."""
+        self._file = file
+        self._flashed = _first_values()
+        if file is not None and file.exists():
+            self._flashed = _read(file)
+        self._words = list(self._flashed)
+
+    def __len__(self) -> int:
+        return len(self._words)
+
+    def __getitem__(self, address: int) -> int:
+        return self._words[address]
+
+    def __setitem__(self, address: int, value: int) -> None:
+        self._words[address] = value
+
+    @property
+    def volume_shift(self) -> int:
+        """Bits that samples lose, 0…8."""
+        return max(0, min(VOLUME_OFF, self._words[0]))
+
+    def calibrate(self, targets: MotorTargets) -> MotorTargets:
+        """Targets as the motors get them: limited, and corrected by (target · mot256) >> 8."""
+        left, right = self._words[_MOTORS : _MOTORS + 2]
+        if left == right == _FULL:
+            return targets
+        return MotorTargets(_calibrate(targets.left, left), _calibrate(targets.right, right))
+
+    def flash(self) -> str:
+        """Keep the words in force for the next restart; what went wrong, if anything."""
+        self._flashed = list(self._words)
+        if self._file is None:
+            return ""
+        words = iter(self._words)
+        parts = {name: [next(words) for _ in range(size)] for name, size, _ in PARTS}
+        try:
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            self._file.write_text(json.dumps(parts, indent=1) + "\n", encoding="utf-8")
+        except OSError as error:
+            return f"settings are not stored: {self._file}: {error.strerror}"
+        return ""
+
+    def restart(self) -> None:
+        """What was not flashed is lost."""
+        self._words = list(self._flashed)
+
+
+def _first_values() -> list[int]:
+    return [value for _, size, value in PARTS for _ in range(size)]
+
+
+def _calibrate(target: int, factor: int) -> int:
+    factor = max(_FULL - _MOST_CORRECTION, min(_FULL + _MOST_CORRECTION, factor))
+    return max(-_MOST_TARGET, min(_MOST_TARGET, target)) * factor >> 8
+
+
+def _read(file: Path) -> list[int]:
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise SettingsError(f"settings {file}: {error}") from error
+    words: list[int] = []
+    for name, size, _ in PARTS:
+        part = data.get(name) if isinstance(data, dict) else None
+        if not isinstance(part, list) or len(part) != size or not all(_is_word(word) for word in part):
+            raise SettingsError(f"settings {file}: {name}: expected {size} whole numbers from -32768 to 32767")
+        words += part
+    return words
+
+
+def _is_word(word: object) -> bool:
+    return isinstance(word, int) and not isinstance(word, bool) and word in INT16
