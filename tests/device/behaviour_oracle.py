@@ -108,8 +108,8 @@ class Behaviour:
     def tick(self, senses: Senses) -> Shown:
         self.shown.sounds = []
         self.perceive(senses)
-        if self.has_own_sounds:
-            self.shown.sounds += [2 for arrow in ARROWS if arrow in senses.touched]
+        touched = [arrow for arrow in ARROWS if arrow in senses.touched]
+        self.shown.sounds += [2] * (len(touched) if self.has_own_sounds else bool(touched))
         self.act(senses)
         return self.shown
 

@@ -78,14 +78,7 @@ class Bench:
 def feed(device: AsebaDevice, event: str, values: dict[str, tuple[int, ...]]) -> None:
     """A reading of the sensor that raises this event: these variables, the others of it as they are."""
     number = 0xFFFE - target().local_event_number(event)
-    found = next(((name, one) for name, one in bindings.sensors().items() if one.event == number), None)
-    if found is None:
-        for name, words in values.items():
-            device.set_variable(name, words)
-        if number in device._handled:
-            device._arrived.add(number)
-        return
-    sensor, binding = found
+    sensor, binding = next((name, one) for name, one in bindings.sensors().items() if one.event == number)
     names = {address: name for name, (address, _size) in target().addresses.items()}
     words = [values.get(names[slot.address], device.get_variable(names[slot.address])) for slot in binding.slots]
     device.feed(sensor, [word for part in words for word in part])

@@ -72,6 +72,7 @@ class AsebaDevice:
         self._rc5 = self._event_index("rc5")
         self._rules = OwnRules(self._addresses)
         self._rules_ns = 0
+        self._now_ns = 0
         self._has_used_sound = False
         self._last: dict[str, list[int]] = {}
         self._event = ""
@@ -168,10 +169,7 @@ class AsebaDevice:
         """Simulated time has come so far; `run` raises the events of timers whose period ended on the way."""
         self._queue.advance(now_ns)
         self.body.advance(now_ns, self._vm.variables[self._intensity])
-        if not 0 <= now_ns - self._rules_ns < PERIOD_NS:
-            self._rules_ns = now_ns - now_ns % PERIOD_NS
-            if self._state != OFF:
-                self._commands += self._rules.look(self._vm.variables)
+        self._now_ns = now_ns
 
     def run(self, budget: int) -> None:
         """Execute handlers until nothing waits, or so many instructions were executed."""
@@ -256,7 +254,15 @@ class AsebaDevice:
         self._state, self._fault = OFF, None
 
     def take_commands(self) -> list[Command]:
-        """What the program told the actuators since the last time: native calls, then changed variables."""
+        """What the program and the robot itself told the actuators since the last time.
+
+        First native calls, then what the robot's own rules show, since a program may just have taken them over, then
+        changed variables.
+        """
+        if not 0 <= self._now_ns - self._rules_ns < PERIOD_NS:
+            self._rules_ns = self._now_ns - self._now_ns % PERIOD_NS
+            if self._state != OFF:
+                self._commands += self._rules.look(self._vm.variables)
         commands, self._commands = self._commands, []
         if not self._is_changed:
             return commands

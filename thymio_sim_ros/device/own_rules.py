@@ -200,8 +200,7 @@ class OwnRules:
     def __init__(self, addresses: Mapping[str, tuple[int, int]]) -> None:
         """`addresses`: where the variables lie; a rule that misses one of its variables is left out."""
         self._addresses = addresses
-        self._buttons = [addresses[f"button.{button}"][0] for button in ("backward", "left", "forward", "right")]
-        self._center = addresses["button.center"][0]
+        self._buttons = [addresses[name][0] for name in _Buttons.variables]
         self._spans = _spans(addresses)
         self.reset()
 
@@ -219,7 +218,7 @@ class OwnRules:
         self._taken: set[str] = set()
         self._last: list[list[int]] = []
         self._is_moving = True
-        self._pressed = (0, 0)
+        self._pressed = [0] * len(self._buttons)
         self._is_silent = False
 
     def take(self, group: str) -> None:
@@ -260,11 +259,11 @@ class OwnRules:
                     yield ShowOnLeds(group, levels)
 
     def _sounds(self, memory: Sequence[int]) -> Iterator[Command]:
-        before = self._pressed
-        arrows, center = self._pressed = (sum(memory[address] for address in self._buttons), memory[self._center])
+        before, self._pressed = self._pressed, [memory[address] for address in self._buttons]
         if self._is_silent:
             return
-        if arrows > before[0]:
+        *arrows, center = (new and not old for new, old in zip(self._pressed, before, strict=True))
+        if any(arrows):
             yield PlaySystemSound(ARROW_SOUND)
-        if center > before[1]:
+        if center:
             yield PlaySystemSound(CENTER_SOUND)
