@@ -37,7 +37,9 @@ MESSAGES = frozenset({
 })  # fmt: skip
 ROS = MESSAGES | {"rclpy", "ament_index_python", "rosidl_parser", "rosidl_runtime_py"}
 ALL_OF_OURS = frozenset(PACKAGES)
-DECLARATIONS = _names("sim.commands", "sim.readings", "sim.units", "sim.sensors", "sim.actuators", "sim.aseba_face")
+DECLARATIONS = _names(
+    "sim.commands", "sim.readings", "sim.units", "sim.sensors", "sim.actuators", "sim.aseba_face", "sim.tones"
+)
 
 # The longest name that fits a module decides.
 RULES = {

@@ -14,10 +14,9 @@ from std_msgs.msg import (
     UInt8MultiArray,
 )
 
-from thymio_sim_ros.device import bindings
 from thymio_sim_ros.nodes.command_topics import ROWS, topic_of
 from thymio_sim_ros.nodes.convert import CommandError
-from thymio_sim_ros.sim.actuators import all_actuators
+from thymio_sim_ros.sim.actuators import all_actuators, leds, loudspeaker
 from thymio_sim_ros.sim.commands import (
     LED_GROUPS,
     MotorTargets,
@@ -75,8 +74,9 @@ def test_a_released_group_arrives_dark(group):
     assert arrived in (command, SetLeds(group, (0, 0, 0)))
 
 
-def test_every_command_of_a_reset_has_a_topic():
-    assert [command for command in bindings.at_reset() if topic_of(command) not in BY_TOPIC] == []
+@pytest.mark.parametrize("actuator", [leds.ACTUATOR, loudspeaker.ACTUATOR], ids=lambda actuator: actuator.name)
+def test_every_command_of_a_reset_has_a_topic(actuator):
+    assert [command for command in actuator.aseba.at_reset if topic_of(command) not in BY_TOPIC] == []
 
 
 def test_every_row_gives_commands_that_an_actuator_takes():
