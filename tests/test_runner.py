@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import itertools
 import json
-import math
 
 import pytest
 
-from tests.tracks import distance_to, track_points
+from tests.tracks import farthest_in_laps
 from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runner import Runner
@@ -37,22 +36,6 @@ TWO = json.dumps(
 
 def line_runner(seed):
     return Runner(load_playground("line")[1], read_program("line_follower"), seed=seed)
-
-
-def farthest_in_laps(runner, laps):
-    """Largest distance in m of the ground sensors' middle from the line's middle during so many laps."""
-    robot = runner.world.robots["thymio"]
-    points = track_points("line")
-    middle = (sum(x for x, _ in points) / len(points), sum(y for _, y in points) / len(points))
-    turned, farthest, last = 0.0, 0.0, None
-    while turned < laps * math.tau:
-        assert runner.now_ns < laps * 60e9
-        runner.run(0.1)
-        angle = math.atan2(robot.pose.y_m - middle[1], robot.pose.x_m - middle[0])
-        turned += 0.0 if last is None else math.remainder(angle - last, math.tau)
-        last = angle
-        farthest = max(farthest, distance_to(points, robot.pose.place((0.072, 0.0))))
-    return farthest
 
 
 @pytest.mark.parametrize("seed", range(10))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.geometry import Point
 from thymio_sim_ros.sim.shapes.track import Track
 
@@ -19,6 +20,22 @@ def track_points(playground: str) -> list[Point]:
 def distance_to(points: list[Point], point: Point) -> float:
     """Distance in metres from a closed line through these points."""
     return min(_to_segment(point, a, b) for a, b in zip(points, [*points[1:], points[0]], strict=True))
+
+
+def farthest_in_laps(runner: Runner, laps: float) -> float:
+    """Largest distance in m of the ground sensors' middle from the line's middle during so many laps of the line."""
+    robot = runner.world.robots["thymio"]
+    points = track_points("line")
+    middle = (sum(x for x, _ in points) / len(points), sum(y for _, y in points) / len(points))
+    turned, farthest, last = 0.0, 0.0, math.nan
+    while turned < laps * math.tau:
+        assert runner.now_ns < laps * 60e9
+        runner.run(0.1)
+        angle = math.atan2(robot.pose.y_m - middle[1], robot.pose.x_m - middle[0])
+        turned += 0.0 if math.isnan(last) else math.remainder(angle - last, math.tau)
+        last = angle
+        farthest = max(farthest, distance_to(points, robot.pose.place((0.072, 0.0))))
+    return farthest
 
 
 def _to_segment(point: Point, a: Point, b: Point) -> float:

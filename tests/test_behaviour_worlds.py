@@ -1,0 +1,266 @@
+"""Every built-in behaviour in a world that shows it: robots with fingers on their buttons, walls, lines, each other."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import pytest
+
+from tests.sim.builders import box, make
+from tests.tracks import farthest_in_laps
+from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.loading import load_playground, read_program
+from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.sim.actuators.leds import LedState
+from thymio_sim_ros.sim.actuators.loudspeaker import LoudspeakerState
+from thymio_sim_ros.sim.commands import MoveRobot
+
+ROBOT = "thymio"
+HALL = {"kind": "rectangle", "name": "hall", "size_x_m": 4.0, "size_y_m": 4.0, "color": "#ffffff"}
+WALKER = load_program("motor.left.target = 80\nmotor.right.target = 80", "walker")
+
+
+def hall(robots: Mapping[str, tuple[float, float, float]], *things: Mapping[str, Any]) -> Any:
+    """A big white floor with robots at (x, y, yaw), and things."""
+    starts = [{"name": name, "x_m": x, "y_m": y, "yaw_rad": yaw} for name, (x, y, yaw) in robots.items()]
+    return make([HALL, *things], starts)
+
+
+def alone(behaviour: str, playground: Any = "base", *, seed: int = 0) -> Runner:
+    """A robot that was switched on with a behaviour, and has felt its sensors once."""
+    loaded = load_playground(playground)[1] if isinstance(playground, str) else playground
+    runner = Runner(loaded, behaviour=behaviour, seed=seed)
+    runner.run(0.12)
+    return runner
+
+
+def touch(runner: Runner, *buttons: str, robot: str = ROBOT) -> None:
+    """Put fingers on buttons together and take them off."""
+    for pressed in (True, False):
+        for button in buttons:
+            runner.press(robot, button, pressed=pressed)
+        runner.run(0.1)
+
+
+def targets(runner: Runner, robot: str = ROBOT) -> tuple[int, int]:
+    left, right = (runner.devices[robot].get_variable(f"motor.{side}.target")[0] for side in ("left", "right"))
+    return left, right
+
+
+def top(runner: Runner, robot: str = ROBOT) -> tuple[int, ...]:
+    return runner.world.robots[robot].state(LedState).levels["top"]
+
+
+def is_silent(runner: Runner) -> bool:
+    return runner.world.robots[ROBOT].state(LoudspeakerState).is_silent
+
+
+def gap(runner: Runner, one: str, other: str) -> float:
+    """Metres between the middles of two robots."""
+    a, b = (runner.world.robots[name].pose for name in (one, other))
+    return math.hypot(a.x_m - b.x_m, a.y_m - b.y_m)
+
+
+def contacts_in(runner: Runner, seconds: float) -> int:
+    """Ticks with a contact during so many simulated seconds."""
+    return sum(bool(runner.step().contacts) for _ in range(round(seconds * 100)))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_explorer_drives_about_for_a_minute_and_touches_nothing(seed: int) -> None:
+    runner = alone("explorer", seed=seed)
+    robot = runner.world.robots[ROBOT]
+    quarters = set()
+    for _ in range(60):
+        assert contacts_in(runner, 1.0) == 0
+        quarters.add((robot.pose.x_m > 0.0, robot.pose.y_m > 0.0))
+    assert len(quarters) == 4
+
+
+def test_explorer_drives_backwards_as_carefully() -> None:
+    runner = alone("explorer")
+    for _ in range(6):
+        touch(runner, "backward")
+    assert targets(runner) == (-150, -150)
+    assert contacts_in(runner, 20.0) == 0
+
+
+def test_friendly_follows_another_robot_and_does_not_touch_it() -> None:
+    playground = hall({"leader": (0.0, 0.0, 0.3), ROBOT: (-0.2, -0.06, 0.3)})
+    runner = Runner(playground, {"leader": WALKER, ROBOT: read_program("friendly")})
+    start = runner.world.robots[ROBOT].pose
+    assert contacts_in(runner, 20.0) == 0
+    end = runner.world.robots[ROBOT].pose
+    assert math.hypot(end.x_m - start.x_m, end.y_m - start.y_m) > 0.4
+    assert gap(runner, "leader", ROBOT) < 0.22
+
+
+def test_friendly_comes_to_rest_in_front_of_a_hand() -> None:
+    hand = box(0.22, 0.0, size_x_m=0.05, size_y_m=0.1)
+    runner = alone("friendly", hall({ROBOT: (0.0, 0.0, 0.0)}, hand))
+    assert runner.until(lambda: runner.devices[ROBOT].get_variable("arrived") == (1,), 10.0)
+    assert runner.until(lambda: not is_silent(runner), 0.1)
+    assert targets(runner) == (0, 0)
+    assert contacts_in(runner, 1.0) == 0
+
+
+def test_fearful_retreats_from_a_robot_that_comes() -> None:
+    playground = hall({"bully": (-0.5, 0.0, 0.0), ROBOT: (0.0, 0.0, math.pi)})
+    runner = Runner(playground, {"bully": WALKER, ROBOT: read_program("fearful")})
+    assert contacts_in(runner, 30.0) == 0
+    assert runner.world.robots[ROBOT].pose.x_m > 0.2
+
+
+def test_fearful_cries_while_it_is_trapped() -> None:
+    front = box(0.14, 0.0, size_x_m=0.05, size_y_m=0.4)
+    behind = box(-0.09, 0.0, size_x_m=0.05, size_y_m=0.4)
+    runner = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}, front, behind))
+    for _ in range(20):
+        assert targets(runner) == (0, 0)
+        runner.run(0.1)
+        assert runner.devices[ROBOT].get_variable("crying") == (1,)
+    runner.post(ROBOT, MoveRobot(1.0, 1.0, 0.0))
+    assert runner.until(lambda: is_silent(runner), 1.0)
+
+
+def test_fearful_stands_still_while_nothing_is_near() -> None:
+    runner = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    runner.run(5.0)
+    assert runner.world.robots[ROBOT].pose.x_m == 0.0
+    assert is_silent(runner)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_investigator_follows_the_line_for_three_laps(seed: int) -> None:
+    assert farthest_in_laps(alone("investigator", "line", seed=seed), 3) < 0.025
+
+
+def test_obedient_obeys_the_buttons() -> None:
+    runner = alone("obedient", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    seen = []
+    for buttons in (["forward"], ["forward"], ["right"], ["forward"], ["left"], ["left", "right"], ["backward"]):
+        touch(runner, *buttons)
+        seen.append(targets(runner))
+    assert seen == [(150, 150), (300, 300), (450, 150), (300, 300), (150, 450), (300, 300), (150, 150)]
+    touch(runner, "forward", "backward")
+    assert targets(runner) == (0, 0)
+    assert runner.world.robots[ROBOT].pose.x_m > 0.05
+
+
+def test_a_behaviour_stops_where_the_table_ends() -> None:
+    table = {"kind": "rectangle", "name": "table", "size_x_m": 0.8, "size_y_m": 0.8, "color": "#ffffff"}
+    runner = alone("explorer", make([table], [{"name": ROBOT, "x_m": 0.0, "y_m": 0.0}]))
+    assert runner.until(lambda: runner.now_ns > 10**9 and targets(runner) == (0, 0), 20.0)
+    runner.run(1.0)
+    assert runner.world.robots[ROBOT].state(LedState).levels["bottom_left"] == (32, 0, 0)
+    assert runner.world.robots[ROBOT].pose.x_m < 0.4
+
+
+def test_a_finger_chooses_a_behaviour_in_the_menu_and_ends_it() -> None:
+    runner = alone("menu")
+    assert top(runner) == (0, 32, 0)
+    touch(runner, "right")
+    assert top(runner) == (32, 32, 0)
+    runner.run(2.0)
+    touch(runner, "center")
+    runner.run(2.0)
+    assert runner.hosts[ROBOT].program.name == "explorer.aesl"
+    assert runner.world.robots[ROBOT].pose.x_m > 0.05
+    touch(runner, "center")
+    assert runner.hosts[ROBOT].program.name == "menu.aesl"
+    stopped = runner.world.robots[ROBOT].pose
+    runner.run(1.0)
+    assert runner.world.robots[ROBOT].pose == stopped
+    assert runner.emitted == []
+
+
+def test_each_robot_has_a_menu_of_its_own() -> None:
+    runner = Runner(hall({"anna": (0.0, 0.5, 0.0), "bert": (0.0, -0.5, 0.0)}), behaviour="menu")
+    runner.run(2.5)
+    touch(runner, "center", robot="anna")
+    assert [runner.hosts[name].program.name for name in ("anna", "bert")] == ["friendly.aesl", "menu.aesl"]
+
+
+def test_a_reset_of_the_world_switches_the_robot_on_again() -> None:
+    runner = alone("menu")
+    runner.run(2.5)
+    touch(runner, "center")
+    runner.reset()
+    assert runner.hosts[ROBOT].program.name == "menu.aesl"
+    touch(runner, "center")
+    assert runner.hosts[ROBOT].program.name == "menu.aesl"
+
+
+def test_the_centre_button_leads_round_the_behaviours_of_the_thesis() -> None:
+    runner = alone("thesis_basic")
+    names = []
+    for _ in range(3):
+        touch(runner, "center")
+        names.append(runner.hosts[ROBOT].program.name)
+    assert names == ["thesis_explorer.aesl", "thesis_track_follower.aesl", "thesis_basic.aesl"]
+
+
+@pytest.mark.parametrize(
+    ("arrow", "expected"),
+    [("forward", (400, 400)), ("backward", (-400, -400)), ("left", (-100, 400)), ("right", (400, -100))],
+)
+def test_basic_of_the_thesis_drives_on_after_a_press(arrow: str, expected: Sequence[int]) -> None:
+    runner = alone("thesis_basic")
+    touch(runner, arrow)
+    runner.run(1.0)
+    assert targets(runner) == expected
+
+
+@pytest.mark.parametrize("arrow", ["forward", "backward"])
+def test_basic_of_the_thesis_stops_at_what_is_in_the_way(arrow: str) -> None:
+    runner = alone("thesis_basic")
+    touch(runner, arrow)
+    assert contacts_in(runner, 8.0) == 0
+    assert targets(runner) == (0, 0)
+    assert abs(runner.world.robots[ROBOT].pose.x_m) > 0.3
+
+
+@pytest.mark.parametrize("playground", ["base", "borderless"])
+def test_explorer_of_the_thesis_turns_away_from_walls_and_borders(playground: str) -> None:
+    runner = alone("thesis_explorer", playground)
+    touch(runner, "forward")
+    robot = runner.world.robots[ROBOT]
+    headings = set()
+    for _ in range(40):
+        assert contacts_in(runner, 1.0) == 0
+        headings.add(round(robot.pose.yaw_rad))
+        assert math.hypot(robot.pose.x_m, robot.pose.y_m) < 1.3
+    assert len(headings) > 3
+    touch(runner, "backward")
+    assert targets(runner) == (0, 0)
+
+
+def test_explorer_of_the_thesis_turns_by_hand() -> None:
+    runner = alone("thesis_explorer")
+    touch(runner, "left")
+    runner.run(1.0)
+    assert 1.0 < runner.world.robots[ROBOT].pose.yaw_rad < 1.6
+    assert targets(runner) == (0, 0)
+
+
+def test_track_follower_of_the_thesis_stops_at_the_end_of_the_track() -> None:
+    runner = alone("thesis_track_follower", "borderless")
+    touch(runner, "forward")
+    assert runner.until(lambda: runner.devices[ROBOT].get_variable("doing") == (0,), 60.0)
+    end = runner.world.robots[ROBOT].pose
+    assert math.dist((end.x_m, end.y_m), (1.04, -0.64)) < 0.1
+    assert targets(runner) == (0, 0)
+
+
+@pytest.mark.slow
+def test_track_follower_of_the_thesis_goes_round_between_the_obstacles() -> None:
+    runner = alone("thesis_track_follower", "obstacle")
+    robot = runner.world.robots[ROBOT]
+    touch(runner, "forward")
+    corners = [(0.7, -0.45), (-0.4, -0.8), (-0.36, 0.0), (-0.8, 0.6), (0.0, 0.9), (0.7, 0.45), (0.3, 0.0)]
+    for corner in corners:
+        assert runner.until(lambda at=corner: math.dist((robot.pose.x_m, robot.pose.y_m), at) < 0.1, 60.0), corner
+    assert runner.until(lambda: runner.devices[ROBOT].get_variable("doing") == (0,), 60.0)
+    assert math.hypot(robot.pose.x_m, robot.pose.y_m) < 0.15
