@@ -10,8 +10,11 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from thymio_sim_ros.sim import playground
-from thymio_sim_ros.sim.primitives import Disc
+from thymio_sim_ros.sim import playground, thymio2
+from thymio_sim_ros.sim.geometry import Point, Pose, convex_hulls_overlap
+from thymio_sim_ros.sim.ground import Ground
+from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.primitives import Box, Disc, Print
 from thymio_sim_ros.sim.shapes.track import Track
 from thymio_sim_ros.sim.world import World
 
@@ -20,27 +23,48 @@ SCHEMA = FOLDER / "playground.schema.json"
 SHIPPED = sorted(path for path in FOLDER.glob("*.json") if path != SCHEMA)
 
 
-def test_the_three_of_the_thesis_and_the_line_are_there() -> None:
-    assert {"base", "borderless", "obstacle", "line"} <= {path.stem for path in SHIPPED}
+LANGUAGES = ["de", "fr", "it"]
+
+
+def loaded(name: str) -> Playground:
+    return playground.load(FOLDER / f"{name}.json")
+
+
+def test_their_names_stay_as_they_are() -> None:
+    assert [path.stem for path in SHIPPED] == [
+        "arena", "base", "borderless", "calibration", "classroom", "gate", "line", "line_eight", "line_gaps",
+        "line_gradient", "maze", "obstacle", "table", "two_robots",
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_playground_loads_and_runs(path: Path) -> None:
     world = World(playground.load(path))
     world.step()
-    assert len(world.robots) == 1
+    assert world.robots
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_playground_has_a_title_and_a_description(path: Path) -> None:
-    loaded = playground.load(path)
-    assert loaded.title
-    assert loaded.description.endswith(".")
+    shown = playground.headline(path)
+    assert shown.title
+    assert shown.description.endswith(".")
+    assert [language for language, _ in shown.translations] == LANGUAGES
+    assert all(text.title and text.description.endswith(".") for _, text in shown.translations)
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_a_shipped_playground_leaves_nothing_to_remark(path: Path) -> None:
+    assert playground.load(path).notes == ()
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_playground_fits_the_published_schema(path: Path) -> None:
     jsonschema.validate(json.loads(path.read_text()), json.loads(SCHEMA.read_text()))
+
+
+def test_the_schema_is_a_valid_one() -> None:
+    jsonschema.Draft202012Validator.check_schema(json.loads(SCHEMA.read_text()))
 
 
 def test_the_published_schema_is_the_one_of_the_shapes() -> None:
@@ -54,37 +78,128 @@ def test_the_schema_refuses_what_the_loader_refuses() -> None:
 
 
 def test_base_is_a_metre_square_that_is_free_inside_0_98() -> None:
-    loaded = playground.load(FOLDER / "base.json")
-    inner = [min(abs(x) for x, _ in wall.vertices) for wall in loaded.solids if abs(wall.pose.x_m) > 0.1]
+    world = loaded("base")
+    inner = [min(abs(x) for x, _ in wall.vertices) for wall in world.solids if abs(wall.pose.x_m) > 0.1]
     assert inner == pytest.approx([0.49, 0.49])
-    assert {wall.height_m for wall in loaded.solids} == {0.12}
+    assert {wall.height_m for wall in world.solids} == {0.12}
 
 
 def test_borderless_has_a_track_of_1_31_m_that_ends_before_the_edge_and_no_walls() -> None:
-    loaded = playground.load(FOLDER / "borderless.json")
-    (points,) = (named.shape.points_m for named in loaded.shapes if isinstance(named.shape, Track))
+    world = loaded("borderless")
+    (points,) = (named.shape.points_m for named in world.shapes if isinstance(named.shape, Track))
     length = sum(math.dist(a, b) for a, b in itertools.pairwise(points))
     apothem = (1 + math.sqrt(2)) / 2
     to_edge = apothem - (points[-1][0] - points[-1][1]) / math.sqrt(2)
     assert length == pytest.approx(1.31, abs=0.01)
     assert to_edge == pytest.approx(0.019, abs=0.001)
-    assert loaded.solids == ()
+    assert world.solids == ()
 
 
 def test_obstacle_has_24_cylinders_and_a_track_of_6_88_m() -> None:
-    loaded = playground.load(FOLDER / "obstacle.json")
-    (points,) = (named.shape.points_m for named in loaded.shapes if isinstance(named.shape, Track))
-    discs = [solid for solid in loaded.solids if isinstance(solid.outline, Disc)]
+    world = loaded("obstacle")
+    (points,) = (named.shape.points_m for named in world.shapes if isinstance(named.shape, Track))
+    discs = [solid for solid in world.solids if isinstance(solid.outline, Disc)]
     assert sum(math.dist(a, b) for a, b in itertools.pairwise(points)) == pytest.approx(6.88, abs=0.01)
     assert len(discs) == 24
-    assert len(loaded.solids) == 24 + 8 + 3
+    assert len(world.solids) == 24 + 8 + 3
 
 
 def test_line_is_black_40_mm_wide_and_never_tighter_than_20_cm() -> None:
-    loaded = playground.load(FOLDER / "line.json")
-    (track,) = (named.shape for named in loaded.shapes if isinstance(named.shape, Track))
+    world = loaded("line")
+    (track,) = (named.shape for named in world.shapes if isinstance(named.shape, Track))
     assert (track.closed, track.color, track.width_m) == (True, "#000000", 0.04)
     assert track.corner_radius_m >= 0.2
+
+
+@pytest.mark.parametrize("name", ["line", "line_eight", "line_gaps", "line_gradient", "classroom"])
+def test_robots_start_with_both_ground_sensors_on_the_line(name: str) -> None:
+    world = loaded(name)
+    ground = Ground(world.floors, world.paints)
+    seen = [
+        ground.sample(*robot.pose.place(place)).reflectance
+        for robot in world.robots
+        for place in thymio2.GROUND_SENSORS
+    ]
+    assert max(seen) < 0.3
+
+
+def test_the_soft_line_gets_steadily_brighter_to_both_sides() -> None:
+    world = loaded("line_gradient")
+    assert [type(mark) for mark in world.paints] == [Print]
+    ground = Ground(world.floors, world.paints)
+    for side in (1, -1):
+        greys = [ground.sample(0.0, -0.38 + side * step * 0.005).reflectance for step in range(2, 13)]
+        assert greys == sorted(greys)
+        assert (greys[0] < 0.2, greys[-1] > 0.95) == (True, True)
+
+
+def test_calibration_has_eleven_greys_in_equal_steps() -> None:
+    world = loaded("calibration")
+    ground = Ground(world.floors, world.paints)
+    greys = [ground.sample(-0.5 + 0.1 * step, 0.25).reflectance for step in range(11)]
+    assert greys == pytest.approx([step / 10 for step in range(11)], abs=0.002)
+
+
+def test_calibration_has_six_colors_and_stripes_of_known_width() -> None:
+    world = loaded("calibration")
+    ground = Ground(world.floors, world.paints)
+    colors = [ground.color_at(-0.5 + 0.1 * step, -0.05) for step in range(6)]
+    assert colors == [(1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 1, 1), (0, 0, 1), (1, 0, 1)]
+    dark = [ground.color_at(0.1 + step * 0.0001, -0.05) == (0.0, 0.0, 0.0) for step in range(4500)]
+    runs = [len(list(group)) / 10 for is_dark, group in itertools.groupby(dark) if is_dark]
+    assert runs == pytest.approx([2, 5, 10, 20, 40], abs=1)
+
+
+def test_the_goal_of_the_maze_can_be_reached_from_the_start() -> None:
+    world = loaded("maze")
+    cells = {(x, y) for x in range(6) for y in range(6)}
+
+    def middle(cell: tuple[int, int]) -> Point:
+        return (-0.5 + 0.2 * cell[0], -0.5 + 0.2 * cell[1])
+
+    def is_open(one: Point, other: Point) -> bool:
+        between = Pose((one[0] + other[0]) / 2, (one[1] + other[1]) / 2, 0.0)
+        passage = between.place_all(Box(0.12, 0.12).vertices)
+        return not any(convex_hulls_overlap(passage, wall.vertices) for wall in world.solids)
+
+    reached, waiting = {(0, 0)}, [(0, 0)]
+    while waiting:
+        x, y = waiting.pop()
+        for cell in ((x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)):
+            if cell in cells - reached and is_open(middle((x, y)), middle(cell)):
+                reached.add(cell)
+                waiting.append(cell)
+    assert reached == cells
+    assert world.robots[0].pose.place((0.0, 0.0)) == pytest.approx(middle((0, 0)))
+
+
+def test_the_arena_has_light_and_heavy_things_to_push_and_posts_that_stay() -> None:
+    inside = [solid for solid in loaded("arena").solids if solid.name != "ground"]
+    masses = [solid.load.mass_kg for solid in inside if solid.load is not None]
+    assert (len(masses), min(masses), max(masses)) == (10, 0.02, 0.35)
+    assert len(inside) - len(masses) == 4
+
+
+def test_two_robots_face_each_other_with_nothing_between() -> None:
+    world = World(loaded("two_robots"))
+    one, other = world.robots.values()
+    assert one.pose.place((0.5, 0.0)) == pytest.approx((other.pose.x_m, other.pose.y_m), abs=1e-4)
+    assert other.pose.place((0.5, 0.0)) == pytest.approx((one.pose.x_m, one.pose.y_m), abs=1e-4)
+
+
+def test_the_classroom_has_twenty_robots() -> None:
+    assert len(loaded("classroom").robots) == 20
+
+
+def test_the_table_has_no_border() -> None:
+    assert all(solid.load is not None for solid in loaded("table").solids)
+
+
+def test_the_gate_has_a_door_and_a_plate_on_either_side() -> None:
+    world = loaded("gate")
+    assert [solid.name for solid in world.solids if solid.slide is not None] == ["door"]
+    assert [trigger.door for trigger in world.triggers] == ["door", "door"]
+    assert [trigger.holds(x, -0.25) for trigger, x in zip(world.triggers, (-0.3, 0.3), strict=True)] == [True, True]
 
 
 def test_the_example_of_the_readme_loads() -> None:

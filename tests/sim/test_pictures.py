@@ -64,12 +64,22 @@ def test_a_jpeg_is_read() -> None:
     assert color_at(decode(data_uri(out.getvalue(), "image/jpeg")), 3, 3) == WHITE
 
 
-def test_an_svg_is_drawn_two_pixels_for_each_millimetre() -> None:
+def test_an_svg_is_drawn_a_pixel_for_each_millimetre() -> None:
     pytest.importorskip("resvg_py")
-    found = decode(svg_uri('<rect width="50" height="50" fill="#808080"/>'), 0.1)
+    found = decode(svg_uri('<rect width="50" height="50" fill="#808080"/>'), 0.2)
     assert (found.columns, found.rows) == (200, 100)
     assert color_at(found, 50, 50) == (128, 128, 128, 255)
     assert color_at(found, 150, 50)[3] == 0
+
+
+@pytest.mark.parametrize(
+    "attributes",
+    ['width="20mm" height="10mm" viewBox="-5 -5 10 5"', 'width="200" height="100"', 'width="100%" viewBox="0,0,2,1"'],
+)
+def test_the_size_of_an_svg_may_be_written_in_many_ways(attributes: str) -> None:
+    pytest.importorskip("resvg_py")
+    found = decode(svg_uri('<rect x="-500" y="-500" width="1000" height="1000"/>', attributes), 0.2)
+    assert (found.columns, found.rows, color_at(found, 100, 50)) == (200, 100, BLACK)
 
 
 @pytest.mark.parametrize(

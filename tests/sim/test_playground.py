@@ -73,6 +73,9 @@ def test_broken_json_is_located() -> None:
         ({"title": None}, "title"),
         ({"title": "two\nlines"}, "title"),
         ({"title": "half a pair \ud800"}, "title"),
+        ({"translations": []}, "translations"),
+        ({"translations": {"German": {"title": "x"}}}, "translations.German"),
+        ({"translations": {"de": {"description": "x"}}}, "translations.de.title"),
         ({"shapes": {}}, "shapes"),
         ({"shapes": [1]}, "shapes[0]"),
         ({"shapes": [{"kind": "pyramid"}]}, "shapes[0].kind"),
@@ -236,3 +239,9 @@ def test_a_text_has_no_file_beside_it() -> None:
 
 def test_a_picture_that_cannot_be_read_is_refused_at_its_key() -> None:
     assert refused(with_picture("data:image/png;base64,AAAA")).key == "shapes[1].image"
+
+
+def test_titles_may_be_translated() -> None:
+    text = json.dumps({**GOOD, "translations": {"de": {"title": "Ein Titel"}}})
+    ((language, translation),) = playground.loads(text, "mine").translations
+    assert (language, translation.title, translation.description) == ("de", "Ein Titel", "")

@@ -97,14 +97,19 @@ class WorldPorts:
         self._diagnostics.publish(message)
 
 
-def shipped_playgrounds() -> list[dict[str, str]]:
-    """Name, title and description of every shipped playground that loads."""
-    listed = []
+def shipped_playgrounds() -> list[dict[str, object]]:
+    """Name, title, description and their translations of every shipped playground."""
+    listed: list[dict[str, object]] = []
     for name, path in resources.playgrounds().items():
         try:
-            playground = playgrounds.load(path)
+            shown = playgrounds.headline(path)
         except PlaygroundError as error:
             logging.getLogger(__name__).warning("playground left out: %s", error)
             continue
-        listed.append({"name": name, "title": playground.title, "description": playground.description})
+        translations = {
+            language: {"title": text.title, "description": text.description} for language, text in shown.translations
+        }
+        listed.append(
+            {"name": name, "title": shown.title, "description": shown.description, "translations": translations}
+        )
     return listed

@@ -33,9 +33,11 @@ MAX_PICTURE_BYTES = 4_000_000
 MAX_SIDE = 8192
 MAX_PIXELS = 25_000_000
 """As many as a ground has at most (sim/ground.py)."""
-SVG_PIXEL_M = 0.0005
-"""An SVG is drawn this fine: two pixels for each of the ground's."""
+SVG_PIXEL_M = 0.001
+"""An SVG is drawn this fine, like the ground; its edges are smooth all the same."""
 MAX_SVG_SIDE = 4096
+CSS_DPI = 96.0
+"""What a millimetre in an SVG is in pixels; only proportions matter here."""
 MAX_SVG_PARTS = 20_000
 """Elements that are drawn, those repeated by <use> counted each time."""
 
@@ -142,7 +144,9 @@ def _draw_svg(data: bytes, key: str, width_m: float) -> bytes:
     columns = min(columns, math.floor(MAX_SVG_SIDE / ratio))
     resvg = _module("resvg_py", "resvg-py", key)
     try:
-        drawn: bytes = resvg.svg_to_bytes(svg_string=data.decode("utf-8"), width=columns, skip_system_fonts=True)
+        drawn: bytes = resvg.svg_to_bytes(
+            svg_string=data.decode("utf-8"), width=columns, dpi=CSS_DPI, skip_system_fonts=True
+        )
     except ValueError as error:
         raise FieldError(key, f"an SVG that cannot be drawn ({error})", "a whole SVG in UTF-8") from error
     return drawn

@@ -1,11 +1,13 @@
 """Playground files: JSON text → a frozen `Playground`, or a `PlaygroundError` that says where and why.
 
-Format 1: `format`, `title`, `description`, `shapes` (each with `kind`, optional `name`, and the fields of its
-kind, see `sim/shapes`), `robots` (`name`, `x_m`, `y_m`, `yaw_rad`). Data only, SI units; unknown keys are refused.
+Format 1: `format`, `title`, `description`, `translations`, `shapes` (each with `kind`, optional `name`, and the
+fields of its kind, see `sim/shapes`), `robots` (`name`, `x_m`, `y_m`, `yaw_rad`, `pen`). Data only, SI units; unknown
+keys are refused.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import combinations
@@ -31,12 +33,26 @@ from thymio_sim_ros.sim.primitives import Disc, Floor, Mark, Paint, Primitive, P
 from thymio_sim_ros.sim.shapes import Shape, ShapeKind, all_shapes
 from thymio_sim_ros.sim.source import MAX_BYTES, Beside
 
-__all__ = ["NamedShape", "PenStart", "Playground", "PlaygroundError", "RobotStart", "load", "loads", "schema"]
+__all__ = [
+    "Headline",
+    "NamedShape",
+    "PenStart",
+    "Playground",
+    "PlaygroundError",
+    "RobotStart",
+    "Translation",
+    "headline",
+    "load",
+    "loads",
+    "schema",
+]
 
 FORMAT = 1
 MAX_SHAPES = 1000
 MAX_ROBOTS = 100
 MAX_PRIMITIVES = 10_000
+MAX_TRANSLATIONS = 50
+LANGUAGE = "[a-z]{2,3}(-[A-Za-z0-9]{2,8})*"
 
 
 class PlaygroundError(Exception):
@@ -86,6 +102,23 @@ class NamedShape:
 
 
 @dataclass(frozen=True, slots=True)
+class Translation:
+    """Title and description in another language."""
+
+    title: Text
+    description: Text = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Headline:
+    """What a list of playgrounds shows; translations by language code."""
+
+    title: str
+    description: str
+    translations: tuple[tuple[str, Translation], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Playground:
     """A checked playground.
 
@@ -100,6 +133,8 @@ class Playground:
     solids: tuple[Solid, ...]
     floors: tuple[Floor, ...]
     paints: tuple[Mark, ...]
+    translations: tuple[tuple[str, Translation], ...] = ()
+    """By language code, in the order of the file; `title` and `description` are English."""
     triggers: tuple[Trigger, ...] = ()
     notes: tuple[str, ...] = ()
     """What a person should know: what a converted file cannot express, what looks like a mistake."""
@@ -114,13 +149,19 @@ class _Titles:
 def load(path: str | Path) -> Playground:
     """The playground of a file, named after it; PlaygroundError also when it can't be read."""
     path = Path(path)
+    return _read(_content(path), path.stem, str(path), source.folder(path.parent))
+
+
+def headline(path: Path) -> Headline:
+    """Title and description of a file without building it, for lists; PlaygroundError when they are not there."""
     try:
-        with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
-    except (OSError, ValueError) as error:
-        found = getattr(error, "strerror", None) or "an error"
-        raise PlaygroundError(str(path), "", found, "a readable file") from error
-    return _read(data, path.stem, str(path), source.folder(path.parent))
+        found = source.read_source(_content(path), path.stem, source.folder(path.parent))
+        members = _members(found.data)
+        wanted = {key: members[key] for key in ("title", "description") if key in members}
+        titles = read(_Titles, wanted, "")
+        return Headline(titles.title, titles.description, _translations(members.get("translations", {})))
+    except FieldError as error:
+        raise PlaygroundError(str(path), error.key, error.found, error.expected) from error
 
 
 def loads(text: str | bytes, name: str) -> Playground:
@@ -142,9 +183,36 @@ def schema() -> dict[str, Any]:
         form["properties"]["name"] = name
         shapes.append(form)
     top = json_schema(_Titles, extra={"format": {"const": FORMAT}})
+    top["properties"]["translations"] = {
+        "type": "object",
+        "patternProperties": {f"^{LANGUAGE}$": json_schema(Translation)},
+        "additionalProperties": False,
+        "maxProperties": MAX_TRANSLATIONS,
+        "description": "title and description in other languages",
+    }
     top["properties"]["shapes"] = {"type": "array", "maxItems": MAX_SHAPES, "items": {"oneOf": shapes}}
     top["properties"]["robots"] = {"type": "array", "maxItems": MAX_ROBOTS, "items": json_schema(RobotStart)}
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "Thymio playground", **top}
+
+
+def _content(path: Path) -> bytes:
+    try:
+        with path.open("rb") as file:
+            return file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        found = getattr(error, "strerror", None) or "an error"
+        raise PlaygroundError(str(path), "", found, "a readable file") from error
+
+
+def _members(data: object) -> dict[str, object]:
+    """What is in a playground of a version that is read, without the version."""
+    if not isinstance(data, Mapping):
+        raise FieldError("", describe(data), "an object")
+    members = dict(data)
+    version = members.pop("format", None)
+    if version != FORMAT or isinstance(version, bool):
+        raise FieldError("format", describe(version), str(FORMAT))
+    return members
 
 
 def _read(data: bytes, name: str, path: str, beside: Beside) -> Playground:
@@ -164,14 +232,10 @@ def _original(key: str, places: Mapping[str, str]) -> str:
 
 
 def _build(data: object, name: str, beside: Beside, notes: tuple[str, ...]) -> Playground:
-    if not isinstance(data, Mapping):
-        raise FieldError("", describe(data), "an object")
-    members = dict(data)
-    version = members.pop("format", None)
-    if version != FORMAT or isinstance(version, bool):
-        raise FieldError("format", describe(version), str(FORMAT))
+    members = _members(data)
     shape_items = _items(members.pop("shapes", []), "shapes", MAX_SHAPES)
     robot_items = _items(members.pop("robots", []), "robots", MAX_ROBOTS)
+    translations = _translations(members.pop("translations", {}))
     titles = read(_Titles, members, "")
     kinds = {kind.name: kind for kind in all_shapes()}
     shapes = tuple(_shape(item, index, kinds, beside) for index, item in enumerate(shape_items))
@@ -191,9 +255,19 @@ def _build(data: object, name: str, beside: Beside, notes: tuple[str, ...]) -> P
         solids=solids,
         floors=floors,
         paints=tuple(primitive for primitive in primitives if isinstance(primitive, Paint | Print)),
+        translations=translations,
         triggers=tuple(primitive for primitive in primitives if isinstance(primitive, Trigger)),
         notes=(*notes, *_off_floor(robots, floors)),
     )
+
+
+def _translations(value: object) -> tuple[tuple[str, Translation], ...]:
+    if not isinstance(value, Mapping) or len(value) > MAX_TRANSLATIONS:
+        raise FieldError("translations", describe(value), f"an object with at most {MAX_TRANSLATIONS} languages")
+    for language in value:
+        if not re.fullmatch(LANGUAGE, language):
+            raise FieldError(f"translations.{language}", describe(language), "a language code such as de")
+    return tuple((language, read(Translation, text, f"translations.{language}")) for language, text in value.items())
 
 
 def _items(value: object, key: str, most: int) -> list[object]:

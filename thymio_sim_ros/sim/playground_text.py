@@ -13,7 +13,10 @@ __all__ = ["dumps"]
 
 def dumps(playground: Playground) -> str:
     """JSON that loads as the same playground by itself: pictures are in it, defaults are left out."""
-    head = {"format": FORMAT, "title": playground.title, "description": playground.description}
+    head: dict[str, object] = {"format": FORMAT, "title": playground.title, "description": playground.description}
+    translations = {language: fields.write(text) for language, text in playground.translations}
+    if translations:
+        head["translations"] = translations
     shapes = [{"kind": named.kind, "name": named.name} | fields.write(named.shape) for named in playground.shapes]
     robots = [fields.write(robot) for robot in playground.robots]
     members = [f"  {_line(key)}: {_line(value)}" for key, value in head.items()]

@@ -110,7 +110,9 @@ def test_the_texture_covers_the_world_with_its_first_row_on_the_far_side() -> No
 
 def test_the_description_is_the_english_one() -> None:
     body = '<description lang="fr">Un labyrinthe</description><description lang="en">A\n maze.</description>'
-    assert converted(body).description == "A maze."
+    found = converted(body)
+    assert found.description == "A maze."
+    assert found.translations == {"fr": {"title": "mine", "description": "Un labyrinthe"}}
 
 
 @pytest.mark.parametrize(

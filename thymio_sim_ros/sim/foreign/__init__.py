@@ -18,6 +18,7 @@ class Conversion:
 
     title: str
     description: str = ""
+    translations: dict[str, dict[str, str]] = field(default_factory=dict)
     shapes: list[dict[str, Any]] = field(default_factory=list)
     robots: list[dict[str, Any]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -40,6 +41,7 @@ class Conversion:
             "format": 1,
             "title": self.title,
             "description": self.description,
+            "translations": self.translations,
             "shapes": self.shapes,
             "robots": self.robots,
         }

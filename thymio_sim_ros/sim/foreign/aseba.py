@@ -49,7 +49,11 @@ class _Reader:
 
     def __init__(self, root: Element, name: str) -> None:
         self._root = root
-        self._out = Conversion(title=name, description=_description(root))
+        descriptions = _descriptions(root)
+        english = descriptions.pop("en", next(iter(descriptions.values()), ""))
+        self._out = Conversion(title=name, description=english)
+        for language, text in descriptions.items():
+            self._out.translations[language] = {"title": name, "description": text}
         self._names = Names()
         self._colors = {
             element.attributes.get("name", ""): _color(element) for element in root.children if element.tag == "color"
@@ -225,12 +229,14 @@ def _place(element: Element) -> str:
     return f"line {element.line}: <{element.tag}>"
 
 
-def _description(root: Element) -> str:
-    """The English description, or the first one, in one line."""
-    found = [element for element in root.children if element.tag == "description"]
-    english = [element for element in found if element.attributes.get("lang", "en").startswith("en")]
-    text = "".join(part.text for element in (english or found)[:1] for part in element.walk())
-    return " ".join(text.split())[:2000]
+def _descriptions(root: Element) -> dict[str, str]:
+    """Language code → description in one line; one without a language is English."""
+    found: dict[str, str] = {}
+    for element in root.children:
+        if element.tag == "description":
+            text = "".join(part.text for part in element.walk())
+            found.setdefault(element.attributes.get("lang", "en").lower(), " ".join(text.split())[:2000])
+    return found
 
 
 def _color(element: Element) -> str:
