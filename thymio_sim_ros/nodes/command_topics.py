@@ -20,15 +20,18 @@ from std_msgs.msg import (
     Float32MultiArray,
     Int8,
     Int8MultiArray,
+    Int16,
     Int16MultiArray,
     UInt8MultiArray,
 )
 
 from thymio_sim_ros.nodes import convert, qos
-from thymio_sim_ros.nodes.convert import SECOND_NS, CommandError
+from thymio_sim_ros.nodes.convert import CommandError
+from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.actuators.pen import PEN_WIDTHS_M
 from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.sound import FULL_LEVEL
 from thymio_sim_ros.sim.tones import VOLUME_OFF, WAVE_LENGTH
 
 __all__ = ["BODY_LEDS", "ROWS", "CommandRow", "led_topic", "topic_of"]
@@ -76,6 +79,9 @@ _TOPICS: dict[type[Any], str] = {
     commands.PlaySamples: "sound/samples",
     commands.SetWave: "sound/wave",
     commands.SetVolume: "sound/volume",
+    commands.SetSoundThreshold: "sound_threshold",
+    commands.EnableComm: "comm/enable",
+    commands.SetCommPayload: "comm/tx",
 }
 
 
@@ -181,6 +187,32 @@ def _decode_volume(message: Int8) -> Command:
     return commands.SetVolume(int(message.data))
 
 
+def _encode_threshold(command: commands.SetSoundThreshold) -> Float32:
+    return Float32(data=command.level / FULL_LEVEL)
+
+
+def _decode_threshold(message: Float32) -> Command:
+    """0…1 of 255, or beyond: nothing is as loud."""
+    convert.finite(message.data, "threshold")
+    return commands.SetSoundThreshold(max(-0x8000, min(0x7FFF, round(message.data * FULL_LEVEL))))
+
+
+def _encode_enable(command: commands.EnableComm) -> Bool:
+    return Bool(data=command.is_enabled)
+
+
+def _decode_enable(message: Bool) -> Command:
+    return commands.EnableComm(bool(message.data))
+
+
+def _encode_payload(command: commands.SetCommPayload) -> Int16:
+    return Int16(data=command.value)
+
+
+def _decode_payload(message: Int16) -> Command:
+    return commands.SetCommPayload(int(message.data))
+
+
 def _decode_pen_down(message: Bool) -> Command:
     return commands.SetPen(down=bool(message.data))
 
@@ -216,6 +248,9 @@ def _rows() -> Iterator[CommandRow]:
     yield CommandRow("sound/samples", UInt8MultiArray, _decode_samples, _encode_samples, qos.EVENTS)
     yield CommandRow("sound/wave", Int8MultiArray, _decode_wave, _encode_wave, qos.EVENTS)
     yield CommandRow("sound/volume", Int8, _decode_volume, _encode_volume, qos.EVENTS)
+    yield CommandRow("sound_threshold", Float32, _decode_threshold, _encode_threshold)
+    yield CommandRow("comm/enable", Bool, _decode_enable, _encode_enable)
+    yield CommandRow("comm/tx", Int16, _decode_payload, _encode_payload)
     yield CommandRow("pen/down", Bool, _decode_pen_down)
     yield CommandRow("pen/color", ColorRGBA, _decode_pen_color)
     yield CommandRow("pen/width", Float32, _decode_pen_width)

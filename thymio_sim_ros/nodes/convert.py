@@ -11,18 +11,21 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point, Quaternion, TwistWithCovariance
 from geometry_msgs.msg import Pose as PoseMsg
 from geometry_msgs.msg import Twist as TwistMsg
 from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile
-from sensor_msgs.msg import JointState, Joy, LaserScan, Range
+from sensor_msgs.msg import BatteryState, Imu, JointState, Joy, LaserScan, Range, Temperature
 from std_msgs.msg import (
     Bool,
     ColorRGBA,
+    Empty,
+    Float32,
     Float32MultiArray,
+    Int8,
     Int8MultiArray,
+    Int16,
     Int16MultiArray,
     MultiArrayDimension,
     MultiArrayLayout,
@@ -30,14 +33,13 @@ from std_msgs.msg import (
 )
 from visualization_msgs.msg import Marker, MarkerArray
 
-from thymio_sim_ros.nodes import qos
+from thymio_sim_ros.nodes import qos, senses
+from thymio_sim_ros.nodes.headers import SECOND_NS, stamped
 from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
 from thymio_sim_ros.sim import commands, readings
 from thymio_sim_ros.sim.geometry import Pose, Twist
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.tones import VOLUME_OFF
-
-SECOND_NS = 1_000_000_000
 
 # The driver's constants of a Range (ros-interface.md section 3).
 PROXIMITY_MIN_M, PROXIMITY_MAX_M, PROXIMITY_FOV_RAD = 0.0215, 0.14, 0.3
@@ -82,11 +84,6 @@ class Row:
     on_change: bool = False
 
 
-def stamp(ns: int) -> Time:
-    """Simulated nanoseconds as a message."""
-    return Time(sec=ns // SECOND_NS, nanosec=ns % SECOND_NS)
-
-
 def quaternion(yaw_rad: float) -> Quaternion:
     """A turn about z."""
     return Quaternion(z=math.sin(yaw_rad / 2), w=math.cos(yaw_rad / 2))
@@ -110,7 +107,7 @@ def _range(reading: readings.ProximityReading, names: RobotNames, options: Conve
         max_range=PROXIMITY_MAX_M,
         range=value,
     )
-    return _stamped(message, reading.stamp_ns, names.frame(f"proximity_{PROXIMITY[index]}_link"))
+    return stamped(message, reading.stamp_ns, names.frame(f"proximity_{PROXIMITY[index]}_link"))
 
 
 def _laser(reading: readings.ProximityReading, names: RobotNames, _options: ConvertOptions) -> LaserScan:
@@ -125,7 +122,7 @@ def _laser(reading: readings.ProximityReading, names: RobotNames, _options: Conv
         ranges=[math.inf if math.isinf(r) else max(r, PROXIMITY_MIN_M) + LASER_OFFSET_M for r in ranges],
         intensities=[float(reading.words[i]) for i in front],
     )
-    return _stamped(message, reading.stamp_ns, names.frame("laser_link"))
+    return stamped(message, reading.stamp_ns, names.frame("laser_link"))
 
 
 def _ground(reading: readings.GroundReading, names: RobotNames, options: ConvertOptions, *, index: int) -> Range:
@@ -138,7 +135,7 @@ def _ground(reading: readings.GroundReading, names: RobotNames, options: Convert
         max_range=GROUND_MAX_M,
         range=not_reflecting if dark else reflecting,
     )
-    return _stamped(message, reading.stamp_ns, names.frame(f"ground_{SIDES[index]}_link"))
+    return stamped(message, reading.stamp_ns, names.frame(f"ground_{SIDES[index]}_link"))
 
 
 def _button(reading: readings.ButtonsReading, _names: RobotNames, _options: ConvertOptions, *, index: int) -> Bool:
@@ -146,7 +143,7 @@ def _button(reading: readings.ButtonsReading, _names: RobotNames, _options: Conv
 
 
 def _joy(reading: readings.ButtonsReading, names: RobotNames, _options: ConvertOptions) -> Joy:
-    return _stamped(Joy(buttons=list(reading.words)), reading.stamp_ns, names.frame("base_link"))
+    return stamped(Joy(buttons=list(reading.words)), reading.stamp_ns, names.frame("base_link"))
 
 
 def _joints(reading: readings.MotorReading, names: RobotNames, _options: ConvertOptions) -> JointState:
@@ -155,19 +152,19 @@ def _joints(reading: readings.MotorReading, names: RobotNames, _options: Convert
         position=list(reading.angles_rad),
         velocity=list(reading.velocities_rad_s),
     )
-    return _stamped(message, reading.stamp_ns, "")
+    return stamped(message, reading.stamp_ns, "")
 
 
 def _odometry(reading: readings.PoseReading, names: RobotNames, options: ConvertOptions) -> Odometry:
     message = _odometry_message(reading.odometry, reading.odometry_twist, options.pose_covariance, options)
     message.child_frame_id = names.frame("base_link")
-    return _stamped(message, reading.stamp_ns, names.frame("odom"))
+    return stamped(message, reading.stamp_ns, names.frame("odom"))
 
 
 def _truth(reading: readings.PoseReading, names: RobotNames, options: ConvertOptions) -> Odometry:
     message = _odometry_message(reading.truth, reading.truth_twist, (0.0,) * 6, options)
     message.child_frame_id = names.frame("base_link")
-    return _stamped(message, reading.stamp_ns, MAP_FRAME)
+    return stamped(message, reading.stamp_ns, MAP_FRAME)
 
 
 def _odometry_message(pose: Pose, twist: Twist, covariance: tuple[float, ...], options: ConvertOptions) -> Odometry:
@@ -212,7 +209,7 @@ def _trail(reading: readings.PenReading, names: RobotNames, _options: ConvertOpt
         marker.color = ColorRGBA(r=red, g=green, b=blue, a=1.0)
         marker.scale.x = stroke.width_m
         marker.points = [Point(x=x, y=y, z=TRAIL_M) for x, y in stroke.points]
-        message.markers.append(_stamped(marker, reading.stamp_ns, MAP_FRAME))
+        message.markers.append(stamped(marker, reading.stamp_ns, MAP_FRAME))
     return message
 
 
@@ -230,12 +227,6 @@ def layout(dimensions: Iterable[tuple[str, int]]) -> MultiArrayLayout:
     return MultiArrayLayout(
         dim=[MultiArrayDimension(label=label, size=size, stride=size) for label, size in dimensions]
     )
-
-
-def _stamped(message: Any, ns: int, frame: str) -> Any:
-    message.header.stamp = stamp(ns)
-    message.header.frame_id = frame
-    return message
 
 
 ROWS: dict[str, tuple[Row, ...]] = {
@@ -257,6 +248,14 @@ ROWS: dict[str, tuple[Row, ...]] = {
         Row("ground_truth/odom", Odometry, _truth),
     ),
     "leds": (Row("led/state", Float32MultiArray, _leds, profile=qos.LATCHED, always=True),),
+    "accelerometer": (Row("imu", Imu, senses.imu),),
+    "temperature": (Row("temperature", Temperature, senses.temperature),),
+    "battery": (Row("battery", BatteryState, senses.battery),),
+    "collision": (Row("collision", Bool, senses.collision, on_change=True, always=True),),
+    "tap": (Row("tap", Empty, senses.tap),),
+    "sound": (Row("sound", Float32, senses.sound),),
+    "remote": (Row("remote", Int8, senses.remote),),
+    "comm": (Row("comm/received", Int16, senses.received),),
     "pen": (Row("pen/trail", MarkerArray, _trail, profile=qos.LATCHED, always=True),),
     "loudspeaker": (
         Row("sound/state/wave", Int8MultiArray, _heard_wave, profile=qos.LATCHED, always=True, on_change=True),

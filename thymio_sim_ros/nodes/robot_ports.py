@@ -18,10 +18,11 @@ from std_msgs.msg import Bool, Empty, Float64MultiArray, String
 from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import Trigger
 
-from thymio_sim_ros.nodes import command_topics, convert, qos
+from thymio_sim_ros.nodes import command_topics, convert, operator_topics, qos
 from thymio_sim_ros.nodes.command_topics import CommandRow
 from thymio_sim_ros.nodes.convert import CommandError, ConvertOptions, Row
 from thymio_sim_ros.nodes.description import urdf
+from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
@@ -108,7 +109,10 @@ class RobotPorts:
             ("cmd_vel", TwistMsg, self._on_twist, qos.COMMAND),
             ("cmd_vel_stamped", TwistStamped, self._on_stamped_twist, qos.COMMAND),
             ("wheels/command", Float64MultiArray, self._on_wheels, qos.COMMAND),
-            *((row.topic, row.type, self._poster(row), row.profile) for row in command_topics.ROWS),
+            *(
+                (row.topic, row.type, self._poster(row), row.profile)
+                for row in (*command_topics.ROWS, *operator_topics.ROWS)
+            ),
             ("led/off", Empty, self._on_leds_off, qos.LEDS),
             *((f"press/{button}", Bool, self._press(button), qos.EVENTS) for button in commands.BUTTONS),
             ("initialpose", PoseWithCovarianceStamped, self._on_pose, qos.COMMAND),
@@ -130,7 +134,7 @@ class RobotPorts:
 
     def _on_stamped_twist(self, message: TwistStamped) -> None:
         timeout_ns = self._timeout_ns()
-        sent_ns = message.header.stamp.sec * convert.SECOND_NS + message.header.stamp.nanosec
+        sent_ns = message.header.stamp.sec * SECOND_NS + message.header.stamp.nanosec
         age_ns = self._now_ns() - sent_ns
         if timeout_ns and sent_ns and age_ns > timeout_ns:
             raise CommandError(f"stamp is {age_ns / 1e9:.3f} s old, expected at most {timeout_ns / 1e9:.3f} s")

@@ -23,7 +23,8 @@ from std_srvs.srv import SetBool, Trigger
 from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import params
-from thymio_sim_ros.nodes.convert import SECOND_NS, ConvertOptions
+from thymio_sim_ros.nodes.convert import ConvertOptions
+from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, run_main
 from thymio_sim_ros.nodes.names import ros_names
 from thymio_sim_ros.nodes.params import param

@@ -15,7 +15,7 @@ from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.nodes import qos
-from thymio_sim_ros.nodes.convert import SECOND_NS, stamp
+from thymio_sim_ros.nodes.headers import SECOND_NS, stamp
 from thymio_sim_ros.nodes.markers import playground_markers
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.sim import playground as playgrounds

@@ -230,13 +230,19 @@ class RemoteKey:
 
 @dataclass(frozen=True, slots=True)
 class SetBattery:
-    """Voltage of the battery, 0…5 V, and whether it is being charged."""
+    """Voltage of the battery, 0…5 V."""
 
     volts: float
-    is_charging: bool = False
 
     def __post_init__(self) -> None:
         _check(self, 0.0, 5.0, "volts")
+
+
+@dataclass(frozen=True, slots=True)
+class ConnectCharger:
+    """Whether the battery is being charged."""
+
+    is_connected: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -299,6 +305,7 @@ Command = (
     | SetTemperature
     | RemoteKey
     | SetBattery
+    | ConnectCharger
     | SetSoundThreshold
     | EnableComm
     | SetCommPayload

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.sim.builders import FLOOR, make, readings, run, send
-from thymio_sim_ros.sim.commands import SetBattery
+from thymio_sim_ros.sim.commands import ConnectCharger, SetBattery
 from thymio_sim_ros.sim.world import World
 
 
@@ -21,8 +21,14 @@ def test_it_has_four_volts_at_first() -> None:
 def test_the_operator_sets_it_at_once(volts: float, word: int, charge: float) -> None:
     world = World(make([FLOOR]))
     run(world, 0.5)
-    send(world, SetBattery(volts, is_charging=True))
+    send(world, SetBattery(volts))
     (reading,) = readings(run(world, 0.01), "battery")
-    assert reading.words == (word, word)
+    assert (reading.words, reading.volts) == ((word, word), volts)
     assert reading.charge == pytest.approx(charge)
+
+
+def test_a_charger_can_be_connected() -> None:
+    world = World(make([FLOOR]))
+    send(world, ConnectCharger(True))
+    (reading,) = readings(run(world, 0.01), "battery")
     assert reading.is_charging

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from thymio_sim_ros.sim.actuators import Actuator
-from thymio_sim_ros.sim.commands import SetBattery
+from thymio_sim_ros.sim.commands import ConnectCharger, SetBattery
 
 __all__ = ["ACTUATOR", "PowerState"]
 
@@ -18,8 +18,11 @@ class PowerState:
     is_charging: bool = False
 
 
-def _apply(state: PowerState, command: SetBattery, _now_ns: int) -> None:
-    state.volts, state.is_charging = command.volts, command.is_charging
+def _apply(state: PowerState, command: SetBattery | ConnectCharger, _now_ns: int) -> None:
+    if isinstance(command, SetBattery):
+        state.volts = command.volts
+    else:
+        state.is_charging = command.is_connected
 
 
-ACTUATOR = Actuator(name="power", accepts=(SetBattery,), begin=PowerState, apply=_apply)
+ACTUATOR = Actuator(name="power", accepts=(SetBattery, ConnectCharger), begin=PowerState, apply=_apply)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.actuators.power import PowerState
 from thymio_sim_ros.sim.aseba_face import AsebaFace
-from thymio_sim_ros.sim.commands import SetBattery
+from thymio_sim_ros.sim.commands import ConnectCharger, SetBattery
 from thymio_sim_ros.sim.readings import BatteryReading
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.view import SensorView
@@ -31,6 +31,6 @@ SENSOR = Sensor(
     period_ns=1_000_000_000,
     phase_ns=10_000_000,
     measure=_measure,
-    wakes_on=(SetBattery,),
+    wakes_on=(SetBattery, ConnectCharger),
     aseba=AsebaFace(variables=(("_vbat", 2),)),
 )

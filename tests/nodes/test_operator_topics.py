@@ -1,0 +1,65 @@
+"""What an operator does, from message to command."""
+
+from __future__ import annotations
+
+import pytest
+from std_msgs.msg import Bool, Empty, Float32, Float32MultiArray, Int8, Int16MultiArray
+
+from thymio_sim_ros.nodes.convert import CommandError
+from thymio_sim_ros.nodes.operator_topics import ROWS
+from thymio_sim_ros.sim.commands import (
+    Clap,
+    ConnectCharger,
+    RemoteKey,
+    SetBattery,
+    SetNoiseLevel,
+    SetTemperature,
+    Tap,
+    Tilt,
+)
+
+BY_TOPIC = {row.topic: row for row in ROWS}
+
+
+def decode(topic, message):
+    assert isinstance(message, BY_TOPIC[topic].type)
+    return BY_TOPIC[topic].decode(message)
+
+
+@pytest.mark.parametrize(
+    ("topic", "message", "command"),
+    [
+        ("press/tap", Empty(), Tap()),
+        ("press/clap", Float32(data=1.0), Clap(255)),
+        ("press/clap", Float32(data=-3.0), Clap(0)),
+        ("press/sound", Float32(data=0.5), SetNoiseLevel(128)),
+        ("press/sound", Float32(data=7.0), SetNoiseLevel(255)),
+        ("press/remote", Int8(data=80), RemoteKey(0, 80)),
+        ("press/rc5", Int16MultiArray(data=[31, 127]), RemoteKey(31, 127)),
+        ("press/tilt", Float32MultiArray(data=[0.5, -0.25]), Tilt(0.5, -0.25)),
+        ("press/temperature", Float32(data=-10.5), SetTemperature(-10.5)),
+        ("press/battery", Float32(data=3.5), SetBattery(3.5)),
+        ("press/charger", Bool(data=True), ConnectCharger(True)),
+    ],
+)
+def test_a_message_becomes_a_command(topic, message, command):
+    assert decode(topic, message) == command
+
+
+@pytest.mark.parametrize(
+    ("topic", "message", "found"),
+    [
+        ("press/clap", Float32(data=float("nan")), "loudness is nan"),
+        ("press/sound", Float32(data=float("inf")), "loudness is inf"),
+        ("press/remote", Int8(data=-1), "RemoteKey: command -1 found, expected 0 to 127"),
+        ("press/rc5", Int16MultiArray(data=[32, 0]), "RemoteKey: address 32 found"),
+        ("press/rc5", Int16MultiArray(data=[1]), r"1 values found, expected \[address"),
+        ("press/tilt", Float32MultiArray(data=[1.0]), r"1 values found, expected \[roll, pitch\]"),
+        ("press/tilt", Float32MultiArray(data=[float("nan"), 0.0]), "Tilt: roll_rad nan"),
+        ("press/temperature", Float32(data=100.0), "SetTemperature: celsius 100"),
+        ("press/battery", Float32(data=float("nan")), "SetBattery: volts nan"),
+    ],
+)
+def test_what_cannot_be_is_refused(topic, message, found):
+    with pytest.raises(CommandError, match=found):
+        decode(topic, message)

@@ -1,0 +1,79 @@
+"""What an operator does to a robot, one row per topic `press/…`; programs never speak on them.
+
+Names: ros-interface.md section 4.2; those beyond it follow their pattern.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from std_msgs.msg import Bool, Empty, Float32, Float32MultiArray, Int8, Int16MultiArray
+
+from thymio_sim_ros.nodes import convert, qos
+from thymio_sim_ros.nodes.command_topics import CommandRow
+from thymio_sim_ros.nodes.convert import CommandError
+from thymio_sim_ros.sim import commands
+from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.sound import FULL_LEVEL
+
+__all__ = ["ROWS"]
+
+C = TypeVar("C", bound=Command)
+
+
+def _checked(make: Callable[..., C], *values: Any) -> C:
+    """A command whose ranges may refuse these values."""
+    try:
+        return make(*values)
+    except ValueError as error:
+        raise CommandError(str(error)) from error
+
+
+def _level(message: Float32) -> int:
+    convert.finite(message.data, "loudness")
+    return round(min(max(float(message.data), 0.0), 1.0) * FULL_LEVEL)
+
+
+def _tap(_message: Empty) -> Command:
+    return commands.Tap()
+
+
+def _remote(message: Int8) -> Command:
+    return _checked(commands.RemoteKey, 0, int(message.data))
+
+
+def _rc5(message: Int16MultiArray) -> Command:
+    address, command = convert.sized(message.data, 2, "[address 0…31, command 0…127]")
+    return _checked(commands.RemoteKey, int(address), int(command))
+
+
+def _tilt(message: Float32MultiArray) -> Command:
+    roll, pitch = convert.sized(message.data, 2, "[roll, pitch] in rad")
+    return _checked(commands.Tilt, float(roll), float(pitch))
+
+
+def _temperature(message: Float32) -> Command:
+    return _checked(commands.SetTemperature, float(message.data))
+
+
+def _battery(message: Float32) -> Command:
+    return _checked(commands.SetBattery, float(message.data))
+
+
+def _charger(message: Bool) -> Command:
+    return commands.ConnectCharger(bool(message.data))
+
+
+ROWS = (
+    CommandRow("press/tap", Empty, _tap, profile=qos.EVENTS),
+    CommandRow("press/clap", Float32, lambda message: commands.Clap(_level(message)), profile=qos.EVENTS),
+    CommandRow("press/sound", Float32, lambda message: commands.SetNoiseLevel(_level(message)), profile=qos.EVENTS),
+    CommandRow("press/remote", Int8, _remote, profile=qos.EVENTS),
+    CommandRow("press/rc5", Int16MultiArray, _rc5, profile=qos.EVENTS),
+    CommandRow("press/tilt", Float32MultiArray, _tilt, profile=qos.EVENTS),
+    CommandRow("press/temperature", Float32, _temperature, profile=qos.EVENTS),
+    CommandRow("press/battery", Float32, _battery, profile=qos.EVENTS),
+    CommandRow("press/charger", Bool, _charger, profile=qos.EVENTS),
+)
+"""Loudness is 0…1 of 255, temperature in °C, battery in V; a value out of range is refused, loudness limited."""

@@ -1,0 +1,78 @@
+"""Messages of the senses besides proximity and ground (ros-interface.md sections 3 and 4.1), for rows of `convert`."""
+
+from __future__ import annotations
+
+import math
+
+from sensor_msgs.msg import BatteryState, Imu, Temperature
+from std_msgs.msg import Bool, Empty, Float32, Int8, Int16
+
+from thymio_sim_ros.nodes.headers import stamped
+from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.sim import readings
+
+ACCELERATION_VARIANCE = 0.07
+TEMPERATURE_VARIANCE = 0.01
+"""As the robot's driver has them (ros-interface.md section 3)."""
+
+ABSENT = -1.0
+"""First element of the covariance of a quantity that an Imu does not measure (REP 145)."""
+
+
+def imu(reading: readings.AccelerometerReading, names: RobotNames, _options: object) -> Imu:
+    """Acceleration alone, forward, left, up."""
+    message = Imu()
+    message.orientation_covariance[0] = message.angular_velocity_covariance[0] = ABSENT
+    vector = message.linear_acceleration
+    vector.x, vector.y, vector.z = reading.acceleration_m_s2
+    message.linear_acceleration_covariance[::4] = (ACCELERATION_VARIANCE,) * 3
+    return stamped(message, reading.stamp_ns, names.frame("base_link"))
+
+
+def temperature(reading: readings.TemperatureReading, names: RobotNames, _options: object) -> Temperature:
+    """Degrees Celsius as the robot tells them, in tenths."""
+    message = Temperature(temperature=reading.words[0] / 10, variance=TEMPERATURE_VARIANCE)
+    return stamped(message, reading.stamp_ns, names.frame("base_link"))
+
+
+def battery(reading: readings.BatteryReading, names: RobotNames, _options: object) -> BatteryState:
+    """Voltage and charge; what the robot does not measure is NaN."""
+    status = BatteryState.POWER_SUPPLY_STATUS_CHARGING
+    message = BatteryState(
+        voltage=reading.volts,
+        percentage=reading.charge,
+        temperature=math.nan,
+        current=math.nan,
+        charge=math.nan,
+        capacity=math.nan,
+        design_capacity=math.nan,
+        power_supply_status=status if reading.is_charging else BatteryState.POWER_SUPPLY_STATUS_DISCHARGING,
+        power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LIPO,
+        present=True,
+    )
+    return stamped(message, reading.stamp_ns, names.frame("base_link"))
+
+
+def tap(_reading: readings.TapReading, _names: RobotNames, _options: object) -> Empty:
+    """A shock."""
+    return Empty()
+
+
+def sound(reading: readings.SoundReading, _names: RobotNames, _options: object) -> Float32 | None:
+    """Intensity 0…1 of what is above the threshold."""
+    return Float32(data=reading.words[0] / 255) if reading.is_loud else None
+
+
+def remote(reading: readings.RemoteReading, _names: RobotNames, _options: object) -> Int8:
+    """The command of a frame."""
+    return Int8(data=reading.words[1])
+
+
+def received(reading: readings.CommReading, _names: RobotNames, _options: object) -> Int16:
+    """The value of an infrared frame."""
+    return Int16(data=reading.words[0])
+
+
+def collision(reading: readings.CollisionReading, _names: RobotNames, _options: object) -> Bool:
+    """Whether something is touched."""
+    return Bool(data=reading.is_touching)
