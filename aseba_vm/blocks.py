@@ -222,6 +222,7 @@ class Blocks:
     jumps: dict[int, int]
     is_fragile: bool
     operands: dict[int, int]
+    memories: Memories
 
 
 def find_blocks(words: Sequence[int], memories: Memories) -> Blocks | None:
@@ -246,6 +247,7 @@ def find_blocks(words: Sequence[int], memories: Memories) -> Blocks | None:
         jumps={pc: pc + signed12(words[pc]) for pc in instructions if words[pc] >> 12 == Op.JUMP},
         is_fragile=any(word >> 12 == Op.BRANCH for word in operands.values()),
         operands=operands,
+        memories=memories,
     )
 
 

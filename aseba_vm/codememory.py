@@ -11,12 +11,21 @@ from aseba_vm.operations import STOP, Decoded, decoded
 class CodeMemory:
     """``words`` are unsigned; ``operations`` holds at each address what begins there. Change words by methods only."""
 
-    __slots__ = ("operations", "words")
+    __slots__ = ("_events", "operations", "words")
 
     def __init__(self, size: int) -> None:
         """Build a memory of zeros."""
+        self._events: dict[int, int] | None = None
         self.words: list[int] = [0] * size
         self.operations: list[Decoded] = [(STOP, 0, 0)] * size
+
+    def address_of(self, event: int) -> int:
+        """Return the address of the code of an event, 0 if there is none."""
+        if self._events is None:
+            words = self.words
+            places = range(1, min(words[0], len(words) - 1), 2) if words else range(0)
+            self._events = {words[place]: words[place + 1] for place in reversed(places)}
+        return self._events.get(event, 0)
 
     def write(self, start: int, words: Sequence[int]) -> None:
         """Write words that fit."""
@@ -46,6 +55,8 @@ class CodeMemory:
 
     def _decode(self, start: int, end: int) -> None:
         """Decode the operations that words start..end-1 belong to."""
+        if start == 0 or start < self.words[0]:
+            self._events = None
         words = [*self.words[max(start - 2, 0) : end], *self.words[end : end + 2], 0, 0]
         for place, pc in enumerate(range(max(start - 2, 0), end)):
             self.operations[pc] = decoded(words[place], words[place + 1], words[place + 2])

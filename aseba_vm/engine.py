@@ -13,19 +13,22 @@ from __future__ import annotations
 
 import logging
 from collections import OrderedDict
-from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple, Protocol
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, Protocol
 
 from aseba_vm import engine_python, engine_wasm
 from aseba_vm.blocks import Blocks, Known, Memories, find_blocks
 from aseba_vm.bytecode import WAS_TRUE
 from aseba_vm.codememory import CodeMemory
-from aseba_vm.engine_python import Function
-from aseba_vm.nativecall import Native, Signature
+from aseba_vm.host import Host, PythonHost, Run
+from aseba_vm.nativecall import Native, NativeFault, Signature
 from aseba_vm.natives import NATIVES
 from aseba_vm.outbox import Emitted, Message
-from aseba_vm.structure import INTERPRET, STOPPED, Structure
+from aseba_vm.structure import GO_ON, INTERPRET, STOPPED, Structure
 from aseba_vm.target import TargetDescription
+from aseba_vm.variables import Variables
+from aseba_vm.wasm_host import WasmHost
+from aseba_vm.wasm_natives import FAULTS
 
 AUTO = "auto"
 INTERPRETER = "interpreter"
@@ -40,18 +43,21 @@ _KEPT_PROGRAMS = 64
 _WARM_RUNS = 2
 _WARM_INSTRUCTIONS = 2000
 _WEIRD_STRETCH = 256
+_LONGEST_STRETCH = 10_000_000
+"""Instructions after which translated code comes back, so that a user can interrupt a program without an end."""
 
 
 class Machine(Protocol):
     """What the engine needs of a machine: its state, its interpreter, its natives."""
 
     target: TargetDescription
-    variables: list[int]
+    variables: Variables
     stack: list[int]
     pc: int
     sp: int
     flags: int
     instructions: int
+    random_state: int
     outbox: list[Message]
     code: CodeMemory
 
@@ -65,13 +71,24 @@ class Machine(Protocol):
     def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
         """Call a native; return False if its arguments lie outside memory."""
 
+    def refuse(self, pc: int, fault: NativeFault) -> None:
+        """Stop for what a native at ``pc`` refused."""
+
 
 class Entry(NamedTuple):
-    """Translated code: what makes the function of one machine, the budget it needs to begin, the words it may push."""
+    """Translated code for :meth:`Host.make`, the budget it needs to begin, the words it may push."""
 
-    make: Callable[[], Function]
+    code: Any
     need: int
     depth: int
+
+
+class Ready(NamedTuple):
+    """Translated code of one machine: what runs it, the budget it needs, the highest stack it may begin with."""
+
+    run: Run
+    need: int
+    highest: int
 
 
 class Translation:
@@ -107,11 +124,11 @@ class Translation:
             return None
         translate = engine_wasm.translate if self._is_wasm else engine_python.translate
         try:
-            make = translate(self.blocks, structure, self.natives)
+            code = translate(self.blocks, structure, self.natives)
         except Exception:  # a defect of ours, or a wasmtime that we don't know: the interpreter can run everything
             logging.getLogger(__name__).exception("no translation at %d: the interpreter runs it", pc)
             return None
-        return Entry(make, structure.main.need, structure.main.depth)
+        return Entry(code, structure.main.need, structure.main.depth)
 
 
 _NOTHING = Translation((), Memories(0, 0, 0, ()), (), is_wasm=False)
@@ -154,15 +171,17 @@ class Engine:
         self._natives = tuple(_known(signature, natives) for signature in signatures)
         self._memories = Memories(target.variables_size, target.bytecode_size, target.stack_size, signatures)
         self._translation = _NOTHING
+        self._host: Host | None = None
         self._is_known = False
-        self._memory: list[int] = []
         self._is_settled = True
         self._heat: dict[int, int] = {}
-        self._made: dict[int, Function] = {}
+        self._made: dict[int, Ready] = {}
+        self._ready: dict[int, Ready] = {}
+        self._failure: BaseException | None = None
 
     def forget(self) -> None:
         """The bytecode may have changed."""
-        self._is_known = False
+        self._doubt()
         self._heat.clear()
 
     def settle(self) -> None:
@@ -171,48 +190,78 @@ class Engine:
             return
         self._is_settled = True
         assert self._translation.blocks is not None
-        self._machine.code.remember(zip(self._translation.blocks.branches, self._memory, strict=True))
+        assert self._host is not None
+        self._machine.code.remember(zip(self._translation.blocks.branches, self._host.memory, strict=True))
+
+    def close(self) -> None:
+        """Settle and give the machine's memory back."""
+        self.settle()
+        self.forget()
+        if self._host is not None:
+            self._host.close()
+            self._host = None
 
     def run(self, limit: int) -> int:
         """Execute at most ``limit`` instructions of the active event; return how many were."""
         machine = self._machine
+        ready = self._ready.get(machine.pc)
         left = limit
-        if not self._is_eager and not self._is_warm(machine.pc):
+        if ready is None and not self._is_eager and not self._is_warm(machine.pc):
             left -= self._interpret(min(left, _WARM_INSTRUCTIONS))
+            ready = None
         while left > 0 and machine.flags & _ACTIVE:
-            translation = self._translation if self._is_known else self._prepare()
-            if translation.blocks is None:
+            if ready is None:
+                ready = self._ready.get(machine.pc) or self._prepared(machine.pc)
+            if ready is None or machine.sp > ready.highest:
+                left -= self._interpret(min(left, _WEIRD_STRETCH))
+            elif left < ready.need:
                 left -= self._interpret(left)
-            elif machine.pc not in translation.blocks.by_address:
-                left -= self._interpret(1)
             else:
-                entry = translation.entry(machine.pc)
-                if entry is None or machine.sp + entry.depth >= self._memories.stack:
-                    left -= self._interpret(min(left, _WEIRD_STRETCH))
-                elif left < entry.need:
-                    left -= self._interpret(left)
-                else:
-                    left -= self._translated(entry, left)
+                left -= self._translated(ready.run, left if left < _LONGEST_STRETCH else _LONGEST_STRETCH)
+            ready = None
         return limit - left
+
+    def _prepared(self, pc: int) -> Ready | None:
+        """Return the translation from an address on; None if there has to be another way."""
+        translation = self._translation if self._is_known else self._prepare()
+        entry = (
+            translation.entry(pc) if translation.blocks is not None and pc in translation.blocks.by_address else None
+        )
+        if entry is None:
+            return None
+        if pc not in self._made:
+            assert self._host is not None
+            self._made[pc] = Ready(self._host.make(entry.code), entry.need, self._memories.stack - entry.depth - 1)
+        self._ready[pc] = self._made[pc]
+        return self._made[pc]
 
     def _prepare(self) -> Translation:
         """Return the translation of the program that is in the machine now."""
         self._is_known = True
         words = self._machine.bytecode
         known = self._translation
-        if known.blocks is None or known.without_memory(words) != known.canonical:
+        if known.blocks is None or self._host is None or known.without_memory(words) != known.canonical:
             if self._is_wasm is None:
                 self._is_wasm = engine_wasm.is_available()
             self._translation = _translation(words, self._memories, self._natives, is_wasm=self._is_wasm)
             self._made.clear()
+            if self._translation.blocks is not None:
+                if self._host is None:
+                    self._host = WasmHost(self) if self._is_wasm else PythonHost(self)
+                self._host.begin(len(self._translation.blocks.branches))
         self._load()
         return self._translation
 
     def _load(self) -> None:
         """Read from the bytecode what the branches remember."""
-        if self._translation.blocks is not None:
+        if self._translation.blocks is not None and self._host is not None:
             words = self._machine.code.words
-            self._memory = [words[pc] >> 9 & 1 for pc in self._translation.blocks.branches]
+            self._host.memory[:] = [words[pc] >> 9 & 1 for pc in self._translation.blocks.branches]
+
+    def _doubt(self) -> None:
+        """Look at the bytecode anew before translated code runs again."""
+        self._is_known = False
+        self._ready.clear()
 
     def _is_warm(self, pc: int) -> bool:
         """Count a run that begins at ``pc``; tell whether there were many."""
@@ -222,42 +271,76 @@ class Engine:
 
     def _interpret(self, limit: int) -> int:
         self.settle()
-        done = self._machine.interpret(limit)
+        try:
+            return self._machine.interpret(limit)
+        finally:
+            self._look_again()
+
+    def _look_again(self) -> None:
+        """Take over what the interpreter has changed in the bytecode."""
         blocks = self._translation.blocks
         if blocks is not None and self._is_known:
             self._load()
             if blocks.is_fragile and any(self._machine.code.words[pc] != word for pc, word in blocks.operands.items()):
-                self._is_known = False
-        return done
+                self._doubt()
 
-    def _translated(self, entry: Entry, left: int) -> int:
+    def _translated(self, run: Run, left: int) -> int:
         machine = self._machine
         self._is_settled = False
-        function = self._made.get(machine.pc)
-        if function is None:
-            function = self._made[machine.pc] = entry.make()
-        rest, pc, kind, words = function(machine.variables, self._memory, left, self._call, self._emit)
-        sp = machine.sp
+        rest, pc, kind, words = run(left)
+        machine.pc = pc
+        done = left - rest
+        machine.instructions += done
         if words:
+            sp = machine.sp
             machine.stack[sp + 1 : sp + 1 + len(words)] = words
             machine.sp = sp + len(words)
-        machine.pc = pc
-        done: int = left - rest
-        machine.instructions += done
         if kind == STOPPED:
             machine.flags &= ~_ACTIVE
-        elif kind == INTERPRET and machine.flags & _ACTIVE and rest:
-            done += self._interpret(1)
+        elif kind == INTERPRET:
+            if self._failure is not None:
+                failure, self._failure = self._failure, None
+                raise failure
+            if machine.flags & _ACTIVE and rest:
+                done += self._interpret(1)
+        elif kind != GO_ON:
+            raise RuntimeError(f"translated code trapped at {pc}: a defect of the translator")
         return done
 
-    def _call(self, number: int, pc: int, popped: tuple[int, ...]) -> int:
-        """Call a native. Return 0 if the event goes on, 1 if translated code must be left, 2 if nothing was done."""
+    # -- what translated code needs (aseba_vm.host.Machine)
+
+    @property
+    def variables(self) -> Variables:
+        """The machine's."""
+        return self._machine.variables
+
+    @property
+    def random_state(self) -> int:
+        """The machine's."""
+        return self._machine.random_state
+
+    @random_state.setter
+    def random_state(self, value: int) -> None:
+        self._machine.random_state = value
+
+    def call_native(self, number: int, pc: int, popped: tuple[int, ...]) -> int:
+        """Call a native; what it raises is raised when translated code has been left."""
         machine = self._machine
-        if not machine.invoke(number, pc, popped):
-            return 2
+        try:
+            if not machine.invoke(number, pc, popped):
+                return 2
+        except BaseException as failure:
+            self._failure = failure
+            return 1
         return 0 if machine.flags & _ACTIVE and self._is_known else 1
 
-    def _emit(self, number: int, words: tuple[int, ...]) -> None:
+    def refuse_translated(self, pc: int, reason: int) -> None:
+        """Let the event end with one of ``FAULTS``, counted from 1."""
+        for fault in FAULTS[reason - 1]():
+            self._machine.refuse(pc, fault)
+
+    def emit(self, number: int, words: tuple[int, ...]) -> None:
+        """Emit an event."""
         self._machine.outbox.append(Emitted(number, words))
 
 

@@ -7,28 +7,11 @@ charged and the words of the stack; then the locals are written back. See :mod:`
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from aseba_vm.blocks import (
-    Assign,
-    AssignIndex,
-    Binary,
-    Blocks,
-    Branch,
-    Call,
-    Const,
-    Emit,
-    Expr,
-    Index,
-    Known,
-    Load,
-    Place,
-    Statement,
-    Temp,
-    Unary,
-    arguments,
-)
+from aseba_vm.blocks import Assign, AssignIndex, Blocks, Branch, Call, Emit, Known, Place, Statement
+from aseba_vm.host import Run
 from aseba_vm.python_expressions import Expressions
 from aseba_vm.structure import (
     INTERPRET,
@@ -44,27 +27,20 @@ from aseba_vm.structure import (
     Structure,
     Visit,
 )
-
-Function = Callable[[list[int], list[int], int, Callable[..., int], Callable[[int, tuple[int, ...]], None]], Any]
-"""Run with variables, memories of branches, budget, a caller of natives and of emit.
-
-Returns the budget left, the address, the kind of exit and the words to push.
-"""
-
-_LONGEST_EMIT = 8
+from aseba_vm.survey import LONGEST_EMIT, Survey, needs_barrier, runs
 
 
 class Left(Exception):  # noqa: N818  # not an error: a way out
     """Translated code is left: address, kind, instructions to charge, words on the stack."""
 
 
-def translate(blocks: Blocks, structure: Structure, natives: Sequence[Known]) -> Callable[[], Function]:
-    """Return what makes the function of a structure, the same for all machines."""
+def translate(blocks: Blocks, structure: Structure, natives: Sequence[Known]) -> Callable[..., Run]:
+    """Return what makes the function of a structure for one machine, for :meth:`aseba_vm.host.PythonHost.make`."""
     source = _Writer(blocks, structure, natives).source()
     scope: dict[str, Any] = {"Left": Left}
     exec(compile(source, "<aseba>", "exec"), scope)
-    function: Function = scope["run"]
-    return lambda: function
+    make: Callable[..., Run] = scope["make"]
+    return make
 
 
 class _Writer:
@@ -91,9 +67,9 @@ class _Writer:
         self.expressions = Expressions(self.say, self.name)
 
     def source(self) -> str:
-        """Return the text of ``run(V, B, n, H, E)``."""
+        """Return the text of ``make``: a function of variables, memories of branches, callers of natives and emit."""
         subs = [self._sub(sub) for sub in self.structure.subs.values()]
-        self.lines = ["def run(V, B, n, H, E):"]
+        self.lines = []
         self.indent = 1
         self._load()
         self._runs("B", {self.order[pc]: f"b{pc}" for pc in self.all_branches}, is_store=False)
@@ -111,7 +87,8 @@ class _Writer:
         self._store()
         self._runs("B", {self.order[pc]: f"b{pc}" for pc in self.all_branches}, is_store=True)
         self.say("return n, p, k, o")
-        return "\n".join(self.lines)
+        body = "\n ".join(["def run(n, V=V, B=B, H=H, E=E):", *self.lines])
+        return f"def make(V, B, H, E):\n {body}\n return run"
 
     def _sub(self, sub: Routine) -> list[str]:
         """Return the lines of a subroutine; ``r`` are the addresses to return to, outermost first."""
@@ -307,7 +284,7 @@ class _Writer:
             case Emit(number=number, address=address, length=count):
                 self._keep(node)
                 words = f"tuple(V[{address}:{address + count}])"
-                if count <= _LONGEST_EMIT:
+                if count <= LONGEST_EMIT:
                     words = f"({''.join(f'{self.name(address + place)}, ' for place in range(count))})"
                 self.say(f"E({number}, {words})")
             case Call():
@@ -332,86 +309,4 @@ class _Writer:
         self.say(f" {self._leaving(node.after, INTERPRET, uncharged + node.cost)}")
 
 
-class Survey:
-    """Which words and branches a function uses, and how."""
-
-    def __init__(self, natives: Sequence[Known]) -> None:
-        self.natives = natives
-        self.scalars: set[int] = set()
-        self.stored: set[int] = set()
-        self.shared: set[int] = set()
-        self.branches: set[int] = set()
-
-    def visit(self, nodes: Iterable[Node]) -> None:
-        """Look at nodes and those inside."""
-        for node in nodes:
-            match node:
-                case If(branch, then, otherwise):
-                    self._branch(branch)
-                    self.visit(then)
-                    self.visit(otherwise)
-                case Loop(_, before, branch, body):
-                    self._branch(branch)
-                    self.visit(before)
-                    self.visit(body)
-                case Assign() | AssignIndex() | Emit() | Call():
-                    self._statement(node)
-
-    def _branch(self, branch: Branch) -> None:
-        self.branches.add(branch.pc)
-        self._expressions(branch.left, branch.right)
-
-    def _statement(self, node: Statement) -> None:
-        self._expressions(*(expression for _, expression in node.keep))
-        match node:
-            case Assign(address=address, value=value):
-                self.scalars.add(address)
-                self.stored.add(address)
-                self._expressions(value)
-            case AssignIndex(base=base, size=size, element=index, value=value):
-                self.shared.update(range(base, base + size))
-                self._expressions(index, value)
-            case Emit(address=address, length=count):
-                words = range(address, address + count)
-                (self.scalars if count <= _LONGEST_EMIT else self.shared).update(words)
-            case Call(popped=popped):
-                self._expressions(*popped)
-                if not needs_barrier(node, self.natives):
-                    for address, size in arguments(node.popped, self.natives[node.number].signature) or ():
-                        self.shared.update(range(address, address + size))
-
-    def _expressions(self, *waiting: Expr) -> None:
-        stack = list(waiting)
-        while stack:
-            match stack.pop():
-                case Load(address):
-                    self.scalars.add(address)
-                case Index(base, size, index):
-                    self.shared.update(range(base, base + size))
-                    stack.append(index)
-                case Unary(_, operand):
-                    stack.append(operand)
-                case Binary(_, left, right):
-                    stack += (left, right)
-                case Const() | Temp():
-                    pass
-
-
-def needs_barrier(node: Call, natives: Sequence[Known]) -> bool:
-    """Tell whether a native may touch more of memory than arguments known beforehand."""
-    native = natives[node.number]
-    return not native.is_confined or arguments(node.popped, native.signature) is None
-
-
-def runs(places: Iterable[int]) -> list[tuple[int, int]]:
-    """Return first and last of each run of neighbours."""
-    found: list[tuple[int, int]] = []
-    for place in sorted(places):
-        if found and found[-1][1] == place - 1:
-            found[-1] = (found[-1][0], place)
-        else:
-            found.append((place, place))
-    return found
-
-
-__all__ = ["Function", "Left", "Survey", "needs_barrier", "runs", "translate"]
+__all__ = ["Left", "translate"]

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from aseba_vm.outbox import NativeCalled
 from aseba_vm.target import NativeFunction
+from aseba_vm.variables import Variables
 
 
 def wrap(value: int) -> int:
@@ -45,7 +46,7 @@ class DequeFault(NativeFault):
 class Machine(Protocol):
     """The part of the machine that natives may touch."""
 
-    variables: list[int]
+    variables: Variables
     random_state: int
     node_id: int
 
@@ -91,22 +92,27 @@ class NativeCall:
     def __init__(self, machine: Machine, signature: Signature, popped: Sequence[int]) -> None:
         """``popped`` are the words of the stack from the top: addresses, then sizes in list order."""
         self.machine = machine
-        self.memory = machine.variables
+        self.memory = machine.variables.words
         self.native = signature.native
         self.faults: list[NativeFault] = []
         self.addresses = tuple([word & 0xFFFF for word in popped[: len(signature.sizes)]])
-        self.sizes = tuple([size if size > 0 else popped[-size] & 0xFFFF for size in signature.sizes])
+        self.sizes = signature.sizes
+        if len(popped) > len(self.sizes):
+            self.sizes = tuple([size if size > 0 else popped[-size] & 0xFFFF for size in self.sizes])
 
     @property
     def is_inside_memory(self) -> bool:
         """Tell whether every argument lies inside the variable memory."""
         end = len(self.memory)
-        return all(address + size <= end for address, size in zip(self.addresses, self.sizes, strict=True))
+        for address, size in zip(self.addresses, self.sizes, strict=True):  # noqa: SIM110  # twice as quick as all()
+            if address + size > end:
+                return False
+        return True
 
     def read(self, argument: int) -> list[int]:
         """Return a copy of the words of an argument."""
         address = self.addresses[argument]
-        return self.memory[address : address + self.sizes[argument]]
+        return list(self.memory[address : address + self.sizes[argument]])
 
     def value(self, argument: int) -> int:
         """Return the first word of an argument."""

@@ -13,6 +13,12 @@ from aseba_vm.deque import DEQUE_NATIVES
 from aseba_vm.nativecall import DivisionFault, Native, NativeCall, NativeFault, wrap, wrap32
 from aseba_vm.trigonometry import arctangent, cosine, sine
 
+RANDOM_FACTOR, RANDOM_STEP = 25173, 13849
+"""Of the generator of random numbers (VM spec, section 12)."""
+
+SQUARE_ROOT_FAULT = "sqrt-of-negative"
+"""Reason for refusing the root of a negative number."""
+
 
 def _elementwise(function: Callable[..., int]) -> Native:
     """Make a native that computes each element of argument 0 from those of the others."""
@@ -41,7 +47,7 @@ def _clamped(value: int, low: int, high: int) -> int:
 
 def _square_root(value: int) -> int:
     if value < 0:
-        raise NativeFault("sqrt-of-negative")
+        raise NativeFault(SQUARE_ROOT_FAULT)
     return isqrt(value)
 
 
@@ -101,7 +107,7 @@ def _sort(call: NativeCall) -> None:
 def _rand(call: NativeCall) -> None:
     machine = call.machine
     for offset in range(call.sizes[0]):
-        machine.random_state = (25173 * machine.random_state + 13849) & 0xFFFF
+        machine.random_state = (RANDOM_FACTOR * machine.random_state + RANDOM_STEP) & 0xFFFF
         call.memory[call.addresses[0] + offset] = wrap(machine.random_state)
 
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from aseba_vm.nativecall import wrap, wrap32
 
-# The sine of each multiple of 128.
-_SINE = (
+#: The sine of each multiple of 128.
+SINE = (
     *(
         0,
         403,
@@ -40,8 +40,8 @@ _SINE = (
     *(32470, 32521, 32569, 32610, 32647, 32679, 32706, 32728, 32746, 32758, 32766, 32767),
 )
 
-# The arc tangent of 2^(i-4) * (1 + j/8) at 8i + j.
-_ARCTANGENT = (
+#: The arc tangent of 2^(i-4) * (1 + j/8) at 8i + j.
+ARCTANGENT = (
     *(
         652,
         735,
@@ -75,32 +75,33 @@ _ARCTANGENT = (
     *(16384, 16384, 16384),
 )
 
-_RIGHT_ANGLE = 16384
+RIGHT_ANGLE = 16384
+"""A quarter of a circle."""
 
 
 def sine(angle: int) -> int:
     """Return the sine of an angle."""
-    if angle in (_RIGHT_ANGLE, -_RIGHT_ANGLE):
+    if angle in (RIGHT_ANGLE, -RIGHT_ANGLE):
         return 32767 if angle > 0 else -32767
     if angle >= 0:
-        position = 32768 - angle if angle > _RIGHT_ANGLE else angle
+        position = 32768 - angle if angle > RIGHT_ANGLE else angle
     else:
-        position = 32768 + angle if angle < -_RIGHT_ANGLE else -angle
+        position = 32768 + angle if angle < -RIGHT_ANGLE else -angle
     index, fraction = position >> 7, position & 127
-    result = (_SINE[index] * (128 - fraction) + _SINE[index + 1] * fraction) >> 7
+    result = (SINE[index] * (128 - fraction) + SINE[index + 1] * fraction) >> 7
     return result if angle >= 0 else -result
 
 
 def cosine(angle: int) -> int:
     """Return the cosine of an angle."""
-    return sine(wrap(angle + _RIGHT_ANGLE))
+    return sine(wrap(angle + RIGHT_ANGLE))
 
 
 def arctangent(y: int, x: int) -> int:
     """Return the angle of the direction (x, y), not yet cut to 16 bits."""
     if y == 0:
         return 0 if x >= 0 else -32768
-    result = _RIGHT_ANGLE if x == 0 else _steepness_angle(wrap(abs(y)), wrap(abs(x)))
+    result = RIGHT_ANGLE if x == 0 else _steepness_angle(wrap(abs(y)), wrap(abs(x)))
     if x < 0:
         result = 32768 - result
     return result if y > 0 else -result
@@ -115,11 +116,11 @@ def _steepness_angle(height: int, width: int) -> int:
     quotient = wrap32(quotient)
     exponent = 31 if quotient < 0 else max(quotient.bit_length() - 1, 0)
     if exponent < 12:
-        return (_ARCTANGENT[0] * quotient) >> 12
+        return (ARCTANGENT[0] * quotient) >> 12
     rest = wrap(wrap32(quotient - (1 << exponent)) >> (exponent - 8))
     index, fraction = 8 * (exponent - 12) + (rest >> 5), rest & 31
     return (_arctangent_entry(index) * (32 - fraction) + _arctangent_entry(index + 1) * fraction) >> 5
 
 
 def _arctangent_entry(index: int) -> int:
-    return _ARCTANGENT[index] if index < len(_ARCTANGENT) else _RIGHT_ANGLE
+    return ARCTANGENT[index] if index < len(ARCTANGENT) else RIGHT_ANGLE

@@ -52,6 +52,7 @@ from aseba_vm.outbox import (
 )
 from aseba_vm.symbols import INIT_EVENT
 from aseba_vm.target import TargetDescription
+from aseba_vm.variables import Variables
 
 ACTIVE = 1
 STEP_BY_STEP = 2
@@ -84,7 +85,7 @@ class VirtualMachine:
         """
         self.target = target
         self.node_id = node_id
-        self.variables: list[int] = [0] * target.variables_size
+        self.variables = Variables(target.variables_size)
         self.pc = 0
         self.sp = -1
         self.flags = 0
@@ -220,15 +221,11 @@ class VirtualMachine:
 
     def address_of(self, event: int) -> int:
         """Return the address of the code of an event, 0 if there is none."""
-        words = self.code.words
-        for index in range(1, min(words[0], len(words) - 1), 2) if words else ():
-            if words[index] == event:
-                return words[index + 1]
-        return 0
+        return self.code.address_of(event)
 
     def setup(self, event: int) -> int:
         """Start an event; return the address of its code, or 0 if the program does not handle it."""
-        address = self.address_of(event)
+        address = self.code.address_of(event)
         if address == 0:
             return 0
         if self.flags & ACTIVE:
@@ -266,17 +263,21 @@ class VirtualMachine:
 
     def run(self, limit: int = 0) -> bool:
         """Execute the active event for at most ``limit`` instructions (0: to its end); tell whether it ran at all."""
-        if not self.flags & ACTIVE or self.flags & STEP_BY_STEP:
+        if self.flags & (ACTIVE | STEP_BY_STEP) != ACTIVE:
             return False
         self.flags |= RUNNING
-        if self._breakpoints or self.tracer is not None:
-            executed, stopped = self._run_watched(limit or _FOREVER)
-            if stopped:
-                return True
-        elif self._engine is not None:
-            executed = self._engine.run(limit or _FOREVER)
-        else:
-            executed = self._execute(limit or _FOREVER)
+        try:
+            if self._breakpoints or self.tracer is not None:
+                executed, stopped = self._run_watched(limit or _FOREVER)
+                if stopped:
+                    return True
+            elif self._engine is not None:
+                executed = self._engine.run(limit or _FOREVER)
+            else:
+                executed = self._execute(limit or _FOREVER)
+        except BaseException:
+            self.flags &= ~RUNNING
+            raise
         self.flags &= ~RUNNING
         if self._kills_long_events and executed == limit:
             self.flags &= ~ACTIVE
@@ -304,7 +305,8 @@ class VirtualMachine:
 
     def use_engine(self, name: str) -> None:
         """Choose how events run from now on. Raises ValueError for a name that is not in ``ENGINES``."""
-        self._settle()
+        if self._engine is not None:
+            self._engine.close()
         self._engine = new_engine(name, self, self._functions)
 
     def interpret(self, limit: int) -> int:
@@ -326,13 +328,17 @@ class VirtualMachine:
         except NativeFault as refusal:
             call.report(refusal)
         for fault in call.faults:
-            if isinstance(fault, DivisionFault):
-                self._stop_on(DivisionByZero(pc))
-            elif isinstance(fault, DequeFault):
-                self._stop_on(OutOfBounds(pc))
-            else:
-                self._stop_on(NodeSpecific(pc, fault.reason))
+            self.refuse(pc, fault)
         return True
+
+    def refuse(self, pc: int, fault: NativeFault) -> None:
+        """Stop for what a native at ``pc`` refused. For the engine."""
+        if isinstance(fault, DivisionFault):
+            self._stop_on(DivisionByZero(pc))
+        elif isinstance(fault, DequeFault):
+            self._stop_on(OutOfBounds(pc))
+        else:
+            self._stop_on(NodeSpecific(pc, fault.reason))
 
     def _settle(self) -> None:
         if self._engine is not None:
@@ -340,7 +346,7 @@ class VirtualMachine:
 
     def _execute(self, limit: int) -> int:
         """Execute at most ``limit`` instructions while the event is active; return how many were."""
-        code, variables, stack = self.code.operations, self.variables, self.stack
+        code, variables, stack = self.code.operations, self.variables.words, self.stack
         size = len(code)
         pc, sp = self.pc, self.sp
         executed = 0
@@ -449,7 +455,12 @@ class VirtualMachine:
                     self.outbox.append(Emitted(first, tuple(variables[address : address + count])))
                     pc += 3
                 elif kind == NATIVE:
-                    reason, sp = self._call(first, pc, sp)
+                    try:
+                        reason, sp = self._call(first, pc, sp)
+                    except BaseException:  # the native failed after it took its arguments: the next is the one after it
+                        self.pc, self.sp = pc + 1, sp - self._natives[first][0].count
+                        self.instructions += executed + 1
+                        raise
                     if reason:
                         return self._bad(pc, sp, executed, reason)
                     pc += 1

@@ -26,8 +26,11 @@ from aseba_vm import VirtualMachine, compile
 from aseba_vm.blocks import Known, Memories
 from aseba_vm.engine import INTERPRETER, PYTHON, WASM, Translation
 from aseba_vm.engine_wasm import is_available
+from aseba_vm.host import Host, PythonHost
 from aseba_vm.nativecall import Signature
 from aseba_vm.targets import THYMIO_II
+from aseba_vm.variables import Variables
+from aseba_vm.wasm_host import WasmHost
 
 BEHAVIOUR = """
 var speed = 200
@@ -38,6 +41,7 @@ var filtered[7]
 var left
 var right
 var count
+var lit
 onevent prox
 count++
 left = speed
@@ -55,7 +59,7 @@ else
   state = 0
 end
 when state == 1 do
-  leds.count = leds.count + 1
+  lit = lit + 1
 end
 if state == 2 then
   left = left / 2
@@ -67,7 +71,10 @@ if right > 500 then right = 500 end
 if right < -500 then right = -500 end
 motor.left.target = left
 motor.right.target = right
-""".replace("leds.count", "lit").replace("var count", "var count\nvar lit")
+for i in 0:6 do
+  weights[i] = (weights[i] * 15 + filtered[i] % 3) / 16
+end
+"""
 
 PROGRAMS = {
     "arithmetic": """
@@ -98,6 +105,28 @@ PROGRAMS = {
         var i  var t[8]  var u[8]  var d
         onevent prox
         for i in 0:199 do call math.fill(t, i)  call math.add(u, u, t)  call math.dot(d, u, t, 3) end""",
+    "numbers": """
+        var i  var a  var b  var c[2] = [3, 4]
+        onevent prox
+        for i in 1:200 do
+          call math.sin(a, i)  call math.atan2(b, i, a)  call math.muldiv(a, i, b, 7)  call math.sqrt(b, i)
+          call math.rot2(c, c, i)  call math.div(a, b, i)
+        end""",
+    "statistics": """
+        var i  var t[20] = [5, 3, 9, -4, 0, 77, 6, 1, 2, 8, 13, -9, 4, 7, 11, 10, 12, 15, 14, 20]  var u[20]
+        var low  var high  var mean
+        onevent prox
+        for i in 0:99 do
+          call math.copy(u, t)  call math.sort(u)  call math.stat(u, low, high, mean)  call math.argbounds(t, low, high)
+          call math.clamp(u, u, t, t)
+        end""",
+    "deques": """
+        var i  var q[12]  var a  var b[2]
+        onevent prox
+        for i in 0:199 do
+          call deque.push_back(q, i)  call deque.push_front(q, b)  call deque.get(q, a, 1)  call deque.size(q, a)
+          call deque.pop_back(q, b)  call deque.pop_front(q, a)
+        end""",
     "behaviour": BEHAVIOUR,
 }
 
@@ -184,19 +213,39 @@ def _translation_time(size: int, *, is_wasm: bool) -> float:
         count += 1
     words = program.words + (0,) * (THYMIO_II.bytecode_size - len(program.words))
     signatures = tuple(Signature.of(native) for native in THYMIO_II.natives)
+    known = tuple(Known(signature, True, True) for signature in signatures)
     memories = Memories(THYMIO_II.variables_size, THYMIO_II.bytecode_size, THYMIO_II.stack_size, signatures)
     times = []
     for _ in range(7):
+        host: Host = WasmHost(_Nobody()) if is_wasm else PythonHost(_Nobody())
         begun = time.process_time()
-        translation = Translation(
-            words, memories, tuple(Known(signature, True, True) for signature in signatures), is_wasm=is_wasm
-        )
+        translation = Translation(words, memories, known, is_wasm=is_wasm)
+        assert translation.blocks is not None
+        host.begin(len(translation.blocks.branches))
         for event in program.events:
             entry = translation.entry(event.address)
             assert entry is not None
-            entry.make()
+            host.make(entry.code)
         times.append(time.process_time() - begun)
+        host.close()
     return round(1000 * statistics.median(times), 2)
+
+
+class _Nobody:
+    """A machine whose code is translated and never run."""
+
+    def __init__(self) -> None:
+        self.variables = Variables(THYMIO_II.variables_size)
+        self.random_state = 0
+
+    def call_native(self, _number: int, _pc: int, _popped: tuple[int, ...]) -> int:
+        raise NotImplementedError
+
+    def refuse_translated(self, _pc: int, _reason: int) -> None:
+        raise NotImplementedError
+
+    def emit(self, _number: int, _words: tuple[int, ...]) -> None:
+        raise NotImplementedError
 
 
 _C_SIDE = r"""
@@ -232,14 +281,20 @@ void event(int number, int times) {
 }
 int16_t *variables(void) { return words; }
 """
+#: Names of the reference's functions that are not "vec" or "deq" and the rest of ours.
 _C_NATIVES = {
-    "math.copy": "veccopy",
-    "math.fill": "vecfill",
-    "math.addscalar": "vecaddscalar",
-    "math.add": "vecadd",
-    "math.sub": "vecsub",
-    "math.dot": "vecdot",
+    "math.rand": "rand",
+    **{f"math.{name}": f"math{name}" for name in ("muldiv", "atan2", "sin", "cos", "rot2", "sqrt")},
 }
+
+
+def _c_name(native: str) -> str:
+    family, _, name = native.partition(".")
+    if family == "deque":
+        return f"deq{name.replace('_', '')}"
+    if family == "math":
+        return _C_NATIVES.get(native, f"vec{name}")
+    return "veccopy"
 
 
 @cache
@@ -250,7 +305,7 @@ def _c_library() -> ctypes.CDLL | None:
     compiler = shutil.which("cc")
     if compiler is None:
         return None
-    names = [f"AsebaNative_{_C_NATIVES.get(native.name, 'veccopy')}" for native in THYMIO_II.natives]
+    names = [f"AsebaNative_{_c_name(native.name)}" for native in THYMIO_II.natives]
     folder = Path(tempfile.mkdtemp())
     (folder / "machine.c").write_text(_C_SIDE.replace("NATIVES", ", ".join(names)))
     library = folder / "machine.so"

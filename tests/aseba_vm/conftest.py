@@ -19,3 +19,11 @@ def pytest_generate_tests(metafunc):
 
 def _is_wanted(vector, *, crashes=None):
     return crashes is None or crashes == (vector["expect"]["kind"] == "reference-crash")
+
+
+@pytest.fixture
+def translators_work(caplog):
+    """Fail if a translator failed: the interpreter would have done its work, and the test shown nothing."""
+    yield
+    failures = [record.getMessage() for record in caplog.get_records("call") if "no translation" in record.msg]
+    assert not failures

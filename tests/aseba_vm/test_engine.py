@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import random
+import signal
 import subprocess
 import sys
 
 import pytest
 
 from aseba_vm import CompileError, VirtualMachine, compile, engine_python
+from aseba_vm.bytecode import Op
 from aseba_vm.engine import AUTO, ENGINES, INTERPRETER, WASM
 from aseba_vm.engine_wasm import is_available
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.programs import Writer
 from tests.aseba_vm.vectors import Replay, families, load
+
+pytestmark = pytest.mark.usefixtures("translators_work")
 
 EVENTS = [("ping", 1), ("pair", 2), ("nothing", 0)]
 AVAILABLE = [name for name in ENGINES if name != WASM or is_available()]
@@ -25,7 +29,7 @@ def _state(machine):
         machine.pc,
         machine.flags,
         machine.stack[: machine.sp + 1],
-        machine.variables,
+        list(machine.variables),
         machine.bytecode,
         machine.instructions,
         machine.random_state,
@@ -183,6 +187,50 @@ def test_natives_do_the_same(call, engine):
         _compare(program.words, seed, [engine])
 
 
+def _states_around_a_failing_native(engine):
+    def fail(call):
+        if call.value(0) == 3:
+            raise LookupError("not in this simulator")
+
+    source = "var n\nonevent ping\nwhen n > 1 do\nemit nothing\nend\nn++\ncall leds.rc(n)\nn = n + 10"
+    machine = VirtualMachine(THYMIO_II, {"leds.rc": fail}, engine=engine)
+    machine.load(compile(source, THYMIO_II, EVENTS))
+    machine.run()
+    for _ in range(3):
+        machine.variables[128] %= 10
+        machine.receive(0, 1, [])
+        if machine.variables[128] != 2:
+            machine.run()
+    with pytest.raises(LookupError, match="not in this simulator"):
+        machine.run()
+    yield _state(machine)
+    assert machine.bytecode[machine.pc - 1] >> 12 == Op.NATIVE
+    machine.run()
+    yield _state(machine)
+
+
+@pytest.mark.parametrize("engine", TRANSLATORS)
+def test_a_native_that_raises_leaves_the_machine_after_its_call(engine):
+    assert list(_states_around_a_failing_native(engine)) == list(_states_around_a_failing_native(INTERPRETER))
+
+
+@pytest.mark.parametrize("engine", AVAILABLE)
+def test_a_program_without_an_end_can_be_interrupted(engine):
+    def stop(_number, _frame):
+        raise TimeoutError
+
+    machine = VirtualMachine(THYMIO_II, engine=engine)
+    machine.load(compile("var n\nwhile n == n do\nn++\nend", THYMIO_II))
+    old = signal.signal(signal.SIGALRM, stop)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        with pytest.raises(TimeoutError):
+            machine.run()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, old)
+
+
 def test_an_unknown_engine_is_refused():
     with pytest.raises(ValueError, match="not one of"):
         VirtualMachine(THYMIO_II, engine="steam")
@@ -200,6 +248,7 @@ def test_a_translator_that_fails_leaves_the_program_to_the_interpreter(monkeypat
     address, _ = program.addresses["n"]
     assert machine.variables[address] == 1002
     assert "the interpreter runs it" in caplog.text
+    caplog.clear()
 
 
 @pytest.mark.skipif(not is_available(), reason="wasmtime is not installed")

@@ -1,0 +1,76 @@
+"""Variable memory: signed words at addresses, kept wherever the engine at work wants them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, MutableSequence, Sequence
+from typing import Any, overload
+
+LOWEST, HIGHEST = -32768, 32767
+
+
+class Variables(Sequence[int]):
+    """Words -32768…32767; the number of words never changes.
+
+    ``words`` is the storage, quicker to use and unchecked; ask for it anew after every run, an engine may move it.
+    """
+
+    __slots__ = ("_keeper", "words")
+
+    words: MutableSequence[int]
+
+    def __init__(self, size: int) -> None:
+        """Build a memory of ``size`` zeros."""
+        self.words = [0] * size
+        self._keeper: object = None
+
+    def move_to(self, words: MutableSequence[int], keeper: object = None) -> None:
+        """Copy the words to a storage of the same size and use that; ``keeper`` lives as long as it is used."""
+        words[:] = self.words[:]
+        self.words, self._keeper = words, keeper
+
+    def move_home(self) -> None:
+        """Take the words back from the storage of an engine."""
+        if self._keeper is not None:
+            self.words, self._keeper = self.words[:], None
+
+    @overload
+    def __getitem__(self, place: int) -> int: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[int]: ...
+    def __getitem__(self, place: Any) -> Any:
+        """Return a word or a list of words."""
+        return self.words[place]
+
+    @overload
+    def __setitem__(self, place: int, value: int) -> None: ...
+    @overload
+    def __setitem__(self, place: slice, value: Iterable[int]) -> None: ...
+    def __setitem__(self, place: Any, value: Any) -> None:
+        """Store a word, or as many words as the slice has. Raises ValueError for another number or beyond 16 bits."""
+        if isinstance(place, slice):
+            value = list(value)
+            expected = len(range(*place.indices(len(self.words))))
+            if len(value) != expected:
+                raise ValueError(f"{len(value)} words found, expected {expected}")
+            wrong = [word for word in value if not LOWEST <= word <= HIGHEST]
+        else:
+            wrong = [] if LOWEST <= value <= HIGHEST else [value]
+        if wrong:
+            raise ValueError(f"{wrong[0]} found, expected {LOWEST} to {HIGHEST}")
+        self.words[place] = value
+
+    def __len__(self) -> int:
+        """Return the number of words."""
+        return len(self.words)
+
+    def __eq__(self, other: object) -> bool:
+        """Tell whether the words are the same; any sequence of words may be compared."""
+        if not isinstance(other, Sequence):
+            return NotImplemented
+        return self.words[:] == list(other)
+
+    __hash__ = None  # type: ignore[assignment]  # it changes
+
+    def __repr__(self) -> str:
+        """Show the words."""
+        return f"Variables({self.words[:]})"

@@ -1,0 +1,50 @@
+"""The way into WebAssembly and back without parameters: the quickest that this version of ``wasmtime`` has.
+
+What the library documents checks and converts every value, which costs more than a short event; its bindings hold the
+same calls without that. Where they look otherwise, the documented ones do.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+
+def caller(wasmtime: Any, store: Any, function: Any) -> Callable[[], object]:
+    """Return what calls a function of a module. It holds Python's lock; a budget bounds for how long."""
+    try:
+        bindings = wasmtime._bindings
+        raw = ctypes.PyDLL(bindings.dll._name).wasmtime_func_call_unchecked
+        values = (bindings.wasmtime_val_raw_t * 1)()
+        trap = ctypes.POINTER(bindings.wasm_trap_t)()
+        context = ctypes.c_void_p(ctypes.cast(store._context(), ctypes.c_void_p).value)
+        places = [ctypes.c_void_p(ctypes.addressof(part)) for part in (function._func, values, trap)]
+    except AttributeError:
+        return partial(function, store)
+    call = partial(raw, context, places[0], places[1], ctypes.c_size_t(1), places[2])
+    call.kept = (store, function, values, trap)  # type: ignore[attr-defined]  # alive as long as the call
+    return call
+
+
+def callee(wasmtime: Any, store: Any, function: Callable[[], None]) -> Any:
+    """Return a function for modules to import. It must not raise."""
+    kind = wasmtime.FuncType([], [])
+    try:
+        bindings = wasmtime._bindings
+        found = bindings.wasmtime_func_t()
+
+        def call(*_: object) -> int:
+            function()
+            return 0
+
+        callback = bindings.wasmtime_func_unchecked_callback_t(call)
+        bindings.wasmtime_func_new_unchecked(
+            store._context(), kind.ptr(), callback, None, type(wasmtime._func.finalize)(), ctypes.byref(found)
+        )
+        imported = wasmtime.Func._from_raw(found)
+    except (AttributeError, TypeError, ctypes.ArgumentError):
+        return wasmtime.Func(store, kind, function)
+    imported.kept = callback  # alive as long as the function
+    return imported
