@@ -15,6 +15,9 @@ from aseba_vm.vm import VirtualMachine
 TURN = 65535
 """Instructions of one turn of the firmware's main loop."""
 
+STEP = 1000
+"""Instructions of one step of the reference's playground (thymio-robot.md section 3); a longer handler goes on."""
+
 MOST_WAITING = 100
 """Global events that may wait; more are refused."""
 
@@ -28,7 +31,7 @@ class Dispatch(Protocol):
     def receive(self, event: int, source: int = 0, arguments: Sequence[int] = ()) -> bool:
         """Take a global event from the network; tell whether there was room for it."""
 
-    def turn(self, limit: int = TURN) -> bool:
+    def turn(self, limit: int = ...) -> bool:
         """Execute at most ``limit`` instructions of each handler that is due; tell whether anything was done."""
 
 
@@ -96,6 +99,6 @@ class PlaygroundDispatch:
         self.machine.receive(event, source, arguments)
         return True
 
-    def turn(self, limit: int = TURN) -> bool:
+    def turn(self, limit: int = STEP) -> bool:
         """Execute the active handler."""
         return self.machine.run(limit)

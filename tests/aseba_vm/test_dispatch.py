@@ -85,6 +85,22 @@ def test_a_new_event_kills_the_handler_of_the_playground():
     assert machine.variables[log : log + 2] == [2, 1]
 
 
+def test_a_long_handler_of_the_playground_goes_on_in_the_next_step():
+    program = compile("var n\nonevent prox\nwhile n < 300 do\nn++\nend", THYMIO_II)
+    machine = VirtualMachine(THYMIO_II)
+    machine.load(program)
+    machine.run()
+    dispatch = PlaygroundDispatch(machine)
+    dispatch.raise_local("prox")
+    before = machine.instructions
+    steps = 0
+    while machine.is_active:
+        dispatch.turn()
+        steps += 1
+    assert machine.variables[program.addresses["n"][0]] == 300
+    assert steps == 1 + (machine.instructions - before) // 1000 > 1
+
+
 @pytest.mark.parametrize("policy", [FirmwareDispatch, PlaygroundDispatch])
 def test_a_local_event_that_the_target_lacks_is_a_key_error(policy):
     _, dispatch, _ = _begin(policy)
