@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from thymio_sim_ros.sim import playground
+from thymio_sim_ros.sim import playground, thymio2
 from thymio_sim_ros.sim.clock import TICK_NS
-from thymio_sim_ros.sim.commands import Command, MoveRobot
+from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.playground import Playground, RobotStart
+from thymio_sim_ros.sim.primitives import Disc, Polygon, Solid
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.world import StepResult, World
 
@@ -85,41 +87,47 @@ def enki(family: str) -> dict[str, list[dict[str, Any]]]:
 
 
 def enki_world(entry: Mapping[str, Any], **options: Any) -> World:
-    """The world of a measured scene; robots are put in place even where a start would be refused."""
+    """The world of a measured scene; robots are in their places even where a start would be refused."""
     shapes: list[dict[str, Any]] = []
     if entry["world"]["kind"] == "square":
         width, height = entry["world"]["width"], entry["world"]["height"]
-        shapes.append(
-            {
-                "kind": "rectangle",
-                "x_m": width / 2,
-                "y_m": height / 2,
-                "size_x_m": width + 0.02,
-                "size_y_m": height + 0.02,
-                "color": GREY,
-                "walls": {"height_m": 1.0},
-            }
-        )
-    for thing in entry["objects"]:
-        if thing["kind"] == "box":
-            shapes.append(
-                box(
-                    thing["x"],
-                    thing["y"],
-                    thing["size_x"],
-                    thing["size_y"],
-                    yaw_rad=thing["theta"],
-                    height_m=thing["height"],
-                )
-            )
-        else:
-            place = {"x_m": thing["x"], "y_m": thing["y"], "radius_m": thing["radius"], "height_m": thing["height"]}
-            shapes.append({"kind": "cylinder", **place, "color": GREY})
-    robots = [{"name": f"robot{index}", "x_m": 50.0 + index, "y_m": 50.0} for index in range(len(entry["robots"]))]
-    world = World(make(shapes, robots), **options)
-    for robot, start in zip(world.robots, entry["robots"], strict=True):
-        world.post(robot, MoveRobot(start["x"], start["y"], start["theta"]))
-    return world
+        place = {"x_m": width / 2, "y_m": height / 2, "size_x_m": width + 0.02, "size_y_m": height + 0.02}
+        shapes.append({"kind": "rectangle", **place, "color": GREY, "walls": {"height_m": 1.0}})
+    shapes += [enki_thing(thing, f"thing{index}") for index, thing in enumerate(entry["objects"])]
+    built = make(shapes, [])
+    starts = [
+        RobotStart(f"robot{index}", start["x"], start["y"], start["theta"])
+        for index, start in enumerate(entry["robots"])
+    ]
+    solids = [
+        replace(solid, load=replace(solid.load, lever_m=enki_lever(solid))) if solid.load is not None else solid
+        for solid in built.solids
+    ]
+    return World(replace(built, robots=tuple(starts), solids=tuple(solids)), **options)
+
+
+def enki_thing(thing: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """A thing of a measured scene. The reference takes g as 9.81 cm/s² and multiplies elasticities, 0.9 the robot's."""
+    shape = {"kind": thing["kind"], "name": name, "x_m": thing["x"], "y_m": thing["y"], "color": GREY}
+    shape["height_m"] = thing["height"]
+    if thing["kind"] == "box":
+        shape |= {"yaw_rad": thing["theta"], "size_x_m": thing["size_x"], "size_y_m": thing["size_y"]}
+    else:
+        shape["radius_m"] = thing["radius"]
+    if thing.get("mass") is not None:
+        shape["mass_kg"] = thing["mass"] * thymio2.MASS_KG / 200
+        shape["friction"] = thing.get("dry_friction", 0.25) / 100
+        shape["restitution"] = thing.get("elasticity", 0.9) * 0.9
+    return shape
+
+
+def enki_lever(solid: Solid) -> float:
+    """The lever with which turning slows by the friction times 9.81 rad/s², as it does in the reference."""
+    outline = solid.outline
+    assert not isinstance(outline, Polygon)
+    if isinstance(outline, Disc):
+        return outline.radius_m**2 / 2 * 100
+    return (outline.size_x_m**2 + outline.size_y_m**2) / 12 * 100
 
 
 def pose_close(one: Pose, other: Pose, tolerance: float = 1e-9) -> bool:

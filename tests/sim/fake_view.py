@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from thymio_sim_ros.sim.geometry import Point, Pose, Twist
+from thymio_sim_ros.sim.geometry import LEVEL, Point, Pose, Tilt, Twist
 from thymio_sim_ros.sim.ground import GroundSample
 from thymio_sim_ros.sim.noise import Noise
 from thymio_sim_ros.sim.physics import Contact
@@ -26,6 +26,8 @@ class FakeView:
     now_ns: int = 100_000_000
     pose: Pose = ORIGIN
     twist: Twist = AT_REST
+    tilt: Tilt = LEVEL
+    is_falling: bool = False
     wheels: Wheels = field(default_factory=Wheels)
     contacts: tuple[Contact, ...] = ()
     noise: Noise = QUIET

@@ -25,7 +25,7 @@ def busy(dice: random.Random, robots: int) -> Playground:
     places = [(column * 0.24, row * 0.24) for column in range(-3, 4) for row in range(-3, 4)]
     dice.shuffle(places)
     stripe: dict[str, Any] = {"kind": "track", "width_m": 0.03, "color": "#202020"}
-    shapes = [{**FLOOR, "size_x_m": 1.5, "size_y_m": 1.7}]
+    shapes: list[dict[str, Any]] = [{**FLOOR, "size_x_m": 1.5, "size_y_m": 1.7}]
     shapes += [{**stripe, "points_m": [[-1.0, y / 10], [1.0, y / 10 + 0.1]]} for y in range(-8, 8, 2)]
     for x, y in places[robots : robots + 10]:
         size = (dice.uniform(0.02, 0.08), dice.uniform(0.02, 0.08))
@@ -36,6 +36,8 @@ def busy(dice: random.Random, robots: int) -> Playground:
             shapes.append(
                 {"kind": "cylinder", "x_m": x, "y_m": y, "radius_m": size[0], "height_m": 0.1, "color": "#808080"}
             )
+    for shape in shapes[-10::2]:
+        shape["mass_kg"] = dice.uniform(0.02, 0.5)
     starts = tuple(
         RobotStart(f"robot_{index}", x + dice.uniform(-0.03, 0.03), y + dice.uniform(-0.03, 0.03), dice.uniform(-3, 3))
         for index, (x, y) in enumerate(places[:robots])
@@ -45,7 +47,7 @@ def busy(dice: random.Random, robots: int) -> Playground:
 
 
 def play(monkeypatch: pytest.MonkeyPatch, crowd: int, scene: Playground, **options: Any) -> list[StepResult]:
-    """Two seconds in which robots drive, are moved, and have a button pressed."""
+    """Two seconds in which robots drive and push, one falls off the edge, and one has a button pressed."""
     monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
     world = World(scene, **options)
     dice = random.Random(1)
@@ -55,7 +57,7 @@ def play(monkeypatch: pytest.MonkeyPatch, crowd: int, scene: Playground, **optio
             if dice.random() < 0.02:
                 world.post(robot, MotorTargets(dice.randint(-500, 500), dice.randint(-500, 500)))
         if tick == 120:
-            world.post("robot_0", MoveRobot(0.02, 0.03, 1.0))
+            world.post("robot_0", MoveRobot(0.02, 0.95, 1.0))
             world.post("robot_1", PressButton("left", True))
         steps.append(world.step())
     return steps
@@ -114,7 +116,7 @@ def test_readings_may_be_looked_at_much_later(monkeypatch: pytest.MonkeyPatch) -
             if dice.random() < 0.02:
                 world.post(robot, MotorTargets(dice.randint(-500, 500), dice.randint(-500, 500)))
         if tick == 120:
-            world.post("robot_0", MoveRobot(0.02, 0.03, 1.0))
+            world.post("robot_0", MoveRobot(0.02, 0.95, 1.0))
             world.post("robot_1", PressButton("left", True))
         assert list(world.step().readings) == list(step.readings)
 

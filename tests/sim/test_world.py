@@ -98,7 +98,7 @@ def test_a_log_of_commands_replays_a_run() -> None:
         lambda: BodyTwist(dice.uniform(-0.2, 0.2), dice.uniform(-2, 2), timeout_ns=300_000_000),
         lambda: SetLeds("top", (dice.randint(0, 32), 0, 0)),
         lambda: PressButton("center", pressed=dice.random() < 0.5),
-        lambda: MoveRobot(dice.uniform(-1, 1), dice.uniform(-1, 1), dice.uniform(-3, 3)),
+        lambda: MoveRobot(dice.uniform(-1.9, 0), dice.uniform(0.8, 1.9), dice.uniform(-3, 3)),
         lambda: Tilt(dice.uniform(-1, 1), dice.uniform(-1, 1)),
         lambda: Tap(),
         lambda: Clap(dice.randint(0, 255)),

@@ -161,6 +161,15 @@ class MoveRobot:
 
 
 @dataclass(frozen=True, slots=True)
+class MoveObject:
+    """Put a movable thing somewhere, at rest (metres, radians, world frame)."""
+
+    x_m: float
+    y_m: float
+    yaw_rad: float
+
+
+@dataclass(frozen=True, slots=True)
 class ResetOdometry:
     """Let the wheel odometry start again from zero, here."""
 
@@ -297,6 +306,7 @@ Command = (
     | SetPen
     | PressButton
     | MoveRobot
+    | MoveObject
     | ResetOdometry
     | Tap
     | Tilt

@@ -22,6 +22,8 @@ __all__ = ["CROWD", "Crowd"]
 CROWD = 6
 """From so many robots on, measuring all at once is quicker (benchmarks/simulator.py)."""
 
+_NOWHERE_M = -1e6
+
 
 class _Group:
     """The robots as one sensor sees them; satisfies `GroupView`."""
@@ -69,9 +71,12 @@ class Crowd:
         self._poses = (-1, np.zeros((0, 3)))
 
     def poses(self) -> Values:
-        """Where they really are now: rows x, y, yaw."""
+        """Where they really are now: rows x, y, yaw; who has fallen is far from any floor."""
         if self._poses[0] != self.shared.clock.now_ns:
-            found = [(pose.x_m, pose.y_m, pose.yaw_rad) for pose in (robot.body.pose for robot in self._robots)]
+            found = [
+                (body.pose.x_m, body.pose.y_m, body.pose.yaw_rad) if not body.is_fallen else (_NOWHERE_M, row, 0.0)
+                for row, body in enumerate(robot.body for robot in self._robots)
+            ]
             self._poses = (self.shared.clock.now_ns, np.array(found))
         return self._poses[1]
 

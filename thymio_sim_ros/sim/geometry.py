@@ -9,7 +9,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ["Point", "Pose", "Twist", "convex_hulls_overlap", "disc_overlaps_hull", "is_convex", "wrap_angle"]
+__all__ = [
+    "LEVEL",
+    "Point",
+    "Pose",
+    "Tilt",
+    "Twist",
+    "convex_hulls_overlap",
+    "disc_overlaps_hull",
+    "is_convex",
+    "wrap_angle",
+]
 
 Point = tuple[float, float]
 
@@ -39,6 +49,17 @@ class Twist:
 
     linear_m_s: float
     angular_rad_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Tilt:
+    """How a body leans: roll is positive with its left side up, pitch with its nose down (REP 103)."""
+
+    roll_rad: float
+    pitch_rad: float
+
+
+LEVEL = Tilt(0.0, 0.0)
 
 
 def wrap_angle(angle_rad: float) -> float:

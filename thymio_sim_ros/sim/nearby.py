@@ -1,7 +1,7 @@
 """Which obstacles are near a place, without looking at all of them.
 
-Fixed ones are filed once, by the squares of a grid that their bounds touch; what moves is filed anew, by the square of
-its middle, whenever it may have moved. A query costs what is near, however large the world and the crowd are.
+Fixed ones are filed once; what moves is filed anew, by the square of its middle, whenever it may have moved. A query
+costs what is near, however large the world and the crowd are.
 """
 
 from __future__ import annotations
@@ -13,14 +13,9 @@ from typing import Protocol
 
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.rays import Obstacle
+from thymio_sim_ros.sim.squares import SIDE_M, Square, Squares, square_of
 
 __all__ = ["Mover", "Nearby"]
-
-_SQUARE_M = 0.5
-_MOST_SQUARES = 400
-"""What touches more squares is looked at in every query."""
-
-_Square = tuple[int, int]
 
 
 class Mover(Protocol):
@@ -46,18 +41,12 @@ class Nearby:
     """A file of obstacles by place. Invariant: after `stir` and before the next move it holds every mover's place."""
 
     def __init__(self, fixed: Iterable[Obstacle]) -> None:
-        self._everywhere: list[Obstacle] = []
-        self._fixed: dict[_Square, list[Obstacle]] = {}
-        self._found: dict[tuple[_Square, float], tuple[Obstacle, ...]] = {}
+        self._fixed: Squares[Obstacle] = Squares()
         for obstacle in fixed:
-            columns, rows = _squares(*obstacle.bounds)
-            if len(columns) * len(rows) > _MOST_SQUARES:
-                self._everywhere.append(obstacle)
-                continue
-            for square in product(columns, rows):
-                self._fixed.setdefault(square, []).append(obstacle)
+            self._fixed.add(obstacle, obstacle.bounds)
+        self._found: dict[tuple[Square, float], tuple[Obstacle, ...]] = {}
         self._movers: tuple[Mover, ...] = ()
-        self._filed: dict[_Square, list[Mover]] | None = None
+        self._filed: dict[Square, list[Mover]] | None = None
         self._longest_m = 0.0
 
     def replace_movers(self, movers: Iterable[Mover]) -> None:
@@ -72,41 +61,31 @@ class Nearby:
 
     def fixed(self, x_m: float, y_m: float, reach_m: float) -> tuple[Obstacle, ...]:
         """Fixed obstacles that may be nearer to a place than `reach_m`; never one too few."""
-        square = (math.floor(x_m / _SQUARE_M), math.floor(y_m / _SQUARE_M))
+        square = square_of(x_m, y_m)
         found = self._found.get((square, reach_m))
         if found is None:
-            x, y = square[0] * _SQUARE_M, square[1] * _SQUARE_M
-            area = _squares(x - reach_m, y - reach_m, x + _SQUARE_M + reach_m, y + _SQUARE_M + reach_m)
-            near = dict.fromkeys(self._everywhere)
-            is_wide = len(area[0]) * len(area[1]) > len(self._fixed)
-            for neighbour in self._fixed if is_wide else product(*area):
-                near.update(dict.fromkeys(self._fixed.get(neighbour, ())))
-            found = self._found[square, reach_m] = tuple(near)
+            left, bottom = square[0] * SIDE_M - reach_m, square[1] * SIDE_M - reach_m
+            wide = SIDE_M + 2 * reach_m
+            found = self._found[square, reach_m] = tuple(self._fixed.near((left, bottom, left + wide, bottom + wide)))
         return found
 
     def movers(self, x_m: float, y_m: float, reach_m: float) -> Iterator[Mover]:
         """What moves and may be nearer to a place than `reach_m`; never one too few."""
         far = reach_m + self._longest_m
-        columns, rows = _squares(x_m - far, y_m - far, x_m + far, y_m + far)
-        if len(columns) * len(rows) > len(self._movers):
-            found: Iterable[Mover] = self._movers
-        else:
+        left, bottom = square_of(x_m - far, y_m - far)
+        right, top = square_of(x_m + far, y_m + far)
+        found: Iterable[Mover] = self._movers
+        if (right + 1 - left) * (top + 1 - bottom) <= len(self._movers):
             filed = self._file()
-            found = (mover for square in product(columns, rows) for mover in filed.get(square, ()))
+            squares = product(range(left, right + 1), range(bottom, top + 1))
+            found = (mover for square in squares for mover in filed.get(square, ()))
         for mover in found:
             if math.hypot(mover.pose.x_m - x_m, mover.pose.y_m - y_m) <= reach_m + mover.reach_m:
                 yield mover
 
-    def _file(self) -> dict[_Square, list[Mover]]:
+    def _file(self) -> dict[Square, list[Mover]]:
         if self._filed is None:
             self._filed = {}
             for mover in self._movers:
-                square = (math.floor(mover.pose.x_m / _SQUARE_M), math.floor(mover.pose.y_m / _SQUARE_M))
-                self._filed.setdefault(square, []).append(mover)
+                self._filed.setdefault(square_of(mover.pose.x_m, mover.pose.y_m), []).append(mover)
         return self._filed
-
-
-def _squares(left: float, bottom: float, right: float, top: float) -> tuple[range, range]:
-    """The squares that an area touches: columns and rows."""
-    columns = range(math.floor(left / _SQUARE_M), math.floor(right / _SQUARE_M) + 1)
-    return columns, range(math.floor(bottom / _SQUARE_M), math.floor(top / _SQUARE_M) + 1)

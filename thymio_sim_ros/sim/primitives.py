@@ -47,6 +47,11 @@ class Box:
         return ((-x, -y), (x, -y), (x, y), (-x, y))
 
     @property
+    def reach_m(self) -> float:
+        """No point is farther from the middle."""
+        return math.hypot(self.size_x_m, self.size_y_m) / 2
+
+    @property
     def mean_lever_m(self) -> float:
         """Mean distance of its points from the middle."""
         x, y = self.size_x_m / 2, self.size_y_m / 2
@@ -62,6 +67,11 @@ class Disc:
     radius_m: float
 
     @property
+    def reach_m(self) -> float:
+        """No point is farther from the middle."""
+        return self.radius_m
+
+    @property
     def mean_lever_m(self) -> float:
         """Mean distance of its points from the middle."""
         return self.radius_m * 2 / 3
@@ -72,6 +82,11 @@ class Polygon:
     """Outline: a convex polygon, counter-clockwise, in the solid's frame."""
 
     vertices: tuple[Point, ...]
+
+    @property
+    def reach_m(self) -> float:
+        """No point is farther from the frame's origin."""
+        return max(math.hypot(x, y) for x, y in self.vertices)
 
 
 Outline = Box | Disc | Polygon
@@ -113,6 +128,11 @@ class Solid:
     color: Color
     load: Load | None = None
     slide: Slide | None = None
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether it always stays where it is."""
+        return self.load is None and self.slide is None
 
     @property
     def vertices(self) -> tuple[Point, ...]:

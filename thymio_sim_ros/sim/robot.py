@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
+from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.actuators.buttons import ButtonState
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.actuators.pen import PenState
 from thymio_sim_ros.sim.actuators.room import RoomState
-from thymio_sim_ros.sim.clock import SimClock
-from thymio_sim_ros.sim.geometry import Point, Pose, Twist
-from thymio_sim_ros.sim.ground import Ground, GroundSample
+from thymio_sim_ros.sim.clock import TICK_NS, SimClock
+from thymio_sim_ros.sim.fall import Fall
+from thymio_sim_ros.sim.footing import Footing
+from thymio_sim_ros.sim.geometry import LEVEL, Point, Pose, Tilt, Twist
+from thymio_sim_ros.sim.ground import NO_FLOOR, Ground, GroundSample
 from thymio_sim_ros.sim.noise import Noise
 from thymio_sim_ros.sim.physics import Contact, Physics, RobotBody
 from thymio_sim_ros.sim.playground import RobotStart
@@ -27,6 +30,10 @@ from thymio_sim_ros.sim.wheels import Wheels
 __all__ = ["Robot", "Shared"]
 
 S = TypeVar("S")
+
+_LONGEST_WAY_M = thymio2.MAX_SPEED_M_S * TICK_NS * 1e-9
+"""Of a robot in a tick, unless it is pushed."""
+_MOST_SURE_TICKS = 100
 
 
 class Shared:
@@ -80,6 +87,14 @@ class _View:
         return self._robot.twist
 
     @property
+    def tilt(self) -> Tilt:
+        return self._robot.tilt
+
+    @property
+    def is_falling(self) -> bool:
+        return self._robot.is_falling
+
+    @property
     def contacts(self) -> tuple[Contact, ...]:
         return tuple(self._robot.body.touching.values())
 
@@ -95,6 +110,8 @@ class _View:
         return self._world.physics.surroundings(self._robot.body, reach_m, height_m)
 
     def ground_at(self, x_m: float, y_m: float) -> GroundSample:
+        if self._robot.body.is_fallen:
+            return NO_FLOOR
         return self._world.ground.sample(*self._robot.body.pose.place((x_m, y_m)))
 
     def state(self, kind: type[S]) -> S:
@@ -109,7 +126,7 @@ class _View:
         self._robot.wake(kind)
 
     def place(self, pose: Pose) -> None:
-        self._world.physics.place(self._robot.body, pose)
+        self._robot.place(pose)
 
 
 class Robot:
@@ -128,7 +145,9 @@ class Robot:
         self.name = start.name
         self.body: RobotBody = shared.physics.add_robot(start.name, start.pose)
         self.wheels = Wheels()
-        self._clock = shared.clock
+        self._clock, self._physics = shared.clock, shared.physics
+        self._fall: Fall | None = None
+        self._sure_ticks = 0
         self.states: dict[type[Any], Any] = {}
         """The state of every actuator, by its type."""
         self._accepting: dict[type[Any], tuple[Actuator, Any]] = {}
@@ -161,6 +180,16 @@ class Robot:
     def twist(self) -> Twist:
         """How its body really moves, in its own frame."""
         return Twist(self.body.speed_m_s, self.body.spin_rad_s)
+
+    @property
+    def tilt(self) -> Tilt:
+        """How it leans: level unless it has fallen off an edge."""
+        return LEVEL if self._fall is None else self._fall.tilt(self._clock.now_ns)
+
+    @property
+    def is_falling(self) -> bool:
+        """Whether it is in the air, on its way down from an edge."""
+        return self._fall is not None and self._fall.is_free(self._clock.now_ns)
 
     def levels(self, now_ns: int) -> list[float]:
         """How loud is what sounds on it."""
@@ -209,6 +238,23 @@ class Robot:
         sensor, view = self.sensors[number]
         return sensor.measure(view)
 
+    def place(self, pose: Pose) -> None:
+        """Put it somewhere, at rest; from where it has fallen too."""
+        self._physics.place(self.body, pose)
+        self._fall, self._sure_ticks = None, 0
+
+    def look_down(self, footing: Footing) -> None:
+        """Fall, if there is no floor under its origin (any more)."""
+        if self._sure_ticks > 0 and not self.body.touching:
+            self._sure_ticks -= 1
+        elif self._fall is None:
+            clearance_m = footing.clearance_m(self.pose.x_m, self.pose.y_m)
+            if clearance_m < 0.0:
+                self._fall = Fall(self._clock.now_ns + TICK_NS, self.body.course_rad)
+                self._physics.drop_robot(self.body)
+            else:
+                self._sure_ticks = int(min(clearance_m / _LONGEST_WAY_M, _MOST_SURE_TICKS))
+
     def measure(self, due: Sequence[int]) -> list[tuple[str, str, Reading]]:
         """The readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""
         woken = self.take_woken()
@@ -230,6 +276,7 @@ class Robot:
         return RobotSnapshot(
             name=self.name,
             pose=self.body.pose,
+            tilt=self.tilt,
             wheel_angles_rad=self.wheels.angles_rad,
             leds=tuple(self.state(LedState).levels.items()),
             strokes=self.state(PenState).strokes,

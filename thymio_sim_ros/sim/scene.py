@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.playground import Playground
 from thymio_sim_ros.sim.primitives import Floor, Mark, Solid, Stroke
 
-__all__ = ["RobotSnapshot", "Scene", "Snapshot"]
+__all__ = ["ObjectSnapshot", "RobotSnapshot", "Scene", "Snapshot"]
 
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """What does not change: solids stand on floors, paint and prints lie on them, later ones cover earlier ones."""
+    """What there is at the start: solids stand on floors, paint and prints lie on them, later ones on earlier ones."""
 
     solids: tuple[Solid, ...]
     floors: tuple[Floor, ...]
@@ -27,7 +27,7 @@ class Scene:
 
 @dataclass(frozen=True, slots=True)
 class RobotSnapshot:
-    """One robot: true pose, wheel angles left and right, levels 0…32 of its lights by group, buttons held.
+    """One robot: true pose and lean, wheel angles left and right, levels 0…32 of its lights by group, buttons held.
 
     `strokes` are what its pen drew, the oldest first.
     """
@@ -38,6 +38,16 @@ class RobotSnapshot:
     leds: tuple[tuple[str, tuple[int, ...]], ...]
     pressed: tuple[str, ...]
     strokes: tuple[Stroke, ...] = ()
+    tilt: Tilt = LEVEL
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectSnapshot:
+    """A movable thing or a door; what has fallen off an edge is out of sight."""
+
+    name: str
+    pose: Pose
+    is_fallen: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,3 +56,4 @@ class Snapshot:
 
     now_ns: int
     robots: tuple[RobotSnapshot, ...]
+    objects: tuple[ObjectSnapshot, ...] = ()

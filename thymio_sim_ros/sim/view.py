@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Protocol, TypeVar
 
-from thymio_sim_ros.sim.geometry import Point, Pose, Twist
+from thymio_sim_ros.sim.geometry import Point, Pose, Tilt, Twist
 from thymio_sim_ros.sim.ground import GroundSample
 from thymio_sim_ros.sim.noise import Noise
 from thymio_sim_ros.sim.physics import Contact
@@ -54,6 +54,16 @@ class SensorView(Protocol):
     @property
     def twist(self) -> Twist:
         """How its body really moves."""
+        ...
+
+    @property
+    def tilt(self) -> Tilt:
+        """How the robot leans: level unless it has fallen off an edge."""
+        ...
+
+    @property
+    def is_falling(self) -> bool:
+        """Whether it is in the air, on its way down from an edge."""
         ...
 
     @property

@@ -6,22 +6,25 @@ give the same readings bit for bit. One thread may use a world; nothing here loc
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.clock import TICK_NS, Schedule, SimClock
-from thymio_sim_ros.sim.commands import Command, SetPen
+from thymio_sim_ros.sim.commands import Command, MoveObject, MoveRobot, SetPen
 from thymio_sim_ros.sim.crowd import CROWD, Crowd
 from thymio_sim_ros.sim.fields import as_color
+from thymio_sim_ros.sim.footing import Footing
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.ground import Ground
-from thymio_sim_ros.sim.physics import Contact, DoorBody, MovableBody, Physics
-from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.physics import Contact, MovableBody, Physics
+from thymio_sim_ros.sim.placement import Footprint, Occupied, PlacementError, footprint_of, footprint_of_robot
+from thymio_sim_ros.sim.playground import Playground, RobotStart
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.robot import Robot, Shared
-from thymio_sim_ros.sim.scene import Scene, Snapshot
+from thymio_sim_ros.sim.scene import ObjectSnapshot, Scene, Snapshot
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 
 __all__ = ["TICK_NS", "StepResult", "World"]
@@ -40,7 +43,7 @@ class StepResult:
 
 
 class World:
-    """A playground that lives. Invariant: nothing in it changes but by `step` and `reset`."""
+    """A playground that lives. Invariant: nothing in it changes but by `step`, `reset`, `spawn` and `remove`."""
 
     def __init__(
         self,
@@ -59,6 +62,8 @@ class World:
         self.scene = Scene.of(playground)
         self._seed, self._noise, self._proximity_model = seed, noise, proximity_model
         self._ground = Ground(playground.floors, playground.paints)
+        self._footing = Footing(playground.floors)
+        self._fixed = Occupied(footprint_of(solid) for solid in playground.solids if solid.is_fixed)
         self.reset()
 
     def reset(self) -> None:
@@ -67,17 +72,13 @@ class World:
         self._ground.restore()
         self._physics = Physics(self.playground.solids, self.playground.triggers)
         self._robots: dict[str, Robot] = {}
-        shared = Shared(self._clock, self._ground, self._physics, self._proximity_model, self._robots)
-        actuators, sensors = all_actuators(), self._sensors
-        self._schedule = Schedule((sensor.period_ns, sensor.phase_ns) for sensor in sensors)
+        self._shared = Shared(self._clock, self._ground, self._physics, self._proximity_model, self._robots)
+        self._actuators = all_actuators()
+        self._schedule = Schedule((sensor.period_ns, sensor.phase_ns) for sensor in self._sensors)
         for start in self.playground.robots:
-            robot = Robot(start, shared, actuators, sensors, seed=self._seed, noise=self._noise)
-            self._robots[start.name] = robot
-            if start.pen is not None:
-                pen = start.pen
-                robot.apply(SetPen(pen.down, as_color(pen.color), pen.width_m))
-        self._posted: list[tuple[Robot, Command]] = []
-        self._crowd = Crowd(self._robots.values(), shared) if len(self._robots) >= CROWD else None
+            self._add(start)
+        self._posted: list[tuple[str, Command]] = []
+        self._gather()
 
     @property
     def now_ns(self) -> int:
@@ -86,21 +87,39 @@ class World:
 
     @property
     def robots(self) -> Mapping[str, Robot]:
-        """The robots by name, in the order of the playground."""
+        """The robots by name, in the order of the playground, and then as they were added."""
         return MappingProxyType(self._robots)
 
-    @property
-    def objects(self) -> Mapping[str, Pose]:
-        """Where everything that moves without wheels is: movable things, then doors, by name."""
-        moving: dict[str, MovableBody | DoorBody] = {**self._physics.movables, **self._physics.doors}
-        return MappingProxyType({name: body.pose for name, body in moving.items()})
+    def post(self, name: str, command: Command) -> None:
+        """Let a command to a robot or a movable thing take effect in the next step.
 
-    def post(self, robot: str, command: Command) -> None:
-        """Let a command take effect in the next step; KeyError for an unknown robot, TypeError for no command."""
-        found = self._robots[robot]
-        if not found.accepts(command):
+        KeyError for an unknown name, TypeError for a command that it does not take, PlacementError for a place that is
+        not free now.
+        """
+        if name in self._physics.movables:
+            if not isinstance(command, MoveObject):
+                raise TypeError(f"a thing takes no {type(command).__name__}")
+            solid = self._physics.movables[name].solid
+            self._check_place(footprint_of(solid.at(Pose(command.x_m, command.y_m, command.yaw_rad))))
+        elif not self._robots[name].accepts(command):
             raise TypeError(f"no actuator takes a {type(command).__name__}")
-        self._posted.append((found, command))
+        elif isinstance(command, MoveRobot):
+            self._check_place(footprint_of_robot(name, Pose(command.x_m, command.y_m, command.yaw_rad)))
+        self._posted.append((name, command))
+
+    def spawn(self, start: RobotStart) -> None:
+        """Add a robot, now; ValueError for a name that is taken, PlacementError for a place that is not free."""
+        if start.name in self._names():
+            raise ValueError(f"the name '{start.name}' is taken")
+        self._check_place(footprint_of_robot(start.name, start.pose))
+        self._add(start)
+        self._gather()
+
+    def remove(self, robot: str) -> None:
+        """Take a robot away, now; KeyError for an unknown one."""
+        self._physics.remove_robot(self._robots.pop(robot).body)
+        self._posted = [(name, command) for name, command in self._posted if name != robot]
+        self._gather()
 
     def step(self) -> StepResult:
         """Let one tick pass."""
@@ -112,12 +131,50 @@ class World:
 
     def snapshot(self) -> Snapshot:
         """How the world looks now."""
-        return Snapshot(self._clock.now_ns, tuple(robot.snapshot() for robot in self._robots.values()))
+        return Snapshot(
+            self._clock.now_ns,
+            tuple(robot.snapshot() for robot in self._robots.values()),
+            tuple(ObjectSnapshot(body.name, body.pose, body.is_fallen) for body in self._physics.objects),
+        )
+
+    def _add(self, start: RobotStart) -> None:
+        robot = Robot(start, self._shared, self._actuators, self._sensors, seed=self._seed, noise=self._noise)
+        self._robots[start.name] = robot
+        if start.pen is not None:
+            pen = start.pen
+            robot.apply(SetPen(pen.down, as_color(pen.color), pen.width_m))
+
+    def _gather(self) -> None:
+        """Let many robots measure together."""
+        self._crowd = Crowd(self._robots.values(), self._shared) if len(self._robots) >= CROWD else None
+
+    def _names(self) -> set[str]:
+        """All names that are taken."""
+        return {*self._robots, *(shape.name for shape in self.playground.shapes)}
+
+    def _check_place(self, wanted: Footprint) -> None:
+        """Refuse a place where something else stands now, or none at all."""
+        x, y = wanted.middle
+        if not (math.isfinite(x) and math.isfinite(y)):
+            raise ValueError(f"'{wanted.name}' cannot stand at {x}, {y} m: expected finite numbers")
+        standing = [footprint_of(body.solid.at(body.pose)) for body in self._physics.objects if not body.is_fallen]
+        standing += [
+            footprint_of_robot(robot.name, robot.pose) for robot in self._robots.values() if not robot.body.is_fallen
+        ]
+        here = (there.name for there in standing if there.name != wanted.name and there.overlaps(wanted))
+        blocker = self._fixed.blocker(wanted) or next(here, None)
+        if blocker is not None:
+            raise PlacementError(wanted.name, Pose(x, y, 0.0), blocker)
 
     def _apply_commands(self) -> None:
         posted, self._posted = self._posted, []
-        for robot, command in posted:
-            robot.apply(command)
+        for name, command in posted:
+            if isinstance(command, MoveObject):
+                movable = self._physics.movables[name]
+                self._physics.place(movable, Pose(command.x_m, command.y_m, command.yaw_rad))
+                self._drop_over_edge(movable)
+            else:
+                self._robots[name].apply(command)
 
     def _run_actuators(self) -> None:
         for robot in self._robots.values():
@@ -127,10 +184,18 @@ class World:
         contacts = self._physics.step()
         for robot in self._robots.values():
             robot.roll(_TICK_S)
+            robot.look_down(self._footing)
+        for movable in self._physics.movables.values():
+            if movable.is_moving:
+                self._drop_over_edge(movable)
         for contact in contacts:
             if contact.is_new:
                 self._robots[contact.robot].wake(Contact)
         return contacts
+
+    def _drop_over_edge(self, movable: MovableBody) -> None:
+        if self._footing.clearance_m(movable.pose.x_m, movable.pose.y_m) < 0.0:
+            self._physics.drop_movable(movable)
 
     def _run_sensors(self, now_ns: int) -> Sequence[tuple[str, str, Reading]]:
         due = self._schedule.due(now_ns)

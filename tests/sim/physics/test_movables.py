@@ -31,7 +31,7 @@ def quiet(*shapes: dict[str, Any], robots: tuple[dict[str, Any], ...] = (ROBOT,)
 
 
 def place_of(world: World, name: str) -> Pose:
-    return world.objects[name]
+    return next(thing.pose for thing in world.snapshot().objects if thing.name == name)
 
 
 @pytest.mark.parametrize("thing", [crate(0.2), can(0.2)], ids=lambda thing: thing["name"])

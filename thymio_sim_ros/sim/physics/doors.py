@@ -12,7 +12,8 @@ import pymunk
 
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.physics.contact import TICK_S
-from thymio_sim_ros.sim.primitives import Disc, Solid
+from thymio_sim_ros.sim.physics.outlines import shape_of
+from thymio_sim_ros.sim.primitives import Solid
 from thymio_sim_ros.sim.rays import Obstacle, obstacle_of
 
 __all__ = ["DoorBody"]
@@ -32,13 +33,13 @@ class DoorBody:
         self._obstacle = obstacle_of(solid)
         self.body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
         self.body.position, self.body.angle = (solid.pose.x_m, solid.pose.y_m), solid.pose.yaw_rad
-        outline = solid.outline
-        if isinstance(outline, Disc):
-            self.reach_m = outline.radius_m
-            self.shape: pymunk.Shape = pymunk.Circle(self.body, outline.radius_m)
-        else:
-            self.reach_m = max(math.hypot(x, y) for x, y in outline.vertices)
-            self.shape = pymunk.Poly(self.body, outline.vertices)
+        self.reach_m = solid.outline.reach_m
+        self.shape = shape_of(solid.outline, self.body)
+
+    @property
+    def is_fallen(self) -> bool:
+        """Never: it hangs on rails."""
+        return False
 
     @property
     def name(self) -> str:

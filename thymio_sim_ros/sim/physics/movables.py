@@ -12,6 +12,7 @@ import math
 import pymunk
 
 from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.physics.outlines import shape_of
 from thymio_sim_ros.sim.primitives import Disc, Solid
 from thymio_sim_ros.sim.rays import Obstacle, obstacle_of
 
@@ -33,18 +34,13 @@ class MovableBody:
         self._solid = solid
         self.is_moving = self.is_fallen = False
         outline = solid.outline
+        self.reach_m = outline.reach_m
         if isinstance(outline, Disc):
-            self.reach_m = outline.radius_m
             moment = pymunk.moment_for_circle(load.mass_kg, 0.0, outline.radius_m)
         else:
-            self.reach_m = max(math.hypot(x, y) for x, y in outline.vertices)
             moment = pymunk.moment_for_poly(load.mass_kg, outline.vertices)
         self.body = pymunk.Body(load.mass_kg, moment)
-        self.shape = (
-            pymunk.Circle(self.body, outline.radius_m)
-            if isinstance(outline, Disc)
-            else pymunk.Poly(self.body, outline.vertices)
-        )
+        self.shape = shape_of(outline, self.body)
         self.shape.elasticity = load.restitution
         slide = pymunk.PivotJoint(floor, self.body, (0.0, 0.0), (0.0, 0.0))
         turn = pymunk.GearJoint(floor, self.body, 0.0, 1.0)
@@ -70,12 +66,17 @@ class MovableBody:
         return self._obstacle
 
     def place(self, pose: Pose) -> None:
-        """Put it somewhere, at rest."""
+        """Put it somewhere, at rest; what has fallen stands on the floor again."""
+        self.is_fallen = False
         self._rest()
         self.body.position, self.body.angle = (pose.x_m, pose.y_m), pose.yaw_rad
         self._show(pose)
         if self.body.space is not None:
             self.body.space.reindex_shapes_for_body(self.body)
+
+    def fall(self) -> None:
+        """Be gone, until it is placed."""
+        self.is_fallen, self.is_moving = True, False
 
     def end_tick(self) -> None:
         """Tell the new pose, if it has moved."""

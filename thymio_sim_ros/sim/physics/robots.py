@@ -16,7 +16,7 @@ from dataclasses import replace
 import pymunk
 
 from thymio_sim_ros.sim import thymio2
-from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.geometry import Pose, wrap_angle
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, TICK_S, Contact
 from thymio_sim_ros.sim.rays import ConvexObstacle
 
@@ -28,6 +28,7 @@ _MOMENT_KG_M2 = 1.0
 """Far above the real one: wheels hold the heading of a robot that hits a wall (thymio-robot.md section 11)."""
 _PUSH_N_S_M = thymio2.MASS_KG / TICK_S
 """Force for each m/s that a robot in contact lacks: enough to make up for it in one tick."""
+_AT_REST_M_S = 1e-6
 _HULL = thymio2.hull()
 
 
@@ -89,12 +90,21 @@ class RobotBody:
             self._obstacle = (self.pose, ConvexObstacle(self.pose.place_all(_HULL), thymio2.HULL_HEIGHT_M))
         return self._obstacle[1]
 
+    @property
+    def course_rad(self) -> float:
+        """The direction in which it moves, in its own frame; 0 at rest."""
+        if self._is_free:
+            return math.pi if self.speed_m_s < 0.0 else 0.0
+        vx, vy = self.body.velocity
+        return wrap_angle(math.atan2(vy, vx) - self._angle) if math.hypot(vx, vy) > _AT_REST_M_S else 0.0
+
     def drive(self, ground_m_s: tuple[float, float]) -> None:
         """Speed over ground that each wheel gives from now on."""
         self._driven = ground_m_s
 
     def place(self, pose: Pose) -> None:
-        """Put it somewhere, at rest."""
+        """Put it somewhere, at rest; what has fallen stands on the floor again."""
+        self.is_fallen = False
         body = self.body
         body.position, body.angle = (pose.x_m, pose.y_m), pose.yaw_rad
         body.velocity, body.angular_velocity = (0.0, 0.0), 0.0

@@ -123,20 +123,25 @@ class Physics:
         self._stop_gliding()
         self._space.remove(movable.shape, movable.body, *movable.joints)
         self._forget(movable.shape)
-        movable.is_fallen, movable.is_moving = True, False
+        movable.fall()
         self._list_movers()
 
     def place(self, body: RobotBody | MovableBody, pose: Pose) -> None:
         """Put a robot or a thing somewhere, at rest; what has fallen stands on the floor again."""
         self._stop_gliding()
+        was_fallen = body.is_fallen
         body.place(pose)
-        if body.is_fallen:
-            body.is_fallen = False
+        if was_fallen:
             self._space.add(body.body, body.shape)
             if isinstance(body, MovableBody):
                 self._space.add(*body.joints)
             self._list_movers()
         self._nearby.stir()
+
+    @property
+    def objects(self) -> tuple[MovableBody | DoorBody, ...]:
+        """Movables and doors, always in the same order."""
+        return (*self._movables.values(), *self._doors.values())
 
     def step(self) -> tuple[Contact, ...]:
         """One tick; the contacts at its end, by robot and in the order in which they began."""
