@@ -1,0 +1,275 @@
+"""What programs see of the senses: events and their rates, variables, infrared communication. World and devices run."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+
+from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.sim import playground
+from thymio_sim_ros.sim.commands import (
+    Clap,
+    PressButton,
+    RemoteKey,
+    SetBattery,
+    SetNoiseLevel,
+    SetTemperature,
+    Tap,
+    Tilt,
+)
+
+EVENTS = [event.name for event in target().local_events]
+
+
+def pair(gap_m=0.2, names=("anna", "bert")):
+    """Two robots whose front sensors face each other across a gap."""
+    floor = {"kind": "rectangle", "name": "floor", "size_x_m": 4.0, "size_y_m": 4.0, "color": "#ffffff"}
+    robots = [
+        {"name": name, "x_m": x_m, "y_m": 0.0, "yaw_rad": yaw_rad}
+        for name, x_m, yaw_rad in zip(names, (0.0, 0.159 + gap_m), (0.0, math.pi), strict=False)
+    ]
+    return playground.loads(json.dumps({"format": 1, "title": "pair", "shapes": [floor], "robots": robots}), "pair")
+
+
+def alone(source, **options):
+    """A runner of one robot with a program, and its device."""
+    runner = Runner(pair(names=("anna",)), load_program(source, "test"), **options)
+    return runner, runner.devices["anna"]
+
+
+def counting(events):
+    """A program that counts each of these events."""
+    handlers = "\n".join(f"onevent {event}\nn[{number}]++" for number, event in enumerate(events))
+    return f"var n[{len(events)}]\n{{}}\n{handlers}"
+
+
+def test_every_event_comes_as_often_as_on_the_robot():
+    start = "call prox.comm.enable(1)\nmic.threshold = 50\ntimer.period = [100, 250]\ncall sound.freq(440, 6)"
+    runner = Runner(pair(), load_program(counting(EVENTS).format(start), "test"), seed=3)
+    runner.post("anna", SetNoiseLevel(51))
+    for second in range(10):
+        if second < 3:
+            runner.post("anna", Tap())
+        if second < 4:
+            runner.post("anna", RemoteKey(0, 80))
+        for pressed in (True, False):
+            for button in ("backward", "left", "center", "forward", "right"):
+                runner.post("anna", PressButton(button, pressed))
+            runner.run(0.5)
+    counts = dict(zip(EVENTS, runner.devices["anna"].get_variable("n"), strict=True))
+    buttons = {name: 20 for name in EVENTS if name.startswith("button.")}
+    assert counts == {
+        **buttons,
+        "buttons": 500,
+        "prox": 100,
+        "prox.comm": 100,
+        "tap": 3,
+        "acc": 160,
+        "mic": 610,
+        "sound.finished": counts["sound.finished"],
+        "temperature": 10,
+        "rc5": 4,
+        "motor": 1000,
+        "timer0": 100,
+        "timer1": 40,
+    }
+    assert counts["sound.finished"] >= 1
+
+
+def test_events_of_one_moment_come_in_the_order_of_their_numbers():
+    names = ["motor", "acc", "prox", "buttons", "tap", "rc5", "mic"]
+    handlers = "\n".join(f"onevent {name}\nif n < 8 then\norder[n] = {EVENTS.index(name)}\nn++\nend" for name in names)
+    runner, device = alone(f"var order[8]\nvar n = 8\nmic.threshold = 10\n{handlers}")
+    runner.run(0.99)
+    device.set_variable("n", (0,))
+    for command in (Tap(), RemoteKey(1, 2), SetNoiseLevel(100)):
+        runner.post("anna", command)
+    runner.run(0.01)
+    assert runner.now_ns == 1_000_000_000
+    words = device.get_variable("order")[: device.get_variable("n")[0]]
+    assert [EVENTS[number] for number in words] == ["buttons", "prox", "tap", "acc", "mic", "rc5", "motor"]
+
+
+@pytest.mark.parametrize(("threshold", "events"), [(0, 0), (100, 0), (99, 61), (32767, 0)])
+def test_mic_needs_a_threshold_and_more_than_it(threshold, events):
+    runner, device = alone(counting(["mic"]).format(f"mic.threshold = {threshold}"))
+    runner.post("anna", SetNoiseLevel(100))
+    runner.run(1.0)
+    assert device.get_variable("n") == (events,)
+    assert device.get_variable("mic.intensity") == (100,)
+
+
+def test_a_clap_is_one_or_two_events():
+    runner, device = alone(counting(["mic"]).format("mic.threshold = 246"))
+    runner.run(1.0)
+    runner.post("anna", Clap(255))
+    runner.run(1.0)
+    assert device.get_variable("n")[0] in (1, 2)
+
+
+def test_a_tap_stays_until_the_program_clears_it():
+    runner, device = alone("var n = 0\nonevent timer0\nacc._tap = 0\nonevent tap\nn++")
+    runner.post("anna", Tap())
+    runner.run(0.5)
+    assert (device.get_variable("acc._tap"), device.get_variable("n")) == ((1,), (1,))
+    device.set_variable("acc._tap", (0,))
+    runner.run(1.0)
+    assert device.get_variable("acc._tap") == (0,)
+
+
+def test_a_program_reads_every_variable_of_the_senses():
+    names = [
+        "buttons._raw", "button.center", "buttons._mean", "buttons._noise", "_vbat", "_imot", "motor.left.speed",
+        "motor.right.pwm", "_integrator", "acc", "temperature", "rc5.address", "rc5.command", "mic.intensity",
+        "mic._mean", "acc._tap", "prox.ground.ambiant", "prox.ground.reflected", "prox.ground.delta",
+        "prox.horizontal", "_fwversion", "_productId", "_id",
+    ]  # fmt: skip
+    sizes = {name: size for name, (_, size) in target().addresses.items()}
+    copies, place = [], 0
+    for name in names:
+        last = place + sizes[name] - 1
+        copies.append(f"seen[{place}:{last}] = {name}[0:{sizes[name] - 1}]")
+        place += sizes[name]
+    source = f"var seen[{place}]\ntimer.period[0] = 1500\nmotor.left.target = 100\nmotor.right.target = 100\n"
+    runner, device = alone(source + "onevent timer0\n" + "\n".join(copies), noise=False)
+    for command in (
+        PressButton("center", True), SetBattery(3.6), Tilt(-0.5, 0.5), SetTemperature(-3.5), RemoteKey(31, 127),
+        SetNoiseLevel(77), Tap(),
+    ):  # fmt: skip
+        runner.post("anna", command)
+    runner.run(1.6)
+    words = list(device.get_variable("seen"))
+    seen = {}
+    for name in names:
+        seen[name], words = words[: sizes[name]], words[sizes[name] :]
+    assert seen == {
+        "buttons._raw": [2000, 2000, 1600, 2000, 2000],
+        "button.center": [1],
+        "buttons._mean": [2000] * 5,
+        "buttons._noise": [20] * 5,
+        "_vbat": [716, 716],
+        "_imot": [0, 0],
+        "motor.left.speed": [100],
+        "motor.right.pwm": [-160],
+        "_integrator": [-480, -480],
+        "acc": [10, -11, 18],
+        "temperature": [-35],
+        "rc5.address": [31],
+        "rc5.command": [127],
+        "mic.intensity": [77],
+        "mic._mean": [255],
+        "acc._tap": [1],
+        "prox.ground.ambiant": [0, 0],
+        "prox.ground.reflected": [938, 938],
+        "prox.ground.delta": [938, 938],
+        "prox.horizontal": [0] * 7,
+        "_fwversion": [14, 1],
+        "_productId": [8],
+        "_id": [1],
+    }
+
+
+def test_what_stays_the_same_is_read_again_after_a_reset():
+    runner, device = alone("", noise=False)
+    runner.post("anna", SetNoiseLevel(50))
+    runner.run(0.5)
+    device.reset()
+    device.resume()
+    assert device.get_variable("_vbat") == (0, 0)
+    runner.run(1.1)
+    assert device.get_variable("_vbat") == (796, 796)
+    assert device.get_variable("mic.intensity") == (50,)
+    assert device.get_variable("buttons._mean") == (2000,) * 5
+
+
+TALKER = "var n = 0\ncall prox.comm.enable(1)\nprox.comm.tx = 100 * _id\nonevent prox.comm\nn++"
+
+
+def test_two_robots_talk_by_infrared():
+    runner = Runner(pair(), load_program(TALKER, "test"))
+    runner.run(1.0)
+    anna, bert = runner.devices.values()
+    assert (anna.get_variable("prox.comm.rx"), bert.get_variable("prox.comm.rx")) == ((200,), (100,))
+    assert (anna.get_variable("n"), bert.get_variable("n")) == ((10,), (10,))
+    assert anna.get_variable("prox.comm.rx._payloads")[2] == 200
+    assert anna.get_variable("prox.comm.rx._intensities")[2] > 2000
+    assert anna.get_variable("prox.comm.rx._intensities")[5:] == (0, 0)
+
+
+def test_out_of_range_nothing_changes_any_more():
+    runner = Runner(pair(gap_m=1.0), load_program(TALKER, "test"))
+    runner.run(1.0)
+    assert runner.devices["anna"].get_variable("n") == (0,)
+
+
+def test_a_negative_value_is_heard_by_nobody():
+    runner = Runner(pair(), load_program(TALKER.replace("100 *", "-1 *"), "test"))
+    runner.run(1.0)
+    assert runner.devices["anna"].get_variable("n") == (0,)
+
+
+def test_intensities_that_a_program_clears_stay_so_until_the_next_frame():
+    source = TALKER + "\nonevent button.center\ncall math.fill(prox.comm.rx._intensities, 0)"
+    runner = Runner(pair(), {"anna": load_program(source, "test"), "bert": load_program(TALKER, "test")})
+    runner.run(1.0)
+    runner.devices["bert"].set_variable("prox.comm.tx", (-1,))
+    runner.run(0.2)
+    runner.press("anna", "center")
+    runner.run(1.0)
+    anna = runner.devices["anna"]
+    assert anna.get_variable("prox.comm.rx._intensities") == (0,) * 7
+    assert anna.get_variable("prox.comm.rx") == (200,)
+
+
+def test_switching_off_zeroes_what_was_sent_and_received():
+    source = TALKER + "\nonevent button.center\ncall prox.comm.enable(0)"
+    runner = Runner(pair(), load_program(source, "test"))
+    runner.run(1.0)
+    runner.press("anna", "center")
+    runner.run(0.1)
+    anna, bert = runner.devices.values()
+    heard = bert.get_variable("n")
+    assert (anna.get_variable("prox.comm.rx"), anna.get_variable("prox.comm.tx")) == ((0,), (0,))
+    runner.run(1.0)
+    assert bert.get_variable("n") == heard
+    assert anna.get_variable("prox.comm.rx") == (0,)
+
+
+def test_a_value_set_while_off_is_sent_once_it_is_switched_on():
+    source = "prox.comm.tx = 7\nonevent button.center\ncall prox.comm.enable(1)"
+    runner = Runner(pair(), {"anna": load_program(source, "test"), "bert": load_program(TALKER, "test")})
+    runner.run(0.5)
+    assert runner.devices["bert"].get_variable("n") == (0,)
+    runner.press("anna", "center")
+    runner.run(0.5)
+    assert runner.devices["bert"].get_variable("prox.comm.rx") == (7,)
+
+
+def test_a_reset_switches_communication_off():
+    runner = Runner(pair(), load_program(TALKER, "test"))
+    runner.run(1.0)
+    runner.devices["anna"].reset()
+    runner.run(0.2)
+    heard = runner.devices["bert"].get_variable("n")
+    runner.run(1.0)
+    assert runner.devices["bert"].get_variable("n") == heard
+
+
+def test_the_same_seed_and_commands_give_the_same_variables():
+    def play():
+        runner = Runner(pair(), load_program(TALKER + "\nmotor.left.target = 40", "test"), seed=8)
+        seen = []
+        for step in range(200):
+            if step % 30 == 0:
+                runner.post("bert", Tilt(0.01 * step, 0.0))
+                runner.post("anna", Clap(step))
+            runner.step()
+            device = runner.devices["anna"]
+            seen.append([device.get_variable(name) for name in ("acc", "mic.intensity", "prox.comm.rx._intensities")])
+        return seen
+
+    assert play() == play()
