@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from aseba_vm.bytecode import signed
 from aseba_vm.messages import MESSAGES, wording
 
 
@@ -57,7 +58,7 @@ class EventKilled:
 
 @dataclass(frozen=True, slots=True)
 class OutOfBounds:
-    """An index outside an array; without size and index when a deque was misused."""
+    """An index outside an array, as an unsigned word; without size and index when a deque was misused."""
 
     pc: int
     size: int | None = None
@@ -66,7 +67,9 @@ class OutOfBounds:
     @property
     def reason(self) -> str:
         """The fault in words."""
-        return wording("fault-deque", ()) if self.size is None else wording("fault-index", (self.index, self.size))
+        if self.size is None or self.index is None:
+            return wording("fault-deque", ())
+        return wording("fault-index", (signed(self.index), self.size))
 
     @property
     def sentence(self) -> str:

@@ -128,6 +128,7 @@ def test_when_remembers_between_events():
     ("source", "reason", "row"),
     [
         ("var t[4]\nvar i = 9\nt[i] = 1", "index 9 is outside an array of 4", 2),
+        ("var t[4]\nvar i = -1\nt[i] = 1", "index -1 is outside an array of 4", 2),
         ("var z\n\nz = 5 / z", "division by zero", 2),
         ("var q[8]\nvar v\ncall deque.pop_back(q, v)", "a deque was given a wrong index or too many values", 2),
         ("var a = -1\ncall math.sqrt(a, a)", "sqrt-of-negative", 1),
