@@ -21,6 +21,7 @@ from aseba_vm.blocks import Blocks, Known, Memories, find_blocks
 from aseba_vm.bytecode import WAS_TRUE
 from aseba_vm.codememory import CodeMemory
 from aseba_vm.host import Host, PythonHost, Run
+from aseba_vm.interpreter import ACTIVE
 from aseba_vm.nativecall import Native, NativeFault, Signature
 from aseba_vm.natives import NATIVES
 from aseba_vm.outbox import Emitted, Message
@@ -38,7 +39,7 @@ ENGINES = (AUTO, INTERPRETER, PYTHON, WASM)
 """Names of engines: the best there is, once a program proves hot; no translation; translation at once, to Python or
 WebAssembly (which needs wasmtime)."""
 
-_ACTIVE = 1
+
 _KEPT_PROGRAMS = 64
 _WARM_RUNS = 2
 _WARM_INSTRUCTIONS = 2000
@@ -209,7 +210,7 @@ class Engine:
         if ready is None and not self._is_eager and not self._is_warm(machine.pc):
             left -= self._interpret(min(left, _WARM_INSTRUCTIONS))
             ready = None
-        while left > 0 and machine.flags & _ACTIVE:
+        while left > 0 and machine.flags & ACTIVE:
             if ready is None:
                 ready = self._ready.get(machine.pc) or self._prepared(machine.pc)
             if ready is None or machine.sp > ready.highest:
@@ -296,12 +297,12 @@ class Engine:
             machine.stack[sp + 1 : sp + 1 + len(words)] = words
             machine.sp = sp + len(words)
         if kind == STOPPED:
-            machine.flags &= ~_ACTIVE
+            machine.flags &= ~ACTIVE
         elif kind == INTERPRET:
             if self._failure is not None:
                 failure, self._failure = self._failure, None
                 raise failure
-            if machine.flags & _ACTIVE and rest:
+            if machine.flags & ACTIVE and rest:
                 done += self._interpret(1)
         elif kind != GO_ON:
             raise RuntimeError(f"translated code trapped at {pc}: a defect of the translator")
@@ -332,7 +333,7 @@ class Engine:
         except BaseException as failure:
             self._failure = failure
             return 1
-        return 0 if machine.flags & _ACTIVE and self._is_known else 1
+        return 0 if machine.flags & ACTIVE and self._is_known else 1
 
     def refuse_translated(self, pc: int, reason: int) -> None:
         """Let the event end with one of ``FAULTS``, counted from 1."""

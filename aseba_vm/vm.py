@@ -1,47 +1,23 @@
 """The virtual machine (VM spec, section 10): one object of state, one loop, a budget of instructions.
 
 The machine never raises for what a program does: a fault stops it, is told in the outbox and kept in ``fault``.
-The loop meets operations with their operands ready (:mod:`aseba_vm.codememory`); a BRANCH that remembers its
-condition rewrites its own word. Arithmetic is exact in Python and cut to 16 bits in :func:`wrap`.
+:mod:`aseba_vm.interpreter` holds the loop, :mod:`aseba_vm.engine` the quicker ways.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from aseba_vm.blocks import MAX_EMITTED
 from aseba_vm.codememory import CodeMemory
 from aseba_vm.compiler import Program
 from aseba_vm.engine import AUTO, Engine, new_engine
+from aseba_vm.interpreter import ACTIVE, interpret
 from aseba_vm.nativecall import DequeFault, DivisionFault, Native, NativeCall, NativeFault, Signature, wrap
 from aseba_vm.natives import NATIVES
-from aseba_vm.operations import (
-    BAD,
-    BINARY,
-    CALL,
-    EMIT,
-    IF,
-    IF_FALSE,
-    IF_TRUE,
-    JUMP,
-    LOAD,
-    LOADX,
-    NATIVE,
-    PUSH,
-    RET,
-    STOP,
-    STORE,
-    STOREX,
-    UNARY,
-    WHEN,
-    WHEN_FALSE,
-    WHEN_TRUE,
-)
 from aseba_vm.outbox import (
     BadCode,
     BreakpointSet,
     DivisionByZero,
-    Emitted,
     EventKilled,
     ExecutionState,
     Fault,
@@ -54,7 +30,6 @@ from aseba_vm.symbols import INIT_EVENT
 from aseba_vm.target import TargetDescription
 from aseba_vm.variables import Variables
 
-ACTIVE = 1
 STEP_BY_STEP = 2
 RUNNING = 4
 
@@ -191,7 +166,7 @@ class VirtualMachine:
     def set_breakpoint(self, pc: int) -> None:
         """Add a breakpoint if there is room for it, and say so."""
         if not 0 <= pc < len(self.code.words):
-            self._stop_on(BadCode(pc, "breakpoint-out-of-range"))
+            self.stop_on(BadCode(pc, "breakpoint-out-of-range"))
             return
         has_room = len(self._breakpoints) < MAX_BREAKPOINTS
         if has_room:
@@ -274,7 +249,7 @@ class VirtualMachine:
             elif self._engine is not None:
                 executed = self._engine.run(limit or _FOREVER)
             else:
-                executed = self._execute(limit or _FOREVER)
+                executed = interpret(self, limit or _FOREVER)
         except BaseException:
             self.flags &= ~RUNNING
             raise
@@ -312,7 +287,7 @@ class VirtualMachine:
     def interpret(self, limit: int) -> int:
         """Execute at most ``limit`` instructions without translation; return how many were. For the engine."""
         self._settle()
-        return self._execute(limit)
+        return interpret(self, limit)
 
     def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
         """Call a native with the words it pops; do nothing and say so if they lie outside memory. For the engine."""
@@ -334,174 +309,22 @@ class VirtualMachine:
     def refuse(self, pc: int, fault: NativeFault) -> None:
         """Stop for what a native at ``pc`` refused. For the engine."""
         if isinstance(fault, DivisionFault):
-            self._stop_on(DivisionByZero(pc))
+            self.stop_on(DivisionByZero(pc))
         elif isinstance(fault, DequeFault):
-            self._stop_on(OutOfBounds(pc))
+            self.stop_on(OutOfBounds(pc))
         else:
-            self._stop_on(NodeSpecific(pc, fault.reason))
+            self.stop_on(NodeSpecific(pc, fault.reason))
+
+    def count_popped(self, number: int) -> int:
+        """Return how many words a native pops. For the interpreter."""
+        return self._natives[number][0].count
 
     def _settle(self) -> None:
         if self._engine is not None:
             self._engine.settle()
 
-    def _execute(self, limit: int) -> int:
-        """Execute at most ``limit`` instructions while the event is active; return how many were."""
-        code, variables, stack = self.code.operations, self.variables.words, self.stack
-        size = len(code)
-        pc, sp = self.pc, self.sp
-        executed = 0
-        kind = BAD
-        try:
-            for executed in range(limit):  # counts for the lines after the loop
-                kind, first, second = code[pc]
-                if kind == LOAD:
-                    stack[sp + 1] = variables[first]
-                    sp += 1
-                    pc += 1
-                elif kind == PUSH:
-                    stack[sp + 1] = first
-                    sp += 1
-                    pc += second
-                elif kind == STORE:
-                    if sp < 0:
-                        return self._bad(pc, sp, executed, "stack-underflow")
-                    variables[first] = stack[sp]
-                    sp -= 1
-                    pc += 1
-                elif kind == BINARY:
-                    if sp < 1:
-                        return self._bad(pc, sp, executed, "stack-underflow")
-                    right = stack[sp]
-                    sp -= 1
-                    stack[sp] = first(stack[sp], right)
-                    pc += 1
-                elif kind in IF:
-                    if sp < 1:
-                        return self._bad(pc, sp, executed, "stack-underflow")
-                    sp -= 2
-                    if first(stack[sp + 1], stack[sp + 2]):
-                        if kind == IF_FALSE:
-                            self.code.turn(pc)
-                        pc += 2
-                    else:
-                        if kind == IF_TRUE:
-                            self.code.turn(pc)
-                        pc += second
-                        if not 0 <= pc < size:
-                            return self._bad(pc - second, sp, executed, "jump-out-of-range")
-                elif kind == JUMP:
-                    pc += first
-                    if not 0 <= pc < size:
-                        return self._bad(pc - first, sp, executed, "jump-out-of-range")
-                elif kind == LOADX:
-                    if sp < 0:
-                        return self._bad(pc, sp, executed, "stack-underflow")
-                    index = stack[sp] & 0xFFFF
-                    if index >= second:
-                        self._stop_on(OutOfBounds(pc, second, index))
-                        break
-                    stack[sp] = variables[first + index]
-                    pc += 2
-                elif kind == STOREX:
-                    if sp < 1:
-                        return self._bad(pc, sp, executed, "stack-underflow")
-                    index = stack[sp] & 0xFFFF
-                    if index >= second:
-                        self._stop_on(OutOfBounds(pc, second, index))
-                        break
-                    variables[first + index] = stack[sp - 1]
-                    sp -= 2
-                    pc += 2
-                elif kind in WHEN:
-                    if sp < 1:
-                        return self._bad(pc, sp, executed, "stack-underflow")
-                    sp -= 2
-                    is_true = bool(first(stack[sp + 1], stack[sp + 2]))
-                    if is_true != (kind == WHEN_TRUE):
-                        self.code.turn(pc)
-                    if is_true and kind == WHEN_FALSE:
-                        pc += 2
-                    else:
-                        pc += second
-                        if not 0 <= pc < size:
-                            return self._bad(pc - second, sp, executed, "jump-out-of-range")
-                elif kind == UNARY:
-                    if sp < 0:
-                        return self._bad(pc, sp, executed, "stack-underflow")
-                    stack[sp] = first(stack[sp])
-                    pc += 1
-                elif kind == STOP:
-                    self.flags &= ~ACTIVE
-                    break
-                elif kind == CALL:
-                    stack[sp + 1] = pc + 1
-                    sp += 1
-                    if first >= size:
-                        return self._bad(pc, sp, executed, "jump-out-of-range")
-                    pc = first
-                elif kind == RET:
-                    if sp < 0:
-                        return self._bad(pc, sp, executed, "stack-underflow")
-                    if not 0 <= stack[sp] < size:
-                        return self._bad(pc, sp, executed, "jump-out-of-range")
-                    pc = stack[sp]
-                    sp -= 1
-                elif kind == EMIT:
-                    address, count = second
-                    if count > MAX_EMITTED:
-                        return self._bad(pc, sp, executed, "emit-too-long")
-                    if address + count > len(variables):
-                        return self._bad(pc, sp, executed, "variable-out-of-range")
-                    self.outbox.append(Emitted(first, tuple(variables[address : address + count])))
-                    pc += 3
-                elif kind == NATIVE:
-                    try:
-                        reason, sp = self._call(first, pc, sp)
-                    except BaseException:  # the native failed after it took its arguments: the next is the one after it
-                        self.pc, self.sp = pc + 1, sp - self._natives[first][0].count
-                        self.instructions += executed + 1
-                        raise
-                    if reason:
-                        return self._bad(pc, sp, executed, reason)
-                    pc += 1
-                    if not self.flags & ACTIVE:
-                        break
-                else:
-                    return self._bad(pc, sp, executed, first)
-        except ZeroDivisionError:
-            self._stop_on(DivisionByZero(pc))
-            if kind == BINARY:
-                stack[sp] = 0
-                pc += 1
-            else:
-                pc += 2
-        except IndexError:
-            if not 0 <= pc < size:
-                return self._bad(pc, sp, executed, "jump-out-of-range")
-            is_full = sp + 1 >= len(stack) and kind in (LOAD, PUSH, CALL)
-            return self._bad(pc, sp, executed, "stack-overflow" if is_full else "variable-out-of-range")
-        self.pc, self.sp = pc, sp
-        executed += 1
-        self.instructions += executed
-        return executed
-
-    def _call(self, number: int, pc: int, sp: int) -> tuple[str, int]:
-        """Call a native; return why it could not be, or an empty text, and the new index of the stack."""
-        if number >= len(self._natives):
-            return "unknown-native", sp
-        count = self._natives[number][0].count
-        if sp + 1 < count:
-            return "stack-underflow", sp
-        popped = self.stack[sp - count + 1 : sp + 1][::-1]
-        return "" if self.invoke(number, pc, popped) else "variable-out-of-range", sp - count
-
-    def _bad(self, pc: int, sp: int, executed: int, reason: str) -> int:
-        self.pc, self.sp = pc, sp
-        self.instructions += executed
-        self._stop_on(BadCode(pc, reason))
-        return executed
-
-    def _stop_on(self, fault: Fault) -> None:
+    def stop_on(self, fault: Fault) -> None:
+        """End the event for a fault, and say so. For the interpreter."""
         self.flags = STEP_BY_STEP
         self.fault = fault
         self.outbox.append(fault)

@@ -3,7 +3,7 @@ import re
 
 import pytest
 
-from aseba_vm import TargetDescription, Variable, VirtualMachine, compile, operations, outbox, vm
+from aseba_vm import TargetDescription, Variable, VirtualMachine, compile, interpreter, operations, outbox, vm
 from aseba_vm.targets import THYMIO_II
 from aseba_vm.vm import ACTIVE, STEP_BY_STEP
 
@@ -144,7 +144,11 @@ def test_a_fault_stops_the_machine_and_says_why_and_where(source, reason, row):
 
 
 def test_every_fault_has_a_sentence():
-    reasons = set(re.findall(r'"([a-z]+(?:-[a-z]+)+)"', inspect.getsource(vm) + inspect.getsource(operations)))
+    reasons = set(
+        re.findall(
+            r'"([a-z]+(?:-[a-z]+)+)"', "".join(inspect.getsource(part) for part in (vm, interpreter, operations))
+        )
+    )
     assert "stack-underflow" in reasons
     assert {outbox.BadCode(0, reason).sentence for reason in reasons} & reasons == set()
     assert outbox.NodeSpecific(0, "sqrt-of-negative").sentence == "square root of a negative number"
