@@ -8,13 +8,14 @@ from typing import Any, TypeVar
 from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.actuators.buttons import ButtonState
+from thymio_sim_ros.sim.actuators.hand import HandState
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.actuators.pen import PenState
 from thymio_sim_ros.sim.actuators.room import RoomState
 from thymio_sim_ros.sim.clock import TICK_NS, SimClock
 from thymio_sim_ros.sim.fall import Fall
 from thymio_sim_ros.sim.footing import Footing
-from thymio_sim_ros.sim.geometry import LEVEL, Point, Pose, Tilt, Twist
+from thymio_sim_ros.sim.geometry import Point, Pose, Tilt, Twist
 from thymio_sim_ros.sim.ground import NO_FLOOR, Ground, GroundSample
 from thymio_sim_ros.sim.noise import Noise
 from thymio_sim_ros.sim.physics import Contact, Physics, RobotBody
@@ -160,7 +161,7 @@ class Robot:
             if actuator.update is not None:
                 view = _View(self, shared, Noise(seed, self.name, actuator.name, enabled=noise))
                 self._updates.append((actuator.update, state, view))
-        self._room = self.state(RoomState)
+        self._hand, self._room = self.state(HandState), self.state(RoomState)
         self._speakers = [state for state in self.states.values() if isinstance(state, Sounding)]
         self.sensors = [
             (sensor, _View(self, shared, Noise(seed, self.name, sensor.name, enabled=noise))) for sensor in sensors
@@ -183,8 +184,8 @@ class Robot:
 
     @property
     def tilt(self) -> Tilt:
-        """How it leans: level unless it has fallen off an edge."""
-        return LEVEL if self._fall is None else self._fall.tilt(self._clock.now_ns)
+        """How it leans: as the operator's hand holds it, or as it falls off an edge and lies there."""
+        return self._hand.tilt if self._fall is None else self._fall.tilt(self._clock.now_ns)
 
     @property
     def is_falling(self) -> bool:

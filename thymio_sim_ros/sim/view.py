@@ -58,7 +58,7 @@ class SensorView(Protocol):
 
     @property
     def tilt(self) -> Tilt:
-        """How the robot leans: level unless it has fallen off an edge."""
+        """How the robot leans: as the operator's hand holds it, or as it falls off an edge and lies there."""
         ...
 
     @property

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from tests.sim.builders import FLOOR, make, send
 from tests.sim.fake_view import FakeView
+from thymio_sim_ros.sim import geometry
 from thymio_sim_ros.sim.actuators.hand import ACTUATOR, HandState
-from thymio_sim_ros.sim.commands import MoveRobot, ResetOdometry
+from thymio_sim_ros.sim.commands import MoveRobot, ResetOdometry, Tilt
 from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.world import World
 
 
 def test_the_hand_puts_the_robot_down_once() -> None:
@@ -26,3 +29,12 @@ def test_the_hand_zeroes_the_odometry() -> None:
     ACTUATOR.apply(state, ResetOdometry(), 0)
     ACTUATOR.update(state, view, 0.01)
     assert view.wheels.odometry == Pose(0.0, 0.0, 0.0)
+
+
+def test_a_robot_in_the_hand_leans_for_all_to_see() -> None:
+    world = World(make([FLOOR]))
+    send(world, Tilt(0.25, -0.5))
+    world.step()
+    assert world.snapshot().robots[0].tilt == geometry.Tilt(0.25, -0.5)
+    world.reset()
+    assert world.snapshot().robots[0].tilt == geometry.LEVEL

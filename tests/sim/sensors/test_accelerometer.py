@@ -9,7 +9,7 @@ import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, make, post_wall, readings, run, send
 from tests.sim.fake_view import FakeView
-from thymio_sim_ros.sim.actuators.hand import HandState
+from thymio_sim_ros.sim import geometry
 from thymio_sim_ros.sim.commands import BodyTwist, MotorTargets, MoveRobot, Tilt
 from thymio_sim_ros.sim.geometry import Pose, Twist
 from thymio_sim_ros.sim.noise import Noise
@@ -23,7 +23,7 @@ QUARTER = math.pi / 2
 
 def held(roll_rad: float, pitch_rad: float, noise: Noise | None = None) -> AccelerometerReading:
     """What a robot held at an angle reads."""
-    view = FakeView(states=(HandState(roll_rad=roll_rad, pitch_rad=pitch_rad),), now_ns=62_500_000)
+    view = FakeView(tilt=geometry.Tilt(roll_rad, pitch_rad), now_ns=62_500_000)
     if noise is not None:
         view.noise = noise
     reading = accelerometer.SENSOR.measure(view)
@@ -77,7 +77,7 @@ def test_a_curve_presses_outwards() -> None:
     send(world, BodyTwist(0.08, 1.0))
     reading = readings(run(world, 1.0), "accelerometer")[-1]
     assert reading.words[0] == round(-0.08 * 1.0 / 9.81 * 23)
-    view = FakeView(states=(HandState(),), twist=Twist(0.16, 8.0), memory={"speed_m_s": 0.16})
+    view = FakeView(twist=Twist(0.16, 8.0), memory={"speed_m_s": 0.16})
     turning = accelerometer.SENSOR.measure(view)
     assert turning is not None
     assert turning.words == (round(-0.16 * 8.0 / 9.81 * 23), 0, 23)  # to the left, so negative
@@ -92,7 +92,7 @@ def test_a_wall_is_felt_as_a_shock() -> None:
 
 def test_a_hit_from_the_side_is_felt_sidewards() -> None:
     contact = Contact("thymio", "other", 0.0, 0.06, 0.3, True)
-    view = FakeView(states=(HandState(),), contacts=(contact,), now_ns=62_500_000)
+    view = FakeView(contacts=(contact,), now_ns=62_500_000)
     assert accelerometer.SENSOR.feel is not None
     accelerometer.SENSOR.feel(view)
     view.contacts = ()
@@ -114,7 +114,7 @@ def test_being_put_elsewhere_is_no_shock_but_a_stop() -> None:
 
 def test_counts_are_limited() -> None:
     hard = Contact("thymio", "wall", -0.06, 0.0, 0.0, True)
-    view = FakeView(states=(HandState(),), twist=Twist(9.0, 0.0), contacts=(hard,))
+    view = FakeView(twist=Twist(9.0, 0.0), contacts=(hard,))
     reading = accelerometer.SENSOR.measure(view)
     assert reading is not None
     assert reading.words == (0, 32, 23)
@@ -144,3 +144,24 @@ def test_the_hand_tilts_the_robot_until_told_otherwise() -> None:
     level = readings(run(world, 1.0), "accelerometer")
     assert {reading.words for reading in tilted} == {(0, round(23 * math.sin(0.5)), round(23 * math.cos(0.5)))}
     assert {reading.words for reading in level} == {(0, 0, 23)}
+
+
+def test_free_fall_is_weightless_and_the_landing_a_shock() -> None:
+    floor = {**FLOOR, "size_x_m": 0.5, "size_y_m": 0.5}
+    world = World(make([floor]), noise=False)
+    send(world, MotorTargets(500, 500))
+    words = [reading.words for reading in readings(run(world, 4.0), "accelerometer")]
+    first = words.index((0, 0, 0))
+    assert words.count((0, 0, 0)) == 3
+    assert words[first + 3][2] == 32
+    assert words[-1] == (0, round(-23 * math.sin(math.radians(50))), round(23 * math.cos(math.radians(50))))
+
+
+def test_a_robot_that_is_put_back_is_level_again() -> None:
+    floor = {**FLOOR, "size_x_m": 0.5, "size_y_m": 0.5}
+    world = World(make([floor]), noise=False)
+    send(world, MotorTargets(500, 500))
+    run(world, 4.0)
+    send(world, MotorTargets(0, 0))
+    send(world, MoveRobot(0.0, 0.0, 0.0))
+    assert readings(run(world, 0.5), "accelerometer")[-1].words == (0, 0, 23)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from thymio_sim_ros.sim import geometry
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.commands import MoveRobot, ResetOdometry, Tap, Tilt
-from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.view import ActuatorView
 
 __all__ = ["ACTUATOR", "HandState"]
@@ -17,14 +17,13 @@ class HandState:
     """What the hand is about to do in this tick, in order; the angle it holds the robot at; knocks so far."""
 
     waiting: list[MoveRobot | ResetOdometry] = field(default_factory=list)
-    roll_rad: float = 0.0
-    pitch_rad: float = 0.0
+    tilt: geometry.Tilt = geometry.LEVEL
     taps: int = 0
 
 
 def _apply(state: HandState, command: MoveRobot | ResetOdometry | Tilt | Tap, _now_ns: int) -> None:
     if isinstance(command, Tilt):
-        state.roll_rad, state.pitch_rad = command.roll_rad, command.pitch_rad
+        state.tilt = geometry.Tilt(command.roll_rad, command.pitch_rad)
     elif isinstance(command, Tap):
         state.taps += 1
     else:
@@ -36,7 +35,7 @@ def _update(state: HandState, view: ActuatorView, _dt_s: float) -> None:
         return
     for command in state.waiting:
         if isinstance(command, MoveRobot):
-            view.place(Pose(command.x_m, command.y_m, command.yaw_rad))
+            view.place(geometry.Pose(command.x_m, command.y_m, command.yaw_rad))
         else:
             view.wheels.reset_odometry()
     state.waiting.clear()

@@ -3,6 +3,7 @@
 At rest it is g upwards. For a robot whose left side is lifted by the roll r and whose front is lowered by the pitch p,
 with g seen in its frame: forward -g sin p, left g sin r cos p, up g cos r cos p. To this comes what its motion
 adds: forward dv / dt, left v * w (on a curve), and, when something hits it, the speed lost or won sidewards over dt.
+In free fall it is nothing, and the landing adds, upwards, the speed of the fall over dt.
 acc[0] is the part to the right, acc[1] forward, acc[2] upwards, 23 for each g, noise of 0.1 before rounding, ±32.
 """
 
@@ -11,9 +12,9 @@ from __future__ import annotations
 import math
 
 from thymio_sim_ros.sim import units
-from thymio_sim_ros.sim.actuators.hand import HandState
 from thymio_sim_ros.sim.aseba_face import AsebaFace
-from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.fall import FALL_NS
+from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.readings import AccelerometerReading
 from thymio_sim_ros.sim.sensors import Sensor
@@ -23,15 +24,16 @@ from thymio_sim_ros.sim.view import SensorView
 __all__ = ["SENSOR", "gravity"]
 
 _PERIOD_NS = 62_500_000
+_LANDING_M_S = GRAVITY_M_S2 * FALL_NS * 1e-9
 _NOISE_M_S2 = ACC_NOISE * GRAVITY_M_S2 / ACC_PER_G
 
 
-def gravity(roll_rad: float, pitch_rad: float) -> tuple[float, float, float]:
+def gravity(tilt: Tilt) -> tuple[float, float, float]:
     """What a robot at rest at an angle measures in m/s²: forward, left, up."""
-    if roll_rad == 0.0 == pitch_rad:
+    if tilt == LEVEL:
         return (0.0, 0.0, GRAVITY_M_S2)
-    level = GRAVITY_M_S2 * math.cos(pitch_rad)
-    return (-GRAVITY_M_S2 * math.sin(pitch_rad), level * math.sin(roll_rad), level * math.cos(roll_rad))
+    level = GRAVITY_M_S2 * math.cos(tilt.pitch_rad)
+    return (-GRAVITY_M_S2 * math.sin(tilt.pitch_rad), level * math.sin(tilt.roll_rad), level * math.cos(tilt.roll_rad))
 
 
 def sideways(pose: Pose, contact: Contact) -> float:
@@ -49,11 +51,17 @@ def _feel(view: SensorView) -> None:
 
 
 def _measure(view: SensorView) -> AccelerometerReading:
-    memory, twist, hand, noise = view.memory, view.twist, view.state(HandState), view.noise
-    forward, left, up = gravity(hand.roll_rad, hand.pitch_rad)
+    memory, twist, noise = view.memory, view.twist, view.noise
     dt_s = (view.now_ns - memory.get("since_ns", 0)) * 1e-9
-    forward += (twist.linear_m_s - memory.get("speed_m_s", 0.0)) / dt_s
-    left += twist.linear_m_s * twist.angular_rad_s + memory.pop("hit_m_s", 0.0) / dt_s
+    if view.is_falling:
+        forward = left = up = 0.0
+        memory["is_falling"] = True
+    else:
+        forward, left, up = gravity(view.tilt)
+        forward += (twist.linear_m_s - memory.get("speed_m_s", 0.0)) / dt_s
+        left += twist.linear_m_s * twist.angular_rad_s + memory.pop("hit_m_s", 0.0) / dt_s
+        if memory.pop("is_falling", False):
+            up += _LANDING_M_S / dt_s
     memory["since_ns"], memory["speed_m_s"] = view.now_ns, twist.linear_m_s
     right = units.acceleration_to_units(noise.gauss(_NOISE_M_S2) - left)
     ahead = units.acceleration_to_units(noise.gauss(_NOISE_M_S2) + forward)
