@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from tests.device.handheld import HandheldRobot
 from thymio_sim_ros.device.behaviour_host import ENTRIES, MENU, BehaviourHost, built_in, is_internal
-from thymio_sim_ros.device.device import AsebaDevice
-from thymio_sim_ros.device.program import load_program
-from thymio_sim_ros.sim.commands import BUTTONS, MotorTargets, SetLeds
+from thymio_sim_ros.device.device import AsebaDevice, DeviceOptions
+from thymio_sim_ros.device.program import ProgramError, load_program
 
-TICK_NS = 20_000_000
-BUDGET = 20_000
 OWN = load_program("motor.left.target = 100\nonevent button.center\ncall leds.top(1, 2, 3)", "own.aesl")
 
 COLOURS = {
@@ -24,59 +22,13 @@ COLOURS = {
 }
 
 
-class Robot:
-    """A device with its host and a finger: one `tick` is 20 ms."""
-
-    def __init__(self):
-        self.host = BehaviourHost(AsebaDevice())
-        self.now_ns = 0
-        self.top = self.targets = None
-        self.events = []
-        self.pressed = set()
-
-    @property
-    def device(self):
-        return self.host.device
-
-    @property
-    def running(self):
-        return self.host.program.name.removesuffix(".aesl")
-
-    def tick(self, count=1):
-        for _ in range(count):
-            self.now_ns += TICK_NS
-            self.device.feed("buttons", [int(button in self.pressed) for button in BUTTONS])
-            self.device.advance(self.now_ns)
-            while self.device.is_busy:
-                self.device.run(BUDGET)
-                self.events += self.host.take_events(self.now_ns)
-            for command in self.device.take_commands():
-                if isinstance(command, SetLeds) and command.group == "top":
-                    self.top = command.levels
-                elif isinstance(command, MotorTargets):
-                    self.targets = (command.left, command.right)
-
-    def touch(self, *buttons, ticks=3):
-        self.pressed.update(buttons)
-        self.tick(ticks)
-        self.pressed.difference_update(buttons)
-        self.tick(2)
-
-
-def switched_on(behaviour=MENU, own=None):
-    robot = Robot()
-    robot.host.start(behaviour, own)
-    robot.tick()
-    return robot
-
-
 def test_every_behaviour_of_the_menu_is_a_program_that_compiles():
     assert [built_in(name).name for name in ENTRIES.values()] == [f"{name}.aesl" for name in ENTRIES.values()]
 
 
 @pytest.mark.parametrize("arrow", ["right", "forward"])
 def test_right_and_forward_lead_round_through_all_entries(arrow):
-    robot = switched_on()
+    robot = HandheldRobot.switched_on(MENU)
     shown = [robot.top]
     for _ in range(6):
         robot.touch(arrow)
@@ -87,19 +39,19 @@ def test_right_and_forward_lead_round_through_all_entries(arrow):
 
 @pytest.mark.parametrize("arrow", ["left", "backward"])
 def test_left_and_backward_lead_the_other_way(arrow):
-    robot = switched_on()
+    robot = HandheldRobot.switched_on(MENU)
     robot.touch(arrow)
     assert robot.top == COLOURS["obedient"]
 
 
 def test_a_held_arrow_moves_on_once():
-    robot = switched_on()
+    robot = HandheldRobot.switched_on(MENU)
     robot.touch("right", ticks=60)
     assert robot.top == COLOURS["explorer"]
 
 
 def test_a_user_s_program_is_the_first_entry_and_black():
-    robot = switched_on(own=OWN)
+    robot = HandheldRobot.switched_on(MENU, OWN)
     assert robot.top == COLOURS["program"]
     robot.touch("right")
     assert robot.top == COLOURS["friendly"]
@@ -109,7 +61,7 @@ def test_a_user_s_program_is_the_first_entry_and_black():
 
 
 def test_the_centre_button_is_not_heard_for_two_seconds():
-    robot = switched_on()
+    robot = HandheldRobot.switched_on(MENU)
     robot.tick(94)
     robot.touch("center")
     assert robot.running == MENU
@@ -123,7 +75,7 @@ def test_the_centre_button_is_not_heard_for_two_seconds():
     [(0, "friendly"), (1, "explorer"), (2, "fearful"), (3, "attentive"), (4, "investigator"), (5, "obedient")],
 )
 def test_the_centre_button_starts_a_behaviour_and_ends_it_again(steps, behaviour):
-    robot = switched_on()
+    robot = HandheldRobot.switched_on(MENU)
     robot.tick(100)
     for _ in range(steps):
         robot.touch("right")
@@ -138,7 +90,7 @@ def test_the_centre_button_starts_a_behaviour_and_ends_it_again(steps, behaviour
 
 
 def test_the_program_entry_starts_the_user_s_program_for_good():
-    robot = switched_on(own=OWN)
+    robot = HandheldRobot.switched_on(MENU, OWN)
     robot.tick(100)
     robot.touch("center")
     assert robot.running == "own"
@@ -149,7 +101,7 @@ def test_the_program_entry_starts_the_user_s_program_for_good():
 
 
 def test_a_program_from_a_computer_ends_a_behaviour_with_its_wheels_stopped():
-    robot = switched_on("obedient")
+    robot = HandheldRobot.switched_on("obedient")
     robot.touch("forward")
     assert robot.targets == (150, 150)
     robot.host.load(load_program("", "none"))
@@ -166,7 +118,7 @@ def asking(name, event, size, code):
 
 
 def test_an_own_program_may_open_the_menu_and_is_shown_there():
-    robot = Robot()
+    robot = HandheldRobot()
     robot.host.load(asking("mine.aesl", "menu.back", 0, "onevent button.left\nemit menu.back"))
     robot.tick()
     robot.touch("left")
@@ -177,7 +129,7 @@ def test_an_own_program_may_open_the_menu_and_is_shown_there():
 
 
 def test_what_a_program_asks_of_the_robot_is_no_event_for_others():
-    robot = switched_on()
+    robot = HandheldRobot.switched_on(MENU)
     robot.tick(100)
     robot.touch("center")
     robot.touch("center")
@@ -187,7 +139,7 @@ def test_what_a_program_asks_of_the_robot_is_no_event_for_others():
 
 
 def test_an_entry_that_does_not_exist_is_told():
-    robot = Robot()
+    robot = HandheldRobot()
     robot.host.load(asking("x.aesl", "menu.start", 1, "emit menu.start 42"))
     robot.tick()
     assert robot.host.take_notices() == ["menu.start 42: the robot has no such program"]
@@ -195,7 +147,7 @@ def test_an_entry_that_does_not_exist_is_told():
 
 
 def test_readings_hold_through_a_change_of_program():
-    robot = switched_on()
+    robot = HandheldRobot.switched_on(MENU)
     robot.device.feed("ground", (0, 0, 900, 900, 900, 900))
     robot.tick(100)
     robot.touch("center", ticks=1)
@@ -204,7 +156,7 @@ def test_readings_hold_through_a_change_of_program():
 
 
 def test_a_restart_is_as_the_first_start():
-    robot = switched_on(own=OWN)
+    robot = HandheldRobot.switched_on(MENU, OWN)
     robot.tick(100)
     robot.touch("center")
     robot.host.restart()
@@ -213,3 +165,33 @@ def test_a_restart_is_as_the_first_start():
     robot.host.load(OWN)
     robot.host.restart()
     assert robot.running == "own"
+
+
+@pytest.mark.parametrize("behaviour", [MENU, *ENTRIES.values()])
+def test_every_arrow_and_the_centre_sound_once_in_every_behaviour(behaviour):
+    robot = HandheldRobot.switched_on(behaviour)
+    robot.tick(100)
+    for arrow in ("left", "right", "forward", "backward"):
+        robot.touch(arrow)
+    assert robot.sounds == [2, 2, 2, 2]
+    robot.touch("center", ticks=30)
+    assert robot.sounds[4:] == [3]
+    assert robot.running != behaviour
+
+
+@pytest.mark.parametrize("behaviour", list(ENTRIES.values()))
+def test_lights_go_out_before_another_behaviour_begins(behaviour):
+    robot = HandheldRobot.switched_on(behaviour)
+    robot.tick(30)
+    assert any(robot.top)
+    robot.host.load(load_program("", "none"))
+    robot.tick()
+    assert not any(level for group, levels in robot.leds.items() if group != "temperature" for level in levels)
+
+
+def test_a_robot_of_the_playground_s_layout_says_which_behaviour_it_cannot_run():
+    host = BehaviourHost(AsebaDevice(options=DeviceOptions(layout="playground")))
+    host.start("obedient")
+    with pytest.raises(ProgramError, match=r"menu\.aesl: line \d+"):
+        host.start(MENU)
+    assert host.program.name == "obedient.aesl"

@@ -16,7 +16,8 @@ from functools import cache
 from pathlib import Path
 
 from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
-from thymio_sim_ros.device.program import ThymioProgram, load_program
+from thymio_sim_ros.device.layout import THYMIO
+from thymio_sim_ros.device.program import ProgramError, ThymioProgram, load_program
 
 __all__ = ["ENTRIES", "MENU", "BehaviourHost", "built_in", "is_internal"]
 
@@ -52,10 +53,13 @@ def is_internal(event: str) -> bool:
 
 
 @cache
-def built_in(name: str) -> ThymioProgram:
-    """The built-in program of this name; FileNotFoundError when there is none."""
+def built_in(name: str, layout: str = THYMIO) -> ThymioProgram:
+    """The built-in program of this name; FileNotFoundError when there is none.
+
+    ProgramError: it uses what a robot of this layout does not have.
+    """
     path = _FOLDER / f"{name}.aesl"
-    return load_program(path.read_text(encoding="utf-8"), path.name)
+    return load_program(path.read_text(encoding="utf-8"), path.name, layout)
 
 
 class BehaviourHost:
@@ -63,7 +67,7 @@ class BehaviourHost:
 
     def __init__(self, device: AsebaDevice) -> None:
         self.device = device
-        self.program = load_program("", "none")
+        self.program = load_program("", "none", device.layout)
         self._own: ThymioProgram | None = None
         self._first: ThymioProgram | str = self.program
         self._entry = PROGRAM_ENTRY
@@ -77,8 +81,11 @@ class BehaviourHost:
         self._run(program, warm=False)
 
     def start(self, name: str, own: ThymioProgram | None = None) -> None:
-        """Switch the robot on with a built-in program, such as the menu; `own` is a program that waits in its menu."""
-        program = built_in(name)
+        """Switch the robot on with a built-in program, such as the menu; `own` is a program that waits in its menu.
+
+        Errors are those of `built_in`; the old program goes on.
+        """
+        program = built_in(name, self.device.layout)
         self._first, self._own = name, _unless_empty(own)
         self._entry = next((entry for entry, known in ENTRIES.items() if known == name), PROGRAM_ENTRY)
         self._run(program, warm=False)
@@ -106,23 +113,26 @@ class BehaviourHost:
         return self.device.take_notices() + notices
 
     def _obey(self, event: EmittedEvent, now_ns: int) -> None:
-        if event.name == _BACK:
-            self._run(built_in(MENU), warm=True)
-            self._tell_menu(0)
-        elif event.name == _START and event.args:
-            entry = event.args[0]
-            program = self._program_of(entry)
-            if program is None:
-                self._notices.append(f"{_START} {entry}: the robot has no such program")
-                return
-            self._entry = entry
-            self._run(program, warm=entry != PROGRAM_ENTRY)
+        try:
+            if event.name == _BACK:
+                self._run(built_in(MENU, self.device.layout), warm=True)
+                self._tell_menu(0)
+            elif event.name == _START and event.args:
+                self._start_entry(event.args[0])
+        except ProgramError as error:
+            self._notices.append(f"{event.name}: {error}")
         self.device.advance(now_ns)
 
-    def _program_of(self, entry: int) -> ThymioProgram | None:
-        if entry == PROGRAM_ENTRY:
-            return self._own
-        return built_in(ENTRIES[entry]) if entry in ENTRIES else None
+    def _start_entry(self, entry: int) -> None:
+        if entry == PROGRAM_ENTRY and self._own is not None:
+            program = self._own
+        elif entry in ENTRIES:
+            program = built_in(ENTRIES[entry], self.device.layout)
+        else:
+            self._notices.append(f"{_START} {entry}: the robot has no such program")
+            return
+        self._entry = entry
+        self._run(program, warm=entry != PROGRAM_ENTRY)
 
     def _run(self, program: ThymioProgram, *, warm: bool) -> None:
         self.program = program

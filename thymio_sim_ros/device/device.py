@@ -126,16 +126,17 @@ class AsebaDevice:
         """
         if program.layout != self.layout:
             raise ValueError(f"a program for the layout {program.layout} found, expected {self.layout}")
-        readings = self._last.copy() if warm else {}
+        readings = self._last.items() if warm else ()
         self._program = program
         self._names = [name for name, _ in program.events]
         self._handled = frozenset(0xFFFE - event.number for event in program.program.events)
-        self._last.clear()
         words = program.program.words
         self._vm.set_bytecode((*words, *[0] * (self._target.bytecode_size - len(words))))
-        for sensor, reading in readings.items():
-            self.feed(sensor, reading)
-        self._queue.clear()
+        for sensor, reading in readings:
+            for slot in self._sensors[sensor].slots:
+                self._vm.write_variables(slot.address, reading[slot.begin : slot.begin + slot.size])
+        if not warm:
+            self._last.clear()
         self._run_again()
 
     def feed(self, sensor: str, words: Sequence[int]) -> None:
