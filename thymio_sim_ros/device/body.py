@@ -29,9 +29,22 @@ Tell = Callable[[str], None]
 
 
 class Body:
-    """One robot's parts. `send` takes what they tell the actuators, `tell` sentences for the user."""
+    """One robot's parts.
 
-    def __init__(self, node_id: int, *, card: Card | None, settings: Settings, send: Send, tell: Tell) -> None:
+    `send` takes what they tell the actuators, `tell` sentences for the user; `recalibrate` is called when the motors'
+    targets may mean something else.
+    """
+
+    def __init__(
+        self,
+        node_id: int,
+        *,
+        card: Card | None,
+        settings: Settings,
+        send: Send,
+        tell: Tell,
+        recalibrate: Callable[[], None],
+    ) -> None:
         self.node_id = node_id
         self.network = (0, 0)
         """Channel and network of the radio: robots of different ones do not hear each other."""
@@ -41,6 +54,7 @@ class Body:
         """RESTART or SWITCH_OFF, until the device has done it."""
         self.tell = tell
         self._send = send
+        self._recalibrate = recalibrate
         self._recorder: Recorder | None = None
         self._now_ns = 0
 
@@ -61,6 +75,7 @@ class Body:
         """Put a word into the settings; what it means holds at once."""
         self.settings[address] = value
         self._send(SetVolume(self.settings.volume_shift))
+        self._recalibrate()
 
     def flash_settings(self) -> None:
         """Keep the settings for the next restart."""

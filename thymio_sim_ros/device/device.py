@@ -91,6 +91,7 @@ class AsebaDevice:
             settings=Settings(options.settings_file),
             send=self._send,
             tell=self._tell,
+            recalibrate=self._tell_motors_again,
         )
         self._vm = VirtualMachine(
             self._target, native_functions(self._send, self.body), node_id, on_reset=self._on_reset
@@ -384,6 +385,13 @@ class AsebaDevice:
         if isinstance(command, SetLeds):
             self._rules.take(command.group)
         return command
+
+    def _tell_motors_again(self) -> None:
+        """The same targets are another command now."""
+        address, _ = self._addresses["motor.left.target"]
+        for output, sent in zip(self._outputs, self._sent, strict=True):
+            if output.slots[0].address == address:
+                sent.clear()
 
     def _words(self, output: bindings.OutputBinding) -> list[int]:
         """What the variables of an output hold."""
