@@ -15,7 +15,7 @@ from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.actuators.loudspeaker import LoudspeakerState
-from thymio_sim_ros.sim.commands import MoveRobot
+from thymio_sim_ros.sim.commands import Clap, MoveRobot, RemoteKey, Tap, Tilt
 
 ROBOT = "thymio"
 HALL = {"kind": "rectangle", "name": "hall", "size_x_m": 4.0, "size_y_m": 4.0, "color": "#ffffff"}
@@ -49,8 +49,12 @@ def targets(runner: Runner, robot: str = ROBOT) -> tuple[int, int]:
     return left, right
 
 
+def leds(runner: Runner, group: str, robot: str = ROBOT) -> tuple[int, ...]:
+    return runner.world.robots[robot].state(LedState).levels[group]
+
+
 def top(runner: Runner, robot: str = ROBOT) -> tuple[int, ...]:
-    return runner.world.robots[robot].state(LedState).levels["top"]
+    return leds(runner, "top", robot)
 
 
 def is_silent(runner: Runner) -> bool:
@@ -154,7 +158,7 @@ def test_a_behaviour_stops_where_the_table_ends() -> None:
     runner = alone("explorer", make([table], [{"name": ROBOT, "x_m": 0.0, "y_m": 0.0}]))
     assert runner.until(lambda: runner.now_ns > 10**9 and targets(runner) == (0, 0), 20.0)
     runner.run(1.0)
-    assert runner.world.robots[ROBOT].state(LedState).levels["bottom_left"] == (32, 0, 0)
+    assert leds(runner, "bottom_left") == (32, 0, 0)
     assert runner.world.robots[ROBOT].pose.x_m < 0.4
 
 
@@ -264,3 +268,96 @@ def test_track_follower_of_the_thesis_goes_round_between_the_obstacles() -> None
         assert runner.until(lambda at=corner: math.dist((robot.pose.x_m, robot.pose.y_m), at) < 0.1, 60.0), corner
     assert runner.until(lambda: runner.devices[ROBOT].get_variable("doing") == (0,), 60.0)
     assert math.hypot(robot.pose.x_m, robot.pose.y_m) < 0.15
+
+
+def test_two_friendly_robots_find_each_other_and_dance() -> None:
+    playground = hall({"anna": (-0.2, 0.0, 0.0), "bert": (0.2, 0.0, math.pi)})
+    runner = Runner(playground, behaviour="friendly")
+    assert runner.until(lambda: runner.devices["anna"].get_variable("friend")[0] > 0, 10.0)
+    colours = {(top(runner, "anna"), top(runner, "bert"))}
+    for _ in range(500):
+        runner.step()
+        colours.add((top(runner, "anna"), top(runner, "bert")))
+    assert any(red and green for (red, green, _), _ in colours)
+    assert any(green and blue for _, (_, green, blue) in colours)
+    assert gap(runner, "anna", "bert") < 0.25
+    assert runner.devices["anna"].get_variable("prox.comm.tx") == (2,)
+
+
+def test_a_friend_is_followed_farther_than_it_is_seen() -> None:
+    playground = hall({"anna": (-0.17, 0.0, 0.0), "bert": (0.17, 0.0, math.pi)})
+    runner = Runner(playground, behaviour="friendly")
+    lone = Runner(playground, {"anna": read_program("friendly"), "bert": load_program("", "none")})
+    for either in (runner, lone):
+        either.run(3.0)
+    assert gap(runner, "anna", "bert") < 0.25
+    assert gap(lone, "anna", "bert") == pytest.approx(0.34, abs=0.01)
+
+
+def test_fearful_answers_a_knock_and_shows_how_it_is_held() -> None:
+    runner = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    runner.post(ROBOT, Tap())
+    assert runner.until(lambda: not is_silent(runner), 0.2)
+    runner.post(ROBOT, Tilt(0.0, -1.0))
+    runner.run(0.5)
+    assert [level > 0 for level in leds(runner, "circle")] == [number == 4 for number in range(8)]
+
+
+def test_obedient_obeys_the_remote_control() -> None:
+    runner = alone("obedient", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    seen = []
+    for key in (2, 80, 4, 5, 86, 33, 81, 87):
+        runner.post(ROBOT, RemoteKey(0, key))
+        runner.run(0.1)
+        seen.append(targets(runner))
+    assert seen == [(150, 150), (300, 300), (150, 450), (0, 0), (150, -150), (0, 0), (-150, -150), (0, 0)]
+
+
+def clap(runner: Runner, times: int) -> None:
+    """So many claps, four in a second, and then a pause."""
+    for _ in range(times):
+        runner.post(ROBOT, Clap(255))
+        runner.run(0.26)
+    runner.run(1.2)
+
+
+def test_attentive_counts_claps() -> None:
+    runner = alone("attentive", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    clap(runner, 1)
+    assert targets(runner) == (0, 0)
+    seen = []
+    for claps in (2, 1, 1, 2, 3):
+        clap(runner, claps)
+        seen.append(targets(runner))
+    assert seen == [(80, 80), (80, -80), (80, 80), (0, 0), (80, 0)]
+    colours = {top(runner) for _ in range(120) if runner.step()}
+    assert any(red > 0 for red, _, _ in colours)
+    runner.run(2.0)
+    assert all(red == green == 0 for red, green, _ in (top(runner) for _ in range(100) if runner.step()))
+
+
+def test_attentive_shows_the_claps_it_counts() -> None:
+    runner = alone("attentive", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    lit = []
+    for _ in range(3):
+        runner.post(ROBOT, Clap(255))
+        runner.run(0.26)
+        lit.append(sum(level > 0 for level in leds(runner, "circle")))
+    assert lit == [1, 3, 5]
+    runner.run(1.0)
+    assert not any(leds(runner, "circle"))
+
+
+@pytest.mark.parametrize("behaviour", ["friendly", "explorer", "fearful", "attentive", "investigator", "obedient"])
+def test_the_proximity_lights_show_what_is_seen_in_every_behaviour(behaviour: str) -> None:
+    wall = box(0.2, 0.0, size_x_m=0.05, size_y_m=1.0)
+    runner = alone(behaviour, hall({ROBOT: (0.05, 0.0, 0.0)}, wall))
+    assert runner.until(lambda: leds(runner, "proximity")[2] > 5, 1.0)
+
+
+def test_no_light_but_the_colour_is_on_in_the_menu() -> None:
+    wall = box(0.2, 0.0, size_x_m=0.05, size_y_m=1.0)
+    runner = alone("menu", hall({ROBOT: (0.05, 0.0, 0.0)}, wall))
+    runner.run(1.0)
+    assert top(runner) == (0, 32, 0)
+    assert not any(leds(runner, "proximity") + leds(runner, "ground") + leds(runner, "circle"))
