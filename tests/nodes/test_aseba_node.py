@@ -242,3 +242,59 @@ def test_parameters_describe_themselves(ros, simulation, runtime):
 
 def too_fast():
     return SetParameters.Request(parameters=[Parameter("real_time_factor", value=5000.0).to_parameter_msg()])
+
+
+def test_a_robot_without_a_program_is_switched_on_with_its_menu(ros, simulation, runtime):
+    sim = simulation()
+    runtime()
+    status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
+    shown = ros.collect(Float32MultiArray, "/led/state", latched=True)
+    events = ros.collect(Int16MultiArray, "/aseba/events")
+    center = ros.publisher(Bool, "/press/center")
+    right = ros.publisher(Bool, "/press/right")
+    sim.until(lambda: shown and list(shown[-1].data[:3]) == [0.0, 1.0, 0.0], what="the colour of friendly")
+    assert values(status[-1])["program"] == "menu.aesl"
+    right.publish(Bool(data=True))
+    sim.until(lambda: list(shown[-1].data[:3]) == [1.0, 1.0, 0.0], what="the colour of explorer")
+    sim.step(2.2)
+    center.publish(Bool(data=True))
+    sim.until(lambda: values(status[-1])["program"] == "explorer.aesl")
+    center.publish(Bool(data=False))
+    sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.02)
+    center.publish(Bool(data=True))
+    sim.until(lambda: values(status[-1])["program"] == "menu.aesl")
+    assert events == []
+
+
+def test_a_program_ends_a_behaviour_and_waits_in_the_menu(ros, simulation, runtime):
+    sim = simulation()
+    runtime(behaviour="obedient")
+    status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
+    ros.publisher(Bool, "/press/forward").publish(Bool(data=True))
+    sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.01)
+    assert set_parameters(ros, {"script.source": "var a = 1", "script.name": "mine"}).successful
+    sim.step(0.3)
+    stopped = sim.world.robots["thymio"].pose
+    sim.step(0.3)
+    assert sim.world.robots["thymio"].pose == stopped
+    assert values(status[-1])["program"] == "mine"
+    shown = ros.collect(Float32MultiArray, "/led/state", latched=True)
+    assert set_parameters(ros, {"behaviour": "menu"}).successful
+    sim.until(lambda: values(status[-1])["program"] == "menu.aesl")
+    sim.until(lambda: shown and list(shown[-1].data[:3]) == [0.0, 0.0, 0.0], what="the black of one's own program")
+
+
+def test_a_behaviour_that_does_not_exist_is_refused(ros, simulation, runtime):
+    simulation()
+    runtime("var a = 1")
+    result = set_parameters(ros, {"behaviour": "freindly"})
+    assert not result.successful
+    assert "did you mean 'friendly'?" in result.reason
+
+
+def test_what_a_program_tells_its_robot_is_no_topic(ros, simulation, runtime):
+    simulation()
+    runtime(path="menu")
+    ros.until(lambda: ros.node.count_publishers("/aseba/events"))
+    topics = {name for name, _ in ros.node.get_topic_names_and_types()}
+    assert not [name for name in topics if "menu" in name]
