@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from xml.parsers import expat
 
 from aseba_vm.aesl_faults import fault_of_xml, place_of
@@ -18,6 +19,7 @@ MAX_NODES = 64
 MAX_EVENT_WORDS = 258
 """Words that a message on the Aseba network holds (language spec, sections 12 and 13)."""
 
+_MARK = "\ufeff"  # byte order mark
 _NUMBER = re.compile(r"\s*[+-]?[0-9]{1,10}\s*")
 _UUID = re.compile(r"\{?[0-9A-Fa-f]{8}(-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12}\}?")
 _TAG = re.compile(rb"<(?:[^\"'>]|\"[^\"]*\"|'[^']*')*>")
@@ -37,7 +39,8 @@ def checked_length(text: str) -> str:
 
 def read(text: str, *, is_strict: bool) -> Network:
     """Return what a file says; ``is_strict`` refuses what the reference would let pass. Raises AeslError."""
-    return _Reader(checked_length(text.removeprefix("\ufeff")), is_strict=is_strict).read()
+    network = _Reader(checked_length(text.removeprefix(_MARK)), is_strict=is_strict).read()
+    return replace(network, pieces=(Piece("text", _MARK), *network.pieces)) if text.startswith(_MARK) else network
 
 
 class _OpenNode:

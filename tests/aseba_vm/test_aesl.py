@@ -8,6 +8,7 @@ from aseba_vm import AeslError, aesl, compile
 from aseba_vm.aesl import Network, Node, Plugin
 from aseba_vm.messages import MESSAGES
 from aseba_vm.targets import THYMIO_II
+from tests.aseba_vm.vectors import SHIPPED
 
 FILE = """<!DOCTYPE aesl-source>
 <network>
@@ -215,6 +216,7 @@ KEPT = """<?xml version="1.0"?>
 def test_what_was_read_is_written_byte_for_byte(text):
     assert aesl.dumps(aesl.loads(text)) == text
     assert aesl.dumps(aesl.loads(text.encode())) == text
+    assert aesl.dumps(aesl.loads("\ufeff" + text)) == "\ufeff" + text
 
 
 @pytest.mark.vectors("aseba-aesl")
@@ -223,7 +225,7 @@ def test_files_of_the_reference_are_written_byte_for_byte(vector):
     assert aesl.dumps(network) == vector["file"]
     anew = aesl.dumps(replace(network, pieces=()))
     assert aesl.loads(anew) == network
-    if "\n\n\n<!--list of global events-->" in vector["file"]:
+    if vector["folder"] == SHIPPED and "\n\n\n<!--list of global events-->" in vector["file"]:
         assert anew == vector["file"], "an editor of the reference wrote this file"
 
 

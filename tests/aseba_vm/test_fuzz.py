@@ -9,7 +9,6 @@ import pytest
 
 from aseba_vm import AeslError, CompileError, VirtualMachine, aesl, compile, compile_stages
 from aseba_vm.bytecode import disassemble
-from aseba_vm.layout import formatted
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.programs import Writer
 from tests.aseba_vm.vectors import load
@@ -107,24 +106,7 @@ def test_damaged_files_are_read_or_refused(seed):
             at = source.randint(0, len(text))
             text = text[:at] + source.choice(("<", ">", "&", '"', "\0", "<a>", "]]>", "")) + text[at + 1 :]
             with contextlib.suppress(AeslError):
-                aesl.loads(text)
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_formatting_keeps_the_tokens_and_is_final(seed):
-    for number in range(30):
-        source = Writer(5000 + 100 * seed + number).program()
-        if _compiled(source) is None:
-            continue
-        once = formatted(source)
-        assert compile(once, THYMIO_II, EVENTS, CONSTANTS).words == compile(source, THYMIO_II, EVENTS, CONSTANTS).words
-        assert formatted(once) == once
-
-
-def test_formatting_keeps_the_bytecode_of_every_vector():
-    for vector in load("aseba-compile"):
-        text = formatted(vector["source"])
-        assert formatted(text) == text, vector["id"]
+                assert aesl.dumps(aesl.loads(text)) == text
 
 
 @pytest.mark.parametrize("stage", ["tokens", "tree", "expanded", "optimised", "code"])

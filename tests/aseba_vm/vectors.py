@@ -33,14 +33,24 @@ FILES = ("aseba-compile", "aseba-errors", "aseba-execution", "aseba-execution-2x
 Vector = dict[str, Any]
 
 
-def _path(folder: Path, name: str) -> Path | None:
-    """The file of a set, plain or compressed, or None."""
-    return next((path for suffix in ("", ".gz") if (path := folder / f"{name}.jsonl{suffix}").is_file()), None)
+def _paths(folder: Path, name: str) -> list[Path]:
+    """The files of a set with vectors of a kind, plain or compressed: ``NAME.jsonl``, ``NAME-anything.jsonl.gz`` …
+
+    The machine of the 2.x fork answers the files of aseba-execution with ``-2x`` in their name.
+    """
+    is_fork, stem = name.endswith("-2x"), name.removesuffix("-2x")
+    found: dict[str, Path] = {}
+    for suffix in (".jsonl", ".jsonl.gz"):
+        for path in sorted(folder.glob(f"{stem}*{suffix}")):
+            rest = path.name.removeprefix(stem).removesuffix(suffix)
+            if rest[:1] in ("", "-") and ("-2x" in rest) == is_fork:
+                found.setdefault(stem + rest, path)
+    return list(found.values())
 
 
 def is_set(folder: Path) -> bool:
     """Tell whether a folder holds vectors."""
-    return any(_path(folder, name) for name in FILES)
+    return any(_paths(folder, name) for name in FILES)
 
 
 @cache
@@ -52,12 +62,12 @@ def targets(folder: Path = SHIPPED) -> dict[str, TargetDescription]:
 
 @cache
 def load(name: str, folder: Path = SHIPPED) -> tuple[Vector, ...]:
-    """Vectors of a file of a set, none if the set lacks it. Each remembers its folder, for its targets."""
-    path = _path(folder, name)
-    if path is None:
-        return ()
-    data = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
-    return tuple({**json.loads(line), "folder": folder} for line in data.decode("utf-8").splitlines() if line.strip())
+    """Vectors of a kind in a set, none if the set lacks it. Each remembers its folder, for its targets."""
+    lines: list[str] = []
+    for path in _paths(folder, name):
+        data = path.read_bytes()
+        lines += (gzip.decompress(data) if path.suffix == ".gz" else data).decode("utf-8").split("\n")
+    return tuple({**json.loads(line), "folder": folder} for line in lines if line.strip())
 
 
 def families(name: str) -> dict[str, list[Vector]]:
