@@ -8,6 +8,7 @@ import re
 import urllib.parse
 
 from thymio_sim_ros import resources
+from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.sim import playground as playgrounds
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
@@ -45,16 +46,16 @@ def _load_upload(name: str, content: str) -> tuple[str, Playground]:
     return name, loaded
 
 
-def read_program(path: str) -> ThymioProgram:
-    """The program of a built-in behaviour's name or a file; "none" is the empty one.
+def read_program(path: str, layout: str = THYMIO) -> ThymioProgram:
+    """The program of a built-in behaviour's name or a file, for a layout; "none" is the empty one.
 
     Raises ProgramError for what the text says, ResourceError for a file that is not there or no text, OSError.
     """
     if path == NO_PROGRAM:
-        return load_program("", NO_PROGRAM)
+        return load_program("", NO_PROGRAM, layout)
     found = resources.find_program(path)
     try:
         text = found.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise resources.ResourceError(f"{found}: byte {error.start} is not UTF-8 text") from error
-    return load_program(text, found.name)
+    return load_program(text, found.name, layout)

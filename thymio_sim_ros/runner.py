@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.behaviour_host import BehaviourHost
-from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
+from thymio_sim_ros.device.device import DEFAULTS, AsebaDevice, DeviceOptions, EmittedEvent
 from thymio_sim_ros.device.program import ThymioProgram
 from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.commands import Command, PressButton
@@ -42,19 +42,24 @@ class Runner:
         programs: Mapping[str, ThymioProgram] | ThymioProgram | None = None,
         *,
         behaviour: str = "",
+        options: DeviceOptions = DEFAULTS,
         seed: int = 0,
         noise: bool = True,
     ) -> None:
         """One program for all robots, or one by robot's name; KeyError for a name that is not there.
 
         With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu.
+        CardError, SettingsError: a folder of the options cannot be used.
         """
         self.world = World(playground, seed=seed, noise=noise)
         if isinstance(programs, ThymioProgram):
             programs = dict.fromkeys(self.world.robots, programs)
         numbers = {name: number for number, name in enumerate(self.world.robots, start=1)}
         wanted = self.world.robots if behaviour else programs or {}
-        self.devices = {name: AsebaDevice(node_id=numbers[name]) for name in wanted}
+        alone = len(numbers) == 1
+        self.devices = {
+            name: AsebaDevice(node_id=numbers[name], options=options.for_robot(name, alone=alone)) for name in wanted
+        }
         self.hosts = {name: BehaviourHost(device) for name, device in self.devices.items()}
         for name, host in self.hosts.items():
             program = (programs or {}).get(name)
@@ -136,7 +141,7 @@ class Runner:
         for event in events:
             self.emitted.append((name, event))
             for device in self.devices.values():
-                if device is not sender.device and device.declares(event.name):
+                if device is not sender.device and device.hears(sender.device) and device.declares(event.name):
                     device.receive_event(event.name, event.args, source=sender.device.node_id)
                     heard += 1
         return heard

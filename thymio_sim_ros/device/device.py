@@ -37,12 +37,13 @@ from thymio_sim_ros.sim.commands import (
 )
 from thymio_sim_ros.sim.tones import SHUT_DOWN
 
-__all__ = ["AsebaDevice", "DeviceOptions", "DeviceStatus", "EmittedEvent"]
+__all__ = ["DEFAULTS", "AsebaDevice", "DeviceOptions", "DeviceStatus", "EmittedEvent"]
 
 INT16 = range(-0x8000, 0x8000)
 SOUNDS = PlayTone | PlaySystemSound | PlaySamples | StopSound
 """Commands with which a program uses sound."""
 DEFAULTS = DeviceOptions()
+"""A robot as it is sold: its own layout and events, no card."""
 NOTHING: Mapping[str, Sequence[int]] = MappingProxyType({})
 
 
@@ -192,6 +193,10 @@ class AsebaDevice:
                 break  # the rest of a long handler belongs to the next step
         if not vm.is_active:
             queue.notice(self._words_at(self._periods))
+
+    def hears(self, sender: AsebaDevice) -> bool:
+        """Whether the radios of the two are set to the same network."""
+        return self.body.network == sender.body.network
 
     def declares(self, event: str) -> bool:
         """Whether the program knows a global event of this name."""

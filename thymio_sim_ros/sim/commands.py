@@ -12,6 +12,9 @@ from dataclasses import dataclass
 BUTTONS = ("backward", "left", "center", "forward", "right")
 """The five buttons, in the order of the firmware's variables (thymio-robot.md section 4)."""
 
+MOTOR_MODELS = ("ideal", "firmware")
+"""Without delay, or as the robot's own control loop moves them (thymio-robot.md sections 2 and 2.1)."""
+
 LED_GROUPS: dict[str, int] = {
     "top": 3,
     "bottom_left": 3,
@@ -56,6 +59,17 @@ class BodyTwist:
     linear_m_s: float
     angular_rad_s: float
     timeout_ns: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class SetMotorModel:
+    """How the motors follow from now on: one of `MOTOR_MODELS`."""
+
+    model: str
+
+    def __post_init__(self) -> None:
+        if self.model not in MOTOR_MODELS:
+            raise ValueError(f"motor model {self.model!r} found, expected one of {', '.join(MOTOR_MODELS)}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,6 +307,7 @@ Command = (
     MotorTargets
     | WheelVelocities
     | BodyTwist
+    | SetMotorModel
     | SetLeds
     | SetLed
     | ShowOnLeds

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from thymio_sim_ros.sim.geometry import Pose, Twist
+from thymio_sim_ros.sim.motor_control import WheelControl
 from thymio_sim_ros.sim.thymio2 import WHEEL_RADIUS_M, WHEEL_TRACK_M
 
 __all__ = ["Wheels"]
@@ -14,13 +15,15 @@ class Wheels:
     """Speeds in m/s at the rim, left then right.
 
     `commanded` is what the motors aim at, `ground` what reaches the floor after slip. While nothing holds the robot,
-    the wheels turn as commanded; what an obstacle takes from the ground speed, it takes from the wheels.
+    the wheels turn as commanded; what an obstacle takes from the ground speed, it takes from the wheels. `control` are
+    the loops that the motors follow, if they do not follow at once.
     """
 
-    __slots__ = ("angles_rad", "commanded", "ground", "odometry", "speeds_m_s")
+    __slots__ = ("angles_rad", "commanded", "control", "ground", "odometry", "speeds_m_s")
 
     def __init__(self) -> None:
         self.commanded = (0.0, 0.0)
+        self.control: tuple[WheelControl, WheelControl] | None = None
         self.ground = (0.0, 0.0)
         self.speeds_m_s = (0.0, 0.0)
         self.angles_rad = (0.0, 0.0)

@@ -13,7 +13,7 @@ from types import MappingProxyType
 
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.clock import TICK_NS, Schedule, SimClock
-from thymio_sim_ros.sim.commands import Command, MoveObject, MoveRobot, SetPen
+from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, MoveObject, MoveRobot, SetMotorModel, SetPen
 from thymio_sim_ros.sim.crowd import CROWD, Crowd
 from thymio_sim_ros.sim.fields import as_color
 from thymio_sim_ros.sim.footing import Footing
@@ -52,11 +52,16 @@ class World:
         seed: int = 0,
         noise: bool = True,
         proximity_model: str = "default",
+        motor_model: str = MOTOR_MODELS[0],
         periods_ns: Mapping[str, int] | None = None,
     ) -> None:
-        """`periods_ns` names the sensors that measure and how often; None: all of them, as often as the robot does."""
+        """`motor_model`: one of `commands.MOTOR_MODELS`, ValueError for another.
+
+        `periods_ns` names the sensors that measure and how often; None: all of them, as often as the robot does.
+        """
         if proximity_model not in PROXIMITY_MODELS:
             raise ValueError(f"proximity model {proximity_model!r}: expected one of {', '.join(PROXIMITY_MODELS)}")
+        self._motor_model = SetMotorModel(motor_model)
         self._sensors = _chosen(all_sensors(), periods_ns)
         self.playground = playground
         self.scene = Scene.of(playground)
@@ -140,6 +145,7 @@ class World:
     def _add(self, start: RobotStart) -> None:
         robot = Robot(start, self._shared, self._actuators, self._sensors, seed=self._seed, noise=self._noise)
         self._robots[start.name] = robot
+        robot.apply(self._motor_model)
         if start.pen is not None:
             pen = start.pen
             robot.apply(SetPen(pen.down, as_color(pen.color), pen.width_m))

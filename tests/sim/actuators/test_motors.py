@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tests.sim.builders import FLOOR, make, readings, run, send
+from tests.sim.builders import FLOOR, make, post_wall, readings, run, send
 from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.motors import ACTUATOR, MotorState, wheel_speeds
 from thymio_sim_ros.sim.commands import BodyTwist, MotorTargets, WheelVelocities
@@ -104,3 +104,49 @@ def test_a_program_drives_by_two_variables() -> None:
     (output,) = ACTUATOR.aseba.outputs
     assert output.variables == (("motor.left.target", 1), ("motor.right.target", 1))
     assert output.command([100, -100]) == MotorTargets(100, -100)
+
+
+@pytest.fixture
+def controlled() -> World:
+    return World(make([FLOOR]), noise=False, motor_model="firmware")
+
+
+def test_the_firmware_s_motors_lag_behind_their_target(controlled: World) -> None:
+    send(controlled, MotorTargets(200, 200))
+    left = [pair[0] for pair in speeds(controlled, 3.0)]
+    assert 0 < left[0] < 60
+    assert left[-1] == pytest.approx(200, abs=2)
+
+
+def test_the_firmware_s_motors_tell_output_current_and_integral(controlled: World) -> None:
+    send(controlled, MotorTargets(200, -200))
+    steps = run(controlled, 3.0)
+    assert readings(steps, "motor")[-1].words[2:] == (pytest.approx(-320, abs=5), pytest.approx(320, abs=5))
+    current_left, _, integral_left, integral_right = readings(steps, "current")[-1].words
+    assert (integral_left, integral_right) == (pytest.approx(-960, abs=20), pytest.approx(960, abs=20))
+    assert current_left < 30
+
+
+def test_a_velocity_from_ros_goes_through_the_control_loop_too(controlled: World) -> None:
+    send(controlled, BodyTwist(0.1, 0.0))
+    run(controlled, 2.0)
+    assert controlled.robots["thymio"].twist.linear_m_s == pytest.approx(0.1, rel=0.02)
+
+
+def test_a_robot_at_a_wall_protects_its_motors(controlled: World) -> None:
+    world = World(make([FLOOR, post_wall(0.01)]), noise=False, motor_model="firmware")
+    send(world, MotorTargets(500, 500))
+    currents = [reading.words[0] for reading in readings(run(world, 6.0), "current")]
+    assert 600 < max(currents) < 650
+    assert currents[-1] < 450
+
+
+def test_the_motor_model_survives_a_reset(controlled: World) -> None:
+    controlled.reset()
+    send(controlled, MotorTargets(200, 200))
+    assert speeds(controlled, 0.01)[0][0] < 60
+
+
+def test_an_unknown_motor_model_is_refused() -> None:
+    with pytest.raises(ValueError, match="motor model 'quick' found, expected one of ideal, firmware"):
+        World(make([FLOOR]), motor_model="quick")

@@ -1,7 +1,9 @@
 """The two motors (thymio-robot.md section 2).
 
 Targets of a program persist. A ROS command holds until it times out, after which the targets hold again;
-newer targets end it at once. Motors follow without delay; each wheel slips by a new random factor every tick.
+newer targets end it at once. Each wheel slips by a new random factor every tick.
+Model "ideal": motors follow without delay. Model "firmware": the robot's own control loop with its lag
+(`sim/motor_control.py`).
 """
 
 from __future__ import annotations
@@ -12,7 +14,8 @@ from dataclasses import dataclass
 from thymio_sim_ros.sim import thymio2, units
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.aseba_face import ActuatorFace, Output
-from thymio_sim_ros.sim.commands import BodyTwist, Command, MotorTargets, WheelVelocities
+from thymio_sim_ros.sim.commands import BodyTwist, Command, MotorTargets, SetMotorModel, WheelVelocities
+from thymio_sim_ros.sim.motor_control import WheelControl
 from thymio_sim_ros.sim.view import ActuatorView
 
 __all__ = ["ACTUATOR", "MotorState"]
@@ -22,11 +25,12 @@ _AT_REST = (0.0, 0.0)
 
 @dataclass(slots=True)
 class MotorState:
-    """Wheel speeds in m/s: those of the targets, and those in force."""
+    """Wheel speeds in m/s: those of the targets, and those in force; the loop of each wheel, if there is one."""
 
     targets_m_s: tuple[float, float] = _AT_REST
     speeds_m_s: tuple[float, float] = _AT_REST
     ends_ns: int | None = None
+    control: tuple[WheelControl, WheelControl] | None = None
 
 
 def wheel_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
@@ -41,8 +45,10 @@ def wheel_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
     return (left * scale, right * scale)
 
 
-def _apply(state: MotorState, command: MotorTargets | WheelVelocities | BodyTwist, now_ns: int) -> None:
-    if isinstance(command, MotorTargets):
+def _apply(state: MotorState, command: MotorTargets | WheelVelocities | BodyTwist | SetMotorModel, now_ns: int) -> None:
+    if isinstance(command, SetMotorModel):
+        state.control = (WheelControl(), WheelControl()) if command.model == "firmware" else None
+    elif isinstance(command, MotorTargets):
         state.targets_m_s = (units.units_to_speed(command.left), units.units_to_speed(command.right))
         state.speeds_m_s = state.targets_m_s
         state.ends_ns = None
@@ -51,13 +57,27 @@ def _apply(state: MotorState, command: MotorTargets | WheelVelocities | BodyTwis
         state.ends_ns = now_ns + command.timeout_ns if command.timeout_ns else None
 
 
-def _update(state: MotorState, view: ActuatorView, _dt_s: float) -> None:
+def _update(state: MotorState, view: ActuatorView, dt_s: float) -> None:
     if state.ends_ns is not None and view.now_ns >= state.ends_ns:
         state.speeds_m_s = state.targets_m_s
         state.ends_ns = None
     noise = view.noise
     slip = (noise.uniform(*thymio2.SLIP), noise.uniform(*thymio2.SLIP))
-    view.wheels.drive(state.speeds_m_s, slip, thymio2.MAX_SPEED_M_S)
+    view.wheels.control = state.control
+    speeds = state.speeds_m_s if state.control is None else _controlled(state.control, state, view, dt_s)
+    view.wheels.drive(speeds, slip, thymio2.MAX_SPEED_M_S)
+
+
+def _controlled(
+    control: tuple[WheelControl, WheelControl], state: MotorState, view: ActuatorView, dt_s: float
+) -> tuple[float, float]:
+    """Speeds in m/s that the control loops give."""
+    unit_m_s = thymio2.MAX_SPEED_M_S / thymio2.FULL_TARGET
+    left, right = (
+        wheel.tick(target_m_s / unit_m_s, speed_m_s / unit_m_s, dt_s) * unit_m_s
+        for wheel, target_m_s, speed_m_s in zip(control, state.speeds_m_s, view.wheels.speeds_m_s, strict=True)
+    )
+    return (left, right)
 
 
 def _targets(words: Sequence[int]) -> Command:
@@ -66,7 +86,7 @@ def _targets(words: Sequence[int]) -> Command:
 
 ACTUATOR = Actuator(
     name="motors",
-    accepts=(MotorTargets, WheelVelocities, BodyTwist),
+    accepts=(MotorTargets, WheelVelocities, BodyTwist, SetMotorModel),
     begin=MotorState,
     apply=_apply,
     update=_update,

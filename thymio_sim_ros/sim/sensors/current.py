@@ -3,7 +3,8 @@
 With motors that follow at once the control loop is in its steady state: its output is the pwm of the speed aimed at,
 its integral three times that, within ±4806. The current grows with the voltage that no turning takes up, which is what
 the pwm aimed at has more than the pwm of the speed reached: a free wheel draws none, a wheel held at full speed 800,
-above the 600 (about 0.4 A) at which the robot protects itself. It is filtered over 64 ticks.
+above the 600 (about 0.4 A) at which the robot protects itself. It is filtered over 64 ticks. Motors with a control
+loop of their own tell what is in it.
 """
 
 from __future__ import annotations
@@ -25,6 +26,10 @@ _NONE = (0.0, 0.0)
 
 def _measure(view: SensorView) -> CurrentReading | None:
     wheels, memory = view.wheels, view.memory
+    if wheels.control is not None:
+        left, right = wheels.control
+        words = (round(left.current), round(right.current), round(left.integral), round(right.integral))
+        return CurrentReading(view.now_ns, words) if is_news(view, words) else None
     aimed, reached = wheels.commanded, wheels.speeds_m_s
     if aimed is reached is memory.get("settled") and view.now_ns < memory["refresh_ns"]:
         return None  # the rule on a free way, and cheap

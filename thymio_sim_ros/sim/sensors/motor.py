@@ -1,4 +1,7 @@
-"""Speed and angle of the wheels (thymio-robot.md section 2): as commanded, less what an obstacle takes."""
+"""Speed and angle of the wheels (thymio-robot.md section 2): as commanded, less what an obstacle takes.
+
+The pwm is that of the speed, or of the control loop where motors have one (section 2.1).
+"""
 
 from __future__ import annotations
 
@@ -16,9 +19,13 @@ def _measure(view: SensorView) -> MotorReading:
     wheels = view.wheels
     left, right = wheels.speeds_m_s
     speeds = (units.speed_to_units(left), units.speed_to_units(right))
+    if wheels.control is None:
+        pwms = (units.units_to_pwm(speeds[0]), units.units_to_pwm(speeds[1]))
+    else:
+        pwms = (round(wheels.control[0].output), round(wheels.control[1].output))
     return MotorReading(
         view.now_ns,
-        (*speeds, units.units_to_pwm(speeds[0]), units.units_to_pwm(speeds[1])),
+        (*speeds, *pwms),
         wheels.angles_rad,
         (left / WHEEL_RADIUS_M, right / WHEEL_RADIUS_M),
     )
