@@ -113,3 +113,30 @@ def test_the_runner_starts_a_built_in_behaviour_and_names_the_others(capsys):
     with pytest.raises(SystemExit, match="2"):
         cli.main(["runner", "--behaviour", "freindly"])
     assert "did you mean 'friendly'?" in capsys.readouterr().err
+
+
+def test_a_card_that_is_no_folder_is_one_line(capsys, tmp_path):
+    file = tmp_path / "card"
+    file.touch()
+    assert refused(capsys, "runner", "--card", str(file)).endswith("expected a folder, or a place for one")
+
+
+def test_settings_that_cannot_be_read_are_one_line(capsys, tmp_path):
+    (tmp_path / "settings.json").write_text('{"sound_shift": "loud"}')
+    assert "sound_shift: expected 1 whole numbers" in refused(capsys, "runner", "--settings", str(tmp_path))
+
+
+@pytest.mark.parametrize("option", ["--layout", "--events", "--motors"])
+def test_a_choice_that_does_not_exist_lists_the_others(capsys, option):
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(["runner", option, "other"])
+    assert "choose from" in capsys.readouterr().err
+
+
+def test_the_runner_gives_the_robot_its_card(capsys, tmp_path):
+    program = tmp_path / "note.aesl"
+    program.write_text("var status\nvar n\ncall sd.open(7, status)\ncall sd.write([1, 2, 3], n)\n")
+    card = tmp_path / "card"
+    arguments = ("--program", str(program), "--card", str(card), "--layout", "playground", "--motors", "firmware")
+    assert cli.main(["runner", "--seconds", "0.1", *arguments]) == 0
+    assert (card / "u7.dat").read_bytes() == b"\x01\x00\x02\x00\x03\x00"

@@ -8,6 +8,7 @@ import json
 import pytest
 
 from tests.tracks import farthest_in_laps
+from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runner import Runner
@@ -165,3 +166,53 @@ def test_a_ros_command_takes_over_for_its_time():
     assert robot.pose.x_m == pytest.approx(before - 0.05, abs=0.002)
     runner.run(1.0)
     assert robot.pose.x_m == pytest.approx(before - 0.05 + 0.0332, abs=0.002)
+
+
+NOTE = """<network><node name="thymio-II">
+var status
+var n
+call sd.open(1, status)
+call sd.write([_id], n)
+</node></network>"""
+
+
+def test_each_of_several_robots_has_a_card_of_its_own(tmp_path):
+    options = DeviceOptions(card=tmp_path)
+    Runner(playgrounds.loads(TWO, "two"), load_program(NOTE, "note"), options=options)
+    found = {path.parent.name: path.read_bytes() for path in tmp_path.glob("*/u1.dat")}
+    assert found == {"anna": b"\x01\x00", "bert": b"\x02\x00"}
+
+
+@pytest.mark.parametrize(("network", "heard"), [(0, (1, 42)), (5, (0, 0))])
+def test_robots_of_different_radio_networks_do_not_hear_each_other(network, heard):
+    setup = f"call _rf.setup(0, {network} * (_id - 1))\nonevent button.center"
+    runner = Runner(playgrounds.loads(TWO, "two"), load_program(TALK.replace("onevent button.center", setup), "talk"))
+    runner.press("anna", "center")
+    runner.run(0.5)
+    assert runner.devices["bert"].get_variable("heard") == heard
+
+
+def test_a_sound_that_ends_raises_its_event_in_simulated_time():
+    source = "var n = 0\ncall sound.freq(440, 30)\nonevent sound.finished\nn = n + 1"
+    runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "sound"))
+    device = runner.devices["anna"]
+    assert runner.until(lambda: device.get_variable("n") == (1,), 1.0)
+    assert runner.now_ns == pytest.approx(30 * 16_384_000, abs=20_000_000)
+    runner.run(2.0)
+    assert device.get_variable("n") == (1,)
+
+
+def test_the_robot_s_lights_show_an_obstacle_until_the_program_takes_them():
+    wall = {"kind": "box", "x_m": 0.14, "y_m": 0.5, "size_x_m": 0.02, "size_y_m": 0.3, "height_m": 0.1}
+    world = json.loads(TWO)
+    world["shapes"].append(wall | {"color": "#ffffff"})
+    playground = playgrounds.loads(json.dumps(world), "two")
+    source = "onevent button.center\ncall leds.prox.h(1, 2, 3, 4, 5, 6, 7, 8)"
+    runner = Runner(playground, load_program(source, "lights"))
+    runner.run(0.5)
+    lights = dict(runner.world.snapshot().robots[0].leds)
+    assert lights["proximity"][2] == lights["proximity"][3] > 10
+    assert lights["battery"] == (32, 32, 32)
+    runner.press("anna", "center")
+    runner.run(0.5)
+    assert dict(runner.world.snapshot().robots[0].leds)["proximity"] == (1, 2, 3, 4, 5, 6, 7, 8)

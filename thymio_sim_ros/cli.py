@@ -13,11 +13,18 @@ import socket
 import sys
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 import thymio_sim_ros
 from thymio_sim_ros import convert, resources
+from thymio_sim_ros.device.card import Card, CardError
+from thymio_sim_ros.device.events import FIRMWARE, POLICIES
+from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
+from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.program import ProgramError, ThymioProgram
+from thymio_sim_ros.device.settings import Settings, SettingsError
 from thymio_sim_ros.loading import NO_PROGRAM, load_playground, read_program
+from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
 from thymio_sim_ros.suite import ADDRESS, Suite
 
@@ -57,6 +64,8 @@ def start_suite(argv: Sequence[str]) -> int:
         playground=options.playground,
         program=_program(options),
         behaviour=options.behaviour,
+        device=_device(options),
+        motor_model=options.motors,
         port=options.port,
         foxglove_port=options.foxglove_port,
         web=not (options.no_web or options.headless),
@@ -64,7 +73,7 @@ def start_suite(argv: Sequence[str]) -> int:
         seed=options.seed,
         real_time_factor=options.real_time_factor,
     )
-    _check_files(suite.playground, suite.program)
+    _check_files(suite.playground, suite.program, suite.device.layout)
     if suite.web:
         _check_port(suite.port, "the page", "--port")
     if suite.foxglove:
@@ -86,12 +95,20 @@ def start_suite(argv: Sequence[str]) -> int:
 def run_without_ros(argv: Sequence[str]) -> int:
     """World and program in lock-step, as fast as possible; prints where the robots are."""
     options = _runner_parser().parse_args(argv)
-    playground, program = _check_files(options.playground, _program(options))
+    device = _device(options)
+    playground, program = _check_files(options.playground, _program(options), device.layout)
     from thymio_sim_ros.runner import Runner
 
     for note in playground.notes:
         print(f"thymio-sim: {options.playground}: {note}", file=sys.stderr)
-    runner = Runner(playground, program, behaviour=options.behaviour, seed=options.seed)
+    runner = Runner(
+        playground,
+        program,
+        behaviour=options.behaviour,
+        options=device,
+        motor_model=options.motors,
+        seed=options.seed,
+    )
     started = time.perf_counter()
     runner.run(options.seconds)
     factor = options.seconds / max(time.perf_counter() - started, 1e-9)
@@ -163,6 +180,48 @@ def _add_world_options(parser: argparse.ArgumentParser) -> None:
         help="what the robot is switched on with, such as menu; the program then waits in the menu",
     )
     parser.add_argument("--seed", type=int, default=Suite.seed, help="seed of all noise (default: %(default)s)")
+    robot = parser.add_argument_group("the robot")
+    robot.add_argument(
+        "--card",
+        type=_folder,
+        metavar="DIR",
+        help="folder that stands for the memory card; with several robots each has a folder of its name in it",
+    )
+    robot.add_argument("--settings", type=_folder, metavar="DIR", help="folder that keeps settings, likewise")
+    robot.add_argument(
+        "--layout",
+        choices=LAYOUTS,
+        default=THYMIO,
+        help="order of variables and natives: firmware 14, or the reference playground (default: %(default)s)",
+    )
+    robot.add_argument(
+        "--events",
+        choices=POLICIES,
+        default=FIRMWARE,
+        help="whether events wait, as on the robot, or end a handler that runs (default: %(default)s)",
+    )
+    robot.add_argument(
+        "--motors",
+        choices=MOTOR_MODELS,
+        default=Suite.motor_model,
+        help="whether motors follow at once, or as the robot's control loop moves them (default: %(default)s)",
+    )
+
+
+def _device(options: argparse.Namespace) -> DeviceOptions:
+    """What the robot's options say; UsageError for a folder that cannot be used."""
+    device = DeviceOptions(options.layout, options.events, options.card, options.settings)
+    try:
+        if device.card is not None:
+            Card(device.card)
+        Settings(device.settings_file)
+    except (CardError, SettingsError) as error:
+        raise UsageError(str(error)) from error
+    return device
+
+
+def _folder(text: str) -> Path:
+    return Path(text).expanduser()
 
 
 def _program(options: argparse.Namespace) -> str:
@@ -202,10 +261,10 @@ def _number(text: str, low: float, high: float) -> float:
     return value
 
 
-def _check_files(playground: str, program: str) -> tuple[Playground, ThymioProgram]:
+def _check_files(playground: str, program: str, layout: str) -> tuple[Playground, ThymioProgram]:
     """Both files, read and checked; UsageError says where, what was found, what was expected."""
     try:
-        return load_playground(playground)[1], read_program(program)
+        return load_playground(playground)[1], read_program(program, layout)
     except (PlaygroundError, ProgramError, resources.ResourceError, OSError) as error:
         raise UsageError(str(error)) from error
 

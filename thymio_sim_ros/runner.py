@@ -12,10 +12,11 @@ from collections.abc import Callable, Mapping
 
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.behaviour_host import BehaviourHost
-from thymio_sim_ros.device.device import DEFAULTS, AsebaDevice, DeviceOptions, EmittedEvent
+from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
+from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.program import ThymioProgram
 from thymio_sim_ros.sim.clock import TICK_NS
-from thymio_sim_ros.sim.commands import Command, PressButton
+from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, PressButton
 from thymio_sim_ros.sim.playground import Playground
 from thymio_sim_ros.sim.world import StepResult, World
 
@@ -43,6 +44,7 @@ class Runner:
         *,
         behaviour: str = "",
         options: DeviceOptions = DEFAULTS,
+        motor_model: str = MOTOR_MODELS[0],
         seed: int = 0,
         noise: bool = True,
     ) -> None:
@@ -51,7 +53,7 @@ class Runner:
         With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu.
         CardError, SettingsError: a folder of the options cannot be used.
         """
-        self.world = World(playground, seed=seed, noise=noise)
+        self.world = World(playground, seed=seed, noise=noise, motor_model=motor_model)
         if isinstance(programs, ThymioProgram):
             programs = dict.fromkeys(self.world.robots, programs)
         numbers = {name: number for number, name in enumerate(self.world.robots, start=1)}

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
+from thymio_sim_ros.sim.commands import MOTOR_MODELS
+
 HTTP_PORT = 8080
 FOXGLOVE_PORT = 8765
 ADDRESS = "127.0.0.1"
@@ -22,6 +25,8 @@ class Suite:
     playground: str = "line"
     program: str = "line_follower"
     behaviour: str = ""
+    device: DeviceOptions = DEFAULTS
+    motor_model: str = MOTOR_MODELS[0]
     port: int = HTTP_PORT
     foxglove_port: int = FOXGLOVE_PORT
     web: bool = True

@@ -12,7 +12,6 @@ import sys
 import wave
 from collections.abc import Sequence
 from pathlib import Path
-from typing import BinaryIO
 
 __all__ = ["Card", "CardError", "SoundFile"]
 
@@ -35,7 +34,7 @@ class CardError(Exception):
 
 
 class Card:
-    """A card in its slot. Invariant: at most one data file is open, and it lies in the folder."""
+    """A card in its slot: at most one data file is open, as a place in the folder; nothing is held between calls."""
 
     def __init__(self, folder: Path) -> None:
         """CardError when the folder cannot be made or is none."""
@@ -44,12 +43,8 @@ class Card:
             self.folder = folder.resolve(strict=True)
         except OSError as error:
             raise CardError(f"card {folder}: {error.strerror}; expected a folder, or a place for one") from error
-        self._file: BinaryIO | None = None
-
-    @property
-    def is_open(self) -> bool:
-        """Whether a data file is open."""
-        return self._file is not None
+        self._file: Path | None = None
+        self._at = 0
 
     def open(self, number: int) -> bool:
         """Open data file `number`, made when there is none, at its beginning; one that is open is closed first."""
@@ -58,43 +53,49 @@ class Card:
         if number < 0 or path is None:
             return False
         try:
-            path.touch()
-            self._file = path.open("r+b", buffering=0)
+            with path.open("ab"):
+                self._file = path
         except OSError:
             return False
         return True
 
     def close(self) -> None:
         """Close the data file, if one is open."""
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+        self._file, self._at = None, 0
 
     def write(self, words: Sequence[int]) -> int:
         """Write words (int16, little-endian) from the position on; how many fitted."""
         if self._file is None:
             return 0
+        room = max(0, MOST_BYTES - self._at) // 2
         try:
-            room = max(0, MOST_BYTES - self._file.tell()) // 2
-            return (self._file.write(_as_bytes(words[:room])) or 0) // 2
+            with self._file.open("r+b") as file:
+                file.seek(self._at)
+                written = file.write(_as_bytes(words[:room]))
         except OSError:
             return 0
+        self._at += written
+        return written // 2
 
     def read(self, count: int) -> list[int]:
         """Up to so many words from the position on; none at the end or without a file."""
         if self._file is None:
             return []
         try:
-            data = self._file.read(2 * count) or b""
+            with self._file.open("rb") as file:
+                file.seek(self._at)
+                data = file.read(2 * count)
         except OSError:
             return []
-        return _as_words(data[: len(data) // 2 * 2])
+        whole = data[: len(data) // 2 * 2]
+        self._at += len(whole)
+        return _as_words(whole)
 
     def seek(self, position: int) -> bool:
         """Go to a word (0 is the first); a later write fills what lies between with zeros."""
         if self._file is None or position < 0:
             return False
-        self._file.seek(2 * position)
+        self._at = 2 * position
         return True
 
     def read_sound(self, name: str) -> SoundFile | None:

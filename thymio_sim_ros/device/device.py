@@ -19,7 +19,7 @@ from thymio_sim_ros.device.card import Card
 from thymio_sim_ros.device.events import POLICIES, EventQueue, GlobalEvent
 from thymio_sim_ros.device.layout import LAYOUTS, target
 from thymio_sim_ros.device.natives import native_functions
-from thymio_sim_ros.device.options import DeviceOptions
+from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.own_rules import PERIOD_NS, OwnRules
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.device.settings import Settings
@@ -37,13 +37,11 @@ from thymio_sim_ros.sim.commands import (
 )
 from thymio_sim_ros.sim.tones import SHUT_DOWN
 
-__all__ = ["DEFAULTS", "AsebaDevice", "DeviceOptions", "DeviceStatus", "EmittedEvent"]
+__all__ = ["AsebaDevice", "DeviceStatus", "EmittedEvent"]
 
 INT16 = range(-0x8000, 0x8000)
 SOUNDS = PlayTone | PlaySystemSound | PlaySamples | StopSound
 """Commands with which a program uses sound."""
-DEFAULTS = DeviceOptions()
-"""A robot as it is sold: its own layout and events, no card."""
 NOTHING: Mapping[str, Sequence[int]] = MappingProxyType({})
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from thymio_sim_ros.device.events import FIRMWARE, POLICIES
 from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
 
-__all__ = ["DeviceOptions", "OptionError"]
+__all__ = ["DEFAULTS", "DeviceOptions", "OptionError"]
 
 
 class OptionError(ValueError):
@@ -43,3 +43,7 @@ class DeviceOptions:
             card=None if self.card is None else self.card / name,
             settings=None if self.settings is None else self.settings / name,
         )
+
+
+DEFAULTS = DeviceOptions()
+"""A robot as it is sold: its own layout and events, no card."""

@@ -22,13 +22,23 @@ def lives(context: Context, suite: Suite) -> Iterator[Life]:
     simulator = SimulatorParams(
         playground=suite.playground,
         seed=suite.seed,
+        motor_model=suite.motor_model,
         real_time_factor=suite.real_time_factor,
         cmd_vel_timeout=suite.cmd_vel_timeout_s,
     )
     _, playground = load_playground(suite.playground)
     robots = [names.name for names in ros_names(tuple(robot.name for robot in playground.robots)).values()]
     yield Simulator(context, simulator)
-    runtime = RuntimeParams(robots=robots, path=suite.program, behaviour=suite.behaviour)
+    device = suite.device
+    runtime = RuntimeParams(
+        robots=robots,
+        path=suite.program,
+        behaviour=suite.behaviour,
+        layout=device.layout,
+        events=device.events,
+        card=str(device.card or ""),
+        settings=str(device.settings or ""),
+    )
     yield AsebaRuntime(context, runtime, use_sim_time=True)
     if suite.foxglove:
         from thymio_sim_ros.nodes.foxglove_node import FoxgloveBridge

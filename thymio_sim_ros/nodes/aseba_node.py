@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import ClockChange, JumpThreshold, TimeJump
@@ -22,7 +23,10 @@ from std_msgs.msg import String
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.behaviour_host import MENU
+from thymio_sim_ros.device.card import CardError
+from thymio_sim_ros.device.options import DeviceOptions, OptionError
 from thymio_sim_ros.device.program import ProgramError, ThymioProgram, load_program
+from thymio_sim_ros.device.settings import SettingsError
 from thymio_sim_ros.loading import NO_PROGRAM, read_program
 from thymio_sim_ros.nodes import params, qos
 from thymio_sim_ros.nodes.device_ports import DevicePorts
@@ -49,6 +53,20 @@ class RuntimeParams:
     behaviour: str = param(
         "", "Built-in behaviour, such as menu, that the robot is switched on with; '' is the program, or the menu"
     )
+    layout: str = param(
+        "thymio", "Order of variables and natives: thymio (firmware 14) or playground (the reference's)", fixed=True
+    )
+    events: str = param(
+        "firmware", "How events meet: firmware (they wait) or playground (they end a handler that runs)", fixed=True
+    )
+    card: str = param("", "Folder that stands for the memory card; '' is no card", fixed=True)
+    settings: str = param("", "Folder that keeps the robot's settings; '' forgets them", fixed=True)
+
+    @property
+    def options(self) -> DeviceOptions:
+        """What these say about the robots; OptionError for a choice that does not exist."""
+        folders = (Path(text).expanduser() if text else None for text in (self.card, self.settings))
+        return DeviceOptions(self.layout, self.events, *folders)
 
 
 class AsebaRuntime:
@@ -61,14 +79,19 @@ class AsebaRuntime:
         self.node = Node("aseba_runtime", context=context, parameter_overrides=overrides)
         self.params = params.declare(self.node, defaults or RuntimeParams())
         try:
+            self._options = self.params.options
             self._program = self._first_program()
             self._behaviour = resources.check_behaviour(self.params.behaviour)
-        except (ProgramError, resources.ResourceError, OSError) as error:
+        except (OptionError, ProgramError, resources.ResourceError, OSError) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
         self._accepted: ThymioProgram | None = None
         self.robots: list[DevicePorts] = []
-        self._set_robots(self.params.robots)
+        try:
+            self._set_robots(self.params.robots)
+        except (CardError, SettingsError) as error:
+            self.node.destroy_node()
+            raise StartError(str(error)) from error
         if self.params.follow_simulator:
             self.node.create_subscription(String, SIMULATOR_STATE, self._on_simulator_state, qos.LATCHED)
         self.node.add_on_set_parameters_callback(self._check_parameters)
@@ -110,15 +133,22 @@ class AsebaRuntime:
 
     def _first_program(self) -> ThymioProgram | None:
         if self.params.source:
-            return load_program(self.params.source, self.params.name or "program")
-        return read_program(self.params.path) if self.params.path else None
+            return load_program(self.params.source, self.params.name or "program", self.params.layout)
+        return read_program(self.params.path, self.params.layout) if self.params.path else None
 
     def _set_robots(self, names: Sequence[str]) -> None:
         """One device for each of these namespaces, numbered in their order; all begin anew."""
         for ports in self.robots:
             ports.close()
+        alone = len(names) == 1
         self.robots = [
-            DevicePorts(self.node, RobotNames(name), node_id=number, bus=self._pass_on)
+            DevicePorts(
+                self.node,
+                RobotNames(name),
+                node_id=number,
+                bus=self._pass_on,
+                options=self._options.for_robot(name, alone=alone),
+            )
             for number, name in enumerate(names, start=1)
         ]
         self._begin()
@@ -132,7 +162,7 @@ class AsebaRuntime:
     def _pass_on(self, sender: DevicePorts, event: str, args: Sequence[int]) -> None:
         """Robots of one runtime hear each other directly, as on an Aseba network."""
         for ports in self.robots:
-            if ports is not sender:
+            if ports is not sender and ports.device.hears(sender.device):
                 ports.hear(event, args, source=sender.device.node_id)
 
     def _on_jump(self, jump: TimeJump) -> None:
@@ -146,9 +176,9 @@ class AsebaRuntime:
         try:
             if "script.source" in changed:
                 name = changed.get("script.name", self.params.name)
-                self._accepted = load_program(changed["script.source"], name or "program")
+                self._accepted = load_program(changed["script.source"], name or "program", self.params.layout)
             elif "script.path" in changed:
-                self._accepted = read_program(changed["script.path"] or NO_PROGRAM)
+                self._accepted = read_program(changed["script.path"] or NO_PROGRAM, self.params.layout)
             resources.check_behaviour(changed.get("behaviour", ""))
         except (ProgramError, resources.ResourceError, OSError) as error:
             self._accepted = None

@@ -17,6 +17,7 @@ from std_srvs.srv import Trigger
 from thymio_sim_ros.device.behaviour_host import BehaviourHost, is_internal
 from thymio_sim_ros.device.bindings import sensor_names
 from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.program import ThymioProgram
 from thymio_sim_ros.nodes import command_topics, convert, qos
 from thymio_sim_ros.nodes.names import RobotNames, topic_word
@@ -39,9 +40,11 @@ class Bus(Protocol):
 class DevicePorts:
     """An `AsebaDevice` with the topics and services of its robot."""
 
-    def __init__(self, node: Node, names: RobotNames, *, node_id: int, bus: Bus) -> None:
+    def __init__(
+        self, node: Node, names: RobotNames, *, node_id: int, bus: Bus, options: DeviceOptions = DEFAULTS
+    ) -> None:
         self.names = names
-        self.device = AsebaDevice(node_id=node_id)
+        self.device = AsebaDevice(node_id=node_id, options=options)
         self._host = BehaviourHost(self.device)
         self._node = node
         self._bus = bus

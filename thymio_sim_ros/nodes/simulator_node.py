@@ -32,7 +32,7 @@ from thymio_sim_ros.nodes.robot_ports import RobotPorts
 from thymio_sim_ros.nodes.transforms import Transforms
 from thymio_sim_ros.nodes.world_ports import WorldPorts, WorldState
 from thymio_sim_ros.sim.clock import Pacer
-from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
 from thymio_sim_ros.sim.world import World
 
@@ -47,6 +47,9 @@ class SimulatorParams:
     playground: str = param("line", "Playground: a shipped name, a file, or the JSON text itself")
     seed: int = param(0, "Seed of all noise; the same seed gives the same run", fixed=True)
     noise: bool = param(True, "Whether wheels and sensors are noisy as on the robot", fixed=True)
+    motor_model: str = param(
+        "ideal", "How motors follow: ideal (at once) or firmware (the robot's control loop and its lag)", fixed=True
+    )
     real_time_factor: float = param(1.0, "Simulated seconds per second; 0 is as fast as possible", low=0.0, high=1000.0)
     start_paused: bool = param(False, "Whether the world waits for ~/pause or ~/step", fixed=True)
     step_ticks: int = param(1, "Ticks of 10 ms that ~/step does", low=1, high=100_000)
@@ -68,6 +71,8 @@ class Simulator:
         self.params = params.declare(self.node, defaults or SimulatorParams())
         if self.params.out_of_range not in ("rep117", "driver"):
             raise StartError(f"out_of_range is '{self.params.out_of_range}', expected rep117 or driver")
+        if self.params.motor_model not in MOTOR_MODELS:
+            raise StartError(f"motor_model is '{self.params.motor_model}', expected {' or '.join(MOTOR_MODELS)}")
         try:
             self.playground_name, playground = load_playground(self.params.playground)
         except (PlaygroundError, resources.ResourceError, OSError) as error:
@@ -140,7 +145,7 @@ class Simulator:
     def _set_world(self, playground: Playground) -> None:
         for note in playground.notes:
             self.node.get_logger().warning(f"playground {self.playground_name}: {note}")
-        self.world = World(playground, seed=self.params.seed, noise=self.params.noise)
+        self.world = self._new_world(playground)
         names = ros_names(tuple(self.world.robots))
         if {robot: ports.names for robot, ports in self._robots.items()} != names:
             for ports in self._robots.values():
@@ -160,6 +165,10 @@ class Simulator:
                 for robot, name in names.items()
             }
         self._begin()
+
+    def _new_world(self, playground: Playground) -> World:
+        chosen = self.params
+        return World(playground, seed=chosen.seed, noise=chosen.noise, motor_model=chosen.motor_model)
 
     def _begin(self) -> None:
         """Order at a start: latched topics, then the clock at zero; the first readings follow (section 7)."""
@@ -228,7 +237,7 @@ class Simulator:
         if value is not None:
             try:
                 self._accepted = load_playground(value)
-                World(self._accepted[1], seed=self.params.seed, noise=self.params.noise)
+                self._new_world(self._accepted[1])
             except (PlaygroundError, resources.ResourceError, OSError) as error:
                 return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)

@@ -1,0 +1,66 @@
+"""Events that wait: as flags, or one by one."""
+
+from __future__ import annotations
+
+import pytest
+
+from thymio_sim_ros.device.events import FIRMWARE, MOST_WAITING, PLAYGROUND, POLICIES, EventQueue, GlobalEvent
+
+HELLO = GlobalEvent(0, 2, (7,))
+MILLISECOND_NS = 1_000_000
+
+
+def queue(policy: str) -> EventQueue:
+    return EventQueue(POLICIES[policy], (15, 16))
+
+
+def everything(waiting: EventQueue) -> list[int | GlobalEvent]:
+    """All events in the order in which they are heard."""
+    taken = []
+    while waiting.waits:
+        event = waiting.take()
+        if event is not None:
+            taken.append(event)
+    return taken
+
+
+@pytest.mark.parametrize(("policy", "heard"), [(FIRMWARE, [5, 6, 14]), (PLAYGROUND, [14, 5, 14, 6])])
+def test_local_events_are_flags_on_the_robot_and_one_by_one_in_the_playground(policy: str, heard: list[int]) -> None:
+    waiting = queue(policy)
+    for index in (14, 5, 14, 6):
+        waiting.arrive(index)
+    assert everything(waiting) == heard
+
+
+def test_timers_that_fired_before_come_before_what_arrives_now() -> None:
+    waiting = queue(FIRMWARE)
+    waiting.advance(0)
+    waiting.notice([3, 0])
+    waiting.advance(10 * MILLISECOND_NS)
+    waiting.arrive(5)
+    assert everything(waiting) == [15, 15, 15, 5]
+
+
+def test_global_events_wait_in_line_before_local_ones() -> None:
+    waiting = queue(FIRMWARE)
+    waiting.arrive(5)
+    waiting.receive(HELLO)
+    waiting.receive(HELLO)
+    assert everything(waiting) == [HELLO, HELLO, 5]
+
+
+def test_there_is_room_for_so_many_global_events() -> None:
+    waiting = queue(FIRMWARE)
+    assert [waiting.receive(HELLO) for _ in range(MOST_WAITING + 1)] == [True] * MOST_WAITING + [False]
+
+
+def test_what_waits_is_forgotten_and_timers_stop() -> None:
+    waiting = queue(FIRMWARE)
+    waiting.advance(0)
+    waiting.notice([10, 0])
+    waiting.arrive(5)
+    waiting.receive(HELLO)
+    waiting.reset()
+    waiting.advance(0)
+    waiting.advance(100 * MILLISECOND_NS)
+    assert everything(waiting) == []
