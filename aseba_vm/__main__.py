@@ -287,7 +287,9 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--show", metavar="VARIABLE", action="append", help="default: all variables of the program")
     run.add_argument("--trace", action="store_true", help="show each instruction: address, line, stack before it")
     limit_help = "instructions of one event, default: %(default)s"
-    run.add_argument("--limit", metavar="N", type=_positive, default=1_000_000, help=limit_help)
+    run.add_argument(
+        "--limit", metavar="N", type=partial(_number, lowest=1, highest=10**12), default=1_000_000, help=limit_help
+    )
     fmt = commands.add_parser("fmt", help="indent the source", description="Indent the source regularly.")
     fmt.set_defaults(command=_fmt)
     fmt.add_argument("file", metavar="FILE")
@@ -327,12 +329,6 @@ def _command(
     command = commands.add_parser(name, help=about, description=f"{about[0].upper()}{about[1:]}.")
     command.set_defaults(command=function)
     return command
-
-
-def _positive(text: str) -> int:
-    if int(text) < 1:
-        raise argparse.ArgumentTypeError(f"found {text}, expected 1 or more")
-    return int(text)
 
 
 def _number(text: str, lowest: int, highest: int) -> int:

@@ -1,4 +1,10 @@
+import codecs
+import io
 import json
+import pathlib
+import re
+import subprocess
+import sys
 
 import pytest
 
@@ -200,3 +206,127 @@ def test_help_is_given(arguments, capsys):
         main(arguments)
     assert caught.value.code == 0
     assert "usage: aseba" in capsys.readouterr().out
+
+
+TWO_NODES = """<network>
+<node name="thymio-II" nodeId="1">var a
+</node>
+<node name="thymio-II" nodeId="2">var b
+b = &lt; 1</node>
+</network>
+"""
+
+
+def test_every_program_of_a_file_for_the_target_is_checked(file, capsys):
+    name = file(TWO_NODES, "two.aesl")
+    assert main(["check", name]) == 1
+    assert capsys.readouterr().err.startswith(f"{name}:5:5: expected one of ")
+
+
+def test_a_file_that_breaks_a_rule_is_refused_with_its_line(file, capsys):
+    name = file('<network>\n<event name="e" size="999"/>\n<node name="thymio-II"/></network>', "robot.aesl")
+    assert main(["check", name]) == 1
+    assert capsys.readouterr().err.splitlines() == [
+        f"{name}:2:23: found size 999 for event 'e', expected 0 to 258 words",
+        '<event name="e" size="999"/>',
+        "                      ^",
+    ]
+
+
+@pytest.mark.parametrize("command", ["check", "compile", "dis", "run", "fmt"])
+def test_a_place_behind_entities_and_comments_is_that_in_the_file(command, file, capsys):
+    name = file(
+        '<network><node name="thymio-II">var a # &lt;\n<!-- \n -->a = 1 &lt;&lt; $\n</node></network>', "r.aesl"
+    )
+    assert main([command, name]) == 1
+    assert capsys.readouterr().err.startswith(f"{name}:3:20: character U+24 cannot start a word\n")
+
+
+def test_the_column_after_a_line_comment_is_that_of_an_editor(file, capsys):
+    name = file("# the reference counts one too many on the next line\nx = 1")
+    assert main(["check", name]) == 1
+    assert capsys.readouterr().err.startswith(f"{name}:2:1: ")
+
+
+def test_the_standard_input_is_read(monkeypatch, capsys):
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO("var é = q".encode())))
+    assert main(["check", "-"]) == 1
+    assert capsys.readouterr().err.startswith("-:1:9: ")
+
+
+def test_the_listing_shows_lines_names_and_use(file, capsys):
+    name = file(AESL.format(code="START + 1"), "robot.aesl")
+    assert main(["compile", name, "--format", "listing"]) == 0
+    shown = capsys.readouterr().out
+    assert "onevent ping" in shown
+    assert "store 128 (n)" in shown
+    assert "|    7  n = START + 1" in shown
+    assert "of  1534 words" in shown
+
+
+def test_formatting_changes_nothing_else_in_a_file(file):
+    text = AESL.format(code="1").replace("<event", "<!-- kept -->\r\n<event colour='red'").replace("\n", "\r\n")
+    path = pathlib.Path(file("", "robot.aesl"))
+    path.write_bytes(codecs.BOM_UTF8 + text.encode())
+    assert main(["fmt", "--write", str(path)]) == 0
+    expected = text.replace("\r\nn = 1", "\r\n\tn = 1")
+    assert path.read_bytes() == codecs.BOM_UTF8 + expected.encode()
+
+
+def test_a_refused_file_is_not_rewritten(file):
+    name = file("onevent tap\n a = $")
+    assert main(["fmt", "--write", name]) == 1
+    with open(name, encoding="utf-8") as lines:
+        assert lines.read() == "onevent tap\n a = $"
+
+
+def test_a_folder_is_code_2(tmp_path, capsys):
+    assert main(["check", str(tmp_path)]) == 2
+    assert capsys.readouterr().err == f"aseba: {tmp_path}: Is a directory\n"
+
+
+def test_bytes_that_are_no_text_are_told_with_their_place(tmp_path, capsys):
+    path = tmp_path / "x"
+    path.write_bytes(b"var a\na = \xff")
+    assert main(["check", str(path)]) == 2
+    assert capsys.readouterr().err == f"{path}:2:5: found byte ff, expected text in UTF-8\n"
+
+
+@pytest.mark.parametrize(
+    "arguments", [["--global", "e=259"], ["--global", "1=1"], ["--constant", "A=32768"], ["--raise", "e=x"]]
+)
+def test_definitions_of_the_command_line_obey_the_rules_of_files(arguments, file, capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(["run", file("var a"), *arguments])
+    assert caught.value.code == 2
+    assert "expected" in capsys.readouterr().err
+
+
+def test_a_reader_who_goes_away_gets_no_traceback(file):
+    name = file("var a\nwhile a < 30000 do a++ end")
+    command = f"{sys.executable} -m aseba_vm run {name} --trace | head -1"
+    ended = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=120, check=False)
+    assert len(ended.stdout.splitlines()) == 1
+    assert ended.stderr == ""
+
+
+HOSTILE = {
+    "deep nesting": "var a\na = " + "(" * 50_000,
+    "a megabyte": "a = 1\n" * 180_000,
+    "more than a megabyte": "#" * 3_000_000,
+    "variables": "".join(f"var v{number}\n" for number in range(10_000)),
+    "zero bytes": "\0" * 1000,
+    "deep XML": "<network>" + "<a>" * 100_000,
+    "entities": '<!DOCTYPE a [<!ENTITY b "bbbb"><!ENTITY c "&b;&b;&b;">]><network>&c;</network>',
+    "many nodes": "<network>" + '<node name="thymio-II">var a</node>' * 20_000 + "</network>",
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_file_ends_in_one_message_with_a_place(name, file, capsys):
+    path = file(HOSTILE[name])
+    assert main(["check", path]) == 1
+    first, *rest = capsys.readouterr().err.splitlines()
+    assert re.match(rf"{re.escape(path)}:\d+:\d+: ", first)
+    assert len(rest) == 2
+    assert max(map(len, rest)) <= 100
