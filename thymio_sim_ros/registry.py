@@ -1,19 +1,41 @@
-"""Collects the plug-ins of a folder: the one object that each of its modules exports, in name order.
+"""Collects plug-ins: what the modules of a folder of ours export, and what other packages offer by entry points.
 
-A package of plug-ins is its own registry (architecture section 9): putting a file into the folder adds
-the plug-in, and nothing else has to know. Name order makes every walk over a registry repeatable.
+A package of plug-ins is its own registry (architecture section 9): putting a file into the folder adds the plug-in,
+and nothing else has to know. Another package adds to `thymio_sim_ros.sensors`, `.actuators` or `.shapes` by an entry
+point of a group of that name, and whole folders to `.behaviours` and `.playgrounds`. Ours must be whole; one of
+others that is broken is named in the log and left out. Name order makes every walk over a registry repeatable.
 """
 
 from __future__ import annotations
 
+import functools
 import importlib
+import importlib.metadata
+import logging
 import pkgutil
+import re
+from collections.abc import Callable
+from pathlib import Path
 from types import ModuleType
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
-__all__ = ["RegistryError", "collect"]
+__all__ = ["RegistryError", "collect", "folders", "forget"]
 
-T = TypeVar("T")
+PREFIX = "thymio_sim_ros"
+NAME = re.compile(r"[a-z](_?[a-z0-9])*")
+"""Names of plug-ins are parts of topics, keys and events."""
+
+
+class Named(Protocol):
+    """What every plug-in has."""
+
+    @property
+    def name(self) -> str:
+        """Its name, once per registry."""
+        ...
+
+
+T = TypeVar("T", bound=Named)
 
 
 class RegistryError(Exception):
@@ -26,13 +48,15 @@ class RegistryError(Exception):
         self.found = found
 
 
-def collect(package: ModuleType, export: str, kind: type[T]) -> tuple[T, ...]:
-    """The `export` (such as "SENSOR") of every module of `package`, in the order of the modules' names.
+def collect(
+    package: ModuleType, export: str, kind: type[T], *, guard: Callable[[T], T] = lambda plugin: plugin
+) -> tuple[T, ...]:
+    """The `export` (such as "SENSOR") of every module of `package`, and those that other packages add, in name order.
 
-    Modules whose name begins with an underscore are helpers. Raises RegistryError for a module without
-    the export, or with one that is no `kind`.
+    Modules whose name begins with an underscore are helpers. Raises RegistryError for a module of ours without
+    the export, or with one that is no `kind`. What others add goes through `guard`, which should let it break alone.
     """
-    found = []
+    found: dict[str, T] = {}
     for name in sorted(info.name for info in pkgutil.iter_modules(package.__path__)):
         if name.startswith("_"):
             continue
@@ -40,5 +64,60 @@ def collect(package: ModuleType, export: str, kind: type[T]) -> tuple[T, ...]:
         plugin = getattr(module, export, None)
         if not isinstance(plugin, kind):
             raise RegistryError(module.__name__, f"{export} of type {kind.__name__}", type(plugin).__name__)
-        found.append(plugin)
+        found[plugin.name] = plugin
+    for plugin in _added(f"{PREFIX}.{package.__name__.rpartition('.')[2]}", export, kind, tuple(found)):
+        found[plugin.name] = guard(plugin)
+    return tuple(found[name] for name in sorted(found))
+
+
+@functools.cache
+def folders(group: str) -> tuple[Path, ...]:
+    """Folders of the packages that other packages offer in `thymio_sim_ros.<group>`, in the order of their names."""
+    found: list[Path] = []
+    for entry in _entries(f"{PREFIX}.{group}"):
+        try:
+            module = entry.load()
+            found.extend(Path(folder) for folder in module.__path__)
+        except Exception as error:
+            _name(entry, error)
     return tuple(found)
+
+
+def forget() -> None:
+    """Look for the plug-ins of other packages anew the next time."""
+    folders.cache_clear()
+    _added.cache_clear()
+
+
+@functools.cache
+def _added(group: str, export: str, kind: type[T], taken: tuple[str, ...]) -> tuple[T, ...]:
+    """What other packages add to a group, whole and by names that are not taken."""
+    found: dict[str, T] = {}
+    for entry in _entries(group):
+        try:
+            loaded = entry.load()
+            plugin = getattr(loaded, export, None) if isinstance(loaded, ModuleType) else loaded
+            if not isinstance(plugin, kind):
+                raise RegistryError(entry.value, f"{export} of type {kind.__name__}", type(plugin).__name__)
+            if not NAME.fullmatch(plugin.name):
+                raise RegistryError(entry.value, "a name of small letters, digits and single underscores", plugin.name)
+            if plugin.name in taken or plugin.name in found:
+                raise RegistryError(entry.value, "a name of its own", f"'{plugin.name}', which exists")
+        except Exception as error:
+            _name(entry, error)
+        else:
+            found[plugin.name] = plugin
+    return tuple(found.values())
+
+
+def _entries(group: str) -> list[importlib.metadata.EntryPoint]:
+    return sorted(importlib.metadata.entry_points(group=group), key=lambda entry: (entry.name, entry.value))
+
+
+def _name(entry: importlib.metadata.EntryPoint, error: Exception) -> None:
+    """Tell which plug-in is left out; whatever its code raises, the others go on."""
+    package = entry.dist.name if entry.dist is not None else "?"
+    logging.getLogger(__name__).warning(
+        "plug-in '%s' of the package %s (%s) is left out: %s: %s",
+        entry.name, package, entry.group, type(error).__name__, error,
+    )  # fmt: skip

@@ -13,7 +13,10 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from thymio_sim_ros import registry
+
 _PACKAGE = Path(__file__).resolve().parent
+_PLAYGROUND_FILES = ("*.json", "*.playground")
 _SHARE = Path("share") / "thymio_sim_ros"
 
 PAGE_BUILD_HINT = "The page is not built yet: run `make web` in the source folder, then start again."
@@ -46,16 +49,24 @@ def _folder(*names: str) -> Path | None:
 
 
 def playgrounds() -> dict[str, Path]:
-    """The shipped playgrounds, name → file, in name order."""
+    """The shipped playgrounds, then those of other packages, name → file, each in name order."""
     folder = _folder("playgrounds")
-    if folder is None:
-        return {}
-    return {path.stem: path for path in sorted(folder.glob("*.json")) if not path.name.endswith(".schema.json")}
+    return _files([folder] if folder else [], "playgrounds", _PLAYGROUND_FILES)
 
 
 def behaviours() -> dict[str, Path]:
-    """The built-in behaviours, name → `.aesl` file, in name order."""
-    return {path.stem: path for path in sorted((_PACKAGE / "device" / "behaviours").glob("*.aesl"))}
+    """The built-in behaviours, then those of other packages, name → `.aesl` file, each in name order."""
+    return _files([_PACKAGE / "device" / "behaviours"], "behaviours", ("*.aesl",))
+
+
+def _files(ours: list[Path], group: str, patterns: tuple[str, ...]) -> dict[str, Path]:
+    """Files of our folder and of the folders that other packages offer, by name; the first of a name counts."""
+    found: dict[str, Path] = {}
+    for folder in (*ours, *registry.folders(group)):
+        for path in sorted(path for pattern in patterns for path in folder.glob(pattern)):
+            if not path.name.endswith(".schema.json"):
+                found.setdefault(path.stem, path)
+    return found
 
 
 def find_playground(name: str) -> Path:

@@ -15,6 +15,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
+from thymio_sim_ros import registry
 from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.program import ProgramError, ThymioProgram, load_program
@@ -54,11 +55,12 @@ def is_internal(event: str) -> bool:
 
 @cache
 def built_in(name: str, layout: str = THYMIO) -> ThymioProgram:
-    """The built-in program of this name; FileNotFoundError when there is none.
+    """The built-in program of this name, or that of another package; FileNotFoundError when there is none.
 
     ProgramError: it uses what a robot of this layout does not have.
     """
-    path = _FOLDER / f"{name}.aesl"
+    paths = [folder / f"{name}.aesl" for folder in (_FOLDER, *registry.folders("behaviours"))]
+    path = next((path for path in paths if path.is_file()), paths[0])
     return load_program(path.read_text(encoding="utf-8"), path.name, layout)
 
 

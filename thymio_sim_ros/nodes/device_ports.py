@@ -19,7 +19,7 @@ from thymio_sim_ros.device.bindings import sensor_names
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.program import ThymioProgram
-from thymio_sim_ros.nodes import command_topics, convert, qos
+from thymio_sim_ros.nodes import command_topics, convert, plugin_topics, qos
 from thymio_sim_ros.nodes.names import RobotNames, topic_word
 from thymio_sim_ros.nodes.robot_ports import WARN_EVERY_S
 from thymio_sim_ros.sim.commands import Command
@@ -55,7 +55,7 @@ class DevicePorts:
         topic = names.topic
         self._outputs = {
             row.topic: (row.encode, node.create_publisher(row.type, topic(row.topic), row.profile))
-            for row in command_topics.ROWS
+            for row in (*command_topics.ROWS, *plugin_topics.rows())
             if row.encode is not None
         }
         self._status_publisher = node.create_publisher(DiagnosticStatus, topic("aseba/status"), qos.LATCHED)
@@ -158,7 +158,7 @@ class DevicePorts:
         return callback
 
     def _send(self, command: Command) -> None:
-        topic = command_topics.topic_of(command)
+        topic = command_topics.topic_of(command) or plugin_topics.topic_of(command)
         if topic is not None:
             encode, publisher = self._outputs[topic]
             publisher.publish(encode(command))

@@ -18,7 +18,7 @@ from std_msgs.msg import Bool, Empty, Float64MultiArray, String
 from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import Trigger
 
-from thymio_sim_ros.nodes import command_topics, convert, operator_topics, qos
+from thymio_sim_ros.nodes import command_topics, convert, operator_topics, plugin_topics, qos
 from thymio_sim_ros.nodes.command_topics import CommandRow
 from thymio_sim_ros.nodes.convert import CommandError, ConvertOptions, Row
 from thymio_sim_ros.nodes.description import urdf
@@ -111,7 +111,7 @@ class RobotPorts:
             ("wheels/command", Float64MultiArray, self._on_wheels, qos.COMMAND),
             *(
                 (row.topic, row.type, self._poster(row), row.profile)
-                for row in (*command_topics.ROWS, *operator_topics.ROWS)
+                for row in (*command_topics.ROWS, *operator_topics.ROWS, *plugin_topics.rows())
             ),
             ("led/off", Empty, self._on_leds_off, qos.LEDS),
             *((f"press/{button}", Bool, self._press(button), qos.EVENTS) for button in commands.BUTTONS),

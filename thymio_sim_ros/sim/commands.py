@@ -303,6 +303,12 @@ def _check(command: object, low: float, high: float, *fields: str) -> None:
             raise ValueError(f"{type(command).__name__}: {field} {value} found, expected {low:g} to {high:g}")
 
 
+class PluginCommand:
+    """Base of the commands that a plug-in brings along (docs/plugins.md)."""
+
+    __slots__ = ()
+
+
 Command = (
     MotorTargets
     | WheelVelocities
@@ -334,4 +340,5 @@ Command = (
     | SetSoundThreshold
     | EnableComm
     | SetCommPayload
+    | PluginCommand
 )

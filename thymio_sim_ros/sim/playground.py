@@ -331,6 +331,9 @@ def _primitives(shapes: tuple[NamedShape, ...]) -> list[Primitive]:
             raise FieldError(f"shapes[{index}].{error.key}", error.found, error.expected) from error
         except ValueError as error:
             raise FieldError(f"shapes[{index}]", str(error), f"a {named.kind} that can be built") from error
+        except Exception as error:  # of a shape that another package added
+            found_error = f"{type(error).__name__}: {error}"
+            raise FieldError(f"shapes[{index}]", found_error, f"a {named.kind} that can be built") from error
         if len(found) > MAX_PRIMITIVES:
             raise FieldError(f"shapes[{index}]", f"more than {MAX_PRIMITIVES} parts so far", "a simpler playground")
     return found

@@ -211,6 +211,14 @@ class CollisionReading:
     is_touching: bool
 
 
+@dataclass(frozen=True, slots=True)
+class PlainReading:
+    """A reading of words alone: enough for the sensor of a plug-in (docs/plugins.md)."""
+
+    stamp_ns: int
+    words: tuple[int, ...]
+
+
 Reading = (
     ProximityReading
     | GroundReading
@@ -231,4 +239,5 @@ Reading = (
     | CurrentReading
     | CommReading
     | CollisionReading
+    | PlainReading
 )

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from thymio_sim_ros import registry
 from thymio_sim_ros.sim.aseba_face import NO_ACTUATOR_FACE, ActuatorFace
+from thymio_sim_ros.sim.guards import Guard
 from thymio_sim_ros.sim.view import ActuatorView
 
 __all__ = ["Actuator", "all_actuators"]
@@ -31,5 +33,16 @@ class Actuator:
 
 
 def all_actuators() -> tuple[Actuator, ...]:
-    """Every actuator of this folder, in name order."""
-    return registry.collect(sys.modules[__name__], "ACTUATOR", Actuator)
+    """Every actuator of this folder and of other packages, in name order."""
+    return registry.collect(sys.modules[__name__], "ACTUATOR", Actuator, guard=_guarded)
+
+
+def _guarded(actuator: Actuator) -> Actuator:
+    """One of another package: its errors do not stop the world."""
+    guard, update = Guard(actuator.name), actuator.update
+    return replace(
+        actuator,
+        begin=partial(guard.begin, actuator.begin),
+        apply=partial(guard.run, actuator.apply),
+        update=None if update is None else partial(guard.run, update),
+    )

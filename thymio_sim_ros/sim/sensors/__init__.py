@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from thymio_sim_ros import registry
 from thymio_sim_ros.sim.aseba_face import NO_SENSOR_FACE, AsebaFace
+from thymio_sim_ros.sim.guards import quiet_sensor
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.view import GroupView, SensorView
 
@@ -43,5 +44,11 @@ class Sensor:
 
 
 def all_sensors() -> tuple[Sensor, ...]:
-    """Every sensor of this folder, in name order."""
-    return registry.collect(sys.modules[__name__], "SENSOR", Sensor)
+    """Every sensor of this folder and of other packages, in name order."""
+    return registry.collect(sys.modules[__name__], "SENSOR", Sensor, guard=_guarded)
+
+
+def _guarded(sensor: Sensor) -> Sensor:
+    """One of another package: its errors do not stop the world."""
+    feel = None if sensor.feel is None else quiet_sensor(sensor.name, sensor.feel)
+    return replace(sensor, measure=quiet_sensor(sensor.name, sensor.measure), measure_all=None, feel=feel)

@@ -32,5 +32,5 @@ class ShapeKind:
 
 
 def all_shapes() -> tuple[ShapeKind, ...]:
-    """Every kind of this folder, in name order."""
+    """Every kind of this folder and of other packages, in name order."""
     return registry.collect(sys.modules[__name__], "SHAPE", ShapeKind)

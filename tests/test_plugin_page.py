@@ -1,0 +1,171 @@
+"""docs/plugins.md: its package, as shown, joins the simulator end to end."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
+from pathlib import Path
+
+import pytest
+
+from tests import plugin_page
+from tests.sim.builders import FLOOR, make
+from thymio_sim_ros import resources
+from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.loading import load_playground, read_program
+from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.sim import actuators, playground, sensors, shapes
+from thymio_sim_ros.sim.primitives import Disc
+from thymio_sim_ros.sim.world import World
+
+
+@pytest.fixture
+def extras(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The page's package."""
+    with plugin_page.installed(tmp_path, plugin_page.files(), monkeypatch):
+        yield
+
+
+def variant(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, old: str, new: str
+) -> AbstractContextManager[None]:
+    """The page's package with one text replaced in one file."""
+    shown = plugin_page.files()
+    assert old in shown[name]
+    return plugin_page.installed(tmp_path, {**shown, name: shown[name].replace(old, new)}, monkeypatch)
+
+
+def test_the_page_shows_one_file_for_each_thing() -> None:
+    assert sorted(plugin_page.files()) == [
+        "pyproject.toml",
+        "thymio_extras/behaviours/go_north.aesl",
+        "thymio_extras/compass.py",
+        "thymio_extras/hop.py",
+        "thymio_extras/playgrounds/slalom_field.json",
+        "thymio_extras/slalom.py",
+    ]
+
+
+@pytest.mark.usefixtures("extras")
+def test_its_parts_stand_among_ours_in_name_order() -> None:
+    for found in (
+        [sensor.name for sensor in sensors.all_sensors()],
+        [actuator.name for actuator in actuators.all_actuators()],
+        [kind.name for kind in shapes.all_shapes()],
+    ):
+        assert found == sorted(found)
+        assert {"compass", "hop", "slalom"} & set(found)
+    assert "slalom_field" in resources.playgrounds()
+    assert "go_north" in resources.behaviours()
+
+
+@pytest.mark.usefixtures("extras")
+def test_a_program_knows_its_variable_its_event_and_its_native() -> None:
+    described = target()
+    assert "compass.heading" in described.addresses
+    assert "compass" in {event.name for event in described.local_events}
+    assert "hop" in {native.name for native in described.natives}
+
+
+@pytest.mark.usefixtures("extras")
+def test_the_behaviour_finds_the_north_with_the_sensor_and_hops_with_the_actuator() -> None:
+    runner = Runner(load_playground("slalom_field")[1], read_program("go_north"))
+    (robot,) = runner.world.robots.values()
+    before = robot.pose
+    runner.run(6.0)
+    assert math.degrees(robot.pose.yaw_rad) == pytest.approx(90, abs=15)
+    assert robot.pose.y_m - before.y_m == pytest.approx(0.15, abs=0.02)
+
+
+@pytest.mark.usefixtures("extras")
+def test_the_shape_becomes_primitives_and_part_of_the_schema() -> None:
+    posts = [solid for solid in load_playground("slalom_field")[1].solids if isinstance(solid.outline, Disc)]
+    assert [post.pose.x_m for post in posts] == pytest.approx([-0.5, -0.25, 0.0, 0.25, 0.5])
+    kinds = playground.schema()["properties"]["shapes"]["items"]["oneOf"]
+    assert "slalom" in [kind["properties"]["kind"]["const"] for kind in kinds]
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "said"),
+    [
+        ("thymio_extras/compass.py", "import math", "import maths", "ModuleNotFoundError"),
+        ("thymio_extras/compass.py", "SENSOR = Sensor(", "OTHER = Sensor(", "expected SENSOR of type Sensor"),
+        ("thymio_extras/compass.py", 'name="compass"', 'name="proximity"', "which exists"),
+        ("thymio_extras/compass.py", 'name="compass"', 'name="My Compass"', "small letters"),
+        ("pyproject.toml", '"thymio_extras.compass"', '"thymio_extras.nowhere"', "ModuleNotFoundError"),
+        ("thymio_extras/compass.py", "from __future__", "raise SystemError\nfrom __future__", "SyntaxError"),
+    ],
+)
+def test_a_broken_one_is_named_and_the_others_go_on(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+    name: str,
+    old: str,
+    new: str,
+    said: str,
+) -> None:
+    with variant(tmp_path, monkeypatch, name, old, new):
+        assert "compass" not in [sensor.name for sensor in sensors.all_sensors()]
+        assert "hop" in [actuator.name for actuator in actuators.all_actuators()]
+        World(make([FLOOR])).step()
+    (told,) = (record.getMessage() for record in caplog.records)
+    assert told.startswith("plug-in 'compass' of the package thymio_extras (thymio_sim_ros.sensors) is left out")
+    assert said in told
+
+
+def test_a_folder_that_is_missing_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    with variant(tmp_path, monkeypatch, "pyproject.toml", '"thymio_extras.playgrounds"', '"thymio_extras.worlds"'):
+        assert "line" in resources.playgrounds()
+    assert "plug-in 'thymio_extras'" in caplog.text
+
+
+def test_a_sensor_that_raises_is_switched_off_until_the_next_reset(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    with variant(tmp_path, monkeypatch, "thymio_extras/compass.py", "    heading = ", "    heading = 1 / 0 + "):
+        world = World(make([FLOOR]))
+        for _ in range(100):
+            world.step()
+        assert [record.levelno for record in caplog.records] == [logging.ERROR]
+        assert "the sensor 'compass'" in caplog.text
+        world.reset()
+        for _ in range(100):
+            world.step()
+        assert len(caplog.records) == 2
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("        view.place(", "        view.fly("),
+        ("    spring.distance_m = command", "    spring.speed_m_s = command"),
+        ("class Spring:\n", "class Spring:\n    def __post_init__(self) -> None:\n        raise OSError\n\n"),
+    ],
+)
+def test_an_actuator_that_raises_is_switched_off(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, old: str, new: str
+) -> None:
+    with variant(tmp_path, monkeypatch, "thymio_extras/hop.py", old, new):
+        world = World(make([FLOOR]))
+        (hop,) = (actuator for actuator in actuators.all_actuators() if actuator.name == "hop")
+        for _ in range(10):
+            world.post("thymio", hop.accepts[0](0.1))
+            world.step()
+        assert world.robots["thymio"].pose.x_m == 0.0
+    assert [record.levelno for record in caplog.records] == [logging.ERROR]
+    assert "the actuator 'hop'" in caplog.text
+
+
+def test_a_shape_that_raises_refuses_the_playground_with_its_key(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    broken = "raise KeyError(name)\n        number = "
+    with variant(tmp_path, monkeypatch, "thymio_extras/slalom.py", "number = ", broken):
+        path = resources.find_playground("slalom_field")
+        with pytest.raises(playground.PlaygroundError, match=r"shapes\[1\]: found KeyError: 'posts'"):
+            playground.load(path)
