@@ -13,5 +13,5 @@ if importlib.util.find_spec("rclpy") is not None:
 
 
 def pytest_addoption(parser):
-    about = "run tests/aseba_vm on the vectors of this folder (plain or .gz) instead of those in tests/data/vectors"
+    about = "run tests/aseba_vm and tests/sim on the vectors of this folder (plain or .gz) instead of ours"
     parser.addoption("--vectors", metavar="DIR", type=Path, default=None, help=about)

@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from thymio_sim_ros.sim import playground, thymio2
+from thymio_sim_ros.sim import playground
 from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.playground import Playground, RobotStart
-from thymio_sim_ros.sim.primitives import Disc, Polygon, Solid
+from thymio_sim_ros.sim.playground import Playground
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.world import StepResult, World
 
 REPOSITORY = Path(__file__).parents[2]
 PLAYGROUNDS = REPOSITORY / "playgrounds"
-ENKI = REPOSITORY / "tests" / "data" / "enki"
 
 GREY = "#808080"
 FLOOR = {"kind": "rectangle", "name": "floor", "size_x_m": 4.0, "size_y_m": 4.0, "color": "#ffffff"}
@@ -78,56 +75,6 @@ def sense(world: World, sensor: str, robot: str | None = None) -> Any:
 def send(world: World, command: Command) -> None:
     """Post to the first robot."""
     world.post(next(iter(world.robots)), command)
-
-
-def enki(family: str) -> dict[str, list[dict[str, Any]]]:
-    """Families of measured scenes (tests/data/enki)."""
-    data: dict[str, list[dict[str, Any]]] = json.loads((ENKI / f"{family}.json").read_text())
-    return data
-
-
-def enki_world(entry: Mapping[str, Any], **options: Any) -> World:
-    """The world of a measured scene; robots are in their places even where a start would be refused."""
-    shapes: list[dict[str, Any]] = []
-    if entry["world"]["kind"] == "square":
-        width, height = entry["world"]["width"], entry["world"]["height"]
-        place = {"x_m": width / 2, "y_m": height / 2, "size_x_m": width + 0.02, "size_y_m": height + 0.02}
-        shapes.append({"kind": "rectangle", **place, "color": GREY, "walls": {"height_m": 1.0}})
-    shapes += [enki_thing(thing, f"thing{index}") for index, thing in enumerate(entry["objects"])]
-    built = make(shapes, [])
-    starts = [
-        RobotStart(f"robot{index}", start["x"], start["y"], start["theta"])
-        for index, start in enumerate(entry["robots"])
-    ]
-    solids = [
-        replace(solid, load=replace(solid.load, lever_m=enki_lever(solid))) if solid.load is not None else solid
-        for solid in built.solids
-    ]
-    return World(replace(built, robots=tuple(starts), solids=tuple(solids)), **options)
-
-
-def enki_thing(thing: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """A thing of a measured scene. The reference takes g as 9.81 cm/s² and multiplies elasticities, 0.9 the robot's."""
-    shape = {"kind": thing["kind"], "name": name, "x_m": thing["x"], "y_m": thing["y"], "color": GREY}
-    shape["height_m"] = thing["height"]
-    if thing["kind"] == "box":
-        shape |= {"yaw_rad": thing["theta"], "size_x_m": thing["size_x"], "size_y_m": thing["size_y"]}
-    else:
-        shape["radius_m"] = thing["radius"]
-    if thing.get("mass") is not None:
-        shape["mass_kg"] = thing["mass"] * thymio2.MASS_KG / 200
-        shape["friction"] = thing.get("dry_friction", 0.25) / 100
-        shape["restitution"] = thing.get("elasticity", 0.9) * 0.9
-    return shape
-
-
-def enki_lever(solid: Solid) -> float:
-    """The lever with which turning slows by the friction times 9.81 rad/s², as it does in the reference."""
-    outline = solid.outline
-    assert not isinstance(outline, Polygon)
-    if isinstance(outline, Disc):
-        return outline.radius_m**2 / 2 * 100
-    return (outline.size_x_m**2 + outline.size_y_m**2) / 12 * 100
 
 
 def pose_close(one: Pose, other: Pose, tolerance: float = 1e-9) -> bool:

@@ -1,22 +1,17 @@
-"""The painted ground under a sensor's footprint, against measured scenes and known answers."""
+"""The painted ground under a sensor's footprint, against known answers."""
 
 from __future__ import annotations
 
-import json
 import math
-from typing import Any
 
 import pytest
 
-from tests.sim.builders import ENKI, enki
-from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.geometry import Point, Pose
 from thymio_sim_ros.sim.ground import Ground, GroundSample
 from thymio_sim_ros.sim.primitives import Floor, Paint
 from thymio_sim_ros.sim.sensors.ground import response
 
 WHITE, BLACK, RED = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
-SCENES = [(family, entry) for family, entries in enki("ground").items() for entry in entries]
 
 
 def area(left: float, bottom: float, right: float, top: float) -> tuple[Point, ...]:
@@ -25,45 +20,6 @@ def area(left: float, bottom: float, right: float, top: float) -> tuple[Point, .
 
 def floor(grey8: float, left: float, bottom: float, right: float, top: float) -> Floor:
     return Floor("floor", area(left, bottom, right, top), (grey8 / 255,) * 3)
-
-
-def tiles() -> Ground:
-    data = json.loads((ENKI / "tiles.json").read_text())
-    size = data["tile"]
-    floors = [
-        floor(grey, column * size, row * size, (column + 1) * size, (row + 1) * size)
-        for row, greys in enumerate(data["rows_from_y0"])
-        for column, grey in enumerate(greys)
-    ]
-    return Ground(floors, [])
-
-
-def measured_ground(pattern: dict[str, Any] | None) -> Ground:
-    """The ground of a scene, half a metre square (uniform ones 0.4 m)."""
-    match pattern:
-        case None:
-            return tiles()
-        case {"kind": "uniform", "grey8": grey}:
-            return Ground([floor(grey, 0.0, 0.0, 0.4, 0.4)], [])
-        case {"kind": "half_plane", "along": along, "edge": edge, "below": below, "above": above}:
-            right, top = (edge, 0.5) if along == "x" else (0.5, edge)
-            left, bottom = (edge, 0.0) if along == "x" else (0.0, edge)
-            return Ground([floor(below, 0.0, 0.0, right, top), floor(above, left, bottom, 0.5, 0.5)], [])
-        case {"kind": "stripe", "centre_y": centre, "width": width, "stripe": stripe, "outside": outside}:
-            half = width / 2 - 1e-9
-            stripe_area = area(0.0, centre - half, 0.5, centre + half)
-            paint = Paint("stripe", stripe_area, (stripe / 255,) * 3)
-            return Ground([floor(outside, 0.0, 0.0, 0.5, 0.5)], [paint])
-    raise AssertionError(pattern)
-
-
-@pytest.mark.parametrize(("family", "entry"), SCENES, ids=[entry["id"] for _, entry in SCENES])
-def test_a_measured_scene_reads_as_measured(family: str, entry: dict[str, Any]) -> None:
-    ground = measured_ground(entry.get("ground"))
-    start = entry["robots"][0]
-    pose = Pose(start["x"], start["y"], start["theta"])
-    counts = [response(ground.sample(*pose.place(place))) for place in thymio2.GROUND_SENSORS]
-    assert counts == pytest.approx(entry["noiseless"], abs=2)
 
 
 def test_there_is_no_floor_outside_the_ground() -> None:

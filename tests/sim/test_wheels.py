@@ -22,6 +22,14 @@ def test_free_wheels_turn_as_commanded_whatever_the_slip() -> None:
     assert wheels.odometry.x_m == pytest.approx(0.001)
 
 
+@pytest.mark.parametrize(("speed_m_s", "ground_m_s"), [(0.166, 0.1615), (0.2, 0.166), (-0.2, -0.166)])
+def test_the_limit_comes_after_the_slip(speed_m_s: float, ground_m_s: float) -> None:
+    wheels = Wheels()
+    wheels.drive((speed_m_s, speed_m_s), (0.973, 0.973), 0.166)
+    assert wheels.ground[0] == pytest.approx(ground_m_s, abs=1e-4)
+    assert abs(wheels.commanded[0]) == 0.166
+
+
 def test_blocked_wheels_stand_still() -> None:
     wheels = rolled(0.0, 0.0)
     assert wheels.speeds_m_s == pytest.approx((0.0, 0.0))

@@ -47,8 +47,8 @@ def speed_to_units(speed_m_s: float) -> int:
 
 
 def units_to_speed(target: int) -> float:
-    """motor.*.target as ground speed in m/s, limited to ±MAX_SPEED_M_S."""
-    return max(-MAX_SPEED_M_S, min(MAX_SPEED_M_S, target * (MAX_SPEED_M_S / FULL_TARGET)))
+    """motor.*.target as ground speed in m/s; the wheels are limited, not the target (thymio-robot.md section 2)."""
+    return target * (MAX_SPEED_M_S / FULL_TARGET)
 
 
 def units_to_pwm(speed: int) -> int:

@@ -36,10 +36,10 @@ class Wheels:
         return Twist((left + right) / 2, (right - left) / WHEEL_TRACK_M)
 
     def drive(self, commanded: tuple[float, float], slip: tuple[float, float], limit_m_s: float) -> None:
-        """Aim at speeds; the floor gets them times slip, limited."""
-        self.commanded = commanded
-        left, right = commanded[0] * slip[0], commanded[1] * slip[1]
-        self.ground = (max(-limit_m_s, min(limit_m_s, left)), max(-limit_m_s, min(limit_m_s, right)))
+        """Aim at speeds; the floor gets them times slip. Both are limited: far above, nothing of the slip is left."""
+        left, right = commanded
+        self.commanded = (_limited(left, limit_m_s), _limited(right, limit_m_s))
+        self.ground = (_limited(left * slip[0], limit_m_s), _limited(right * slip[1], limit_m_s))
 
     def roll(self, covered_m_s: tuple[float, float], dt_s: float) -> None:
         """Count a tick in which the robot covered ground at this speed at each wheel."""
@@ -66,3 +66,7 @@ class Wheels:
     def reset_odometry(self) -> None:
         """Start counting from zero, here."""
         self.odometry = Pose(0.0, 0.0, 0.0)
+
+
+def _limited(speed_m_s: float, limit_m_s: float) -> float:
+    return max(-limit_m_s, min(limit_m_s, speed_m_s))

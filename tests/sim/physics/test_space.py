@@ -1,4 +1,4 @@
-"""Bodies: known motions, walls, contacts; measured motions and collisions of the reference."""
+"""Bodies: known motions, walls, contacts."""
 
 from __future__ import annotations
 
@@ -7,52 +7,11 @@ from typing import Any
 
 import pytest
 
-from tests.sim.builders import FLOOR, ROBOT, box, enki, enki_world, make, pose_close, run, send
+from tests.sim.builders import FLOOR, ROBOT, box, make, pose_close, run, send
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.physics import Physics
 from thymio_sim_ros.sim.world import World
-
-MOTION = [(family, entry) for family, entries in enki("motion").items() for entry in entries]
-COLLISION = [entry for entries in enki("collision").values() for entry in entries]
-SEEDS = range(8)
-
-
-def drive(entry: dict[str, Any], *, seed: int) -> Pose:
-    """Run a measured scene to its end. The reference lets a target move the robot two of its steps later."""
-    world = enki_world({"world": {"kind": "open"}, "objects": [], **entry}, seed=seed)
-    ticks = round(entry["dt"] / 0.01)
-    commands = {ticks * (command["step"] + 2): command for command in entry["commands"]}
-    for tick in range(ticks * entry["steps"]):
-        if tick in commands:
-            targets = commands[tick]
-            send(world, MotorTargets(int(targets["left_target"]), int(targets["right_target"])))
-        world.step()
-    (robot,) = world.robots.values()
-    return robot.pose
-
-
-def mean_end(entry: dict[str, Any]) -> tuple[float, float, float]:
-    """Where the noisy runs end on average."""
-    ends = [drive(entry, seed=seed) for seed in SEEDS]
-    count = len(ends)
-    return (sum(p.x_m for p in ends) / count, sum(p.y_m for p in ends) / count, sum(p.yaw_rad for p in ends) / count)
-
-
-@pytest.mark.parametrize(("family", "entry"), MOTION, ids=[entry["id"] for _, entry in MOTION])
-def test_a_measured_motion_ends_where_it_was_measured(family: str, entry: dict[str, Any]) -> None:
-    x, y, yaw = mean_end(entry)
-    way = entry["steps"] * entry["dt"] * 0.166
-    assert math.dist((x, y), entry["last"][:2]) < 0.002 * way + 0.0005
-    assert yaw == pytest.approx(entry["last"][2], rel=0.005, abs=0.01)
-
-
-@pytest.mark.parametrize("entry", COLLISION, ids=[entry["id"] for entry in COLLISION])
-def test_a_robot_rests_at_a_wall_or_slides_along_it_as_measured(entry: dict[str, Any]) -> None:
-    """Within 3 mm and what the noise leaves open: `error` is the standard error of the measured mean."""
-    x, y, yaw = mean_end(entry)
-    for found, expected, error in zip((x, y, yaw), entry["last"], entry["error"], strict=True):
-        assert found == pytest.approx(expected, abs=0.003 + 3 * error)
 
 
 def quiet(*shapes: dict[str, Any], robots: tuple[dict[str, Any], ...] = (ROBOT,)) -> World:

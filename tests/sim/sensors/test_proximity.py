@@ -1,14 +1,13 @@
-"""Horizontal proximity: measured scenes, seven distances, thin things, noise."""
+"""Horizontal proximity: seven distances, thin things, noise."""
 
 from __future__ import annotations
 
 import math
 import statistics
-from typing import Any
 
 import pytest
 
-from tests.sim.builders import FLOOR, ROBOT, box, enki, enki_world, make, post_wall, sense
+from tests.sim.builders import FLOOR, ROBOT, box, make, post_wall, sense
 from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.noise import Noise
@@ -17,7 +16,6 @@ from thymio_sim_ros.sim.readings import ProximityReading
 from thymio_sim_ros.sim.sensors.proximity import SENSOR, response
 from thymio_sim_ros.sim.world import World
 
-SCENES = [(family, entry) for family, entries in enki("prox").items() for entry in entries]
 FRONT = 2
 
 
@@ -30,12 +28,6 @@ def measure(view: FakeView) -> ProximityReading:
 def wall_ahead(distance_m: float, *, height_m: float = 0.1) -> ConvexObstacle:
     near = 0.0795 + distance_m
     return ConvexObstacle(((near, -1.0), (near + 0.1, -1.0), (near + 0.1, 1.0), (near, 1.0)), height_m)
-
-
-@pytest.mark.parametrize(("family", "entry"), SCENES, ids=[entry["id"] for _, entry in SCENES])
-def test_a_measured_scene_reads_as_measured_in_enki_mode(family: str, entry: dict[str, Any]) -> None:
-    world = enki_world(entry, noise=False, proximity_model="enki")
-    assert sense(world, "proximity").words == pytest.approx(entry["noiseless"], abs=2)
 
 
 @pytest.mark.parametrize(

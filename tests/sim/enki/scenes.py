@@ -1,0 +1,127 @@
+"""Measured scenes of the reference simulator, and the same scenes as worlds of ours."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from tests.sim.builders import GREY, make
+from thymio_sim_ros.sim import thymio2
+from thymio_sim_ros.sim.commands import MotorTargets
+from thymio_sim_ros.sim.playground import RobotStart
+from thymio_sim_ros.sim.primitives import Disc, Polygon, Solid
+from thymio_sim_ros.sim.world import World
+
+SHIPPED = Path(__file__).parents[2] / "data" / "enki"
+FILES = ("prox", "ground", "motion", "collision", "playground-live")
+Scene = dict[str, Any]
+
+
+def is_set(folder: Path) -> bool:
+    """Whether a folder holds measured scenes."""
+    return any(_path(folder, name) for name in FILES)
+
+
+@cache
+def load(name: str, folder: Path = SHIPPED) -> tuple[Scene, ...]:
+    """The scenes of a file of a set, none if the set lacks it; each knows its `family` and the file's `meta`."""
+    path = _path(folder, name)
+    if path is None:
+        return ()
+    data = json.loads(gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes())
+    families = data.get("families", {"live": data.get("entries", [])})
+    return tuple(
+        {**scene, "family": family, "meta": data["meta"]} for family, scenes in families.items() for scene in scenes
+    )
+
+
+def world_of(scene: Mapping[str, Any], **options: Any) -> World:
+    """The world of a scene; robots are in their places even where a start would be refused."""
+    shapes: list[dict[str, Any]] = []
+    if scene["world"]["kind"] == "square":
+        width, height = scene["world"]["width"], scene["world"]["height"]
+        place = {"x_m": width / 2, "y_m": height / 2, "size_x_m": width + 0.02, "size_y_m": height + 0.02}
+        shapes.append({"kind": "rectangle", **place, "color": GREY, "walls": {"height_m": 1.0}})
+    shapes += [_thing(thing, f"thing{index}") for index, thing in enumerate(scene["objects"])]
+    built = make(shapes, [])
+    starts = [
+        RobotStart(f"robot{index}", start["x"], start["y"], start["theta"])
+        for index, start in enumerate(scene["robots"])
+    ]
+    solids = [
+        replace(solid, load=replace(solid.load, lever_m=_lever(solid))) if solid.load is not None else solid
+        for solid in built.solids
+    ]
+    return World(replace(built, robots=tuple(starts), solids=tuple(solids)), **options)
+
+
+def play(scene: Mapping[str, Any], *, seed: int) -> list[tuple[float, ...]]:
+    """Run a scene; a row every `every` of its steps, in the order of its `mean`: robots, then things, x, y, heading.
+
+    The reference lets a target move the robot two of its steps later.
+    """
+    world = world_of(scene, seed=seed, periods_ns={})
+    ticks = round(scene["dt"] / 0.01)
+    commands = {ticks * (command["step"] + 2): command for command in scene["commands"]}
+    driver = next(iter(world.robots))
+    rows = [_row(world)]
+    for tick in range(ticks * scene["every"] * (len(scene["mean"]) - 1)):
+        if tick in commands:
+            targets = commands[tick]
+            world.post(driver, MotorTargets(int(targets["left_target"]), int(targets["right_target"])))
+        world.step()
+        if (tick + 1) % (ticks * scene["every"]) == 0:
+            rows.append(_row(world))
+    return rows
+
+
+def mean_rows(runs: Sequence[list[tuple[float, ...]]]) -> list[tuple[float, ...]]:
+    """The mean of each row over several runs."""
+    return [
+        tuple(math.fsum(values) / len(runs) for values in zip(*rows, strict=True)) for rows in zip(*runs, strict=True)
+    ]
+
+
+def _row(world: World) -> tuple[float, ...]:
+    return tuple(_values(world))
+
+
+def _values(world: World) -> Iterator[float]:
+    snapshot = world.snapshot()
+    for body in (*snapshot.robots, *snapshot.objects):
+        yield from (body.pose.x_m, body.pose.y_m, body.pose.yaw_rad)
+
+
+def _thing(thing: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """A thing of a scene. The reference takes g as 9.81 cm/s² and multiplies elasticities, 0.9 being the robot's."""
+    shape = {"kind": thing["kind"], "name": name, "x_m": thing["x"], "y_m": thing["y"], "color": GREY}
+    shape["height_m"] = thing["height"]
+    if thing["kind"] == "box":
+        shape |= {"yaw_rad": thing["theta"], "size_x_m": thing["size_x"], "size_y_m": thing["size_y"]}
+    else:
+        shape["radius_m"] = thing["radius"]
+    if thing.get("mass") is not None:
+        shape["mass_kg"] = thing["mass"] * thymio2.MASS_KG / 200
+        shape["friction"] = thing.get("dry_friction", 0.25) / 100
+        shape["restitution"] = thing.get("elasticity", 0.9) * 0.9
+    return shape
+
+
+def _lever(solid: Solid) -> float:
+    """The lever with which turning slows by the friction times 9.81 rad/s², as it does in the reference."""
+    outline = solid.outline
+    assert not isinstance(outline, Polygon)
+    if isinstance(outline, Disc):
+        return outline.radius_m**2 / 2 * 100
+    return (outline.size_x_m**2 + outline.size_y_m**2) / 12 * 100
+
+
+def _path(folder: Path, name: str) -> Path | None:
+    """The file of a set, plain or compressed, or None."""
+    return next((path for end in ("", ".gz") if (path := folder / f"enki-{name}.json{end}").is_file()), None)

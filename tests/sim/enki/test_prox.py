@@ -1,0 +1,29 @@
+"""Proximity sensors read what the reference reads, in its mode."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.sim.builders import sense
+from tests.sim.enki.scenes import Scene, world_of
+
+GRAZE_M = 1e-9
+"""A ray that grazes a cylinder meets it or not, as rounding has it: with so much more or less of it, either will do."""
+
+
+@pytest.mark.enki("prox")
+def test_a_scene_reads_as_measured_in_enki_mode(scene: Scene) -> None:
+    found = [_read(scene, grown_m) for grown_m in (0.0, GRAZE_M, -GRAZE_M)]
+    expected = pytest.approx(scene["noiseless"], abs=2)
+    assert any(words == expected for words in found), (found[0], scene["noiseless"])
+
+
+def _read(scene: Scene, grown_m: float) -> tuple[int, ...]:
+    """The counts without noise, all cylinders grown by a little."""
+    things = [
+        {**thing, "radius": thing["radius"] + grown_m} if thing["kind"] == "cylinder" else thing
+        for thing in scene["objects"]
+    ]
+    options = {"proximity_model": "enki", "periods_ns": {"proximity": 10_000_000}}
+    words: tuple[int, ...] = sense(world_of({**scene, "objects": things}, noise=False, **options), "proximity").words
+    return words
