@@ -133,6 +133,9 @@ MESSAGES: Mapping[str, str] = {
     "fault-breakpoint-out-of-range": "a breakpoint lies outside the code",
     # warnings
     "warning-unreachable": "this is never executed: it comes after a return",
+    "warning-constant-when": "the condition of this 'when' never changes, so there is no moment when it becomes true",
+    "warning-endless-for": "this loop may never end: the value after {0} does not fit in 16 bits and wraps round",
+    "warning-vector-index": "only the first element of '{0}' is used as index",
     "warning-uncalled-subroutine": "subroutine '{0}' is never called",
     "warning-far-jump": "this block is too long for a jump: the program will not run as written",
     "warning-fall-through": "subroutine '{0}' may run on into the code after it,"

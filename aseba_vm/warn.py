@@ -8,7 +8,21 @@ from dataclasses import dataclass
 from aseba_vm.bytecode import Op, Segment
 from aseba_vm.errors import SourcePos
 from aseba_vm.messages import wording
-from aseba_vm.tree import Block, OnEvent, Return, Sub, Tree, position_of, walk
+from aseba_vm.tree import (
+    Access,
+    Block,
+    For,
+    If,
+    Node,
+    OnEvent,
+    Return,
+    Sub,
+    Subscript,
+    Tree,
+    children,
+    position_of,
+    walk,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,19 +43,51 @@ class CompileWarning:
 
 def find_warnings(tree: Tree, segments: Sequence[Segment]) -> tuple[CompileWarning, ...]:
     """Return the doubts about a program, given its tree as parsed and its code, in order of place."""
-    found = [*_unreachable(tree), *_subroutines(tree, segments), *_far_blocks(segments)]
+    found = [*_subroutines(tree, segments), *_far_blocks(segments)]
+    for node in walk(tree.body):
+        match node:
+            case Block():
+                found += _unreachable(node)
+            case If(is_edge=True):
+                found += _constant_when(node)
+            case For():
+                found += _endless_for(node)
+            case Subscript():
+                found += _vector_index(node)
     return tuple(sorted(found, key=lambda warning: (warning.pos.offset, warning.kind)))
 
 
-def _unreachable(tree: Tree) -> Iterator[CompileWarning]:
+def _unreachable(block: Block) -> Iterator[CompileWarning]:
     """The first statement after each ``return`` of the same block."""
-    for block in walk(tree.body):
-        if not isinstance(block, Block):
-            continue
-        for before, after in zip(block.statements, block.statements[1:], strict=False):
-            pos = position_of(after)
-            if isinstance(before, Return) and not isinstance(after, OnEvent | Sub) and pos is not None:
-                yield CompileWarning("warning-unreachable", (), pos)
+    for before, after in zip(block.statements, block.statements[1:], strict=False):
+        pos = position_of(after)
+        if isinstance(before, Return) and not isinstance(after, OnEvent | Sub) and pos is not None:
+            yield CompileWarning("warning-unreachable", (), pos)
+
+
+def _constant_when(node: If) -> Iterator[CompileWarning]:
+    """A condition without variables: such a ``when`` is no edge trigger (language spec, section 7)."""
+    if not any(isinstance(part, Access | Subscript) for part in walk(node.condition)):
+        yield CompileWarning("warning-constant-when", (), node.pos)
+
+
+def _endless_for(loop: For) -> Iterator[CompileWarning]:
+    """A step that jumps over the end of the 16-bit range (language spec, section 7)."""
+    start, end = loop.start.value, loop.end.value
+    last = start + int((end - start) / loop.step) * loop.step
+    if start != end and not -0x8000 <= last + loop.step <= 0x7FFF:
+        yield CompileWarning("warning-endless-for", (str(last),), loop.pos)
+
+
+def _vector_index(node: Subscript) -> Iterator[CompileWarning]:
+    """Arrays in an index, of which only the first word counts (language spec, section 6.1)."""
+    parts: list[Node] = [node.index]
+    while parts:
+        part = parts.pop()
+        if isinstance(part, Access) and part.last > part.first:
+            yield CompileWarning("warning-vector-index", (part.variable.name,), part.pos)
+        elif not isinstance(part, Subscript):
+            parts += children(part)
 
 
 def _subroutines(tree: Tree, segments: Sequence[Segment]) -> Iterator[CompileWarning]:

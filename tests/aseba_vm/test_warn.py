@@ -22,6 +22,25 @@ def doubts(source):
         ("sub s", ["f:1:1: warning: subroutine 's' is never called"]),
         ("onevent tap\nreturn\nacc[0] = 1", ["f:3:8: warning: this is never executed: it comes after a return"]),
         ("onevent tap\nreturn\nonevent prox", []),
+        (
+            "onevent tap\nwhen 1 == 1 do acc[0] = 1 end",
+            ["f:2:1: warning: the condition of this 'when' never changes, so there is no moment when it becomes true"],
+        ),
+        ("onevent tap\nwhen acc[0] == 1 do acc[0] = 2 end", []),
+        (
+            "var i\nfor i in 0:32766 step 3 do acc[0] = i end",
+            ["f:2:1: warning: this loop may never end: the value after 32766 does not fit in 16 bits and wraps round"],
+        ),
+        (
+            "var i\nfor i in 5:-32767 step -3 do acc[0] = i end",
+            ["f:2:1: warning: this loop may never end: the value after -32767 does not fit in 16 bits and wraps round"],
+        ),
+        ("var i\nfor i in 0:32765 step 2 do acc[0] = i end", []),
+        ("var i\nfor i in 0:32766 do acc[0] = i end\nfor i in 32766:32766 step 9 do acc[0] = i end", []),
+        (
+            "var t[9]\nt[0] = t[acc + t[acc[1] + t[0]]]",
+            ["f:2:10: warning: only the first element of 'acc' is used as index"],
+        ),
     ],
 )
 def test_doubts_are_told_in_place(source, expected):
