@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import base64
 import binascii
+import itertools
 import re
 import urllib.parse
 
+from aseba_vm import aesl
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.program import ThymioProgram, load_program
@@ -59,3 +61,14 @@ def read_program(path: str, layout: str = THYMIO) -> ThymioProgram:
     except UnicodeDecodeError as error:
         raise resources.ResourceError(f"{found}: byte {error.start} is not UTF-8 text") from error
     return load_program(text, found.name, layout)
+
+
+def shipped_behaviours() -> dict[str, str]:
+    """Every built-in program by name: what its first comment says, in one line."""
+    return {name: _first_comment(path.read_text(encoding="utf-8")) for name, path in resources.behaviours().items()}
+
+
+def _first_comment(text: str) -> str:
+    (node,) = aesl.loads(text).nodes
+    lines = itertools.takewhile(lambda line: line.startswith("#"), node.code.splitlines())
+    return " ".join(" ".join(line.lstrip("#") for line in lines).split())

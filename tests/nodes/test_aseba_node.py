@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Twist, Vector3
 from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.parameter import Parameter
-from std_msgs.msg import Bool, Float32MultiArray, Int16MultiArray, MultiArrayDimension, MultiArrayLayout
+from std_msgs.msg import Bool, Float32MultiArray, Int16MultiArray, MultiArrayDimension, MultiArrayLayout, String
 from std_srvs.srv import Trigger
 
 from tests.tracks import distance_to, track_points
@@ -253,7 +254,7 @@ def test_a_robot_without_a_program_is_switched_on_with_its_menu(ros, simulation,
     center = ros.publisher(Bool, "/press/center")
     right = ros.publisher(Bool, "/press/right")
     sim.until(lambda: shown and list(shown[-1].data[:3]) == [0.0, 1.0, 0.0], what="the colour of friendly")
-    assert values(status[-1])["program"] == "menu.aesl"
+    sim.until(lambda: status and values(status[-1])["program"] == "menu.aesl")
     right.publish(Bool(data=True))
     sim.until(lambda: list(shown[-1].data[:3]) == [1.0, 1.0, 0.0], what="the colour of explorer")
     sim.step(2.2)
@@ -277,11 +278,21 @@ def test_a_program_ends_a_behaviour_and_waits_in_the_menu(ros, simulation, runti
     stopped = sim.world.robots["thymio"].pose
     sim.step(0.3)
     assert sim.world.robots["thymio"].pose == stopped
-    assert values(status[-1])["program"] == "mine"
+    sim.until(lambda: values(status[-1])["program"] == "mine")
     shown = ros.collect(Float32MultiArray, "/led/state", latched=True)
     assert set_parameters(ros, {"behaviour": "menu"}).successful
     sim.until(lambda: values(status[-1])["program"] == "menu.aesl")
     sim.until(lambda: shown and list(shown[-1].data[:3]) == [0.0, 0.0, 0.0], what="the black of one's own program")
+
+
+def test_built_in_behaviours_are_listed_for_whoever_offers_a_choice(ros, simulation, runtime):
+    simulation()
+    runtime("var a = 1")
+    lists = ros.collect(String, "/aseba_runtime/behaviours", latched=True)
+    ros.until(lambda: lists)
+    listed = {entry["name"]: entry["description"] for entry in json.loads(lists[-1].data)}
+    assert listed["explorer"].startswith("Explorer, yellow: drives about")
+    assert {"menu", "line_follower", "thesis_basic"} <= listed.keys()
 
 
 def test_a_behaviour_that_does_not_exist_is_refused(ros, simulation, runtime):

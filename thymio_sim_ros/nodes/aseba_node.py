@@ -27,7 +27,7 @@ from thymio_sim_ros.device.card import CardError
 from thymio_sim_ros.device.options import DeviceOptions, OptionError
 from thymio_sim_ros.device.program import ProgramError, ThymioProgram, load_program
 from thymio_sim_ros.device.settings import SettingsError
-from thymio_sim_ros.loading import NO_PROGRAM, read_program
+from thymio_sim_ros.loading import NO_PROGRAM, read_program, shipped_behaviours
 from thymio_sim_ros.nodes import params, qos
 from thymio_sim_ros.nodes.device_ports import DevicePorts
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, run_main
@@ -86,6 +86,9 @@ class AsebaRuntime:
             self.node.destroy_node()
             raise StartError(str(error)) from error
         self._accepted: ThymioProgram | None = None
+        self._behaviours = self.node.create_publisher(String, "~/behaviours", qos.LATCHED)
+        listed = [{"name": name, "description": text} for name, text in shipped_behaviours().items()]
+        self._behaviours.publish(String(data=json.dumps(listed)))
         self.robots: list[DevicePorts] = []
         try:
             self._set_robots(self.params.robots)

@@ -1,0 +1,26 @@
+"""The example of docs/behaviours.md does what its text says."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from tests.device.handheld import HandheldRobot
+from thymio_sim_ros.device.program import load_program
+
+GUIDE = (Path(__file__).parent.parent / "docs" / "behaviours.md").read_text(encoding="utf-8")
+
+
+def test_the_example_turns_away_and_goes_back_to_the_menu() -> None:
+    (example,) = re.findall(r"```xml\n(.*?)```", GUIDE, re.DOTALL)
+    robot = HandheldRobot()
+    robot.host.load(load_program(example, "shy.aesl"))
+    robot.tick(2)
+    assert robot.targets == (0, 0)
+    robot.device.feed("proximity", (0, 0, 3000, 0, 0, 0, 0))
+    robot.tick()
+    assert robot.targets == (200, -200)
+    assert robot.top == (32, 0, 8)
+    robot.touch("center")
+    assert robot.running == "menu"
+    assert robot.targets == (0, 0)
