@@ -110,9 +110,8 @@ def test_the_runner_starts_a_built_in_behaviour_and_names_the_others(capsys):
     arguments = ["runner", "--playground", "base", "--behaviour", "explorer", "--seconds", "2"]
     assert cli.main(arguments) == 0
     assert json.loads(capsys.readouterr().out)["robots"]["thymio"]["x_m"] > 0.05
-    with pytest.raises(SystemExit, match="2"):
-        cli.main(["runner", "--behaviour", "freindly"])
-    assert "did you mean 'friendly'?" in capsys.readouterr().err
+    assert "did you mean 'friendly'?" in refused(capsys, "--behaviour", "freindly")
+    assert "menu.aesl: line" in refused(capsys, "--behaviour", "menu", "--layout", "playground")
 
 
 def test_a_card_that_is_no_folder_is_one_line(capsys, tmp_path):

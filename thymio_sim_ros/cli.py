@@ -23,7 +23,7 @@ from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.program import ProgramError, ThymioProgram
 from thymio_sim_ros.device.settings import Settings, SettingsError
-from thymio_sim_ros.loading import NO_PROGRAM, load_playground, read_program
+from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_program
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
 from thymio_sim_ros.suite import ADDRESS, Suite
@@ -73,7 +73,7 @@ def start_suite(argv: Sequence[str]) -> int:
         seed=options.seed,
         real_time_factor=options.real_time_factor,
     )
-    _check_files(suite.playground, suite.program, suite.device.layout)
+    _check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
     if suite.web:
         _check_port(suite.port, "the page", "--port")
     if suite.foxglove:
@@ -96,7 +96,7 @@ def run_without_ros(argv: Sequence[str]) -> int:
     """World and program in lock-step, as fast as possible; prints where the robots are."""
     options = _runner_parser().parse_args(argv)
     device = _device(options)
-    playground, program = _check_files(options.playground, _program(options), device.layout)
+    playground, program = _check_files(options.playground, _program(options), options.behaviour, device.layout)
     from thymio_sim_ros.runner import Runner
 
     for note in playground.notes:
@@ -174,7 +174,6 @@ def _add_world_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--behaviour",
-        type=_behaviour,
         default=Suite.behaviour,
         metavar="NAME",
         help="what the robot is switched on with, such as menu; the program then waits in the menu",
@@ -230,13 +229,6 @@ def _program(options: argparse.Namespace) -> str:
     return NO_PROGRAM if options.behaviour else Suite.program
 
 
-def _behaviour(text: str) -> str:
-    try:
-        return resources.check_behaviour(text)
-    except resources.ResourceError as error:
-        raise argparse.ArgumentTypeError(str(error)) from error
-
-
 def _port(text: str) -> int:
     if not text.isdecimal() or not 1 <= int(text) <= 65535:
         raise argparse.ArgumentTypeError(f"'{text}' is no port; expected a number from 1 to 65535")
@@ -261,9 +253,10 @@ def _number(text: str, low: float, high: float) -> float:
     return value
 
 
-def _check_files(playground: str, program: str, layout: str) -> tuple[Playground, ThymioProgram]:
-    """Both files, read and checked; UsageError says where, what was found, what was expected."""
+def _check_files(playground: str, program: str, behaviour: str, layout: str) -> tuple[Playground, ThymioProgram]:
+    """Playground and program, read and checked; UsageError says where, what was found, what was expected."""
     try:
+        check_behaviour(behaviour, layout)
         return load_playground(playground)[1], read_program(program, layout)
     except (PlaygroundError, ProgramError, resources.ResourceError, OSError) as error:
         raise UsageError(str(error)) from error

@@ -63,6 +63,16 @@ def read_program(path: str, layout: str = THYMIO) -> ThymioProgram:
     return load_program(text, found.name, layout)
 
 
+def check_behaviour(name: str, layout: str = THYMIO) -> str:
+    """The name itself, of a built-in behaviour that a robot of this layout can run; empty is none.
+
+    Raises ResourceError for another name, ProgramError for what the robot does not have.
+    """
+    if resources.check_behaviour(name):
+        read_program(name, layout)
+    return name
+
+
 def shipped_behaviours() -> dict[str, str]:
     """Every built-in program by name: what its first comment says, in one line."""
     return {name: _first_comment(path.read_text(encoding="utf-8")) for name, path in resources.behaviours().items()}

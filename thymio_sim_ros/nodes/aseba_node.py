@@ -24,10 +24,11 @@ from std_msgs.msg import String
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.behaviour_host import MENU
 from thymio_sim_ros.device.card import CardError
+from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.options import DeviceOptions, OptionError
 from thymio_sim_ros.device.program import ProgramError, ThymioProgram, load_program
 from thymio_sim_ros.device.settings import SettingsError
-from thymio_sim_ros.loading import NO_PROGRAM, read_program, shipped_behaviours
+from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, read_program, shipped_behaviours
 from thymio_sim_ros.nodes import params, qos
 from thymio_sim_ros.nodes.device_ports import DevicePorts
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, run_main
@@ -81,7 +82,7 @@ class AsebaRuntime:
         try:
             self._options = self.params.options
             self._program = self._first_program()
-            self._behaviour = resources.check_behaviour(self.params.behaviour)
+            self._behaviour = check_behaviour(self.params.behaviour, self.params.layout)
         except (OptionError, ProgramError, resources.ResourceError, OSError) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
@@ -137,7 +138,9 @@ class AsebaRuntime:
     def _first_program(self) -> ThymioProgram | None:
         if self.params.source:
             return load_program(self.params.source, self.params.name or "program", self.params.layout)
-        return read_program(self.params.path, self.params.layout) if self.params.path else None
+        if self.params.path or self.params.layout != THYMIO:  # the reference playground has no menu
+            return read_program(self.params.path or NO_PROGRAM, self.params.layout)
+        return None
 
     def _set_robots(self, names: Sequence[str]) -> None:
         """One device for each of these namespaces, numbered in their order; all begin anew."""
@@ -182,7 +185,7 @@ class AsebaRuntime:
                 self._accepted = load_program(changed["script.source"], name or "program", self.params.layout)
             elif "script.path" in changed:
                 self._accepted = read_program(changed["script.path"] or NO_PROGRAM, self.params.layout)
-            resources.check_behaviour(changed.get("behaviour", ""))
+            check_behaviour(changed.get("behaviour", ""), self.params.layout)
         except (ProgramError, resources.ResourceError, OSError) as error:
             self._accepted = None
             return SetParametersResult(successful=False, reason=str(error))
