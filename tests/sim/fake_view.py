@@ -28,6 +28,7 @@ class FakeView:
     twist: Twist = AT_REST
     tilt: Tilt = LEVEL
     is_falling: bool = False
+    is_fallen: bool = False
     wheels: Wheels = field(default_factory=Wheels)
     contacts: tuple[Contact, ...] = ()
     noise: Noise = QUIET

@@ -96,6 +96,10 @@ class _View:
         return self._robot.is_falling
 
     @property
+    def is_fallen(self) -> bool:
+        return self._robot.is_fallen
+
+    @property
     def contacts(self) -> tuple[Contact, ...]:
         return tuple(self._robot.body.touching.values())
 
@@ -111,7 +115,7 @@ class _View:
         return self._world.physics.surroundings(self._robot.body, reach_m, height_m)
 
     def ground_at(self, x_m: float, y_m: float) -> GroundSample:
-        if self._robot.body.is_fallen:
+        if self._robot.is_fallen:
             return NO_FLOOR
         return self._world.ground.sample(*self._robot.body.pose.place((x_m, y_m)))
 
@@ -191,6 +195,11 @@ class Robot:
     def is_falling(self) -> bool:
         """Whether it is in the air, on its way down from an edge."""
         return self._fall is not None and self._fall.is_free(self._clock.now_ns)
+
+    @property
+    def is_fallen(self) -> bool:
+        """Whether it has fallen off an edge, falling still or not."""
+        return self.body.is_fallen
 
     def levels(self, now_ns: int) -> list[float]:
         """How loud is what sounds on it."""

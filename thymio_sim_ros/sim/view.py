@@ -33,6 +33,11 @@ class OtherRobot(Protocol):
         """Where it really is."""
         ...
 
+    @property
+    def is_fallen(self) -> bool:
+        """Whether it lies below the floor, out of everybody's sight."""
+        ...
+
     def state(self, kind: type[S]) -> S:
         """The state of its actuator whose state is a `kind`; KeyError when there is none."""
         ...
@@ -69,6 +74,11 @@ class SensorView(Protocol):
     @property
     def wheels(self) -> Wheels:
         """Angles and speeds of the wheels, and the odometry."""
+        ...
+
+    @property
+    def is_fallen(self) -> bool:
+        """Whether it has fallen off an edge, falling still or not, and is out of everybody's sight."""
         ...
 
     @property

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from tests.sim.builders import FLOOR, box, make, run
-from thymio_sim_ros.sim.commands import EnableComm, SetCommPayload
+from thymio_sim_ros.sim.commands import EnableComm, MotorTargets, SetCommPayload
 from thymio_sim_ros.sim.readings import CommReading
 from thymio_sim_ros.sim.sensors import comm
 from thymio_sim_ros.sim.world import World
@@ -150,3 +150,19 @@ def test_turning_both_by_the_same_angle_changes_nothing() -> None:
     straight = frames(facing(0.2), {"b": 9})["a"][0].words
     turned = [robot("a", 0.0, 0.0, 1.0), robot("b", 0.359 * math.cos(1.0), 0.359 * math.sin(1.0), 1.0 + math.pi)]
     assert frames(turned, {"b": 9})["a"][0].words == pytest.approx(straight, abs=1)
+
+
+def test_who_has_fallen_off_the_table_neither_sends_nor_hears() -> None:
+    table = {**FLOOR, "size_x_m": 0.6, "size_y_m": 0.6}
+    world = World(make([table], [robot("a", 0.0), robot("b", 0.25, 0.0, math.pi)]), noise=False)
+    for name in "ab":
+        world.post(name, EnableComm(True))
+    world.post("b", MotorTargets(-300, -300))
+    heard = [
+        [name for name, sensor, _ in step.readings if sensor == "comm"]
+        for step in run(world, 3.0)
+        if any(sensor == "proximity" for _, sensor, _ in step.readings)
+    ]
+    assert heard[0] == ["a", "b"]
+    assert heard[-1] == []
+    assert world.robots["b"].is_fallen

@@ -52,7 +52,7 @@ def _feel(view: SensorView) -> None:
 
 def _measure(view: SensorView) -> AccelerometerReading:
     memory, twist, noise = view.memory, view.twist, view.noise
-    dt_s = (view.now_ns - memory.get("since_ns", 0)) * 1e-9
+    dt_s = (view.now_ns - memory.get("since_ns", view.now_ns - _PERIOD_NS)) * 1e-9
     if view.is_falling:
         forward = left = up = 0.0
         memory["is_falling"] = True
