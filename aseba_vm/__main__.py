@@ -290,7 +290,9 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument(
         "--limit", metavar="N", type=partial(_number, lowest=1, highest=10**12), default=1_000_000, help=limit_help
     )
-    fmt = commands.add_parser("fmt", help="indent the source", description="Indent the source regularly.")
+    fmt = commands.add_parser(
+        "fmt", help="lay the source out regularly", description="Indent the source and space it regularly."
+    )
     fmt.set_defaults(command=_fmt)
     fmt.add_argument("file", metavar="FILE")
     fmt.add_argument("--write", action="store_true", help="change the file")

@@ -1,10 +1,12 @@
-"""Source text with regular indentation; the words and comments stay as they are."""
+"""Source text with regular indentation and spaces; the words, symbols and comments stay as they are."""
 
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 
-from aseba_vm.lexer import Token, tokenise
+from aseba_vm.lexer import tokenise
+from aseba_vm.spacing import spaced
 
 _COMMENT = re.compile(r"\#\*[\s\S]*?\*\#|\#[^\r\n]*")
 _OPENING = frozenset(("if", "when", "while", "for"))
@@ -14,33 +16,33 @@ _BRACKETS = {"(": 1, "[": 1, ")": -1, "]": -1}
 
 
 def formatted(source: str, indent: str = "\t") -> str:
-    """Return a program with each line indented by its depth, without trailing space or repeated empty lines.
+    """Return a program with each line indented by its depth, regular spaces in it, and no repeated empty lines.
 
     The tokens are the same, so the bytecode is too. Lines that begin inside a block comment are kept.
     Raises CompileError if the text has no tokens.
     """
     text = source.replace("\r\n", "\n").replace("\r", "\n")
-    rows: dict[int, list[Token]] = {}
-    for token in tokenise(text)[:-1]:
-        rows.setdefault(token.pos.row, []).append(token)
+    tokens = tokenise(text)[:-1]
     kept = _rows_inside_comments(text)
     lines: list[str] = []
-    section = depth = brackets = 0
+    section = depth = brackets = start = first = 0
     for row, line in enumerate(text.split("\n")):
-        tokens = rows.get(row, [])
-        kinds = [token.kind for token in tokens]
+        last = bisect_right(tokens, row, first, key=lambda token: token.pos.row)
+        kinds = [token.kind for token in tokens[first:last]]
         if kinds and kinds[0] in _MARKERS:
             section = depth = 0
         if row in kept:
             lines.append(line)
         else:
             level = section + depth - _closers(kinds) + (1 if brackets > 0 else 0)
-            lines.append(indent * max(level, 0) + line.strip() if line.strip() else "")
+            regular = spaced(text, start, start + len(line), tokens, first, last)
+            lines.append(indent * max(level, 0) + regular if regular else "")
         for kind in kinds:
             depth += (kind in _OPENING) - (kind == "end")
             brackets = max(brackets + _BRACKETS.get(kind, 0), 0)
         if any(kind in _MARKERS for kind in kinds):
             section = 1
+        start, first = start + len(line) + 1, last
     return _without_repeated_blanks(lines, kept)
 
 

@@ -29,7 +29,7 @@ return"""
 AFTER = """\
 # first
 var a
-var t[4] = 1,2,3,4
+var t[4] = 1, 2, 3, 4
 
 onevent prox
 \tif a == 1 then
@@ -55,6 +55,40 @@ def test_lines_are_indented_by_their_depth():
 
 def test_formatted_text_stays():
     assert formatted(AFTER) == AFTER
+
+
+@pytest.mark.parametrize(
+    ("line", "regular"),
+    [
+        ("a=1", "a = 1"),
+        ("a  =  -1+b*- 2", "a = -1 + b * -2"),
+        ("a = - - b", "a = - -b"),
+        ("a=b - - -c", "a = b - - -c"),
+        ("t [ 1 : 2 ]=[ 1,2 ]", "t[1:2] = [1, 2]"),
+        ("emit e[1,a]", "emit e [1, a]"),
+        ("emit e-1", "emit e -1"),
+        ("_emit e(a==1)", "_emit e (a == 1)"),
+        ("call f ( a,b )", "call f(a, b)"),
+        ("call f( )", "call f()"),
+        ("a ++ b --", "a++ b--"),
+        ("a<<=~ b>>2", "a <<= ~b >> 2"),
+        ("for i in 0 : -3 step-1 do end", "for i in 0:-3 step -1 do end"),
+        ("if(a==1)and not(b!=0x1F)then end", "if (a == 1) and not (b != 0x1F) then end"),
+        ("var t [ ]=1,2", "var t[] = 1, 2"),
+        ("a=(1)b=2", "a = (1) b = 2"),
+        ("a = abs(b)", "a = abs (b)"),
+        ("a=1   # why  not", "a = 1 # why  not"),
+        ("#* x *#a=#* y *# 1#*z*#", "#* x *# a = #* y *# 1 #*z*#"),
+        ("if.x=é", "if.x = é"),
+    ],
+)
+def test_spaces_are_regular(line, regular):
+    assert formatted(line) == regular + "\n"
+    assert formatted(regular) == regular + "\n"
+
+
+def test_a_sign_at_the_beginning_of_a_line_knows_the_line_before():
+    assert formatted("a = b\n- c\nd = (\n- c)") == "a = b\n- c\nd = (\n\t-c)\n"
 
 
 def test_another_indent_may_be_chosen():
