@@ -1,4 +1,7 @@
-"""Regular spaces between the words and symbols of one line; words, symbols and comments stay as they are."""
+"""Regular spaces between the words and symbols of one line; words, symbols and comments stay as they are.
+
+Two or more spaces before a comment, after a comma or before a list are columns that somebody aligned: they stay.
+"""
 
 from __future__ import annotations
 
@@ -25,11 +28,13 @@ def spaced(text: str, start: int, end: int, tokens: Sequence[Token], first: int,
         if comment:
             parts += [" " if parts else "", comment, " "]
         elif index > first:
-            parts.append(_gap(tokens, index))
+            parts.append(_kept(text[at:begin], tokens, index) or _gap(tokens, index))
         at = _end(text, tokens[index])
         parts.append(text[begin:at])
-    comment = text[at:end].strip()
-    return "".join([*parts, " " if parts and comment else "", comment])
+    rest = text[at:end].rstrip()
+    comment = rest.lstrip()
+    before = rest[: len(rest) - len(comment)]
+    return "".join([*parts, (before if _is_column(before) else " ") if parts and comment else "", comment])
 
 
 def _begin(token: Token) -> int:
@@ -41,6 +46,17 @@ def _end(text: str, token: Token) -> int:
     begin = _begin(token)
     word = _WORD.match(text, begin)
     return word.end() if word else begin + len(token.kind)
+
+
+def _is_column(space: str) -> bool:
+    return len(space) > 1 and not space.strip(" ")
+
+
+def _kept(space: str, tokens: Sequence[Token], at: int) -> str:
+    """The space before a token if it aligns the token in a column, else nothing."""
+    before, token = tokens[at - 1].kind, tokens[at].kind
+    is_cell = before == "," or (before == "=" and token == "[")
+    return space if is_cell and token not in _TIGHT_BEFORE and _is_column(space) else ""
 
 
 def _gap(tokens: Sequence[Token], at: int) -> str:
