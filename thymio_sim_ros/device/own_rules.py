@@ -202,10 +202,11 @@ class OwnRules:
         self._addresses = addresses
         self._buttons = [addresses[name][0] for name in _Buttons.variables]
         self._spans = _spans(addresses)
+        self._pressed = [0] * len(self._buttons)
         self.reset()
 
     def reset(self) -> None:
-        """Begin anew, all lights dark."""
+        """Begin anew, all lights dark; a button that is still held is not touched again."""
         self._remote = _Remote()
         rules: list[_Rule] = [*(make() for make in _RULES), self._remote]
         self._rules = [
@@ -218,7 +219,6 @@ class OwnRules:
         self._taken: set[str] = set()
         self._last: list[list[int]] = []
         self._is_moving = True
-        self._pressed = [0] * len(self._buttons)
         self._is_silent = False
 
     def take(self, group: str) -> None:

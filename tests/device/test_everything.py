@@ -1,0 +1,181 @@
+"""One program that calls every native and reads every variable of the robot (thymio-robot.md sections 4 and 6)."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from thymio_sim_ros.device import bindings
+from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.options import DeviceOptions
+from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.sim.commands import (
+    Command,
+    EnableComm,
+    MotorTargets,
+    PlaySamples,
+    PlaySystemSound,
+    PlayTone,
+    ReleaseLeds,
+    SetCommPayload,
+    SetLed,
+    SetLeds,
+    SetSoundThreshold,
+    SetVolume,
+    SetWave,
+    StopSound,
+)
+from thymio_sim_ros.sim.tones import BLOCK_NS, TRIANGLE
+
+DATA = Path(__file__).parents[1] / "data" / "device"
+SOURCE = (DATA / "everything.aesl").read_text()
+TABLE = json.loads((DATA / "variables.json").read_text())
+
+SENSES = {
+    "buttons._raw": range(2000, 2005), "button.backward": [0], "button.left": [1], "button.center": [0],
+    "button.forward": [1], "button.right": [1], "buttons._mean": range(2100, 2105), "buttons._noise": range(130, 135),
+    "prox.horizontal": range(1, 8), "prox.comm.rx._payloads": range(71, 78),
+    "prox.comm.rx._intensities": range(81, 88), "prox.comm.rx": [555], "prox.ground.ambiant": [11, 12],
+    "prox.ground.reflected": [13, 14], "prox.ground.delta": [15, 16], "_vbat": [796, 797], "_imot": [31, 32],
+    "motor.left.speed": [101], "motor.right.speed": [-102], "motor.left.pwm": [-161], "motor.right.pwm": [162],
+    "_integrator": [-483, 484], "acc": [-3, 4, 23], "temperature": [234], "rc5.address": [17], "rc5.command": [42],
+    "mic.intensity": [60], "mic._mean": [7], "acc._tap": [1],
+}  # fmt: skip
+"""What each variable of a sensor is given."""
+
+
+def sensed(device: AsebaDevice) -> None:
+    """Every sensor tells its words once, proximity last."""
+    places = {address: name for name, (address, _) in target().addresses.items()}
+    for sensor, binding in sorted(bindings.sensors().items(), key=lambda item: item[0] == "proximity"):
+        device.feed(sensor, [word for slot in binding.slots for word in SENSES[places[slot.address]]])
+
+
+def expectations() -> Iterator[tuple[str, tuple[int, ...]]]:
+    for name, words in re.findall(r"^#= (\S+) (.*)$", SOURCE, re.MULTILINE):
+        yield name, tuple(map(int, words.split()))
+
+
+@pytest.fixture
+def device(tmp_path: Path) -> AsebaDevice:
+    """A robot with a card on which there are two sounds, after the beginning of the program."""
+    device = AsebaDevice(options=DeviceOptions(card=tmp_path / "card", settings=tmp_path / "flash"))
+    assert device.body.card is not None
+    device.body.card.write_sound("p1", b"\x80\x90" * 100)
+    device.body.card.write_sound("r1", bytes([128]) * 7812)
+    events = "".join(f'<event size="2" name="{name}"/>' for name in ("told", "off", "again"))
+    code = SOURCE.replace("&", "&amp;").replace("<", "&lt;")
+    device.load(load_program(f'<network>{events}<node name="thymio-II">{code}</node></network>', "everything.aesl"))
+    device.take_commands()
+    device.advance(0)
+    while device.is_busy:
+        device.run(10_000)
+    return device
+
+
+def run(device: AsebaDevice) -> list[Command]:
+    while device.is_busy:
+        device.run(10_000)
+    return device.take_commands()
+
+
+def test_the_program_names_every_native_and_every_variable() -> None:
+    code = re.sub("#.*", "", SOURCE)
+    called = set(re.findall(r"call ([\w.]+)", code))
+    assert called == set(TABLE["natives"]["thymio"])
+    missing = [
+        name for name, _, _ in TABLE["variables"] if not re.search(rf"(?<![\w.]){re.escape(name)}(?![\w.])", code)
+    ]
+    assert missing == []
+
+
+def test_every_variable_of_a_sensor_is_given_something() -> None:
+    bound = {slot.address for binding in bindings.sensors().values() for slot in binding.slots}
+    assert {target().addresses[name][0] for name in SENSES} == bound
+
+
+def test_every_native_and_variable_gives_what_the_program_expects(device: AsebaDevice) -> None:
+    sensed(device)
+    device.receive_event("told", (8, 9), source=3)
+    run(device)
+    assert device.status.state == "running"
+    assert {name: device.get_variable(name) for name, _ in expectations()} == dict(expectations())
+    assert device.take_notices() == []
+
+
+def test_every_native_that_reaches_an_actuator_tells_it(device: AsebaDevice) -> None:
+    assert device.take_commands() == [
+        SetVolume(0),
+        SetVolume(2),
+        SetLeds("circle", (1, 2, 3, 4, 5, 6, 7, 8)),
+        SetLeds("top", (9, 10, 11)),
+        SetLeds("bottom_left", (12, 13, 14)),
+        SetLeds("bottom_right", (15, 16, 17)),
+        SetLeds("buttons", (18, 19, 20, 21)),
+        SetLeds("proximity", (22, 23, 24, 25, 26, 27, 28, 29)),
+        SetLeds("ground", (30, 31)),
+        SetLeds("remote", (32,)),
+        SetLeds("microphone", (1,)),
+        SetLeds("temperature", (2, 3)),
+        SetLed(5, 4),
+        EnableComm(True),
+        SetWave((127, -128, *[0] * 140)),
+        PlayTone(440, 30 * BLOCK_NS),
+        PlaySystemSound(7),
+        PlaySamples(b"\x80\x90" * 100),
+        PlaySamples(bytes([128]) * 7812),
+        SetCommPayload(1234),
+        SetSoundThreshold(50),
+        MotorTargets(101, -100),
+    ]
+
+
+def test_files_of_the_card_and_the_flash_hold_what_was_written(device: AsebaDevice, tmp_path: Path) -> None:
+    assert (tmp_path / "card" / "u1.dat").read_bytes() == b"\x01\x00\xfe\xff\x03\x00\x04\x00"
+    assert (tmp_path / "card" / "r2.wav").stat().st_size == 44
+    assert json.loads((tmp_path / "flash" / "settings.json").read_text())["mot256"] == [260, 256]
+
+
+def test_the_radio_has_the_number_and_network_it_was_given(device: AsebaDevice) -> None:
+    assert (device.node_id, device.body.network) == (9, (1, 77))
+    device.reset()
+    assert device.get_variable("_id") == (9,)
+
+
+def test_switched_off_everything_is_dark_and_still_until_it_is_switched_on(device: AsebaDevice) -> None:
+    device.take_commands()
+    device.receive_event("off", (0, 0))
+    commands = run(device)
+    assert commands[-2:] == [PlaySystemSound(1), MotorTargets(0, 0)]
+    assert {type(command) for command in commands[:-2]} == {ReleaseLeds}
+    assert device.status.state == "off"
+    sensed(device)
+    device.advance(1_000_000_000)
+    device.pause()
+    device.step()
+    assert run(device) == []
+    assert device.get_variable("far") == (0,) * 7
+    device.resume()
+    assert device.status.state == "running"
+    commands = run(device)
+    assert StopSound() in commands
+    assert MotorTargets(101, -100) in commands
+
+
+def test_a_restart_begins_anew_and_keeps_what_was_flashed(device: AsebaDevice) -> None:
+    sensed(device)
+    run(device)
+    device.body.settings[0] = 7
+    device.receive_event("again", (0, 0))
+    commands = run(device)
+    assert commands[-1] == MotorTargets(101, -100)
+    assert commands[0] != commands[-1]
+    assert SetWave(TRIANGLE) in commands
+    assert device.body.settings[0] == 2
+    assert device.get_variable("far") == (0,) * 7
+    assert device.status.state == "running"

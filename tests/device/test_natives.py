@@ -1,0 +1,221 @@
+"""What natives answer and tell, case by case; test_everything.py calls them all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
+from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.sim.commands import Command, MotorTargets, PlaySamples, PlaySystemSound, SetVolume, StopSound
+from thymio_sim_ros.sim.tones import BLOCK_NS
+
+CLICK = bytes([128, 200]) * 300
+
+
+@pytest.fixture
+def options(tmp_path: Path) -> DeviceOptions:
+    return DeviceOptions(card=tmp_path / "card")
+
+
+def start(source: str, options: DeviceOptions = DEFAULTS, *, sounds: Sequence[str] = ()) -> AsebaDevice:
+    """A device with a program that waits for its first instruction; its card holds a click under these names."""
+    device = AsebaDevice(options=options)
+    for name in sounds:
+        assert device.body.card is not None
+        device.body.card.write_sound(name, CLICK)
+    device.load(load_program(source, "test"))
+    device.take_commands()
+    return device
+
+
+def run(device: AsebaDevice) -> list[Command]:
+    """What the device tells until it waits."""
+    while device.is_busy:
+        device.run(5000)
+    return device.take_commands()
+
+
+def told(source: str, options: DeviceOptions = DEFAULTS, *, sounds: Sequence[str] = ()) -> list[Command]:
+    return run(start(source, options, sounds=sounds))
+
+
+def variables(source: str, options: DeviceOptions, *names: str) -> list[tuple[int, ...]]:
+    """What these variables hold after the program."""
+    device = start(source, options)
+    run(device)
+    return [device.get_variable(name) for name in names]
+
+
+def test_without_a_card_files_answer_what_a_robot_without_one_answers() -> None:
+    source = (
+        "var o = 5\nvar w = 5\nvar r = 5\nvar s = 5\nvar d = 5\nvar data[2] = [1, 2]\n"
+        "call sd.open(1, o)\ncall sd.write(data, w)\ncall sd.read(data, r)\ncall sd.seek(0, s)\n"
+        "call sound.duration(1, d)"
+    )
+    found = variables(source, DEFAULTS, "o", "w", "r", "s", "d", "data", "sd.present")
+    assert found == [(-1,), (0,), (0,), (-1,), (0,), (1, 2), (0,)]
+
+
+def test_reading_beyond_the_end_leaves_the_rest_as_it_was(options: DeviceOptions) -> None:
+    source = (
+        "var s\nvar n\nvar data[4] = [1, 2, 3, 4]\ncall sd.open(1, s)\ncall sd.write(data[0:1], n)\n"
+        "call sd.seek(1, s)\ncall sd.read(data, n)"
+    )
+    assert variables(source, options, "n", "data", "s") == [(1,), (2, 2, 3, 4), (0,)]
+
+
+def test_a_position_above_32767_is_written_without_sign(options: DeviceOptions) -> None:
+    source = "var s\nvar n\ncall sd.open(1, s)\ncall sd.seek(-32768, s)\ncall sd.write([7], n)"
+    assert variables(source, options, "s", "n") == [(0,), (1,)]
+    assert options.card is not None
+    assert (options.card / "u1.dat").stat().st_size == 2 * 32769
+
+
+def test_a_program_that_begins_anew_finds_no_open_file(options: DeviceOptions) -> None:
+    device = start("var s\nvar n\ncall sd.open(1, s)", options)
+    run(device)
+    device.load(load_program("var n = 9\ncall sd.write([1], n)", "test"))
+    run(device)
+    assert device.get_variable("n") == (0,)
+
+
+@pytest.mark.parametrize(
+    ("call", "expected"),
+    [
+        ("sound.play(1)", [PlaySamples(CLICK)]),
+        ("sound.play(2)", [StopSound()]),
+        ("sound.play(-1)", [StopSound()]),
+        ("sound.replay(3)", [PlaySamples(CLICK)]),
+        ("sound.replay(-1)", [StopSound()]),
+        ("sound.system(-1)", [StopSound()]),
+        ("sound.system(0)", [PlaySystemSound(0)]),
+        ("sound.system(7)", [PlaySystemSound(7)]),
+        ("sound.system(8)", [PlaySystemSound(8)]),
+        ("sound.system(12)", [PlaySamples(CLICK)]),
+        ("sound.freq(440, -1)", [StopSound()]),
+    ],
+)
+def test_sounds_come_from_the_robot_or_from_the_card(
+    options: DeviceOptions, call: str, expected: list[Command]
+) -> None:
+    assert told(f"call {call}", options, sounds=("p1", "r3", "s12", "s0")) == expected
+
+
+def test_a_sound_that_is_missing_is_said(options: DeviceOptions) -> None:
+    device = start("call sound.play(2)", options)
+    run(device)
+    assert device.take_notices() == ["there is no p2.wav on the card"]
+
+
+def test_a_wave_out_of_range_is_a_fault_of_the_program() -> None:
+    device = start("var w[142]\nw[3] = 200\ncall sound.wave(w)")
+    run(device)
+    assert (device.status.state, device.status.line) == ("fault", 3)
+    assert device.status.fault == "sound.wave: sample 200 found, expected -128 to 127"
+
+
+@pytest.mark.parametrize("call", ["_system.settings.read(92, x)", "_system.settings.write(-1, x)"])
+def test_an_address_out_of_settings_is_a_fault_of_the_program(call: str) -> None:
+    device = start(f"var x\ncall {call}")
+    run(device)
+    assert device.status.state == "fault"
+    assert device.status.fault.startswith("out of settings")
+
+
+def test_the_volume_and_the_motors_obey_the_settings_at_once() -> None:
+    source = "call _system.settings.write(0, 4)\ncall _system.settings.write(8, 300)\nmotor.left.target = 256"
+    assert told(source) == [SetVolume(4), SetVolume(4), MotorTargets(300, 0)]
+
+
+def test_a_new_calibration_moves_wheels_that_turn_already() -> None:
+    device = start("motor.left.target = 256\nonevent prox\ncall _system.settings.write(8, 300)")
+    assert run(device) == [MotorTargets(256, 0)]
+    device.feed("proximity", (0,) * 7)
+    assert MotorTargets(300, 0) in run(device)
+
+
+def test_settings_survive_a_new_program_and_tell_the_volume() -> None:
+    device = start("call _system.settings.write(0, 4)")
+    run(device)
+    device.load(load_program("", "test"))
+    assert SetVolume(4) in device.take_commands()
+
+
+def test_a_record_holds_what_the_microphone_told_meanwhile(options: DeviceOptions) -> None:
+    source = "var t = -1\ncall sound.record(5)\nonevent prox\ncall sound.record(-1)\ncall sound.duration(5, t)"
+    device = start(source, options)
+    device.advance(0)
+    run(device)
+    for tick in range(1, 201):
+        device.set_variable("mic.intensity", (100,))
+        device.advance(tick * 10_000_000)
+    device.feed("proximity", (0,) * 7)
+    run(device)
+    assert device.get_variable("t") == (19,)
+    assert device.body.card is not None
+    samples, complaint = device.body.card.read_sound("r5") or (b"", "missing")
+    assert (len(samples), complaint) == (2_000_000_000 // BLOCK_NS * 128, "")
+    assert (min(samples), max(samples)) == (78, 178)
+
+
+def test_a_record_is_stored_when_the_program_ends(options: DeviceOptions) -> None:
+    device = start("call sound.record(1)", options)
+    run(device)
+    device.load(load_program("", "none"))
+    assert device.body.recorded_bytes(1) == 0
+    assert device.body.card is not None
+    assert device.body.card.read_sound("r1") == (b"", "")
+
+
+@pytest.mark.parametrize("number", [0, -3])
+def test_a_node_has_a_positive_number(number: int) -> None:
+    device = start(f"call _rf.nodeid({number})")
+    run(device)
+    assert device.node_id == 1
+
+
+def test_the_end_of_a_sound_is_heard_by_a_program_that_uses_sound() -> None:
+    source = "var n = 0\nonevent sound.finished\nn++\nonevent prox\ncall sound.system(1)"
+    device = start(source)
+    for feeds, heard in (("sound_finished", 0), ("proximity", 0), ("sound_finished", 1)):
+        device.feed(feeds, (0,) * 7 if feeds == "proximity" else ())
+        run(device)
+        assert device.get_variable("n") == (heard,)
+
+
+def test_a_restart_in_the_middle_of_a_handler_ends_it() -> None:
+    device = start("var n\nvar m = 0\nonevent prox\ncall _system.reboot()\nm = 1\nmotor.left.target = 100")
+    device.feed("proximity", (0,) * 7)
+    run(device)
+    assert (device.get_variable("m"), device.get_variable("motor.left.target")) == ((0,), (0,))
+    assert device.status.state == "running"
+
+
+def test_a_program_that_restarts_without_end_leaves_room_for_others() -> None:
+    device = start("var n = 0\nn++\ncall _system.reboot()")
+    device.run(1000)
+    assert device.is_busy
+
+
+def test_events_of_the_playground_cut_off_a_long_handler() -> None:
+    source = "var n = 0\nvar i\nvar long = 0\nonevent motor\nn++\nonevent prox\nfor i in 1:30000 do\nlong = i\nend"
+    device = AsebaDevice(options=DeviceOptions(events="playground"))
+    device.load(load_program(source, "test"))
+    run(device)
+    device.feed("proximity", (0,) * 7)
+    device.run(5000)
+    assert device.is_busy
+    done = device.get_variable("long")[0]
+    assert 50 < done < 500
+    device.run(5000)
+    assert done < device.get_variable("long")[0] < 1000
+    device.feed("motor", (0, 0, 0, 0))
+    device.feed("motor", (0, 0, 0, 0))
+    run(device)
+    assert device.get_variable("n") == (2,)
+    assert device.get_variable("long")[0] < 1000
+    assert device.take_notices() == ["motor cuts off prox, which takes more than 1000 instructions"]
