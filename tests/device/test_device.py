@@ -98,6 +98,26 @@ def test_natives_of_the_lights_become_commands_in_order():
     assert device.get_variable("leds.top") == (0, -1, 5)
 
 
+def test_lights_that_are_set_to_the_same_again_are_told_once():
+    device = device_with(
+        "onevent prox\ncall leds.top(1, 2, 3)\ncall leds.sound(4)\nonevent motor\nleds.top = [0, 0, 0]\n"
+        "onevent tap\ncall _leds.set(30, 9)"
+    )
+
+    def told(sensor, words):
+        device.feed(sensor, words)
+        device.run(BUDGET)
+        return [command for command in device.take_commands() if isinstance(command, SetLeds)]
+
+    both = [SetLeds("top", (1, 2, 3)), SetLeds("microphone", (4,))]
+    assert told("proximity", NEAR) == both
+    assert told("proximity", NEAR) == []
+    assert told("motor", (0, 0, 0, 0)) == [SetLeds("top", (0, 0, 0))]
+    assert told("proximity", NEAR) == both[:1]
+    told("tap", (1,))
+    assert told("proximity", NEAR) == both
+
+
 def test_variables_of_the_lights_work_like_their_natives():
     device = device_with("onevent prox\nleds.circle[3] = 20")
     device.feed("proximity", NEAR)

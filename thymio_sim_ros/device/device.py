@@ -32,6 +32,7 @@ from thymio_sim_ros.sim.commands import (
     PlaySystemSound,
     PlayTone,
     ReleaseLeds,
+    SetLed,
     SetLeds,
     StopSound,
 )
@@ -82,6 +83,7 @@ class AsebaDevice:
         self._noticed: set[str] = set()
         self._is_changed = True
         self._sent: list[list[int]] = []
+        self._lit: dict[str, tuple[int, ...]] = {}
         self._state = RUNNING
         self._fault: DeviceStatus | None = None
         self.body = Body(
@@ -364,13 +366,21 @@ class AsebaDevice:
             self.set_variable(name, (0,))
 
     def _send(self, command: Command, writes: Mapping[str, Sequence[int]] = NOTHING) -> None:
-        """A native's command and the variables that it sets; what they mean is told by the command already."""
-        self._commands.append(command)
+        """A native's command and the variables that it sets; what they mean is told by the command already.
+
+        Lights that a program sets again and again to the same are told once.
+        """
         if isinstance(command, SOUNDS):
             self._has_used_sound = True
             self._rules.silence()
-        elif isinstance(command, SetLeds):
+        elif isinstance(command, SetLed):
+            self._lit.clear()
+        if not isinstance(command, SetLeds):
+            self._commands.append(command)
+        elif self._lit.get(command.group) != command.levels:
+            self._lit[command.group] = command.levels
             self._rules.take(command.group)
+            self._commands.append(command)
         for variable, words in writes.items():
             if variable not in self._addresses:
                 continue
@@ -386,6 +396,7 @@ class AsebaDevice:
         if isinstance(command, MotorTargets):
             return self.body.settings.calibrate(command)
         if isinstance(command, SetLeds):
+            self._lit[command.group] = command.levels
             self._rules.take(command.group)
         return command
 
@@ -423,6 +434,7 @@ class AsebaDevice:
         self._event, self._begun = INIT, vm.instructions
         self._queue.reset()
         self._rules.reset()
+        self._lit.clear()
         self._has_used_sound = False
         self._sent = [self._words(output) for output in self._outputs]
         at_rest = [output.command(words) for output, words in zip(self._outputs, self._sent, strict=True)]
