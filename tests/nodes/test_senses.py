@@ -37,7 +37,7 @@ def encode(topic, reading, name=""):
 
 
 def test_the_imu_is_the_driver_s():
-    reading = readings.AccelerometerReading(1_250_000_000, (2, -3, 23), (-3 / 23 * 9.81, -2 / 23 * 9.81, 9.81))
+    reading = readings.AccelerometerReading(1_250_000_000, (2, -3, 23))
     message = encode("imu", reading, "anna")
     vector = message.linear_acceleration
     assert (vector.x, vector.y, vector.z) == pytest.approx((-3 / 23 * 9.81, -2 / 23 * 9.81, 9.81))

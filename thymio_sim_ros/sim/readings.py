@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.geometry import Pose, Twist
 from thymio_sim_ros.sim.primitives import Color, Stroke
 
@@ -123,14 +124,16 @@ class SoundFinishedReading:
 
 @dataclass(frozen=True, slots=True)
 class AccelerometerReading:
-    """Proper acceleration in m/s² (about 9.81 upwards at rest): forward, left, up.
-
-    `words`: acc, 23 for each g: right, forward, up (thymio-robot.md section 7.3).
-    """
+    """Proper acceleration; `words`: acc, 23 for each g: right, forward, up (thymio-robot.md section 7.3)."""
 
     stamp_ns: int
     words: tuple[int, ...]
-    acceleration_m_s2: tuple[float, float, float]
+
+    @property
+    def acceleration_m_s2(self) -> tuple[float, float, float]:
+        """The same in m/s² (about 9.81 upwards at rest): forward, left, up."""
+        right, forward, up = map(units.units_to_acceleration, self.words)
+        return (forward, -right, up)
 
 
 @dataclass(frozen=True, slots=True)

@@ -68,8 +68,8 @@ ACC_PER_G = 23
 """Counts of acc for each g (TR 7.3)."""
 ACC_LIMIT = 32
 """Limit of each count of acc (TR 7.3)."""
-ACC_NOISE = 0.1
-"""Standard deviation of a count before rounding. Own choice: the mean of 21 samples is steady at rest."""
+ACC_NOISE = 0.2
+"""Largest deviation of a count before rounding, all as likely. Own choice: the mean of 21 samples is steady at rest."""
 TAP_SPEED_M_S = 0.02
 """A contact that begins faster than this is a tap (TR 7.3)."""
 

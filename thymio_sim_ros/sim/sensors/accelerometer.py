@@ -4,14 +4,14 @@ At rest it is g upwards. For a robot whose left side is lifted by the roll r and
 with g seen in its frame: forward -g sin p, left g sin r cos p, up g cos r cos p. To this comes what its motion
 adds: forward dv / dt, left v * w (on a curve), and, when something hits it, the speed lost or won sidewards over dt.
 In free fall it is nothing, and the landing adds, upwards, the speed of the fall over dt.
-acc[0] is the part to the right, acc[1] forward, acc[2] upwards, 23 for each g, noise of 0.1 before rounding, ±32.
+acc[0] is the part to the right, acc[1] forward, acc[2] upwards, 23 for each g, even noise of ±0.2 before rounding,
+within ±32.
 """
 
 from __future__ import annotations
 
 import math
 
-from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.fall import FALL_NS
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
@@ -19,6 +19,7 @@ from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.readings import AccelerometerReading
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.thymio2 import ACC_NOISE, ACC_PER_G, GRAVITY_M_S2
+from thymio_sim_ros.sim.units import acceleration_to_units
 from thymio_sim_ros.sim.view import SensorView
 
 __all__ = ["SENSOR", "gravity"]
@@ -63,12 +64,12 @@ def _measure(view: SensorView) -> AccelerometerReading:
         if memory.pop("is_falling", False):
             up += _LANDING_M_S / dt_s
     memory["since_ns"], memory["speed_m_s"] = view.now_ns, twist.linear_m_s
-    right = units.acceleration_to_units(noise.gauss(_NOISE_M_S2) - left)
-    ahead = units.acceleration_to_units(noise.gauss(_NOISE_M_S2) + forward)
-    upwards = units.acceleration_to_units(noise.gauss(_NOISE_M_S2) + up)
-    to_si = units.units_to_acceleration
-    vector = (to_si(ahead), -to_si(right), to_si(upwards))
-    return AccelerometerReading(view.now_ns, (right, ahead, upwards), vector)
+    words = (
+        acceleration_to_units(noise.uniform(-_NOISE_M_S2, _NOISE_M_S2) - left),
+        acceleration_to_units(noise.uniform(-_NOISE_M_S2, _NOISE_M_S2) + forward),
+        acceleration_to_units(noise.uniform(-_NOISE_M_S2, _NOISE_M_S2) + up),
+    )
+    return AccelerometerReading(view.now_ns, words)
 
 
 SENSOR = Sensor(

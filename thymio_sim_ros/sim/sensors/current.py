@@ -31,10 +31,10 @@ def _measure(view: SensorView) -> CurrentReading | None:
         words = (round(left.current), round(right.current), round(left.integral), round(right.integral))
         return CurrentReading(view.now_ns, words) if is_news(view, words) else None
     aimed, reached = wheels.commanded, wheels.speeds_m_s
-    if aimed is reached is memory.get("settled") and view.now_ns < memory["refresh_ns"]:
+    if aimed == reached == memory.get("settled") and view.now_ns < memory["refresh_ns"]:
         return None  # the rule on a free way, and cheap
     currents = memory.get("currents", _NONE)
-    if aimed is not reached or currents != _NONE:
+    if aimed != reached or currents != _NONE:
         currents = memory["currents"] = (
             _filter(currents[0], _pwm(aimed[0]) - _pwm(reached[0])),
             _filter(currents[1], _pwm(aimed[1]) - _pwm(reached[1])),
