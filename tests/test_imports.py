@@ -48,7 +48,7 @@ RULES = {
     f"{OURS}.sim.physics": Rule(_names("sim"), frozenset({"numpy", "pymunk"}), NO_WALL_CLOCK),
     f"{OURS}.device": Rule(_names("aseba_vm", "device", "registry") | DECLARATIONS, never=NO_WALL_CLOCK),
     f"{OURS}.registry": Rule(frozenset(), never=NO_WALL_CLOCK),
-    f"{OURS}.runner": Rule(_names("aseba_vm", "sim", "device", "registry"), never=NO_WALL_CLOCK - {"time"}),
+    f"{OURS}.runner": Rule(_names("aseba_vm", "sim", "device", "registry", "runlog"), never=NO_WALL_CLOCK - {"time"}),
     f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"foxglove_websocket", "websockets"})),
     f"{OURS}.nodes": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.launch": Rule(frozenset(), frozenset({"launch", "launch_ros"})),

@@ -1,4 +1,4 @@
-"""The command `thymio-sim`: start the whole suite, run a program without ROS, or convert a playground.
+"""The command `thymio-sim`: start the whole suite, run a program without ROS, replay a run, or convert a playground.
 
 Everything a user can get wrong is checked before anything starts: one line on stderr, exit code 2.
 """
@@ -33,10 +33,11 @@ example:
   thymio-sim --playground obstacle --program my_robot.aesl
   thymio-sim --behaviour menu                                (the arrows choose, the centre button starts)
   thymio-sim runner --program my_robot.aesl --seconds 60     (no ROS, as fast as possible)
+  thymio-sim runner --log run.jsonl; thymio-sim replay run.jsonl   (the same again, bit for bit)
   thymio-sim convert maze.playground -o maze.json            (from Aseba and others; no ROS)
 """
 
-USAGE_ERROR = 2
+USAGE_ERROR, DIFFERENT = 2, 1
 
 
 class UsageError(Exception):
@@ -46,7 +47,11 @@ class UsageError(Exception):
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point; the exit code."""
     arguments = list(sys.argv[1:] if argv is None else argv)
-    commands: dict[str, Callable[[Sequence[str]], int]] = {"runner": run_without_ros, "convert": convert.run}
+    commands: dict[str, Callable[[Sequence[str]], int]] = {
+        "runner": run_without_ros,
+        "convert": convert.run,
+        "replay": replay_run,
+    }
     command = commands.get(arguments[0], start_suite) if arguments else start_suite
     if command is not start_suite:
         arguments = arguments[1:]
@@ -97,20 +102,28 @@ def run_without_ros(argv: Sequence[str]) -> int:
     options = _runner_parser().parse_args(argv)
     device = _device(options)
     playground, program = _check_files(options.playground, _program(options), options.behaviour, device.layout)
+    from thymio_sim_ros.runlog import RunLog
     from thymio_sim_ros.runner import Runner
 
     for note in playground.notes:
         print(f"thymio-sim: {options.playground}: {note}", file=sys.stderr)
-    runner = Runner(
-        playground,
-        program,
-        behaviour=options.behaviour,
-        options=device,
-        motor_model=options.motors,
-        seed=options.seed,
-    )
-    started = time.perf_counter()
-    runner.run(options.seconds)
+    try:
+        log = None if options.log is None else RunLog(options.log.open("w", encoding="utf-8", newline="\n"))
+        runner = Runner(
+            playground,
+            program,
+            behaviour=options.behaviour,
+            options=device,
+            motor_model=options.motors,
+            seed=options.seed,
+            log=log,
+        )
+        started = time.perf_counter()
+        runner.run(options.seconds)
+        if log is not None:
+            log.close()
+    except OSError as error:
+        raise UsageError(f"{options.log}: {error.strerror}; expected a file that can be written") from error
     factor = options.seconds / max(time.perf_counter() - started, 1e-9)
     poses = {
         name: {"x_m": robot.pose.x_m, "y_m": robot.pose.y_m, "yaw_rad": robot.pose.yaw_rad}
@@ -118,6 +131,40 @@ def run_without_ros(argv: Sequence[str]) -> int:
     }
     print(json.dumps({"seconds": options.seconds, "real_time_factor": round(factor, 1), "robots": poses}, indent=2))
     return 0
+
+
+def replay_run(argv: Sequence[str]) -> int:
+    """Replay a run log; 1 when something differs."""
+    options = _replay_parser().parse_args(argv)
+    from thymio_sim_ros.replay import replay
+    from thymio_sim_ros.runlog import RunLogError
+
+    started = time.perf_counter()
+    try:
+        found = replay(options.file)
+    except OSError as error:
+        raise UsageError(f"{options.file}: {error.strerror}; expected a run log") from error
+    except RunLogError as error:
+        raise UsageError(str(error)) from error
+    factor = found.seconds / max(time.perf_counter() - started, 1e-9)
+    if not found.is_complete:
+        print(f"thymio-sim: {options.file}: the log was cut off; replayed as far as it goes", file=sys.stderr)
+    if found.differs is not None:
+        run, tick = found.differs
+        print(f"thymio-sim: {options.file}: run {run}, tick {tick} gives something else than then", file=sys.stderr)
+    report = {"runs": found.runs, "seconds": found.seconds, "identical": found.differs is None}
+    print(json.dumps(report | {"real_time_factor": round(factor, 1)}, indent=2))
+    return 0 if found.differs is None else DIFFERENT
+
+
+def _replay_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="thymio-sim replay",
+        description="Do a run again from its log, and compare every tick bit for bit. Exit code 1: something differs.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("file", type=Path, metavar="FILE", help="a log of `thymio-sim runner --log` or the simulator")
+    return parser
 
 
 def _suite_parser() -> argparse.ArgumentParser:
@@ -156,6 +203,7 @@ def _runner_parser() -> argparse.ArgumentParser:
     )
     _add_world_options(parser)
     parser.add_argument("--seconds", type=_seconds, default=60.0, help="simulated seconds (default: %(default)g)")
+    parser.add_argument("--log", type=_path, metavar="FILE", help="write a run log that `thymio-sim replay` does again")
     return parser
 
 
@@ -182,11 +230,11 @@ def _add_world_options(parser: argparse.ArgumentParser) -> None:
     robot = parser.add_argument_group("the robot")
     robot.add_argument(
         "--card",
-        type=_folder,
+        type=_path,
         metavar="DIR",
         help="folder that stands for the memory card; with several robots each has a folder of its name in it",
     )
-    robot.add_argument("--settings", type=_folder, metavar="DIR", help="folder that keeps settings, likewise")
+    robot.add_argument("--settings", type=_path, metavar="DIR", help="folder that keeps settings, likewise")
     robot.add_argument(
         "--layout",
         choices=LAYOUTS,
@@ -219,7 +267,7 @@ def _device(options: argparse.Namespace) -> DeviceOptions:
     return device
 
 
-def _folder(text: str) -> Path:
+def _path(text: str) -> Path:
     return Path(text).expanduser()
 
 

@@ -15,6 +15,7 @@ from thymio_sim_ros.device.behaviour_host import BehaviourHost
 from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.program import ThymioProgram
+from thymio_sim_ros.runlog import RunLog
 from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, PressButton
 from thymio_sim_ros.sim.playground import Playground
@@ -47,13 +48,16 @@ class Runner:
         motor_model: str = MOTOR_MODELS[0],
         seed: int = 0,
         noise: bool = True,
+        log: RunLog | None = None,
     ) -> None:
         """One program for all robots, or one by robot's name; KeyError for a name that is not there.
 
         With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu.
-        CardError, SettingsError: a folder of the options cannot be used.
+        CardError, SettingsError: a folder of the options cannot be used. A `log` follows the world from the start.
         """
         self.world = World(playground, seed=seed, noise=noise, motor_model=motor_model)
+        if log is not None:
+            log.begin(playground.name, self.world)
         if isinstance(programs, ThymioProgram):
             programs = dict.fromkeys(self.world.robots, programs)
         numbers = {name: number for number, name in enumerate(self.world.robots, start=1)}

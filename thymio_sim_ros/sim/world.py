@@ -19,6 +19,7 @@ from thymio_sim_ros.sim.fields import as_color
 from thymio_sim_ros.sim.footing import Footing
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.ground import Ground
+from thymio_sim_ros.sim.journal import Input, Journal, Posted, Removed, Reset, Spawned, WorldOptions
 from thymio_sim_ros.sim.physics import Contact, MovableBody, Physics
 from thymio_sim_ros.sim.placement import Footprint, Occupied, PlacementError, footprint_of, footprint_of_robot
 from thymio_sim_ros.sim.playground import Playground, RobotStart
@@ -65,19 +66,26 @@ class World:
         self._sensors = _chosen(all_sensors(), periods_ns)
         self.playground = playground
         self.scene = Scene.of(playground)
-        self._seed, self._noise, self._proximity_model = seed, noise, proximity_model
+        periods = None if periods_ns is None else tuple(periods_ns.items())
+        self.options = WorldOptions(seed, noise, proximity_model, motor_model, periods)
+        self.journal: Journal | None = None
+        """Who is told what happens from now on."""
         self._ground = Ground(playground.floors, playground.paints)
         self._footing = Footing(playground.floors)
         self._fixed = Occupied(footprint_of(solid) for solid in playground.solids if solid.is_fixed)
-        self.reset()
+        self._begin()
 
     def reset(self) -> None:
         """Everything as at the start: time 0, robots at their places, the same noise again, no command waiting."""
+        self._note(Reset())
+        self._begin()
+
+    def _begin(self) -> None:
         self._clock = SimClock()
         self._ground.restore()
         self._physics = Physics(self.playground.solids, self.playground.triggers)
         self._robots: dict[str, Robot] = {}
-        self._shared = Shared(self._clock, self._ground, self._physics, self._proximity_model, self._robots)
+        self._shared = Shared(self._clock, self._ground, self._physics, self.options.proximity_model, self._robots)
         self._actuators = all_actuators()
         self._schedule = Schedule((sensor.period_ns, sensor.phase_ns) for sensor in self._sensors)
         for start in self.playground.robots:
@@ -110,6 +118,7 @@ class World:
             raise TypeError(f"no actuator takes a {type(command).__name__}")
         elif isinstance(command, MoveRobot):
             self._check_place(footprint_of_robot(name, Pose(command.x_m, command.y_m, command.yaw_rad)))
+        self._note(Posted(name, command))
         self._posted.append((name, command))
 
     def spawn(self, start: RobotStart) -> None:
@@ -117,12 +126,14 @@ class World:
         if start.name in self._names():
             raise ValueError(f"the name '{start.name}' is taken")
         self._check_place(footprint_of_robot(start.name, start.pose))
+        self._note(Spawned(start))
         self._add(start)
         self._gather()
 
     def remove(self, robot: str) -> None:
         """Take a robot away, now; KeyError for an unknown one."""
         self._physics.remove_robot(self._robots.pop(robot).body)
+        self._note(Removed(robot))
         self._posted = [(name, command) for name, command in self._posted if name != robot]
         self._gather()
 
@@ -132,7 +143,10 @@ class World:
         self._run_actuators()
         contacts = self._move_bodies()
         now_ns = self._clock.advance()
-        return StepResult(now_ns, self._run_sensors(now_ns), contacts)
+        result = StepResult(now_ns, self._run_sensors(now_ns), contacts)
+        if self.journal is not None:
+            self.journal.stepped((now_ns, tuple(result.readings), contacts))
+        return result
 
     def snapshot(self) -> Snapshot:
         """How the world looks now."""
@@ -143,7 +157,9 @@ class World:
         )
 
     def _add(self, start: RobotStart) -> None:
-        robot = Robot(start, self._shared, self._actuators, self._sensors, seed=self._seed, noise=self._noise)
+        robot = Robot(
+            start, self._shared, self._actuators, self._sensors, seed=self.options.seed, noise=self.options.noise
+        )
         self._robots[start.name] = robot
         robot.apply(self._motor_model)
         if start.pen is not None:
@@ -171,6 +187,10 @@ class World:
         blocker = self._fixed.blocker(wanted) or next(here, None)
         if blocker is not None:
             raise PlacementError(wanted.name, Pose(x, y, 0.0), blocker)
+
+    def _note(self, happened: Input) -> None:
+        if self.journal is not None:
+            self.journal.note(self._clock.now_ns // TICK_NS, happened)
 
     def _apply_commands(self) -> None:
         posted, self._posted = self._posted, []

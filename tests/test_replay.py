@@ -1,0 +1,185 @@
+"""A run is replayed from its log bit for bit, and the first tick that differs is told."""
+
+from __future__ import annotations
+
+import json
+import random
+from pathlib import Path
+
+import pytest
+
+from tests.sim.builders import FLOOR, ROBOT, box, make, shipped
+from thymio_sim_ros import cli
+from thymio_sim_ros.loading import read_program
+from thymio_sim_ros.replay import replay
+from thymio_sim_ros.runlog import RunLog, RunLogError
+from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.sim.commands import MotorTargets, MoveObject, MoveRobot, SetPen
+from thymio_sim_ros.sim.placement import PlacementError
+from thymio_sim_ros.sim.playground import RobotStart
+from thymio_sim_ros.sim.world import World
+
+CRATE = {**box(-0.5, 0.0, 0.06, 0.06), "name": "crate", "mass_kg": 0.1}
+
+
+def log_to(path: Path) -> RunLog:
+    return RunLog(path.open("w", encoding="utf-8"))
+
+
+def test_an_eventful_run_is_replayed_bit_for_bit(tmp_path: Path) -> None:
+    """Robots drive, push, draw, fall, are moved, come and go; the world is reset; then another follows."""
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    dice = random.Random(3)
+    for seed in (1, 2):
+        world = World(make([FLOOR, CRATE, {**box(0.6, 0.0, 0.05, 1.0), "name": "wall"}]), seed=seed)
+        log.begin(f"world {seed}", world)
+        for tick in range(600):
+            if tick == 300:
+                world.reset()
+            if tick % 200 == 100:
+                world.spawn(RobotStart(f"late_{tick}", 1.5, -1.5 + tick / 400, 0.3))
+            for robot in world.robots:
+                if dice.random() < 0.02:
+                    world.post(robot, MotorTargets(dice.randint(-500, 500), dice.randint(-500, 500)))
+                if dice.random() < 0.005:
+                    world.post(robot, SetPen(down=True, color=(dice.random(), 0.0, 0.0)))
+                if dice.random() < 0.01:
+                    try:
+                        world.post(robot, MoveRobot(dice.uniform(-2.2, 2.2), dice.uniform(-2, 2), 0.0))
+                        world.post("crate", MoveObject(dice.uniform(-2, 2), dice.uniform(-2, 2), 1.0))
+                    except PlacementError:
+                        continue
+            if tick % 200 == 190:
+                world.remove(next(reversed(world.robots)))
+            world.step()
+    log.close()
+    found = replay(path)
+    assert (found.runs, found.ticks, found.differs, found.is_complete) == (4, 1200, None, True)
+
+
+def test_a_run_with_a_program_is_replayed_without_it(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    Runner(shipped("line"), read_program("line_follower"), seed=3, log=log).run(5.0)
+    log.close()
+    assert replay(path).differs is None
+
+
+def test_refused_places_leave_no_trace(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    world = World(make([FLOOR, CRATE], (ROBOT,)), seed=1)
+    log.begin("world", world)
+    world.post("thymio", MotorTargets(200, 210))
+    for tick in range(400):
+        if tick % 7 == 0:
+            with pytest.raises(PlacementError):
+                world.spawn(RobotStart("late", world.robots["thymio"].pose.x_m, 0.0))
+        world.step()
+    log.close()
+    assert replay(path).differs is None
+
+
+@pytest.mark.parametrize(("tick", "digits"), [(1, 0), (250, 49), (500, 99)])
+def test_the_first_tick_that_differs_is_told(tmp_path: Path, tick: int, digits: int) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    world = World(make([FLOOR]), seed=1)
+    log.begin("world", world)
+    for _ in range(500):
+        world.step()
+    log.close()
+    lines = path.read_text().splitlines()
+    row = 2 + (tick - 1) // 100
+    data = json.loads(lines[row])
+    crc = data["crc"]
+    data["crc"] = crc[: digits * 8] + ("0" if crc[digits * 8] != "0" else "1") + crc[digits * 8 + 1 :]
+    path.write_text("\n".join([*lines[:row], json.dumps(data), *lines[row + 1 :]]) + "\n")
+    found = replay(path)
+    assert (found.differs, found.ticks) == ((1, tick), tick)
+
+
+def test_another_command_makes_a_difference(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    world = World(make([FLOOR]), seed=1)
+    log.begin("world", world)
+    for tick in range(100):
+        if tick == 40:
+            world.post("thymio", MotorTargets(100, 100))
+        world.step()
+    log.close()
+    path.write_text(path.read_text().replace('"left": 100', '"left": 101'))
+    assert replay(path).differs == (1, 41)
+
+
+def test_a_log_without_its_end_is_replayed_as_far_as_it_goes(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    world = World(make([FLOOR]), seed=1)
+    log.begin("world", world)
+    for _ in range(250):
+        world.step()
+    log.close()
+    path.write_text("".join(path.read_text().splitlines(keepends=True)[:-2]))
+    found = replay(path)
+    assert (found.ticks, found.differs, found.is_complete) == (200, None, False)
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (lambda lines: [lines[0], *lines[2:]], "line 2: found what happened to no world, expected a world first"),
+        (lambda lines: [*lines, lines[2]], "line 5: found a line after the end, expected nothing"),
+        (lambda lines: [lines[0], lines[1].replace('"default"', '"sonar"'), *lines[2:]], "line 2: .*sonar"),
+    ],
+)
+def test_a_log_in_disorder_is_refused(tmp_path: Path, change: object, text: str) -> None:
+    path = tmp_path / "run.jsonl"
+    log = log_to(path)
+    world = World(make([FLOOR]))
+    log.begin("world", world)
+    world.step()
+    log.close()
+    assert callable(change)
+    path.write_text("".join(f"{line}\n" for line in change(path.read_text().splitlines())))
+    with pytest.raises(RunLogError, match=text):
+        replay(path)
+
+
+def test_the_commands_write_and_replay_a_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "run.jsonl"
+    assert cli.main(["runner", "--playground", "line", "--seconds", "3", "--log", str(path)]) == 0
+    capsys.readouterr()
+    assert cli.main(["replay", str(path)]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert (report["runs"], report["seconds"], report["identical"]) == (1, 3.0, True)
+
+
+def test_the_command_tells_what_differs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "run.jsonl"
+    cli.main(["runner", "--playground", "line", "--seconds", "3", "--log", str(path)])
+    path.write_text(path.read_text().replace('"seed": 0', '"seed": 1'))
+    capsys.readouterr()
+    assert cli.main(["replay", str(path)]) == cli.DIFFERENT
+    captured = capsys.readouterr()
+    assert "run 1, tick 1 gives something else than then" in captured.err
+    assert json.loads(captured.out)["identical"] is False
+
+
+@pytest.mark.parametrize("content", [None, "nonsense\n"], ids=["missing", "damaged"])
+def test_the_command_refuses_a_bad_file_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], content: str | None
+) -> None:
+    path = tmp_path / "run.jsonl"
+    if content is not None:
+        path.write_text(content)
+    assert cli.main(["replay", str(path)]) == cli.USAGE_ERROR
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_log_that_cannot_be_written_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "nowhere" / "run.jsonl"
+    assert cli.main(["runner", "--seconds", "1", "--log", str(path)]) == cli.USAGE_ERROR
+    assert "No such file or directory; expected a file that can be written" in capsys.readouterr().err
