@@ -17,7 +17,6 @@ The drift of the robot's frames, which avoids collisions of two that send at onc
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 from thymio_sim_ros.sim.actuators.comm import CommState
 from thymio_sim_ros.sim.aseba_face import AsebaFace
@@ -69,9 +68,10 @@ def _mounts(pose: Pose) -> list[_Mount]:
     ]
 
 
-def _received(receiver: _Mount, emitters: list[_Mount], around: Surroundings) -> Iterator[float]:
-    """What each emitter in sight of a receiver adds to S."""
+def _ahead(receiver: _Mount, emitters: list[_Mount]) -> list[tuple[float, float, float, float]]:
+    """Emitters that a receiver sees if nothing is in between: what each adds to S, its direction, its distance."""
     x, y, axis_x, axis_y = receiver
+    found = []
     for emitter_x, emitter_y, emitter_axis_x, emitter_axis_y in emitters:
         dx, dy = emitter_x - x, emitter_y - y
         distance = math.hypot(dx, dy)
@@ -79,8 +79,23 @@ def _received(receiver: _Mount, emitters: list[_Mount], around: Surroundings) ->
             continue
         dx, dy = dx / distance, dy / distance
         part = strength(distance, -dx * emitter_axis_x - dy * emitter_axis_y, dx * axis_x + dy * axis_y)
-        if part > 0.0 and around.fan(x, y, ((dx, dy),), max(0.0, distance - _HULL_M)) == (math.inf,):
-            yield part
+        if part > 0.0:
+            found.append((part, dx, dy, distance))
+    return found
+
+
+def _received(receiver: _Mount, emitters: list[_Mount], around: Surroundings) -> float:
+    """Intensity of the robot with these emitters at a receiver; 0 where it cannot be understood."""
+    ahead = _ahead(receiver, emitters)
+    if intensity(sum(part for part, *_ in ahead)) < _LEAST:
+        return 0.0
+    x, y, *_ = receiver
+    total = 0.0
+    for part, dx, dy, distance in ahead:
+        if around.fan(x, y, ((dx, dy),), max(0.0, distance - _HULL_M)) == (math.inf,):
+            total += part
+    found = intensity(total)
+    return found if found >= _LEAST else 0.0
 
 
 def _measure(view: SensorView) -> CommReading | None:
@@ -99,11 +114,10 @@ def _measure(view: SensorView) -> CommReading | None:
     around = view.surroundings(RANGE_M + _MOUNT_M, PROXIMITY_HEIGHT_M)
     payloads, intensities = [], []
     for receiver in _mounts(view.pose):
-        heard = [(intensity(sum(_received(receiver, mounts, around))), payload) for mounts, payload in senders]
+        heard = [(_received(receiver, mounts, around), payload) for mounts, payload in senders]
         best, payload = max(heard, key=lambda pair: pair[0])
-        understood = best >= _LEAST
-        payloads.append(payload if understood else 0)
-        intensities.append(round(best) if understood else 0)
+        payloads.append(payload if best else 0)
+        intensities.append(round(best))
     strongest = max(intensities)
     if strongest == 0:
         return None
