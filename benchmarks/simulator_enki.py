@@ -66,6 +66,7 @@ def _describe(scene: Playground) -> str:
         if isinstance(solid.outline, Box) and 0.0 < solid.pose.x_m < side and 0.0 < solid.pose.y_m < side:
             place = f"{solid.pose.x_m * 100} {solid.pose.y_m * 100} {solid.pose.yaw_rad}"
             size = f"{solid.outline.size_x_m * 100} {solid.outline.size_y_m * 100} {solid.height_m * 100}"
-            lines.append(f"box {place} {size} -1")
+            mass = -1 if solid.load is None else solid.load.mass_kg * 1000
+            lines.append(f"box {place} {size} {mass}")
     lines += [f"robot {robot.x_m * 100} {robot.y_m * 100} {robot.yaw_rad}" for robot in scene.robots]
     return "\n".join([*lines, "end"]) + "\n"

@@ -1,7 +1,7 @@
 """The scene on which simulators are compared: a crowd in a walled square, boxes, lines on the ground, commands.
 
-0.36 m² for each robot, a box for every second one, black lines on a grey ground. New targets between -100 and 500 come
-from a generator that the driver of Enki has too.
+0.36 m² for each robot, a box for every second one, half of them movable, black lines on a grey ground. New targets
+between -100 and 500 come from a generator that the driver of Enki has too.
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ from thymio_sim_ros.sim.playground import Playground, RobotStart
 CELL_M = 0.6
 BOX_M = (0.08, 0.05, 0.1)
 """Length, width, height."""
+BOX_KG = 0.1
+"""Mass of every second box; the others stand fast."""
 
 
 def side_m(robots: int) -> float:
@@ -51,7 +53,8 @@ def crowd(count: int) -> Playground:
         if index % 2 == 0:
             place = {"x_m": x + 0.22, "y_m": y + 0.22}
             size = dict(zip(("size_x_m", "size_y_m", "height_m"), BOX_M, strict=True))
-            shapes.append({"kind": "box", "color": "#9fa3bd", **place, **size})
+            mass = {"mass_kg": BOX_KG} if index % 4 == 0 else {}
+            shapes.append({"kind": "box", "color": "#9fa3bd", **place, **size, **mass})
     data = {"format": 1, "title": "crowd", "shapes": shapes, "robots": []}
     return dataclasses.replace(playground.loads(json.dumps(data), f"{count} robots"), robots=tuple(robots))
 

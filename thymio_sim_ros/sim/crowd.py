@@ -1,4 +1,4 @@
-"""All robots of a world as one: sensors that can measure all of them in one go do so.
+"""All robots of a world as one: they move as a fleet, and plug-ins that can serve all of them in one go do so.
 
 Readings are those of robot by robot (counts may differ where rounding is a matter of the last bit): every sensor has
 its own generator on every robot, and draws from it in the same order.
@@ -6,18 +6,24 @@ its own generator on every robot, and draws from it in the same order.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from itertools import chain
+from typing import Any
 
 import numpy as np
 
 from thymio_sim_ros.sim.columns import Columns
-from thymio_sim_ros.sim.noise import Noise
+from thymio_sim_ros.sim.footing import Footing
+from thymio_sim_ros.sim.noise import NormalBank, UniformBank
 from thymio_sim_ros.sim.raycaster import Fan, Indices, Raycaster, Values
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.robot import Robot, Shared
+from thymio_sim_ros.sim.view import GroupActuatorView
+from thymio_sim_ros.sim.wheels import WheelArrays
 
 __all__ = ["CROWD", "Crowd"]
+
+Act = Callable[[Sequence[Any], GroupActuatorView, float], None]
 
 CROWD = 6
 """From so many robots on, measuring all at once is quicker (benchmarks/simulator.py)."""
@@ -28,13 +34,13 @@ _NOWHERE_M = -1e6
 class _Group:
     """The robots as one sensor sees them; satisfies `GroupView`."""
 
-    __slots__ = ("_crowd", "noises")
+    __slots__ = ("_crowd", "noise")
 
-    def __init__(self, crowd: Crowd, noises: Sequence[Noise]) -> None:
-        self._crowd, self.noises = crowd, noises
+    def __init__(self, crowd: Crowd, noise: NormalBank) -> None:
+        self._crowd, self.noise = crowd, noise
 
     def __len__(self) -> int:
-        return len(self.noises)
+        return len(self._crowd)
 
     @property
     def now_ns(self) -> int:
@@ -48,7 +54,7 @@ class _Group:
         return self._crowd.cast(fan)
 
     def ground_at(self, places: Values) -> tuple[Values, Values]:
-        x, y, yaw = self._crowd.poses().T[:, :, None]
+        x, y, yaw = self._crowd.poses.T[:, :, None]
         cos, sin = np.cos(yaw), np.sin(yaw)
         xs = x + cos * places[:, 0] - sin * places[:, 1]
         ys = y + sin * places[:, 0] + cos * places[:, 1]
@@ -56,39 +62,100 @@ class _Group:
         return reflectances.reshape(xs.shape), floors.reshape(xs.shape)
 
 
+class _Actors:
+    """The robots as one actuator sees them; satisfies `GroupActuatorView`."""
+
+    __slots__ = ("_clock", "memory", "noise", "wheels")
+
+    def __init__(self, shared: Shared, wheels: WheelArrays, noise: UniformBank) -> None:
+        self._clock, self.wheels, self.noise = shared.clock, wheels, noise
+        self.memory: dict[str, Any] = {}
+
+    @property
+    def now_ns(self) -> int:
+        return self._clock.now_ns
+
+
 class Crowd:
-    """The robots of a world, which stay the same. Invariant: nothing here moves them."""
+    """The robots of a world, which stay the same until it disbands."""
 
     def __init__(self, robots: Iterable[Robot], shared: Shared) -> None:
         self.shared = shared
         self._caster = Raycaster(shared.physics.fixed, shared.physics.loose())
         self._robots = tuple(robots)
         self._names = tuple(robot.name for robot in self._robots)
-        self._groups = [
-            _Group(self, [view.noise for _, view in column])
-            for column in zip(*(robot.sensors for robot in self._robots), strict=True)
-        ]
-        self._poses = (-1, np.zeros((0, 3)))
+        self._order = {robot: index for index, robot in enumerate(self._robots)}
+        self._banks: list[NormalBank | UniformBank] = []
+        self._groups: dict[int, _Group] = {}
+        for number, column in enumerate(zip(*(robot.sensors for robot in self._robots), strict=True)):
+            if column[0][0].measure_all is not None:
+                normal = NormalBank([view.noise for _, view in column])
+                self._banks.append(normal)
+                self._groups[number] = _Group(self, normal)
+        self._fleet = shared.physics.gather()
+        self._wheels = WheelArrays([robot.wheels for robot in self._robots])
+        for robot in self._robots:
+            robot.shared_wheels = self._wheels
+        self._sure = np.zeros((3, len(self._robots)))
+        """Where each robot has looked for an edge, and how far away that may be at least."""
+        self._acts: list[tuple[Act, list[Any], _Actors]] = []
+        for tasks in zip(*(robot.tasks for robot in self._robots), strict=True):
+            if (update_all := tasks[0].update_all) is not None:
+                even = UniformBank([task.view.noise for task in tasks])
+                self._banks.append(even)
+                self._acts.append((update_all, [task.state for task in tasks], _Actors(shared, self._wheels, even)))
 
+    def __len__(self) -> int:
+        return len(self._robots)
+
+    def disband(self) -> None:
+        """Every robot acts and moves alone again."""
+        self.shared.physics.disband()
+        self._wheels.tell()
+        for robot in self._robots:
+            robot.shared_wheels = None
+        for bank in self._banks:
+            bank.give_back()
+
+    @property
     def poses(self) -> Values:
         """Where they really are now: rows x, y, yaw; who has fallen is far from any floor."""
-        if self._poses[0] != self.shared.clock.now_ns:
-            found = [
-                (body.pose.x_m, body.pose.y_m, body.pose.yaw_rad) if not body.is_fallen else (_NOWHERE_M, row, 0.0)
-                for row, body in enumerate(robot.body for robot in self._robots)
-            ]
-            self._poses = (self.shared.clock.now_ns, np.array(found))
-        return self._poses[1]
+        poses = self._fleet.poses
+        fallen = [index for index, robot in enumerate(self._robots) if robot.is_fallen]
+        if fallen:
+            poses = poses.copy()
+            poses[fallen] = [(_NOWHERE_M, index, 0.0) for index in fallen]
+        return poses
+
+    def act(self, dt_s: float) -> None:
+        """Run the actuators for one tick."""
+        for robot in self._in_order(self.shared.busy):
+            robot.act(dt_s, is_in_crowd=True)
+        for update_all, states, group in self._acts:
+            update_all(states, group, dt_s)
+        self._fleet.driven = self._wheels.ground
+
+    def roll(self, dt_s: float) -> None:
+        """Count on the wheels what the bodies have moved."""
+        self._wheels.roll(self._fleet.covered, dt_s)
+
+    def look_down(self, footing: Footing) -> None:
+        """Let those fall who have no floor under their origins; the others look again when they have gone that far."""
+        x, y = self._fleet.poses[:, :2].T
+        sure_x, sure_y, sure_m = self._sure
+        for index in np.flatnonzero(np.hypot(x - sure_x, y - sure_y) >= sure_m).tolist():
+            sure_x[index], sure_y[index] = x[index], y[index]
+            sure_m[index] = self._robots[index].stand(footing, float(x[index]), float(y[index]))
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
         """What the rays of all robots meet now (`Raycaster.cast`)."""
         fallen = {index for index, robot in enumerate(self._robots) if robot.body.is_fallen}
         self._caster.move(self.shared.physics.loose(), fallen)
-        return self._caster.cast(self.poses(), fan)
+        return self._caster.cast(self.poses, fan)
 
     def measure(self, due: Sequence[int]) -> Columns:
         """The readings of the sensors with these numbers, and of those woken."""
-        woken = {index: found for index, robot in enumerate(self._robots) if (found := robot.take_woken())}
+        woken = {self._order[robot]: robot.take_woken() for robot in self._in_order(self.shared.woken)}
         awake: Sequence[int] = sorted({*due, *chain.from_iterable(woken.values())}) if woken else due
         columns: list[tuple[str, Sequence[Reading | None]]] = []
         for number in awake:
@@ -104,3 +171,7 @@ class Crowd:
                 column = [robot.sense(number) for robot in self._robots]
             columns.append((sensor.name, column))
         return Columns(self._names, columns)
+
+    def _in_order(self, some: Collection[Robot]) -> list[Robot]:
+        """Some robots in the order of all."""
+        return [robot for robot in self._robots if robot in some] if some else []

@@ -29,6 +29,8 @@ _MAX_TILES = 1024
 """Blurred tiles that are kept at once: at most 64 MB."""
 
 _UNKNOWN, _MIXED = -2, -1
+_MANY = 16
+"""More tiles than this that are not known are looked at together with all others."""
 
 _Values = npt.NDArray[np.float64]
 _Indices = npt.NDArray[np.intp]
@@ -136,12 +138,36 @@ class Ground:
         columns = np.clip(tiles_x - self._corner[0], 0, last_column)
         colors = self._plain[rows, columns]
         unknown = np.flatnonzero(colors == _UNKNOWN)
+        if len(unknown) > _MANY:
+            self._survey()
+            return self._plain_colors(tiles_x, tiles_y)
         if len(unknown):
             for row, column in {(int(rows[index]), int(columns[index])) for index in unknown}:
                 seen = self._seen_by(column + self._corner[0], row + self._corner[1])[0]
                 self._plain[row, column] = seen[0, 0] if (seen == seen[0, 0]).all() else _MIXED
             colors = self._plain[rows, columns]
         return colors.astype(np.intp)
+
+    def _survey(self) -> None:
+        """Find the only color of every tile: for each row of tiles first along y, then along x."""
+        height, width = self._picture.pixels.shape
+        rows, columns = self._plain.shape
+        bottoms, tops = self._spans(self._corner[1], rows, self._picture.origin[1], height)
+        edges = np.stack(self._spans(self._corner[0], columns, self._picture.origin[0], width), axis=1).ravel() + 1
+        for row, (bottom, top) in enumerate(zip(bottoms.tolist(), tops.tolist(), strict=True)):
+            band = self._picture.padded(bottom, top, -1, width + 2)
+            low = np.minimum.reduceat(band.min(axis=0), edges)[::2]
+            high = np.maximum.reduceat(band.max(axis=0), edges)[::2]
+            self._plain[row] = np.where(low == high, low.astype(np.int32), _MIXED)
+
+    def _spans(self, first: int, count: int, origin: int, size: int) -> tuple[_Indices, _Indices]:
+        """Pixels that tiles from a first one on see along one axis: from, and up to but not including."""
+        cells = (first + np.arange(count)) * _TILE_CELLS
+        lowest, highest = (
+            self._taps(cells, origin, size)[:, 0],
+            self._taps(cells + _TILE_CELLS - 1, origin, size)[:, -1],
+        )
+        return lowest, highest + 1
 
     def _footprints(self, rows: _Indices, columns: _Indices) -> tuple[_Values, _Values]:
         """Samples by the pixels of their taps; summed in the order of `_weigh`."""

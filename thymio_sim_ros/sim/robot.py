@@ -26,7 +26,7 @@ from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.scene import RobotSnapshot
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.sound import SPEAKER_SHARE, Sound, Sounding
-from thymio_sim_ros.sim.wheels import Wheels
+from thymio_sim_ros.sim.wheels import WheelArrays, Wheels
 
 __all__ = ["Robot", "Shared"]
 
@@ -40,15 +40,24 @@ _MOST_SURE_TICKS = 100
 class Shared:
     """What all robots of a world share."""
 
-    __slots__ = ("_sounds", "_sounds_ns", "clock", "ground", "physics", "proximity_model", "robots")
+    __slots__ = ("_sounds", "_sounds_ns", "busy", "clock", "ground", "physics", "proximity_model", "robots", "woken")
 
     def __init__(
         self, clock: SimClock, ground: Ground, physics: Physics, proximity_model: str, robots: Mapping[str, Robot]
     ) -> None:
         self.clock, self.ground, self.physics, self.proximity_model = clock, ground, physics, proximity_model
         self.robots = robots
+        self.busy: dict[Robot, None] = {}
+        """Robots with something to do in the next tick beside what all do at once."""
+        self.woken: dict[Robot, None] = {}
+        """Robots with a sensor that was woken."""
         self._sounds: list[Sound] = []
         self._sounds_ns = -1
+
+    def forget(self, robot: Robot) -> None:
+        """A robot has left the world."""
+        self.busy.pop(robot, None)
+        self.woken.pop(robot, None)
 
     def sounds(self) -> list[Sound]:
         """All that sounds now; every robot is asked once per tick, however many listen."""
@@ -66,18 +75,21 @@ class Shared:
 class _View:
     """A robot as one plug-in sees it; satisfies `SensorView` and `ActuatorView`."""
 
-    __slots__ = ("_robot", "_states", "_world", "memory", "noise", "proximity_model", "wheels")
+    __slots__ = ("_robot", "_states", "_world", "memory", "noise", "proximity_model")
 
     def __init__(self, robot: Robot, world: Shared, noise: Noise) -> None:
         self._robot, self._world, self._states = robot, world, robot.states
         self.noise = noise
-        self.wheels = robot.wheels
         self.memory: dict[str, Any] = {}
         self.proximity_model = world.proximity_model
 
     @property
     def now_ns(self) -> int:
         return self._world.clock.now_ns
+
+    @property
+    def wheels(self) -> Wheels:
+        return self._robot.wheels
 
     @property
     def pose(self) -> Pose:
@@ -134,6 +146,18 @@ class _View:
         self._robot.place(pose)
 
 
+class Task:
+    """An actuator that acts on a robot in every tick in which it is busy."""
+
+    __slots__ = ("is_busy", "is_idle", "state", "update", "update_all", "view")
+
+    def __init__(self, actuator: Actuator, state: Any, view: _View) -> None:
+        assert actuator.update is not None
+        self.update, self.is_idle, self.state, self.view = actuator.update, actuator.is_idle, state, view
+        self.update_all = actuator.update_all
+        self.is_busy = self.is_idle is None or not self.is_idle(state)
+
+
 class Robot:
     """One robot. Invariant: `World.step` alone makes it act, move and measure, in that order."""
 
@@ -149,14 +173,18 @@ class Robot:
     ) -> None:
         self.name = start.name
         self.body: RobotBody = shared.physics.add_robot(start.name, start.pose)
-        self.wheels = Wheels()
+        self._wheels = Wheels()
+        self.shared_wheels: WheelArrays | None = None
+        """The wheels of all robots, when they roll as one."""
         self._clock, self._physics = shared.clock, shared.physics
         self._fall: Fall | None = None
         self._sure_ticks = 0
         self.states: dict[type[Any], Any] = {}
         """The state of every actuator, by its type."""
         self._accepting: dict[type[Any], tuple[Actuator, Any]] = {}
-        self._updates = []
+        self._shared = shared
+        self.tasks: list[Task] = []
+        """What acts in a tick, in name order."""
         for actuator in actuators:
             state = actuator.begin()
             self.states[type(state)] = state
@@ -164,7 +192,8 @@ class Robot:
                 self._accepting[kind] = (actuator, state)
             if actuator.update is not None:
                 view = _View(self, shared, Noise(seed, self.name, actuator.name, enabled=noise))
-                self._updates.append((actuator.update, state, view))
+                self.tasks.append(Task(actuator, state, view))
+        self._list_busy()
         self._hand, self._room = self.state(HandState), self.state(RoomState)
         self._speakers = [state for state in self.states.values() if isinstance(state, Sounding)]
         self.sensors = [
@@ -175,6 +204,13 @@ class Robot:
             for kind in sensor.wakes_on:
                 self._wakes.setdefault(kind, []).append(number)
         self._woken: set[int] = set()
+
+    @property
+    def wheels(self) -> Wheels:
+        """Its wheels."""
+        if self.shared_wheels is not None:
+            self.shared_wheels.tell()
+        return self._wheels
 
     @property
     def pose(self) -> Pose:
@@ -217,16 +253,38 @@ class Robot:
         actuator, state = self._accepting[type(command)]
         actuator.apply(state, command, self._clock.now_ns)
         self.wake(type(command))
+        for task in self.tasks:
+            if task.state is state and not task.is_busy:
+                task.is_busy = True
+                self._list_busy()
 
     def wake(self, kind: type[Any]) -> None:
         """Let the sensors that wait for this type of thing measure at the end of the tick."""
-        self._woken.update(self._wakes.get(kind, ()))
+        numbers = self._wakes.get(kind)
+        if numbers:
+            self._woken.update(numbers)
+            self._shared.woken[self] = None
 
-    def act(self, dt_s: float) -> None:
-        """Run the actuators for one tick."""
-        for update, state, view in self._updates:
-            update(state, view, dt_s)
-        self.body.drive(self.wheels.ground)
+    def act(self, dt_s: float, *, is_in_crowd: bool = False) -> None:
+        """Run for one tick the actuators that are busy; in a crowd those that the crowd does not run for all."""
+        has_rested = False
+        for task in self._busy:
+            if not (is_in_crowd and task.update_all is not None):
+                task.update(task.state, task.view, dt_s)
+            if task.is_idle is not None and task.is_idle(task.state):
+                task.is_busy, has_rested = False, True
+        if has_rested:
+            self._list_busy()
+        if not is_in_crowd:
+            self.body.drive(self.wheels.ground)
+
+    def _list_busy(self) -> None:
+        """What is to be updated, in name order; and whether the crowd has to ask."""
+        self._busy = tuple(task for task in self.tasks if task.is_busy)
+        if all(task.update_all is not None for task in self._busy):
+            self._shared.busy.pop(self, None)
+        else:
+            self._shared.busy[self] = None
 
     def roll(self, dt_s: float) -> None:
         """Count on the wheels what the body has moved."""
@@ -237,6 +295,7 @@ class Robot:
         if not self._woken:
             return []
         woken, self._woken = sorted(self._woken), set()
+        self._shared.woken.pop(self, None)
         for number in woken:
             sensor, view = self.sensors[number]
             if sensor.feel is not None:
@@ -258,12 +317,16 @@ class Robot:
         if self._sure_ticks > 0 and not self.body.touching:
             self._sure_ticks -= 1
         elif self._fall is None:
-            clearance_m = footing.clearance_m(self.pose.x_m, self.pose.y_m)
-            if clearance_m < 0.0:
-                self._fall = Fall(self._clock.now_ns + TICK_NS, self.body.course_rad)
-                self._physics.drop_robot(self.body)
-            else:
-                self._sure_ticks = int(min(clearance_m / _LONGEST_WAY_M, _MOST_SURE_TICKS))
+            sure_m = self.stand(footing, self.pose.x_m, self.pose.y_m)
+            self._sure_ticks = int(min(sure_m / _LONGEST_WAY_M, _MOST_SURE_TICKS))
+
+    def stand(self, footing: Footing, x_m: float, y_m: float) -> float:
+        """How far it may go from here, where it is, and surely find floor, in m; 0 when it falls."""
+        clearance_m = footing.clearance_m(x_m, y_m)
+        if clearance_m < 0.0 and self._fall is None:
+            self._fall = Fall(self._clock.now_ns + TICK_NS, self.body.course_rad)
+            self._physics.drop_robot(self.body)
+        return max(0.0, clearance_m)
 
     def measure(self, due: Sequence[int]) -> list[tuple[str, str, Reading]]:
         """The readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""

@@ -7,15 +7,15 @@ from typing import Any, Protocol, TypeVar
 
 from thymio_sim_ros.sim.geometry import Point, Pose, Tilt, Twist
 from thymio_sim_ros.sim.ground import GroundSample
-from thymio_sim_ros.sim.noise import Noise
+from thymio_sim_ros.sim.noise import Noise, NormalBank, UniformBank
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.primitives import Color
 from thymio_sim_ros.sim.raycaster import Fan, Indices, Values
 from thymio_sim_ros.sim.rays import Surroundings
 from thymio_sim_ros.sim.sound import Sound
-from thymio_sim_ros.sim.wheels import Wheels
+from thymio_sim_ros.sim.wheels import WheelArrays, Wheels
 
-__all__ = ["ActuatorView", "GroupView", "OtherRobot", "SensorView"]
+__all__ = ["ActuatorView", "GroupActuatorView", "GroupView", "OtherRobot", "SensorView"]
 
 S = TypeVar("S")
 
@@ -137,8 +137,8 @@ class GroupView(Protocol):
         ...
 
     @property
-    def noises(self) -> Sequence[Noise]:
-        """The sensor's own generator on each robot."""
+    def noise(self) -> NormalBank:
+        """The sensor's own generators; users are robots."""
         ...
 
     @property
@@ -152,6 +152,30 @@ class GroupView(Protocol):
 
     def ground_at(self, places: Values) -> tuple[Values, Values]:
         """Reflectance and floor under points of the robots' frames, by robot and point; rows of `places` are x, y."""
+        ...
+
+
+class GroupActuatorView(Protocol):
+    """All robots of a world as one actuator of theirs sees them at once."""
+
+    @property
+    def now_ns(self) -> int:
+        """Simulated time."""
+        ...
+
+    @property
+    def memory(self) -> dict[str, Any]:
+        """The actuator's own notes on all robots, empty at the start."""
+        ...
+
+    @property
+    def noise(self) -> UniformBank:
+        """The actuator's own generators; users are robots."""
+        ...
+
+    @property
+    def wheels(self) -> WheelArrays:
+        """The wheels of all robots, to be driven."""
         ...
 
 

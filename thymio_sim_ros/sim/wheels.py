@@ -1,14 +1,20 @@
-"""The two wheels of a robot: what they are told, how far they turned, and the odometry counted from them."""
+"""The wheels of robots: what they are told, how far they turned, and the odometry counted from them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
 
 from thymio_sim_ros.sim.geometry import Pose, Twist
 from thymio_sim_ros.sim.motor_control import WheelControl
 from thymio_sim_ros.sim.thymio2 import WHEEL_RADIUS_M, WHEEL_TRACK_M
 
-__all__ = ["Wheels"]
+__all__ = ["WheelArrays", "Wheels"]
+
+Values = npt.NDArray[np.float64]
 
 
 class Wheels:
@@ -70,3 +76,76 @@ class Wheels:
 
 def _limited(speed_m_s: float, limit_m_s: float) -> float:
     return max(-limit_m_s, min(limit_m_s, speed_m_s))
+
+
+class WheelArrays:
+    """The wheels of many robots: the sums of `Wheels` on arrays, whose rows are left and right.
+
+    The arrays are the truth, and each `Wheels` may be read, and changed, after `tell` until the next `drive` or `roll`.
+    """
+
+    def __init__(self, wheels: Sequence[Wheels]) -> None:
+        self._wheels = tuple(wheels)
+        self._is_told = True
+        self.take()
+
+    @property
+    def ground(self) -> Values:
+        """Speeds that reach the floor, m/s."""
+        self.take()
+        return self._ground
+
+    @property
+    def speeds(self) -> Values:
+        """Speeds at the rim, m/s."""
+        self.take()
+        return self._speeds
+
+    def set_controls(self, controls: Sequence[tuple[WheelControl, WheelControl] | None]) -> None:
+        """The loops that each robot's motors follow."""
+        for wheels, control in zip(self._wheels, controls, strict=True):
+            wheels.control = control
+
+    def tell(self) -> None:
+        """Write to the wheels what they are now."""
+        if self._is_told:
+            return
+        self._is_told = True
+        columns = (self._commanded, self._ground, self._speeds, self._angles)
+        pairs = zip(*(zip(*values.tolist(), strict=True) for values in columns), strict=True)
+        for wheels, values, place in zip(self._wheels, pairs, zip(*self._odometry.tolist(), strict=True), strict=True):
+            wheels.commanded, wheels.ground, wheels.speeds_m_s, wheels.angles_rad = values
+            wheels.odometry = Pose(*place)
+
+    def take(self) -> None:
+        """Read what the wheels are, if they may have been changed."""
+        if not self._is_told:
+            return
+        self._is_told = False
+        self._commanded = _rows([wheels.commanded for wheels in self._wheels], 2)
+        self._ground = _rows([wheels.ground for wheels in self._wheels], 2)
+        self._speeds = _rows([wheels.speeds_m_s for wheels in self._wheels], 2)
+        self._angles = _rows([wheels.angles_rad for wheels in self._wheels], 2)
+        places = [wheels.odometry for wheels in self._wheels]
+        self._odometry = _rows([(place.x_m, place.y_m, place.yaw_rad) for place in places], 3)
+
+    def drive(self, commanded: Values, slip: Values, limit_m_s: float) -> None:
+        """As `Wheels.drive`."""
+        self.take()
+        self._commanded = np.maximum(-limit_m_s, np.minimum(limit_m_s, commanded))
+        self._ground = np.maximum(-limit_m_s, np.minimum(limit_m_s, commanded * slip))
+
+    def roll(self, covered_m_s: Values, dt_s: float) -> None:
+        """As `Wheels.roll`."""
+        self.take()
+        self._speeds = speeds = self._commanded + (covered_m_s - self._ground)
+        left, right = speeds
+        way, turn = (left + right) / 2 * dt_s, (right - left) / WHEEL_TRACK_M * dt_s
+        x, y, yaw = self._odometry
+        heading = yaw + turn / 2
+        self._odometry = np.stack((x + way * np.cos(heading), y + way * np.sin(heading), yaw + turn))
+        self._angles = self._angles + speeds * (dt_s / WHEEL_RADIUS_M)
+
+
+def _rows(values: Sequence[Sequence[float]], width: int) -> Values:
+    return np.ascontiguousarray(np.array(values, dtype=float).reshape(-1, width).T)

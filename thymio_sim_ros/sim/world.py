@@ -82,6 +82,7 @@ class World:
 
     def _begin(self) -> None:
         self._clock = SimClock()
+        self._crowd: Crowd | None = None
         self._ground.restore()
         self._physics = Physics(self.playground.solids, self.playground.triggers)
         self._robots: dict[str, Robot] = {}
@@ -132,7 +133,9 @@ class World:
 
     def remove(self, robot: str) -> None:
         """Take a robot away, now; KeyError for an unknown one."""
-        self._physics.remove_robot(self._robots.pop(robot).body)
+        gone = self._robots.pop(robot)
+        self._physics.remove_robot(gone.body)
+        self._shared.forget(gone)
         self._note(Removed(robot))
         self._posted = [(name, command) for name, command in self._posted if name != robot]
         self._gather()
@@ -167,7 +170,9 @@ class World:
             robot.apply(SetPen(pen.down, as_color(pen.color), pen.width_m))
 
     def _gather(self) -> None:
-        """Let many robots measure together."""
+        """Let many robots act, move and measure together."""
+        if self._crowd is not None:
+            self._crowd.disband()
         self._crowd = Crowd(self._robots.values(), self._shared) if len(self._robots) >= CROWD else None
 
     def _names(self) -> set[str]:
@@ -203,14 +208,21 @@ class World:
                 self._robots[name].apply(command)
 
     def _run_actuators(self) -> None:
+        if self._crowd is not None:
+            self._crowd.act(_TICK_S)
+            return
         for robot in self._robots.values():
             robot.act(_TICK_S)
 
     def _move_bodies(self) -> tuple[Contact, ...]:
         contacts = self._physics.step()
-        for robot in self._robots.values():
-            robot.roll(_TICK_S)
-            robot.look_down(self._footing)
+        if self._crowd is not None:
+            self._crowd.roll(_TICK_S)
+            self._crowd.look_down(self._footing)
+        else:
+            for robot in self._robots.values():
+                robot.roll(_TICK_S)
+                robot.look_down(self._footing)
         for movable in self._physics.movables.values():
             if movable.is_moving:
                 self._drop_over_edge(movable)

@@ -1,13 +1,14 @@
 """Actuators, one file each: the commands they accept, and what they do with them in every tick.
 
 A module exports ACTUATOR. Its state on one robot is an object made by `begin`; commands change it by `apply`,
-and `update`, if there is one, acts on the robot once per tick.
+and `update`, if there is one, acts on the robot once per tick: when `is_idle` is there, only from a command on until
+the state is idle. `update_all`, if there is one, does for all robots of a crowd what `update` does one by one.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -15,7 +16,7 @@ from typing import Any
 from thymio_sim_ros import registry
 from thymio_sim_ros.sim.aseba_face import NO_ACTUATOR_FACE, ActuatorFace
 from thymio_sim_ros.sim.guards import Guard
-from thymio_sim_ros.sim.view import ActuatorView
+from thymio_sim_ros.sim.view import ActuatorView, GroupActuatorView
 
 __all__ = ["Actuator", "all_actuators"]
 
@@ -30,6 +31,8 @@ class Actuator:
     apply: Callable[[Any, Any, int], None]
     update: Callable[[Any, ActuatorView, float], None] | None = None
     aseba: ActuatorFace = NO_ACTUATOR_FACE
+    is_idle: Callable[[Any], bool] | None = None
+    update_all: Callable[[Sequence[Any], GroupActuatorView, float], None] | None = None
 
 
 def all_actuators() -> tuple[Actuator, ...]:

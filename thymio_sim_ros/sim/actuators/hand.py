@@ -42,5 +42,10 @@ def _update(state: HandState, view: ActuatorView, _dt_s: float) -> None:
 
 
 ACTUATOR = Actuator(
-    name="hand", accepts=(MoveRobot, ResetOdometry, Tilt, Tap), begin=HandState, apply=_apply, update=_update
+    name="hand",
+    accepts=(MoveRobot, ResetOdometry, Tilt, Tap),
+    begin=HandState,
+    apply=_apply,
+    update=_update,
+    is_idle=lambda state: not state.waiting,
 )

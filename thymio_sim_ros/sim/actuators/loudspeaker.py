@@ -147,6 +147,7 @@ ACTUATOR = Actuator(
     begin=LoudspeakerState,
     apply=_apply,
     update=_update,
+    is_idle=lambda state: state.is_silent,
     aseba=ActuatorFace(
         natives=(
             Native("sound.freq", ("Hz", "1/60s"), _frequency, "Play a tone; 0: until stopped, negative: stop"),

@@ -11,12 +11,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from thymio_sim_ros.sim import thymio2, units
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.aseba_face import ActuatorFace, Output
 from thymio_sim_ros.sim.commands import BodyTwist, Command, MotorTargets, SetMotorModel, WheelVelocities
 from thymio_sim_ros.sim.motor_control import WheelControl
-from thymio_sim_ros.sim.view import ActuatorView
+from thymio_sim_ros.sim.view import ActuatorView, GroupActuatorView
 
 __all__ = ["ACTUATOR", "MotorState"]
 
@@ -64,20 +66,40 @@ def _update(state: MotorState, view: ActuatorView, dt_s: float) -> None:
     noise = view.noise
     slip = (noise.uniform(*thymio2.SLIP), noise.uniform(*thymio2.SLIP))
     view.wheels.control = state.control
-    speeds = state.speeds_m_s if state.control is None else _controlled(state.control, state, view, dt_s)
+    speeds = state.speeds_m_s if state.control is None else _controlled(state, view.wheels.speeds_m_s, dt_s)
     view.wheels.drive(speeds, slip, thymio2.MAX_SPEED_M_S)
 
 
-def _controlled(
-    control: tuple[WheelControl, WheelControl], state: MotorState, view: ActuatorView, dt_s: float
-) -> tuple[float, float]:
-    """Speeds in m/s that the control loops give."""
+def _controlled(state: MotorState, wheels_m_s: Sequence[float], dt_s: float) -> tuple[float, float]:
+    """Speeds in m/s that the control loops give to wheels at their speeds."""
+    assert state.control is not None
     unit_m_s = thymio2.MAX_SPEED_M_S / thymio2.FULL_TARGET
     left, right = (
         wheel.tick(target_m_s / unit_m_s, speed_m_s / unit_m_s, dt_s) * unit_m_s
-        for wheel, target_m_s, speed_m_s in zip(control, state.speeds_m_s, view.wheels.speeds_m_s, strict=True)
+        for wheel, target_m_s, speed_m_s in zip(state.control, state.speeds_m_s, wheels_m_s, strict=True)
     )
     return (left, right)
+
+
+def _update_all(states: Sequence[MotorState], group: GroupActuatorView, dt_s: float) -> None:
+    now_ns, memory, wheels = group.now_ns, group.memory, group.wheels
+    for state in states:
+        if state.ends_ns is not None and now_ns >= state.ends_ns:
+            state.speeds_m_s = state.targets_m_s
+            state.ends_ns = None
+    speeds, controls = [state.speeds_m_s for state in states], [state.control for state in states]
+    if speeds != memory.get("speeds"):
+        memory["speeds"], memory["commanded"] = speeds, np.array(speeds).T
+    if controls != memory.get("controls"):
+        memory["controls"] = controls
+        wheels.set_controls(controls)
+    commanded = memory["commanded"]
+    if any(controls):
+        commanded, turning = commanded.copy(), wheels.speeds.T.tolist()
+        for index, state in enumerate(states):
+            if state.control is not None:
+                commanded[:, index] = _controlled(state, turning[index], dt_s)
+    wheels.drive(commanded, group.noise.draw(*thymio2.SLIP, 2), thymio2.MAX_SPEED_M_S)
 
 
 def _targets(words: Sequence[int]) -> Command:
@@ -90,5 +112,6 @@ ACTUATOR = Actuator(
     begin=MotorState,
     apply=_apply,
     update=_update,
+    update_all=_update_all,
     aseba=ActuatorFace(outputs=(Output((("motor.left.target", 1), ("motor.right.target", 1)), _targets),)),
 )

@@ -120,4 +120,11 @@ def _update(state: PenState, view: ActuatorView, _dt_s: float) -> None:
         state.draw(view)
 
 
-ACTUATOR = Actuator(name="pen", accepts=(SetPen,), begin=PenState, apply=_apply, update=_update)
+ACTUATOR = Actuator(
+    name="pen",
+    accepts=(SetPen,),
+    begin=PenState,
+    apply=_apply,
+    update=_update,
+    is_idle=lambda state: not state.down,
+)

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import pymunk
 
@@ -20,20 +21,26 @@ from thymio_sim_ros.sim.geometry import Pose, wrap_angle
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, TICK_S, Contact
 from thymio_sim_ros.sim.rays import ConvexObstacle
 
-__all__ = ["ROBOT_TYPE", "RobotBody"]
+if TYPE_CHECKING:
+    from thymio_sim_ros.sim.physics.fleet import Fleet
+
+__all__ = ["MOMENT_KG_M2", "PUSH_N_S_M", "ROBOT_TYPE", "RobotBody"]
 
 ROBOT_TYPE = 1
 """pymunk's collision type of robots."""
-_MOMENT_KG_M2 = 1.0
+MOMENT_KG_M2 = 1.0
 """Far above the real one: wheels hold the heading of a robot that hits a wall (thymio-robot.md section 11)."""
-_PUSH_N_S_M = thymio2.MASS_KG / TICK_S
+PUSH_N_S_M = thymio2.MASS_KG / TICK_S
 """Force for each m/s that a robot in contact lacks: enough to make up for it in one tick."""
 _AT_REST_M_S = 1e-6
 _HULL = thymio2.hull()
 
 
 class RobotBody:
-    """One robot's body, pushed by its two wheels. Invariant: `pose` is the body's after the last tick."""
+    """One robot's body, pushed by its two wheels. Invariant: `pose` is the body's after the last tick.
+
+    In a fleet it moves with the others, and the methods of a tick are not called.
+    """
 
     __slots__ = (
         "_angle",
@@ -42,36 +49,57 @@ class RobotBody:
         "_heading",
         "_is_free",
         "_obstacle",
+        "_pose",
+        "_speed_m_s",
+        "_spin_rad_s",
         "body",
+        "fleet",
         "is_fallen",
         "name",
-        "pose",
         "shape",
-        "speed_m_s",
-        "spin_rad_s",
         "touching",
     )
 
     def __init__(self, name: str, pose: Pose) -> None:
         self.name = name
-        self.pose = pose
+        self._pose = pose
         self.touching: dict[pymunk.Shape, Contact] = {}
-        self.speed_m_s = 0.0
-        """Speed along the heading."""
-        self.spin_rad_s = 0.0
-        """Rate of turn, counter-clockwise."""
+        self._speed_m_s = self._spin_rad_s = 0.0
+        self.fleet: Fleet | None = None
+        """The robots with which it moves."""
         self.is_fallen = False
         """Whether it lies below the floor, out of everybody's reach, until it is placed."""
         self._driven = self._covered = (0.0, 0.0)
         self._is_free = True
         self._angle = self._heading = pose.yaw_rad
         self._obstacle: tuple[Pose, ConvexObstacle] | None = None
-        self.body = pymunk.Body(thymio2.MASS_KG, _MOMENT_KG_M2)
+        self.body = pymunk.Body(thymio2.MASS_KG, MOMENT_KG_M2)
         self.body.position = (pose.x_m, pose.y_m)
         self.body.angle = pose.yaw_rad
         self.shape = pymunk.Poly(self.body, _HULL)
         self.shape.collision_type = ROBOT_TYPE
         self.shape.elasticity = 1.0  # pymunk multiplies: what the other has counts
+
+    @property
+    def pose(self) -> Pose:
+        """Where it is."""
+        if self.fleet is not None:
+            self.fleet.tell()
+        return self._pose
+
+    @property
+    def speed_m_s(self) -> float:
+        """Speed along the heading."""
+        if self.fleet is not None:
+            self.fleet.tell()
+        return self._speed_m_s
+
+    @property
+    def spin_rad_s(self) -> float:
+        """Rate of turn, counter-clockwise."""
+        if self.fleet is not None:
+            self.fleet.tell()
+        return self._spin_rad_s
 
     @property
     def covered_m_s(self) -> tuple[float, float]:
@@ -86,13 +114,16 @@ class RobotBody:
     @property
     def obstacle(self) -> ConvexObstacle:
         """What the rays of others see of it."""
-        if self._obstacle is None or self._obstacle[0] is not self.pose:
-            self._obstacle = (self.pose, ConvexObstacle(self.pose.place_all(_HULL), thymio2.HULL_HEIGHT_M))
+        pose = self.pose
+        if self._obstacle is None or self._obstacle[0] is not pose:
+            self._obstacle = (pose, ConvexObstacle(pose.place_all(_HULL), thymio2.HULL_HEIGHT_M))
         return self._obstacle[1]
 
     @property
     def course_rad(self) -> float:
         """The direction in which it moves, in its own frame; 0 at rest."""
+        if self.fleet is not None:
+            self.fleet.tell()
         if self._is_free:
             return math.pi if self.speed_m_s < 0.0 else 0.0
         vx, vy = self.body.velocity
@@ -108,36 +139,42 @@ class RobotBody:
         body = self.body
         body.position, body.angle = (pose.x_m, pose.y_m), pose.yaw_rad
         body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
-        self.speed_m_s = self.spin_rad_s = 0.0
+        self._speed_m_s = self._spin_rad_s = 0.0
         self._angle = pose.yaw_rad
-        self.pose = pose
+        self._pose = pose
         if body.space is not None:
             body.space.reindex_shapes_for_body(body)
+
+    def take_over(self, pose: Pose, speed_m_s: float, spin_rad_s: float, *, is_free: bool) -> None:
+        """Be where the fleet has brought it."""
+        self._is_free = is_free
+        self._pose, self._angle = pose, pose.yaw_rad
+        self._speed_m_s, self._spin_rad_s = speed_m_s, spin_rad_s
 
     def fall(self) -> None:
         """Lose the floor: from now on the wheels turn in the air."""
         self.is_fallen = self._is_free = True
         self.touching.clear()
-        self.speed_m_s = self.spin_rad_s = 0.0
+        self._speed_m_s = self._spin_rad_s = 0.0
 
     def glide(self) -> None:
         """A tick without the engine, for when nothing can be touched; the same sums in the same order."""
         left, right = self._driven
-        self.speed_m_s = speed = (left + right) / 2
-        self.spin_rad_s = spin = (right - left) / thymio2.WHEEL_TRACK_M
+        self._speed_m_s = speed = (left + right) / 2
+        self._spin_rad_s = spin = (right - left) / thymio2.WHEEL_TRACK_M
         self._is_free = True
-        x_m, y_m, angle = self.pose.x_m, self.pose.y_m, self.pose.yaw_rad
+        x_m, y_m, angle = self._pose.x_m, self._pose.y_m, self._pose.yaw_rad
         for _ in range(SUB_STEPS):
             heading = angle + spin / 2 * SUB_STEP_S
             x_m += speed * math.cos(heading) * SUB_STEP_S
             y_m += speed * math.sin(heading) * SUB_STEP_S
             angle += spin * SUB_STEP_S
         self._angle = angle
-        self.pose = Pose(x_m, y_m, angle)
+        self._pose = Pose(x_m, y_m, angle)
 
     def wake(self) -> None:
         """Hand the pose over to the engine after gliding."""
-        self.body.position = (self.pose.x_m, self.pose.y_m)
+        self.body.position = (self._pose.x_m, self._pose.y_m)
         self.body.angle = self._angle
 
     def begin_tick(self) -> None:
@@ -157,21 +194,21 @@ class RobotBody:
             self._heading = heading = self._angle + spin / 2 * SUB_STEP_S
             body.velocity = (speed * math.cos(heading), speed * math.sin(heading))
             body.angular_velocity = spin
-            self.speed_m_s, self.spin_rad_s = speed, spin
+            self._speed_m_s, self._spin_rad_s = speed, spin
             return
         turning = body.angular_velocity
         self._heading = heading = self._angle + (turning + spin / 2) * SUB_STEP_S
         vx, vy = body.velocity
-        push_x = (speed * math.cos(heading) - vx) * _PUSH_N_S_M
-        push_y = (speed * math.sin(heading) - vy) * _PUSH_N_S_M
+        push_x = (speed * math.cos(heading) - vx) * PUSH_N_S_M
+        push_y = (speed * math.sin(heading) - vy) * PUSH_N_S_M
         share = thymio2.DRIVE_FORCE_N / max(thymio2.DRIVE_FORCE_N, math.hypot(push_x, push_y))
         body.force = (push_x * share, push_y * share)
-        body.torque = (spin - turning) * (_MOMENT_KG_M2 / SUB_STEP_S)
+        body.torque = (spin - turning) * (MOMENT_KG_M2 / SUB_STEP_S)
 
     def settle(self, earlier: int) -> None:
         """After a sub-step, `earlier` ones done: take over what contacts have made of the push."""
         if self._is_free and not self.touching:
-            self._angle += self.spin_rad_s * SUB_STEP_S
+            self._angle += self._spin_rad_s * SUB_STEP_S
             return
         body = self.body
         if self._is_free:
@@ -180,17 +217,17 @@ class RobotBody:
             self._covered = (left * earlier / SUB_STEPS, right * earlier / SUB_STEPS)
         vx, vy = body.velocity
         self._angle = body.angle
-        self.speed_m_s = vx * math.cos(self._heading) + vy * math.sin(self._heading)
-        self.spin_rad_s = body.angular_velocity
-        half = self.spin_rad_s * thymio2.WHEEL_TRACK_M / 2
+        self._speed_m_s = vx * math.cos(self._heading) + vy * math.sin(self._heading)
+        self._spin_rad_s = body.angular_velocity
+        half = self._spin_rad_s * thymio2.WHEEL_TRACK_M / 2
         left, right = self._covered
         self._covered = (
-            left + (self.speed_m_s - half) / SUB_STEPS,
-            right + (self.speed_m_s + half) / SUB_STEPS,
+            left + (self._speed_m_s - half) / SUB_STEPS,
+            right + (self._speed_m_s + half) / SUB_STEPS,
         )
 
     def end_tick(self) -> None:
         """Tell the new pose."""
         x_m, y_m = self.body.position
         self._angle = self.body.angle
-        self.pose = Pose(x_m, y_m, self._angle)
+        self._pose = Pose(x_m, y_m, self._angle)

@@ -6,7 +6,7 @@ While nothing is in anybody's reach and nothing moves by itself, pymunk rests an
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
@@ -18,6 +18,7 @@ from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.nearby import Mover, Nearby
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, Contact
 from thymio_sim_ros.sim.physics.doors import DoorBody
+from thymio_sim_ros.sim.physics.fleet import Fleet
 from thymio_sim_ros.sim.physics.movables import AT_REST_M_S, MovableBody
 from thymio_sim_ros.sim.physics.robots import ROBOT_TYPE, RobotBody
 from thymio_sim_ros.sim.primitives import Disc, Solid, Trigger
@@ -37,8 +38,6 @@ _LOOK_ROUND_TICKS = 10
 _MOST_QUIET_TICKS = 100
 _FAR_M = thymio2.HULL_RADIUS_M + _SAFE_M + _MOST_QUIET_TICKS * _LONGEST_WAY_M
 """What is farther away does not shorten the quiet."""
-_MOST_GLIDING = 8
-"""With more robots, looking round costs more than the engine."""
 _THING_TYPE = 2
 """pymunk's collision type of everything but robots."""
 
@@ -57,6 +56,7 @@ class Physics:
         self._movables: dict[str, MovableBody] = {}
         self._doors: dict[str, DoorBody] = {}
         self._triggers = tuple((trigger, *trigger.middle, trigger.reach_m) for trigger in triggers)
+        self._fleet: Fleet | None = None
         self._quiet_ticks = 0
         self._engine_ticks = 0
         fixed = []
@@ -94,7 +94,8 @@ class Physics:
 
     def add_robot(self, name: str, pose: Pose) -> RobotBody:
         """A robot's body, at rest at a pose."""
-        self._stop_gliding()
+        self.disband()
+        self._interrupt()
         robot = RobotBody(name, pose)
         self._robots[robot.shape] = robot
         self._add(name, robot.shape, robot.body)
@@ -103,7 +104,8 @@ class Physics:
 
     def remove_robot(self, robot: RobotBody) -> None:
         """Take a robot's body away; nobody touches it any more."""
-        self._stop_gliding()
+        self.disband()
+        self._interrupt()
         if not robot.is_fallen:
             self._space.remove(robot.shape, robot.body)
         self._forget(robot.shape)
@@ -112,7 +114,7 @@ class Physics:
 
     def drop_robot(self, robot: RobotBody) -> None:
         """Let a robot fall below the floor, where nothing touches or sees it."""
-        self._stop_gliding()
+        self._interrupt()
         self._space.remove(robot.shape, robot.body)
         self._forget(robot.shape)
         robot.fall()
@@ -120,7 +122,7 @@ class Physics:
 
     def drop_movable(self, movable: MovableBody) -> None:
         """Let a thing fall below the floor."""
-        self._stop_gliding()
+        self._interrupt()
         self._space.remove(movable.shape, movable.body, *movable.joints)
         self._forget(movable.shape)
         movable.fall()
@@ -128,7 +130,7 @@ class Physics:
 
     def place(self, body: RobotBody | MovableBody, pose: Pose) -> None:
         """Put a robot or a thing somewhere, at rest; what has fallen stands on the floor again."""
-        self._stop_gliding()
+        self._interrupt()
         was_fallen = body.is_fallen
         body.place(pose)
         if was_fallen:
@@ -143,6 +145,19 @@ class Physics:
         """Movables and doors, always in the same order."""
         return (*self._movables.values(), *self._doors.values())
 
+    def gather(self) -> Fleet:
+        """All robots move as one from now on, until one is added or removed or they disband."""
+        self._interrupt()
+        is_alone = not self._movables and not self._doors
+        self._fleet = Fleet(self._space, tuple(self._robots.values()), is_alone=is_alone)
+        return self._fleet
+
+    def disband(self) -> None:
+        """Every robot moves alone again."""
+        if self._fleet is not None:
+            self._fleet.disband()
+            self._fleet = None
+
     def step(self) -> tuple[Contact, ...]:
         """One tick; the contacts at its end, by robot and in the order in which they began."""
         self._nearby.stir()
@@ -150,17 +165,17 @@ class Physics:
         if self._quiet_ticks > 0:
             self._glide()
             return ()
-        robots = [robot for robot in self._robots.values() if not robot.is_fallen]
-        for robot in robots:
-            robot.begin_tick()
+        drivers: Sequence[RobotBody | Fleet] = (self._fleet,) if self._fleet is not None else self._standing()
+        for driver in drivers:
+            driver.begin_tick()
         for earlier in range(SUB_STEPS):
-            for robot in robots:
-                robot.push()
+            for driver in drivers:
+                driver.push()
             self._space.step(SUB_STEP_S)
-            for robot in robots:
-                robot.settle(earlier)
-        for robot in robots:
-            robot.end_tick()
+            for driver in drivers:
+                driver.settle(earlier)
+        for driver in drivers:
+            driver.end_tick()
         for movable in self._movables.values():
             if not (movable.is_fallen or movable.body.is_sleeping):
                 movable.end_tick()
@@ -169,7 +184,8 @@ class Physics:
         self._engine_ticks += 1
         if self._engine_ticks % _LOOK_ROUND_TICKS == 0:
             self._quiet_ticks = self._count_quiet_ticks()
-        return tuple(contact for robot in robots for contact in robot.touching.values())
+        touching = self._standing() if self._fleet is None else self._fleet.touching()
+        return tuple(contact for robot in touching for contact in robot.touching.values())
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
         """What a robot's rays may meet within `reach_m` of its origin, at least `height_m` high."""
@@ -192,8 +208,14 @@ class Physics:
         )
         return Surroundings(near)
 
+    def _standing(self) -> list[RobotBody]:
+        """Robots that have not fallen."""
+        return [robot for robot in self._robots.values() if not robot.is_fallen]
+
     def _swing_doors(self) -> None:
         """Doors open while somebody is in an area of theirs, and close again."""
+        if not self._doors:
+            return
         wanted_open = {
             trigger.door
             for trigger, x, y, reach_m in self._triggers
@@ -216,6 +238,12 @@ class Physics:
             if self._quiet_ticks == 0:
                 self._wake()
 
+    def _interrupt(self) -> None:
+        """Before a body is changed from outside."""
+        self._stop_gliding()
+        if self._fleet is not None:
+            self._fleet.release()
+
     def _stop_gliding(self) -> None:
         if self._quiet_ticks > 0:
             self._quiet_ticks = 0
@@ -228,8 +256,8 @@ class Physics:
 
     def _count_quiet_ticks(self) -> int:
         """For how many ticks no robot can reach anything, however it drives."""
-        robots = [robot for robot in self._robots.values() if not robot.is_fallen]
-        if len(robots) > _MOST_GLIDING or any(robot.touching for robot in robots):
+        robots = self._standing()
+        if self._fleet is not None or any(robot.touching for robot in robots):
             return 0
         if any(movable.is_moving for movable in self._movables.values()):
             return 0
@@ -251,7 +279,7 @@ class Physics:
 
     def _list_movers(self) -> None:
         """Tell `nearby` who moves now."""
-        movers: list[Mover] = [robot for robot in self._robots.values() if not robot.is_fallen]
+        movers: list[Mover] = [*self._standing()]
         movers += [movable for movable in self._movables.values() if not movable.is_fallen]
         self._nearby.replace_movers([*movers, *self._doors.values()])
 
@@ -277,10 +305,15 @@ class Physics:
         for robot in self._robots.values():
             robot.touching.pop(shape, None)
 
+    def _tell_fleet(self) -> None:
+        if self._fleet is not None:
+            self._fleet.has_news = True
+
     def _on_begin(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+        self._tell_fleet()
         one, other = arbiter.shapes
         points = arbiter.contact_point_set
-        x, y = points.points[0].point_a
+        x, y = _middle(points)
         speed = max(0.0, (_velocity(one, (x, y)) - _velocity(other, (x, y))).dot(points.normal))
         for mine, its in ((one, other), (other, one)):
             robot = self._robots.get(mine)
@@ -288,6 +321,7 @@ class Physics:
                 robot.touching[its] = Contact(robot.name, self._names[its], x, y, speed, True)
 
     def _on_separate(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+        self._tell_fleet()
         one, other = arbiter.shapes
         for mine, its in ((one, other), (other, one)):
             robot = self._robots.get(mine)
@@ -298,6 +332,12 @@ class Physics:
 def _without_bounce(arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
     """Robots do not bounce off each other."""
     arbiter.restitution = 0.0
+
+
+def _middle(points: pymunk.ContactPointSet) -> tuple[float, float]:
+    """The middle of a contact, whichever of its points and shapes come first."""
+    ends = [end for point in points.points for end in (point.point_a, point.point_b)]
+    return (math.fsum(end.x for end in ends) / len(ends), math.fsum(end.y for end in ends) / len(ends))
 
 
 def _velocity(shape: pymunk.Shape, point: tuple[float, float]) -> pymunk.Vec2d:

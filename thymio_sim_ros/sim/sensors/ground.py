@@ -45,7 +45,7 @@ def _measure_all(group: GroupView) -> Later:
     reflectances, floors = group.ground_at(_PLACES)
     values = (floors * units.ground_responses(reflectances)).ravel()
     over_floor = np.flatnonzero(floors)
-    values[over_floor] += [group.noises[robot].gauss(GROUND_NOISE) for robot in (over_floor // 2).tolist()]
+    values[over_floor] += group.noise.draw(over_floor // 2, GROUND_NOISE)
     counts = np.rint(np.clip(values, 0.0, units.GROUND_FULL)).astype(int).reshape(-1, 2)
 
     def make(robot: int) -> GroundReading:

@@ -118,9 +118,7 @@ def _measure_all(group: GroupView) -> Later:
     sensors, distances = group.cast(_FANS[model])
     counts, ranges = np.zeros(len(group) * _COUNT, dtype=int), np.full(len(group) * _COUNT, math.inf)
     if len(sensors):
-        noises = group.noises
-        values = responses(distances, model)
-        values += [noises[robot].gauss(PROXIMITY_NOISE) for robot in (sensors // _COUNT).tolist()]
+        values = responses(distances, model) + group.noise.draw(sensors // _COUNT, PROXIMITY_NOISE)
         counts[sensors] = np.rint(np.clip(values, 0.0, units.PROXIMITY_FULL))
         seen = np.flatnonzero(counts)
         ranges[seen] = units.proximity_distances(counts[seen])
