@@ -7,8 +7,9 @@ The parser builds a tree in which an expression is a vector; :mod:`aseba_vm.expa
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
+from typing import get_args
 
 from aseba_vm.errors import CompileError, SourcePos
 
@@ -245,6 +246,12 @@ class Sub:
 Statement = Block | Assignment | Compound | If | While | For | Emit | Call | CallSub | Return | OnEvent | Sub
 Node = Expression | Statement | Argument | ElementArgument
 
+#: The fields of each kind of node that may hold nodes.
+_FIELDS: Mapping[type, tuple[str, ...]] = {
+    kind: tuple(field.name for field in fields(kind) if field.name not in ("operator", "pos", "number", "name"))
+    for kind in get_args(Node)
+}
+
 
 @dataclass(frozen=True, slots=True)
 class Tree:
@@ -268,8 +275,8 @@ class Tree:
 def children(node: Node) -> tuple[Node, ...]:
     """Return the nodes directly below a node, in order."""
     found: list[Node] = []
-    for field in fields(node):
-        value = getattr(node, field.name)
+    for name in _FIELDS[type(node)]:
+        value = getattr(node, name)
         if isinstance(value, Node):
             found.append(value)
         elif isinstance(value, tuple):
