@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import pymunk
 
@@ -21,10 +21,7 @@ from thymio_sim_ros.sim.geometry import Pose, wrap_angle
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, TICK_S, Contact
 from thymio_sim_ros.sim.rays import ConvexObstacle
 
-if TYPE_CHECKING:
-    from thymio_sim_ros.sim.physics.fleet import Fleet
-
-__all__ = ["MOMENT_KG_M2", "PUSH_N_S_M", "ROBOT_TYPE", "RobotBody"]
+__all__ = ["MOMENT_KG_M2", "PUSH_N_S_M", "ROBOT_TYPE", "RobotBody", "Teller"]
 
 ROBOT_TYPE = 1
 """pymunk's collision type of robots."""
@@ -34,6 +31,14 @@ PUSH_N_S_M = thymio2.MASS_KG / TICK_S
 """Force for each m/s that a robot in contact lacks: enough to make up for it in one tick."""
 _AT_REST_M_S = 1e-6
 _HULL = thymio2.hull()
+
+
+class Teller(Protocol):
+    """What moves many robots at once."""
+
+    def tell(self) -> None:
+        """Write to the bodies what has become of them."""
+        ...
 
 
 class RobotBody:
@@ -65,7 +70,7 @@ class RobotBody:
         self._pose = pose
         self.touching: dict[pymunk.Shape, Contact] = {}
         self._speed_m_s = self._spin_rad_s = 0.0
-        self.fleet: Fleet | None = None
+        self.fleet: Teller | None = None
         """The robots with which it moves."""
         self.is_fallen = False
         """Whether it lies below the floor, out of everybody's reach, until it is placed."""
