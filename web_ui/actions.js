@@ -5,8 +5,13 @@ import { PARAMETERS, robotTopic } from "./state/names.js";
 /** @typedef {import("./protocol/client.js").Client} Client */
 /** @typedef {import("./state/store.js").Store} Store */
 
-/** A file larger than this is no program and no playground. */
-export const LARGEST_FILE = 1_000_000;
+/** A file larger than this is no program. */
+export const LARGEST_PROGRAM = 1_000_000;
+/** A playground may hold pictures; as text it must fit into one message of the bridge. */
+export const LARGEST_PLAYGROUND = 3_000_000;
+
+/** What the ending of a file's name says about it. */
+const KINDS = { program: /\.(aesl|aseba|txt)$/i, playground: /\.(json|playground|xml|zip)$/i };
 
 export class Actions {
   /**
@@ -83,20 +88,26 @@ export class Actions {
     this.store.dispatch({ type: "uploaded", what: "program", message: answer.ok ? null : answer.message });
   }
 
-  /** @param {string} name @param {string} [text]  the JSON text, else `name` is one of the list */
-  async loadPlayground(name, text) {
-    this.store.dispatch({ type: "upload", what: "playground", name, text: text ?? "" });
-    const answer = await this.client.setParameters([{ name: PARAMETERS.playground, value: text ?? name }]);
+  /** @param {string} name @param {Uint8Array} [content]  of a file, else `name` is one of the list */
+  async loadPlayground(name, content) {
+    this.store.dispatch({ type: "upload", what: "playground", name, text: "" });
+    const value =
+      content === undefined
+        ? name
+        : `data:application/octet-stream;name=${encodeURIComponent(name)};base64,${base64(content)}`;
+    const answer = await this.client.setParameters([{ name: PARAMETERS.playground, value }]);
     this.store.dispatch({ type: "uploaded", what: "playground", message: answer.ok ? null : answer.message });
   }
 
   /** A file chosen or dropped: its ending says what it is. @param {File} file */
   async loadFile(file) {
-    const kind = /\.(aesl|aseba|txt)$/i.test(file.name) ? "program" : /\.json$/i.test(file.name) ? "playground" : null;
-    if (kind === null) return this.refuse("file.unknown", file);
-    if (file.size > LARGEST_FILE) return this.refuse("file.tooLarge", file);
-    const text = await file.text();
-    await (kind === "program" ? this.loadProgram(file.name, text) : this.loadPlayground(file.name, text));
+    if (KINDS.program.test(file.name)) {
+      if (file.size > LARGEST_PROGRAM) return this.refuse("file.tooLarge", file);
+      await this.loadProgram(file.name, await file.text());
+    } else if (KINDS.playground.test(file.name)) {
+      if (file.size > LARGEST_PLAYGROUND) return this.refuse("file.tooLarge", file);
+      await this.loadPlayground(file.name, new Uint8Array(await file.arrayBuffer()));
+    } else this.refuse("file.unknown", file);
   }
 
   /** @param {string} key @param {File} file */
@@ -109,4 +120,14 @@ export class Actions {
     const answer = await this.client.call(service, request);
     if (!answer.ok) this.store.dispatch({ type: "notice", level: "error", text: answer.message });
   }
+}
+
+/** @param {Uint8Array} bytes */
+function base64(bytes) {
+  const step = 0x8000; // as many arguments as a function surely takes
+  let text = "";
+  for (let from = 0; from < bytes.length; from += step) {
+    text += String.fromCharCode(...bytes.subarray(from, from + step));
+  }
+  return btoa(text);
 }

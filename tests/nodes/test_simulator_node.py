@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import math
 
@@ -216,6 +217,25 @@ def test_the_playground_can_be_changed_and_a_bad_one_is_refused(ros, simulation)
     assert markers[-1].markers[0].action == Marker.DELETEALL
     sim.step(0.1)
     assert len(sim.world.robots) == 1
+
+
+def test_a_command_to_a_robot_that_has_gone_with_its_playground_is_dropped(ros, simulation):
+    sim = simulation(playground="two_robots")
+    late = sim.simulator._poster("red")
+    assert set_parameter(ros, "playground", "base").successful
+    late(BodyTwist(0.1, 0.0))
+    sim.step(0.1)
+    assert list(sim.world.robots) == ["thymio"]
+
+
+def test_a_refused_upload_names_its_file_and_the_old_world_stays(ros, simulation):
+    sim = simulation(playground="base")
+    world = sim.world
+    text = base64.b64encode(b"<aseba-playground>\n<world w='x'/></aseba-playground>").decode()
+    result = set_parameter(ros, "playground", f"data:;name=my%20maze.playground;base64,{text}")
+    assert result.reason == "my maze.playground: line 2: <world> w: found 'x', expected a number"
+    assert not result.successful
+    assert sim.world is world
 
 
 def set_parameter(ros, name, value):

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { Actions, LARGEST_FILE } from "../../web_ui/actions.js";
+import { Actions, LARGEST_PLAYGROUND, LARGEST_PROGRAM } from "../../web_ui/actions.js";
 import { Store } from "../../web_ui/state/store.js";
 
 /** @typedef {import("../../web_ui/state/index.js").Message} Message */
@@ -86,11 +86,22 @@ test("a program file goes to the runtime with its name", async () => {
   assert.equal(store.state.uploads.program?.phase, "accepted");
 });
 
-test("a playground file goes to the simulator as its text", async () => {
+test("a playground file goes to the simulator whole and with its name", async () => {
   const { actions, asked, store } = prepared({ ok: false, message: "/simulator.playground: robots: found 0" });
-  await actions.loadFile(new File(["{}"], "own.JSON"));
-  assert.deepEqual(asked, [["set", [{ name: "/simulator.playground", value: "{}" }]]]);
+  await actions.loadFile(new File(["{}"], "my own.JSON"));
+  const value = "data:application/octet-stream;name=my%20own.JSON;base64,e30=";
+  assert.deepEqual(asked, [["set", [{ name: "/simulator.playground", value }]]]);
   assert.equal(store.state.uploads.playground?.fault?.text, "robots: found 0");
+});
+
+test("archives and Aseba's playgrounds are files like any other, byte by byte", async () => {
+  const { actions, asked } = prepared();
+  const bytes = Uint8Array.from({ length: 100_000 }, (_, index) => index % 256);
+  for (const name of ["maze.playground", "maze.zip", "world.xml"]) {
+    await actions.loadFile(new File([bytes], name));
+    const [, [{ value }]] = asked.at(-1);
+    assert.deepEqual(Buffer.from(value.split(",")[1], "base64"), Buffer.from(bytes));
+  }
 });
 
 test("a playground of the list goes by its name", async () => {
@@ -102,7 +113,8 @@ test("a playground of the list goes by its name", async () => {
 test("files of other kinds, and too large ones, are not sent", async () => {
   const { actions, asked, store } = prepared();
   await actions.loadFile(new File(["x"], "holiday.png"));
-  await actions.loadFile(new File(["x".repeat(LARGEST_FILE + 1)], "long.aesl"));
+  await actions.loadFile(new File(["x".repeat(LARGEST_PROGRAM + 1)], "long.aesl"));
+  await actions.loadFile(new File(["x".repeat(LARGEST_PLAYGROUND + 1)], "large.json"));
   assert.deepEqual(asked, []);
   assert.deepEqual(
     store.state.notices.map(({ text }) => text),

@@ -68,3 +68,28 @@ test("every kind of marker is drawn in metres", () => {
   });
   assert.deepEqual(sizes, ["0.200", "0.200", "0.200", "0.000", "0.000"]);
 });
+
+test("a picture is a flat sheet of the marker's size, shown as soon as it has arrived", async () => {
+  const wall = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
+  const bitmap = /** @type {any} */ ({ width: 2, height: 1 });
+  /** @type {Blob[]} */ const decoded = [];
+  await new Promise((/** @type {(value?: unknown) => void} */ arrived) => {
+    const model = new PlaygroundModel(arrived, async (png) => {
+      decoded.push(png);
+      return bitmap;
+    });
+    const texture = { data: [137, 80, 78, 71] };
+    model.update(
+      applyMarkers(new Map(), [{ ...wall, type: 11, points: [], texture, scale: { x: 0.4, y: 0.2, z: 1 } }]),
+    );
+    const [{ mesh }] = [...model.meshes.values()];
+    mesh.geometry.computeBoundingBox();
+    const { min, max } = /** @type {any} */ (mesh.geometry.boundingBox);
+    assert.deepEqual(
+      [max.x - min.x, max.y - min.y, max.z - min.z].map((size) => size.toFixed(3)),
+      ["0.400", "0.200", "0.000"],
+    );
+    assert.equal(mesh.material.visible, false);
+  });
+  assert.deepEqual([...new Uint8Array(await decoded[0].arrayBuffer())], [137, 80, 78, 71]);
+});

@@ -107,8 +107,8 @@ test("the simulator and its playgrounds are told as JSON", () => {
     ),
     message("/simulator/playgrounds", json([{ name: "line", title: "Line", description: "d" }, { name: "base" }])),
   ]);
-  assert.deepEqual(simulator, { playground: "line", title: "Line", paused: true, factor: 2, achieved: 1.5 });
-  assert.deepEqual(playgrounds[1], { name: "base", title: "base", description: "" });
+  assert.deepEqual(simulator, { playground: "line", title: "Line", paused: true, factor: 2, achieved: 1.5, robots: null });
+  assert.deepEqual(playgrounds[1], { name: "base", title: "base", description: "", translations: {} });
 });
 
 test("markers are replaced by namespace and id, and all deleted", () => {
@@ -240,4 +240,14 @@ test("a snapshot is plain data with the selected robot at hand", () => {
   ]);
   const { robot, program, markers } = JSON.parse(JSON.stringify(snapshot(state)));
   assert.deepEqual([robot.buttons.center, program, markers], [false, null, 0]);
+});
+
+test("a robot that has gone with its playground is gone, even while its topics live on", () => {
+  const told = (/** @type {string[]} */ ...names) =>
+    message("/simulator/state", json({ playground: "p", robots: names.map((name) => ({ name })) }));
+  const channels = { type: "channels", topics: ["/a/ground_truth/odom", "/ground_truth/odom"] };
+  const odometry = message("/a/raw/ground", { data: [] });
+  const { robots, selected } = after(/** @type {any} */ ([channels, told("a"), told(""), odometry, channels]));
+  assert.deepEqual([Object.keys(robots), selected], [[""], ""]);
+  assert.deepEqual(Object.keys(after(/** @type {any} */ ([told(""), channels, told("a")])).robots), ["a"]);
 });

@@ -50,6 +50,7 @@ class DevicePorts:
         self._bus = bus
         self._program = self._host.program
         self._status: DiagnosticStatus | None = None
+        self._is_closed = False
         self._event_ports: list[tuple[Any, Any]] = []
         self._event_publishers: dict[str, Any] = {}
         topic = names.topic
@@ -106,7 +107,9 @@ class DevicePorts:
             self.run()
 
     def run(self) -> None:
-        """Run what is pending, then send what came of it."""
+        """Run what is pending, then send what came of it; nothing once it is closed, as messages may still come."""
+        if self._is_closed:
+            return
         now_ns = self._node.get_clock().now().nanoseconds
         self.device.advance(now_ns)
         self.device.run(RUN_BUDGET)
@@ -125,6 +128,7 @@ class DevicePorts:
 
     def close(self) -> None:
         """The robot does not go on without its program: wheels stop; its topics and services go."""
+        self._is_closed = True
         self.device.stop()
         for command in self.device.take_commands():
             self._send(command)

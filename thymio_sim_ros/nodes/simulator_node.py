@@ -181,7 +181,12 @@ class Simulator:
         self._world_ports.publish_clock(0, last=True)
 
     def _poster(self, robot: str) -> Callable[[Command], None]:
-        return lambda command: self.world.post(robot, command)
+        def post(command: Command) -> None:
+            # A message may be on its way to a robot that goes with the old playground.
+            if robot in self.world.robots:
+                self.world.post(robot, command)
+
+        return post
 
     def _timeout_ns(self) -> int:
         return round(self.params.cmd_vel_timeout * SECOND_NS)

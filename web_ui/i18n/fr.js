@@ -3,7 +3,7 @@ export const fr = {
   "app.language": "Langue",
   "app.panels": "Panneaux",
   "app.robot": "Thymio",
-  "app.drop": "Déposer un programme (.aesl) ou un terrain (.json)",
+  "app.drop": "Déposer un programme (.aesl) ou un terrain (.json, .playground, .zip)",
   "app.noWebgl":
     "Ce navigateur ne sait pas dessiner en 3D (pas de WebGL). Boutons, programmes et valeurs fonctionnent quand même.",
   "app.contextLost": "L’image 3D est perdue ; elle revient d’elle-même.",
@@ -54,7 +54,7 @@ export const fr = {
   "playground.choose": "Choisir un terrain",
   "playground.own": "{title} (d’un fichier)",
   "playground.open": "Ouvrir …",
-  "playground.openHelp": "Ouvrir un fichier de terrain (.json)",
+  "playground.openHelp": "Ouvrir un fichier de terrain (.json, .playground ou .zip)",
   "playground.sending": "Chargement de {name} …",
   "playground.refused": "{name} n’a pas été chargé. Le terrain reste comme il était.",
   time: "Temps",
@@ -89,7 +89,7 @@ export const fr = {
   "proximity.rear_right": "arrière droite",
   "side.left": "gauche",
   "side.right": "droite",
-  "file.unknown": "{name} : ni un programme (.aesl) ni un terrain (.json)",
+  "file.unknown": "{name} : ni un programme (.aesl) ni un terrain (.json, .playground, .zip)",
   "file.tooLarge": "{name} : plus de 1 Mo",
   "notice.dismiss": "Masquer",
 };

@@ -3,7 +3,7 @@ export const it = {
   "app.language": "Lingua",
   "app.panels": "Pannelli",
   "app.robot": "Thymio",
-  "app.drop": "Rilasciare un programma (.aesl) o un campo (.json)",
+  "app.drop": "Rilasciare un programma (.aesl) o un campo (.json, .playground, .zip)",
   "app.noWebgl":
     "Questo browser non può disegnare in 3D (manca WebGL). Pulsanti, programmi e valori funzionano lo stesso.",
   "app.contextLost": "L’immagine 3D è andata persa; torna da sola.",
@@ -55,7 +55,7 @@ export const it = {
   "playground.choose": "Scegliere un campo",
   "playground.own": "{title} (da un file)",
   "playground.open": "Aprire …",
-  "playground.openHelp": "Aprire un file di campo (.json)",
+  "playground.openHelp": "Aprire un file di campo (.json, .playground o .zip)",
   "playground.sending": "Caricamento di {name} …",
   "playground.refused": "{name} non è stato caricato. Il campo resta com’era.",
   time: "Tempo",
@@ -90,7 +90,7 @@ export const it = {
   "proximity.rear_right": "dietro a destra",
   "side.left": "sinistra",
   "side.right": "destra",
-  "file.unknown": "{name}: né un programma (.aesl) né un campo (.json)",
+  "file.unknown": "{name}: né un programma (.aesl) né un campo (.json, .playground, .zip)",
   "file.tooLarge": "{name}: più di 1 MB",
   "notice.dismiss": "Nascondere",
 };

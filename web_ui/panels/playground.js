@@ -3,8 +3,10 @@
 import { card } from "./card.js";
 import { fileButton, h, setText } from "./dom.js";
 
+/** @typedef {import("../state/index.js").PlaygroundInfo} PlaygroundInfo */
+
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
-export function playgroundPanel({ t, actions, announce }) {
+export function playgroundPanel({ t, language, actions, announce }) {
   const select = h("select", { id: "playground-choice", "aria-label": t("playground.choose") });
   select.addEventListener("change", () => actions.loadPlayground(select.value));
   const description = h("p", { class: "description" });
@@ -20,7 +22,7 @@ export function playgroundPanel({ t, actions, announce }) {
         id: "playground-file",
         label: t("playground.open"),
         help: t("playground.openHelp"),
-        accept: ".json",
+        accept: ".json,.playground,.xml,.zip",
         open: (file) => actions.loadFile(file),
       }),
     ),
@@ -39,13 +41,16 @@ export function playgroundPanel({ t, actions, announce }) {
       const list = JSON.stringify([playgrounds, own?.title]);
       if (list !== listed) {
         listed = list;
-        select.replaceChildren(...playgrounds.map(({ name, title }) => h("option", { value: name }, title)));
+        select.replaceChildren(
+          ...playgrounds.map((info) => h("option", { value: info.name }, translated(info, language).title)),
+        );
         if (own !== null)
           select.prepend(h("option", { value: own.playground }, t("playground.own", { title: own.title })));
       }
       const current = simulator?.playground ?? "";
       if (document.activeElement !== select || playground?.phase !== "sending") select.value = current;
-      setText(description, playgrounds.find(({ name }) => name === current)?.description ?? "");
+      const chosen = playgrounds.find(({ name }) => name === current);
+      setText(description, chosen === undefined ? "" : translated(chosen, language).description);
       if (playground === shown) return;
       shown = playground;
       const text =
@@ -57,4 +62,9 @@ export function playgroundPanel({ t, actions, announce }) {
       if (text !== "") announce(text);
     },
   };
+}
+
+/** Title and description in a language, else in English. @param {PlaygroundInfo} info @param {string} language */
+function translated(info, language) {
+  return info.translations[language] ?? info;
 }

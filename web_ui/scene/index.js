@@ -39,7 +39,7 @@ export class SceneView {
     /** @type {Map<string, { model: RobotModel, label: HTMLElement }>} */ this.robots = new Map();
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(SKY);
-    this.playground = new PlaygroundModel();
+    this.playground = new PlaygroundModel(() => this.invalidate());
     const sun = new THREE.DirectionalLight(0xffffff, 1.75);
     sun.position.set(-1.2, -1.6, 3);
     const fill = new THREE.DirectionalLight(0xffffff, 0.5); // so that faces turned away from the sun are not dull

@@ -18,7 +18,13 @@ const GEOMETRIES = /** @type {Record<number, (marker: Marker) => THREE.BufferGeo
 });
 
 export class PlaygroundModel {
-  constructor() {
+  /**
+   * @param {() => void} changed  called when a picture has arrived
+   * @param {(png: Blob) => Promise<ImageBitmap>} decode  gives a picture, its first row last
+   */
+  constructor(changed = () => {}, decode = (png) => createImageBitmap(png, { imageOrientation: "flipY" })) {
+    this.changed = changed;
+    this.decode = decode;
     this.group = new THREE.Group();
     /**
      * @type {Map<string, { marker: Marker, mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshLambertMaterial> }>}
@@ -59,6 +65,32 @@ export class PlaygroundModel {
 
   /** @param {string} key @param {Marker} marker */
   #add(key, marker) {
+    const picture = marker.texture?.data.length ? Uint8Array.from(marker.texture.data) : null;
+    const mesh = picture === null ? this.#plain(marker) : this.#pictured(marker, picture);
+    const { position, orientation } = marker.pose;
+    mesh.position.set(position.x, position.y, position.z);
+    mesh.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w).normalize();
+    this.meshes.set(key, { marker, mesh });
+    this.group.add(mesh);
+  }
+
+  /** A picture lies flat in the marker's frame, as large as its scale. @param {Marker} marker @param {Uint8Array<ArrayBuffer>} png */
+  #pictured({ scale }, png) {
+    const map = new THREE.Texture();
+    map.colorSpace = THREE.SRGBColorSpace;
+    map.anisotropy = 8;
+    map.flipY = false; // it arrives turned over
+    const material = new THREE.MeshLambertMaterial({ map, transparent: true, visible: false, side: THREE.DoubleSide });
+    this.decode(new Blob([png], { type: "image/png" })).then((bitmap) => {
+      map.image = bitmap;
+      map.needsUpdate = material.visible = true;
+      this.changed();
+    });
+    return new THREE.Mesh(new THREE.PlaneGeometry(scale.x, scale.y), material);
+  }
+
+  /** @param {Marker} marker */
+  #plain(marker) {
     const { r, g, b, a } = marker.color;
     const perPoint = marker.colors.length > 0;
     const material = new THREE.MeshLambertMaterial({
@@ -69,12 +101,7 @@ export class PlaygroundModel {
       side:
         marker.type === MARKER.TRIANGLE_LIST || marker.type === MARKER.LINE_STRIP ? THREE.DoubleSide : THREE.FrontSide,
     });
-    const mesh = new THREE.Mesh(GEOMETRIES[marker.type](marker), material);
-    const { position, orientation } = marker.pose;
-    mesh.position.set(position.x, position.y, position.z);
-    mesh.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w).normalize();
-    this.meshes.set(key, { marker, mesh });
-    this.group.add(mesh);
+    return new THREE.Mesh(GEOMETRIES[marker.type](marker), material);
   }
 
   /** @param {string} key */
@@ -83,6 +110,7 @@ export class PlaygroundModel {
     if (entry === undefined) return;
     this.group.remove(entry.mesh);
     entry.mesh.geometry.dispose();
+    entry.mesh.material.map?.dispose();
     entry.mesh.material.dispose();
     this.meshes.delete(key);
   }

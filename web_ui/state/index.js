@@ -17,7 +17,8 @@ import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
  * @property {Fault | null} fault
  */
 /** @typedef {"program" | "playground"} What */
-/** @typedef {{ name: string, title: string, description: string }} PlaygroundInfo */
+/** @typedef {{ title: string, description: string }} Titles */
+/** @typedef {Titles & { name: string, translations: Readonly<Record<string, Titles>> }} PlaygroundInfo  by language */
 /**
  * @typedef {object} Simulator
  * @property {string} playground
@@ -25,6 +26,7 @@ import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
  * @property {boolean} paused
  * @property {number} factor     wanted
  * @property {number} achieved
+ * @property {string[] | null} robots  names; null where it does not say
  */
 /** @typedef {{ id: number, level: "info" | "warning" | "error", text: string }} Notice */
 /**
@@ -152,8 +154,19 @@ function withChannels(state, { topics }) {
     const part = splitTopic(topic);
     if (part?.name === "ground_truth/odom") names.add(part.robot);
   }
-  const robots = Object.fromEntries([...names].map((name) => [name, state.robots[name] ?? NEW_ROBOT]));
+  const there = [...names].filter((name) => isThere(state, name));
+  const robots = Object.fromEntries(there.map((name) => [name, state.robots[name] ?? NEW_ROBOT]));
   return { ...state, topics, robots, selected: selection(state.selected, robots) };
+}
+
+/**
+ * Whether the simulator, if it says so, has this robot: a topic may outlive it.
+ *
+ * @param {State} state
+ * @param {string} robot
+ */
+function isThere({ simulator }, robot) {
+  return simulator?.robots?.includes(robot) ?? true;
 }
 
 /** @param {State} state @param {Extract<Message, { type: "message" }>} message @returns {State} */
@@ -163,6 +176,7 @@ function withTopic(state, { topic, value, nowMs = 0 }) {
   if (part.robot === null) return GLOBAL_STEPS[part.name](state, value);
   if (part.name === "aseba/status")
     return { ...state, programs: { ...state.programs, [part.robot]: readStatus(value) } };
+  if (!isThere(state, part.robot)) return state;
   const robot = reduceRobot(state.robots[part.robot] ?? NEW_ROBOT, part.name, value, nowMs);
   return { ...state, robots: { ...state.robots, [part.robot]: robot } };
 }
@@ -171,24 +185,26 @@ const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any) => Sta
   "/markers": (state, value) => ({ ...state, markers: applyMarkers(state.markers, value.markers) }),
   "/simulator/state"(state, value) {
     const told = JSON.parse(value.data);
-    return {
-      ...state,
-      simulator: {
-        playground: told.playground ?? "",
-        title: told.title ?? told.playground ?? "",
-        paused: told.paused ?? false,
-        factor: told.real_time_factor ?? 1,
-        achieved: told.achieved ?? 0,
-      },
+    const simulator = {
+      playground: told.playground ?? "",
+      title: told.title ?? told.playground ?? "",
+      paused: told.paused ?? false,
+      factor: told.real_time_factor ?? 1,
+      achieved: told.achieved ?? 0,
+      robots: told.robots?.map((/** @type {any} */ { name }) => name) ?? null,
     };
+    return withChannels({ ...state, simulator }, state);
   },
   "/simulator/playgrounds": (state, value) => ({
     ...state,
-    playgrounds: JSON.parse(value.data).map((/** @type {any} */ { name, title = name, description = "" }) => ({
-      name,
-      title,
-      description,
-    })),
+    playgrounds: JSON.parse(value.data).map(
+      (/** @type {any} */ { name, title = name, description = "", translations = {} }) => ({
+        name,
+        title,
+        description,
+        translations,
+      }),
+    ),
   }),
 });
 

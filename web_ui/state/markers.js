@@ -13,6 +13,7 @@
  * @property {Colour} color
  * @property {Vector[]} points
  * @property {Colour[]} colors
+ * @property {{ data: ArrayLike<number> }} [texture]  a picture, PNG, over the whole of the marker; empty for none
  */
 
 export const MARKER = { CUBE: 1, SPHERE: 2, CYLINDER: 3, LINE_STRIP: 4, TRIANGLE_LIST: 11 };
