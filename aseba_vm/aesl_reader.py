@@ -86,6 +86,7 @@ class _Reader:
         self.parser.buffer_text = False  # so that the place of a text is that of its first character
         self.parser.StartDoctypeDeclHandler = self.document_type
         self.parser.EntityDeclHandler = self.entity
+        self.parser.SkippedEntityHandler = self.unknown_entity
         self.parser.StartElementHandler = self.start
         self.parser.EndElementHandler = self.end
         self.parser.CommentHandler = lambda _: self.aside(b"-->")
@@ -114,12 +115,16 @@ class _Reader:
     # -- what expat finds
 
     def document_type(self, name: str, system: str | None, public: str | None, _: object) -> None:
-        if system is not None or public is not None:
+        if self.is_strict and (system is not None or public is not None):
             raise self.error("aesl-outer-document", (system or public or "",), self.data.find(b"<!DOCTYPE"))
 
     def entity(self, name: str, *_: object) -> None:
         at = self.data.rfind(b"<!ENTITY", 0, self.parser.CurrentByteIndex)
         raise self.error("aesl-entity", (name,), at)
+
+    def unknown_entity(self, *_: object) -> None:
+        """An entity that another document might declare; no other document is ever read."""
+        raise self.error("xml-entity", ())
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
         depth = len(self.path)

@@ -114,7 +114,7 @@ def test_bytes_are_decoded_as_they_declare():
         ("<!DOCTYPE a [<!ENTITY b 'c'>]><network/>", "aesl-entity", (1, 14)),
         ("<!DOCTYPE a [<!ENTITY % b 'c'>]><network/>", "aesl-entity", (1, 14)),
         ("<!DOCTYPE a [<!ENTITY b SYSTEM '/etc/passwd'>]><network/>", "aesl-entity", (1, 14)),
-        ("<!DOCTYPE a SYSTEM '/etc/passwd'><network>&b;</network>", "aesl-outer-document", (1, 1)),
+        ("<!DOCTYPE a SYSTEM '/etc/passwd'><network>&b;</network>", "xml-entity", (1, 43)),
         ("<network>" + "\n" * aesl.MAX_CHARACTERS, "aesl-too-long", (999_992, 1)),
     ],
 )
@@ -132,6 +132,8 @@ TWO = '<node name="a"/>\n'
 @pytest.mark.parametrize(
     ("text", "kind", "place"),
     [
+        ("<!DOCTYPE a SYSTEM '/etc/passwd'><network><node name='a'/></network>", "aesl-outer-document", (1, 1)),
+        ("<!DOCTYPE a PUBLIC 'a' 'b'><network><node name='a'/></network>", "aesl-outer-document", (1, 1)),
         ("<notwork><node name='a'/></notwork>", "aesl-root", (1, 1)),
         ("<network>\n</network>", "aesl-no-node", (2, 1)),
         ("<network/>", "aesl-no-node", (1, 1)),
