@@ -30,10 +30,12 @@ class Slot:
 class SensorBinding:
     """The variables that hold parts of a reading of `size` words, and the local event it raises.
 
+    `runs` are the same places joined where they touch: (address, first word of the reading, the word after its last).
     `above`: address of the variable that the first word must exceed for the event, and that must not be 0.
     """
 
     slots: tuple[Slot, ...]
+    runs: tuple[tuple[int, int, int], ...]
     size: int
     event: int | None
     above: int | None = None
@@ -51,16 +53,19 @@ class OutputBinding:
 def sensors(layout: str = THYMIO) -> dict[str, SensorBinding]:
     """Every sensor that Aseba sees, by name; variables that the layout lacks are left out."""
     addresses = target(layout).addresses
-    return {
-        sensor.name: SensorBinding(
-            tuple(_slots(sensor.aseba, layout)),
+    found = {}
+    for sensor in all_sensors():
+        if not (sensor.aseba.variables or sensor.aseba.event):
+            continue
+        slots = tuple(_slots(sensor.aseba, layout))
+        found[sensor.name] = SensorBinding(
+            slots,
+            _runs(slots),
             sum(size for _, size in sensor.aseba.variables),
             None if sensor.aseba.event is None else _event(sensor.aseba.event, layout),
             addresses[sensor.aseba.above][0] if sensor.aseba.above in addresses else None,
         )
-        for sensor in all_sensors()
-        if sensor.aseba.variables or sensor.aseba.event
-    }
+    return found
 
 
 def sensor_names() -> tuple[str, ...]:
@@ -98,6 +103,17 @@ def _slots(face: AsebaFace, layout: str) -> Iterator[Slot]:
         if name in addresses:
             yield Slot(addresses[name][0], size, begin, _event(name, layout) if face.edge_events else None)
         begin += size
+
+
+def _runs(slots: Sequence[Slot]) -> tuple[tuple[int, int, int], ...]:
+    runs: list[tuple[int, int, int]] = []
+    for slot in slots:
+        address, begin, end = runs[-1] if runs else (-1, 0, 0)
+        if (slot.address - address, slot.begin) == (end - begin, end) and runs:
+            runs[-1] = (address, begin, end + slot.size)
+        else:
+            runs.append((slot.address, slot.begin, slot.begin + slot.size))
+    return tuple(runs)
 
 
 def _event(name: str, layout: str) -> int:

@@ -150,13 +150,14 @@ class AsebaDevice:
         if len(words) != binding.size:
             raise ValueError(f"{len(words)} words found, expected {binding.size}")
         new = list(words)
-        memory, old, handled, queue = self._vm.variables, self._last.get(sensor), self._handled, self._queue
-        for slot in binding.slots:
-            begin, end = slot.begin, slot.begin + slot.size
-            part = new[begin:end]
-            memory[slot.address : slot.address + slot.size] = part
-            if slot.edge in handled and part != (old[begin:end] if old else [0] * slot.size):
-                queue.arrive(slot.edge)
+        memory, old, handled, queue = self._vm.variables.words, self._last.get(sensor), self._handled, self._queue
+        for address, begin, end in binding.runs:
+            memory[address : address + end - begin] = new[begin:end]
+        if new != (old or [0] * binding.size):
+            for slot in binding.slots:
+                begin, end = slot.begin, slot.begin + slot.size
+                if slot.edge in handled and new[begin:end] != (old[begin:end] if old else [0] * slot.size):
+                    queue.arrive(slot.edge)
         self._last[sensor] = new
         event = binding.event
         if event is None:
@@ -171,7 +172,7 @@ class AsebaDevice:
     def advance(self, now_ns: int) -> None:
         """Simulated time has come so far; `run` raises the events of timers whose period ended on the way."""
         self._queue.advance(now_ns)
-        self.body.advance(now_ns, self._vm.variables[self._intensity])
+        self.body.advance(now_ns, self._vm.variables.words[self._intensity])
         self._now_ns = now_ns
 
     def run(self, budget: int) -> None:
@@ -269,7 +270,7 @@ class AsebaDevice:
         if not 0 <= self._now_ns - self._rules_ns < PERIOD_NS:
             self._rules_ns = self._now_ns - self._now_ns % PERIOD_NS
             if self._state != OFF:
-                self._commands += self._rules.look(self._vm.variables)
+                self._commands += self._rules.look(self._vm.variables.words)
         commands, self._commands = self._commands, []
         if not self._is_changed:
             return commands
@@ -409,7 +410,7 @@ class AsebaDevice:
 
     def _words(self, output: bindings.OutputBinding) -> list[int]:
         """What the variables of an output hold."""
-        memory = self._vm.variables
+        memory = self._vm.variables.words
         return [word for slot in output.slots for word in memory[slot.address : slot.address + slot.size]]
 
     def _tell(self, notice: str) -> None:
@@ -419,7 +420,7 @@ class AsebaDevice:
 
     def _words_at(self, place: tuple[int, int]) -> list[int]:
         address, size = place
-        return self._vm.variables[address : address + size]
+        return list(self._vm.variables.words[address : address + size])
 
     def _on_reset(self, vm: VirtualMachine) -> None:
         """The robot's share in a reset (thymio-robot.md section 4)."""
