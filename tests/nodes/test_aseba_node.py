@@ -5,14 +5,17 @@ from __future__ import annotations
 import json
 import math
 
+import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Twist, Vector3
 from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.parameter import Parameter
-from std_msgs.msg import Bool, Float32MultiArray, Int16MultiArray, MultiArrayDimension, MultiArrayLayout, String
+from std_msgs.msg import Bool, Empty, Float32MultiArray, Int16MultiArray, MultiArrayDimension, MultiArrayLayout, String
 from std_srvs.srv import Trigger
 
 from tests.tracks import distance_to, track_points
+from thymio_sim_ros.nodes.aseba_node import AsebaRuntime, RuntimeParams
+from thymio_sim_ros.nodes.life import StartError
 
 AESL = """<!DOCTYPE aesl-source>
 <network>
@@ -317,3 +320,73 @@ def test_what_a_program_tells_its_robot_is_no_topic(ros, simulation, runtime):
     ros.until(lambda: ros.node.count_publishers("/aseba/events"))
     topics = {name for name, _ in ros.node.get_topic_names_and_types()}
     assert not [name for name in topics if "menu" in name]
+
+
+SOUND = """<network><event size="0" name="done"/><node name="thymio-II">
+call sound.freq(440, 10)
+onevent sound.finished
+    emit done
+</node></network>"""
+
+
+def test_a_program_s_sound_is_told_and_its_end_comes_back(ros, simulation, runtime):
+    sim = simulation()
+    told = ros.collect(Float32MultiArray, "/sound/state")
+    runtime(SOUND)
+    done = ros.collect(Int16MultiArray, "/aseba/events/done")
+    sim.until(lambda: done, what="the end of the sound")
+    (hertz, seconds, volume), *_, silence = (list(message.data) for message in told)
+    assert (hertz, volume) == (440.0, 1.0)
+    assert math.isclose(seconds, 10 * 0.016384, rel_tol=1e-5)
+    assert silence[:2] == [0.0, 0.0]
+
+
+def test_a_touched_button_lights_up_until_a_program_takes_its_lights(ros, simulation, runtime):
+    sim = simulation()
+    runtime("onevent button.left\ncall leds.buttons(0, 0, 0, 16)")
+    shown = ros.collect(Float32MultiArray, "/led/state", latched=True)
+
+    def lights():
+        labels = [dimension.label for dimension in shown[-1].layout.dim]
+        begin = sum(dimension.size for dimension in shown[-1].layout.dim[: labels.index("buttons")])
+        return list(shown[-1].data[begin : begin + 4])
+
+    ros.publisher(Bool, "/press/forward").publish(Bool(data=True))
+    sim.until(lambda: shown and lights() == [1.0, 0.0, 0.0, 0.0], what="the light of the button")
+    ros.publisher(Bool, "/press/left").publish(Bool(data=True))
+    sim.until(lambda: lights() == [0.0, 0.0, 0.0, 0.5], what="the program's lights")
+
+
+def test_a_robot_is_switched_off_and_on_again(ros, simulation, runtime):
+    sim = simulation()
+    runtime("motor.left.target = 200\nmotor.right.target = 200")
+    status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
+    sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.02)
+    ros.publisher(Empty, "/shutdown").publish(Empty())
+    sim.until(lambda: values(status[-1])["state"] == "off")
+    sim.step(0.3)
+    stopped = sim.world.robots["thymio"].pose
+    sim.step(0.3)
+    assert sim.world.robots["thymio"].pose == stopped
+    assert ros.call(Trigger, "/aseba/run").success
+    sim.until(lambda: sim.world.robots["thymio"].pose.x_m > stopped.x_m + 0.02)
+
+
+def test_a_program_writes_on_its_card(ros, simulation, runtime, tmp_path):
+    sim = simulation()
+    runtime("var s\nvar n\ncall sd.open(1, s)\ncall sd.write([5], n)", card=str(tmp_path / "card"))
+    sim.until(lambda: (tmp_path / "card" / "u1.dat").exists())
+    assert (tmp_path / "card" / "u1.dat").read_bytes() == b"\x05\x00"
+
+
+@pytest.mark.parametrize(
+    ("parameters", "found"),
+    [
+        ({"layout": "aseba"}, "layout 'aseba' found, expected one of thymio, playground"),
+        ({"events": "none"}, "events 'none' found"),
+        ({"card": "/dev/null"}, "card /dev/null: File exists; expected a folder"),
+    ],
+)
+def test_a_robot_that_cannot_be_is_refused_at_the_start(ros, parameters, found):
+    with pytest.raises(StartError, match=found):
+        AsebaRuntime(ros.context, RuntimeParams(**parameters))

@@ -25,6 +25,7 @@ from thymio_sim_ros.sim.commands import (
     PlaySystemSound,
     PlayTone,
     ReleaseLeds,
+    SetAlarm,
     SetCommPayload,
     SetLed,
     SetLeds,
@@ -102,6 +103,10 @@ def test_the_pen_is_moved_colored_and_turned_round():
     assert decode("pen/color", ColorRGBA(r=1.0, g=0.5, b=2.0, a=1.0)) == SetPen(color=(1.0, 0.5, 1.0), erase=False)
     assert decode("pen/color", ColorRGBA(a=0.0)).erase
     assert decode("pen/width", Float32(data=0.03125)) == SetPen(width_m=0.03125)
+
+
+def test_an_alarm_is_switched():
+    assert decode("alarm", Bool(data=True)) == SetAlarm(True)
 
 
 def test_a_sound_is_stopped_by_a_negative_number():

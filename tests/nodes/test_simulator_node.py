@@ -13,7 +13,7 @@ from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, LaserScan, Range
-from std_msgs.msg import Bool, ColorRGBA, Float32MultiArray, Float64MultiArray, Int16MultiArray, String
+from std_msgs.msg import Bool, ColorRGBA, Float32, Float32MultiArray, Float64MultiArray, Int16MultiArray, String
 from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import Marker, MarkerArray
@@ -308,3 +308,32 @@ def test_a_refused_start_parameter_says_why(ros):
 
     with pytest.raises(StartError, match="nowhere"):
         Simulator(ros.context, SimulatorParams(playground="nowhere"))
+
+
+def test_a_pen_draws_a_trail(ros, simulation):
+    sim = simulation()
+    trails = ros.collect(MarkerArray, "/pen/trail", latched=True)
+    ros.publisher(ColorRGBA, "/pen/color").publish(ColorRGBA(r=1.0, a=1.0))
+    ros.publisher(Float32, "/pen/width").publish(Float32(data=0.03125))
+    ros.publisher(Bool, "/pen/down").publish(Bool(data=True))
+    ros.publisher(Twist, "/cmd_vel").publish(forward(0.1))
+    sim.until(lambda: trails and len(trails[-1].markers) > 1 and trails[-1].markers[-1].points[-1].x > 0.1)
+    _, *_, line = trails[-1].markers
+    assert (line.ns, line.header.frame_id, line.scale.x) == ("pen", "map", 0.03125)
+    assert (line.color.r, line.color.g, line.color.b) == (1.0, 0.0, 0.0)
+
+
+def test_a_sound_from_ros_is_played_and_told(ros, simulation):
+    sim = simulation()
+    told = ros.collect(Float32MultiArray, "/sound/state")
+    ros.publisher(Float32MultiArray, "/sound/tone").publish(Float32MultiArray(data=[440.0, 0.5]))
+    sim.until(lambda: len(told) >= 2)
+    assert [list(message.data[:2]) for message in told] == [[440.0, 0.5], [0.0, 0.0]]
+
+
+def test_an_unknown_motor_model_is_refused(ros):
+    from thymio_sim_ros.nodes.life import StartError
+    from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
+
+    with pytest.raises(StartError, match="motor_model is 'quick', expected ideal or firmware"):
+        Simulator(ros.context, SimulatorParams(motor_model="quick"))

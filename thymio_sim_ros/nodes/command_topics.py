@@ -213,6 +213,10 @@ def _decode_payload(message: Int16) -> Command:
     return commands.SetCommPayload(int(message.data))
 
 
+def _decode_alarm(message: Bool) -> Command:
+    return commands.SetAlarm(bool(message.data))
+
+
 def _decode_pen_down(message: Bool) -> Command:
     return commands.SetPen(down=bool(message.data))
 
@@ -251,6 +255,7 @@ def _rows() -> Iterator[CommandRow]:
     yield CommandRow("sound_threshold", Float32, _decode_threshold, _encode_threshold)
     yield CommandRow("comm/enable", Bool, _decode_enable, _encode_enable)
     yield CommandRow("comm/tx", Int16, _decode_payload, _encode_payload)
+    yield CommandRow("alarm", Bool, _decode_alarm)
     yield CommandRow("pen/down", Bool, _decode_pen_down)
     yield CommandRow("pen/color", ColorRGBA, _decode_pen_color)
     yield CommandRow("pen/width", Float32, _decode_pen_width)

@@ -205,7 +205,7 @@ def _trail(reading: readings.PenReading, names: RobotNames, _options: ConvertOpt
     message = MarkerArray(markers=[Marker(action=Marker.DELETEALL)])
     for number, stroke in enumerate(reading.strokes):
         red, green, blue = stroke.color
-        marker = Marker(ns=names.topic("pen"), id=number, action=Marker.ADD, type=Marker.LINE_STRIP)
+        marker = Marker(ns=f"{names.name}/pen".lstrip("/"), id=number, action=Marker.ADD, type=Marker.LINE_STRIP)
         marker.color = ColorRGBA(r=red, g=green, b=blue, a=1.0)
         marker.scale.x = stroke.width_m
         marker.points = [Point(x=x, y=y, z=TRAIL_M) for x, y in stroke.points]

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.node import Node
-from std_msgs.msg import Int16MultiArray
+from std_msgs.msg import Empty, Int16MultiArray
 from std_srvs.srv import Trigger
 
 from thymio_sim_ros.device.behaviour_host import BehaviourHost, is_internal
@@ -68,6 +68,7 @@ class DevicePorts:
         self._subscriptions.append(
             node.create_subscription(Int16MultiArray, topic("aseba/emit"), self._on_any_emit, qos.EVENTS)
         )
+        self._subscriptions.append(node.create_subscription(Empty, topic("shutdown"), self._on_shutdown, qos.EVENTS))
         controls = {
             "run": self.device.resume,
             "pause": self.device.pause,
@@ -151,6 +152,10 @@ class DevicePorts:
             self.run()
 
         return callback
+
+    def _on_shutdown(self, _message: Empty) -> None:
+        self.device.switch_off()
+        self.run()
 
     def _controller(self, act: Callable[[], None]) -> Callable[[Trigger.Request, Trigger.Response], Trigger.Response]:
         def callback(_request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:

@@ -145,6 +145,13 @@ class SetVolume:
 
 
 @dataclass(frozen=True, slots=True)
+class SetAlarm:
+    """While it is on, the sound of an arrow button every three seconds."""
+
+    is_on: bool
+
+
+@dataclass(frozen=True, slots=True)
 class SetPen:
     """The pen in the pen hole, put in by an operator; None leaves a property as it is.
 
@@ -324,6 +331,7 @@ Command = (
     | StopSound
     | SetWave
     | SetVolume
+    | SetAlarm
     | SetPen
     | PressButton
     | MoveRobot

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 __all__ = [
+    "ALARM",
     "BLOCK_NS",
     "BLOCK_SAMPLES",
     "SAMPLE_NS",
@@ -86,6 +87,8 @@ SYSTEM_SOUNDS: tuple[tuple[tuple[int, int], ...], ...] = (
 )
 """The robot's own sounds by number as (Hz, ticks of 16.384 ms)."""
 
+ALARM = 2
+"""Number of the sound of an alarm, that of the arrow buttons."""
 SHUT_DOWN = 1
 """Number of the sound of a robot that is switched off."""
 

@@ -9,7 +9,16 @@ import pytest
 from tests.sim.builders import FLOOR, make, readings, run, send
 from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.loudspeaker import ACTUATOR, LoudspeakerState
-from thymio_sim_ros.sim.commands import Command, PlaySamples, PlaySystemSound, PlayTone, SetVolume, SetWave, StopSound
+from thymio_sim_ros.sim.commands import (
+    Command,
+    PlaySamples,
+    PlaySystemSound,
+    PlayTone,
+    SetAlarm,
+    SetVolume,
+    SetWave,
+    StopSound,
+)
 from thymio_sim_ros.sim.tones import BLOCK_NS, SAMPLE_NS, TRIANGLE
 from thymio_sim_ros.sim.world import World
 
@@ -128,3 +137,14 @@ def test_the_world_tells_samples_volume_and_silence() -> None:
     (silent,) = readings(steps, "loudspeaker")
     assert (silent.samples, silent.frequency_hz) == (b"", 0.0)
     assert readings(steps, "sound_finished") == []
+
+
+def test_an_alarm_sounds_every_three_seconds_until_it_is_switched_off() -> None:
+    world = World(make([FLOOR]))
+    send(world, SetAlarm(True))
+    send(world, SetAlarm(True))
+    begun = [reading.began_ns for reading in readings(run(world, 7.0), "loudspeaker") if reading.frequency_hz == 110]
+    assert begun == [0, 3 * SECOND_NS, 6 * SECOND_NS]
+    send(world, SetAlarm(False))
+    run(world, 0.5)
+    assert readings(run(world, 7.0), "loudspeaker") == []

@@ -16,6 +16,7 @@ from thymio_sim_ros.sim.commands import (
     PlaySamples,
     PlaySystemSound,
     PlayTone,
+    SetAlarm,
     SetVolume,
     SetWave,
     StopSound,
@@ -25,6 +26,8 @@ from thymio_sim_ros.sim.view import ActuatorView
 
 __all__ = ["ACTUATOR", "LoudspeakerState"]
 
+ALARM_NS = 3_000_000_000
+"""Between two sounds of an alarm (ros-interface.md section 4.2)."""
 SHORTEST_TICKS = 4
 """Ticks of the shortest tone that a program can ask for (section 6.3)."""
 
@@ -35,7 +38,7 @@ class LoudspeakerState:
 
     `sounding_level` is the swing of the samples that sound now, 0…255, as a microphone counts. `began_ns` is when the
     note or the samples began, `changes` counts what began, ended or changed, `finished` the sounds that ended by
-    themselves.
+    themselves. `alarm_ns` is when the alarm sounds again, None without one.
     """
 
     wave: tuple[int, ...] = tones.TRIANGLE
@@ -46,6 +49,7 @@ class LoudspeakerState:
     sounding_level: int = 0
     changes: int = 0
     finished: int = 0
+    alarm_ns: int | None = None
     _waiting: tuple[Note, ...] = ()
 
     @property
@@ -94,7 +98,7 @@ class LoudspeakerState:
 
 def _apply(
     state: LoudspeakerState,
-    command: PlayTone | PlaySystemSound | PlaySamples | StopSound | SetWave | SetVolume,
+    command: PlayTone | PlaySystemSound | PlaySamples | StopSound | SetWave | SetVolume | SetAlarm,
     now_ns: int,
 ) -> None:
     match command:
@@ -112,6 +116,9 @@ def _apply(
                 raise ValueError(f"SetWave: found {len(wave)} samples, expected {WAVE_LENGTH} of -128 to 127")
             if wave != state.wave:
                 state.adjust(now_ns, wave=wave)
+        case SetAlarm(is_on):
+            if is_on != (state.alarm_ns is not None):
+                state.alarm_ns = now_ns if is_on else None
         case SetVolume(shift):
             if not 0 <= shift <= VOLUME_OFF:
                 raise ValueError(f"SetVolume: found {shift}, expected 0 to {VOLUME_OFF}")
@@ -120,6 +127,10 @@ def _apply(
 
 
 def _update(state: LoudspeakerState, view: ActuatorView, _dt_s: float) -> None:
+    if state.alarm_ns is not None and view.now_ns >= state.alarm_ns:
+        state.alarm_ns += ALARM_NS
+        state.play(tones.system_sound(tones.ALARM), b"", view.now_ns)
+        view.wake(LoudspeakerState)
     if not state.is_silent:
         changes = state.changes
         state.go_on(view.now_ns)
@@ -143,7 +154,7 @@ def _wave(words: Sequence[int]) -> Command:
 
 ACTUATOR = Actuator(
     name="loudspeaker",
-    accepts=(PlayTone, PlaySystemSound, PlaySamples, StopSound, SetWave, SetVolume),
+    accepts=(PlayTone, PlaySystemSound, PlaySamples, StopSound, SetWave, SetVolume, SetAlarm),
     begin=LoudspeakerState,
     apply=_apply,
     update=_update,
