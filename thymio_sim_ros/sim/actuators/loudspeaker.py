@@ -158,7 +158,7 @@ ACTUATOR = Actuator(
     begin=LoudspeakerState,
     apply=_apply,
     update=_update,
-    is_idle=lambda state: state.is_silent,
+    is_idle=lambda state: state.is_silent and state.alarm_ns is None,
     aseba=ActuatorFace(
         natives=(
             Native("sound.freq", ("Hz", "1/60s"), _frequency, "Play a tone; 0: until stopped, negative: stop"),
