@@ -20,6 +20,7 @@ from geometry_msgs.msg import TransformStamped
 from hypothesis import given
 from hypothesis import strategies as st
 from rclpy.context import Context
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -156,12 +157,29 @@ class Peer:
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
         self.received: list[tuple[Transform, ...]] = []
+        self.heard = 0
+        """Publishers that this peer's subscription is matched with: the publisher's side may know of it earlier."""
 
     def publisher(self, topic: str, qos: QoSProfile | int = 10) -> Any:
         return self.node.create_publisher(TFMessage, topic, qos)
 
     def listen(self, topic: str, qos: QoSProfile | int = 10) -> None:
-        self.node.create_subscription(TFMessage, topic, lambda data: self.received.append(decode(data)), qos, raw=True)
+        self.node.create_subscription(
+            TFMessage,
+            topic,
+            lambda data: self.received.append(decode(data)),
+            qos,
+            raw=True,
+            event_callbacks=self.matching(),
+        )
+
+    def matching(self) -> SubscriptionEventCallbacks:
+        """Callbacks of a subscription that count in ``heard``."""
+
+        def match(status: Any) -> None:
+            self.heard = status.current_count
+
+        return SubscriptionEventCallbacks(matched=match)
 
     def close(self) -> None:
         self.executor.shutdown()
@@ -194,7 +212,7 @@ def test_transforms_arrive_in_another_context_under_the_true_name_and_hash() -> 
     with _peers("simulator", "viewer") as (simulator, viewer):
         publisher = simulator.publisher("/tf")
         viewer.listen("/tf")
-        _until(lambda: publisher.get_subscription_count() == 1, simulator, viewer)
+        _until(lambda: publisher.get_subscription_count() == viewer.heard == 1, simulator, viewer)
         publisher.publish(encode([BASE, WHEEL]))
         _until(lambda: bool(viewer.received), simulator, viewer)
         (endpoint,) = viewer.node.get_publishers_info_by_topic("/tf")
@@ -217,7 +235,12 @@ def test_several_nodes_of_one_process_may_come_and_go() -> None:
         first.node.destroy_publisher(early)
         publishers = [first.publisher("/tf"), second.publisher("/tf")]
         viewer.listen("/tf")
-        _until(lambda: all(p.get_subscription_count() == 1 for p in publishers), first, second, viewer)
+        _until(
+            lambda: viewer.heard == 2 and all(p.get_subscription_count() == 1 for p in publishers),
+            first,
+            second,
+            viewer,
+        )
         publishers[0].publish(encode([BASE]))
         publishers[1].publish(encode([WHEEL]))
         _until(lambda: len(viewer.received) == 2, first, second, viewer)
@@ -232,7 +255,7 @@ def test_the_events_executor_delivers_transforms() -> None:
         viewer.executor.remove_node(viewer.node)
         viewer.executor = experimental.EventsExecutor(context=viewer.context)
         viewer.executor.add_node(viewer.node)
-        _until(lambda: publisher.get_subscription_count() == 1, simulator, viewer)
+        _until(lambda: publisher.get_subscription_count() == viewer.heard == 1, simulator, viewer)
         publisher.publish(encode([BASE]))
         _until(lambda: bool(viewer.received), simulator, viewer)
     assert viewer.received == [(BASE,)]
@@ -294,8 +317,10 @@ def test_a_type_built_here_equals_the_compiled_one_and_talks_to_it() -> None:
     received: list[MarkerArray] = []
     with _peers("builder", "compiled") as (builder, compiled):
         publisher = builder.node.create_publisher(Built, "/markers", 10)
-        compiled.node.create_subscription(MarkerArray, "/markers", received.append, 10)
-        _until(lambda: publisher.get_subscription_count() == 1, builder, compiled)
+        compiled.node.create_subscription(
+            MarkerArray, "/markers", received.append, 10, event_callbacks=compiled.matching()
+        )
+        _until(lambda: publisher.get_subscription_count() == compiled.heard == 1, builder, compiled)
         publisher.publish(serialize_message(sent))
         _until(lambda: bool(received), builder, compiled)
         (endpoint,) = compiled.node.get_publishers_info_by_topic("/markers")
