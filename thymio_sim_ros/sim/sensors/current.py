@@ -14,14 +14,16 @@ from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.readings import CurrentReading
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.sensors._change import is_news
-from thymio_sim_ros.sim.thymio2 import INTEGRATOR_LIMIT
+from thymio_sim_ros.sim.thymio2 import FULL_TARGET, INTEGRATOR_LIMIT, MAX_SPEED_M_S, PWM_PER_SPEED_UNIT
 from thymio_sim_ros.sim.view import SensorView
 
 __all__ = ["SENSOR"]
 
 _FILTER_TICKS = 64
 _INTEGRAL_PER_PWM = 3
-_NONE = (0.0, 0.0)
+_LOAD_PER_M_S = -PWM_PER_SPEED_UNIT * FULL_TARGET / MAX_SPEED_M_S
+_NOTHING = 0.5
+"""A current below rounds to none."""
 
 
 def _measure(view: SensorView) -> CurrentReading | None:
@@ -33,28 +35,27 @@ def _measure(view: SensorView) -> CurrentReading | None:
     aimed, reached = wheels.commanded, wheels.speeds_m_s
     if aimed == reached == memory.get("settled") and view.now_ns < memory["refresh_ns"]:
         return None  # the rule on a free way, and cheap
-    currents = memory.get("currents", _NONE)
-    if aimed != reached or currents != _NONE:
-        currents = memory["currents"] = (
-            _filter(currents[0], _pwm(aimed[0]) - _pwm(reached[0])),
-            _filter(currents[1], _pwm(aimed[1]) - _pwm(reached[1])),
-        )
-    memory["settled"] = reached if currents == _NONE else None
-    words = (round(currents[0]), round(currents[1]), _integral(aimed[0]), _integral(aimed[1]))
+    one, other = memory.get("currents", (0.0, 0.0))
+    one = _filtered(one, abs(aimed[0] - reached[0]) * _LOAD_PER_M_S)
+    other = _filtered(other, abs(aimed[1] - reached[1]) * _LOAD_PER_M_S)
+    memory["currents"] = (one, other)
+    memory["settled"] = None if one or other else aimed
+    if memory.get("aimed") != aimed:
+        memory["aimed"], memory["integrals"] = aimed, (_integral(aimed[0]), _integral(aimed[1]))
+    words = (round(one), round(other), *memory["integrals"])
     return CurrentReading(view.now_ns, words) if is_news(view, words) else None
 
 
-def _pwm(speed_m_s: float) -> int:
-    return units.units_to_pwm(units.speed_to_units(speed_m_s))
-
-
-def _filter(current: float, load: int) -> float:
-    current += (abs(load) - current) / _FILTER_TICKS
-    return current if current >= 0.5 or load else 0.0
+def _filtered(current: float, load: float) -> float:
+    """The next value of a current; one that fades away ends."""
+    current += (load - current) / _FILTER_TICKS
+    return current if current >= _NOTHING or load >= _NOTHING else 0.0
 
 
 def _integral(speed_m_s: float) -> int:
-    return max(-INTEGRATOR_LIMIT, min(INTEGRATOR_LIMIT, _INTEGRAL_PER_PWM * _pwm(speed_m_s)))
+    """What the loop has gathered that keeps a wheel at a speed."""
+    pwm = units.units_to_pwm(units.speed_to_units(speed_m_s))
+    return max(-INTEGRATOR_LIMIT, min(INTEGRATOR_LIMIT, _INTEGRAL_PER_PWM * pwm))
 
 
 SENSOR = Sensor(
