@@ -361,3 +361,14 @@ def test_no_light_but_the_colour_is_on_in_the_menu() -> None:
     runner.run(1.0)
     assert top(runner) == (0, 32, 0)
     assert not any(leds(runner, "proximity") + leds(runner, "ground") + leds(runner, "circle"))
+
+
+def test_fearful_cries_and_blinks_while_it_falls() -> None:
+    runner = alone("fearful", hall({ROBOT: (0.0, 0.0, 0.0)}))
+    runner.post(ROBOT, MoveRobot(5.0, 5.0, 0.0))
+    assert runner.until(lambda: runner.devices[ROBOT].get_variable("falling") == (1,), 0.3)
+    colours = {top(runner) for _ in range(20) if runner.step()}
+    assert colours >= {(0, 0, 0), (32, 0, 0)}
+    assert not is_silent(runner)
+    assert runner.until(lambda: runner.devices[ROBOT].get_variable("falling") == (0,), 1.0)
+    assert runner.until(lambda: is_silent(runner), 0.5)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from tests.device.behaviour_oracle import ARROWS, ORACLES, STOP, Senses, Shown
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.behaviour_host import built_in
-from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.device import AsebaDevice, DeviceOptions
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.sim.commands import BUTTONS, MotorTargets, PlaySystemSound, SetLeds, StopSound
 
@@ -26,8 +27,8 @@ ORDERS = (2, 80, 32, 8, 81, 33, 4, 85, 17, 77, 6, 86, 16, 78, 5, 87, 13, 1, 99)
 class Bench:
     """A device with a behaviour and nothing around it: senses in, what it shows out."""
 
-    def __init__(self, behaviour: str) -> None:
-        self.device = AsebaDevice()
+    def __init__(self, behaviour: str, device: AsebaDevice | None = None) -> None:
+        self.device = device or AsebaDevice()
         self.device.load(built_in(behaviour))
         self.device.advance(0)
         self.now_ns = 0
@@ -89,21 +90,24 @@ def histories(seed: int) -> Iterator[Senses]:
     chance = random.Random(seed)
     p, g, acc = [0] * 7, [900, 900], [0, 0, 23]
     held: set[str] = set()
+    grounds = list(GROUNDS)
     often = ("left", "backward", "forward")[seed % 3]
-    for _ in range(TICKS):
+    for tick in range(TICKS):
         if chance.random() < 0.2:
             reach = chance.choice([0, 300, 1200, 4505, 5300])
             p = [chance.choice([0, chance.choice(BORDERS), chance.randint(0, reach)]) for _ in range(7)]
             p[chance.randrange(5)] = chance.choice(BORDERS)
         if chance.random() < 0.1:
-            g = [chance.choice(GROUNDS), chance.choice(GROUNDS)] if chance.random() < 0.6 else [900, 900]
+            g = [chance.choice(grounds), chance.choice(grounds)] if chance.random() < 0.6 else [900, 900]
         if chance.random() < 0.05:
             acc = chance.choice([[0, 0, 23], [1, -1, 2], [-12, 5, 18], [chance.randint(-32, 32) for _ in range(3)]])
         before = set(held)
         if chance.random() < 0.1:
             held ^= {chance.choice((*ARROWS, *[often] * 6))}
-        if chance.random() < 0.004:
-            held ^= set(chance.choice([("left", "right"), ("forward", "backward")]))
+        if tick > TICKS // 3 and chance.random() < 0.03:
+            held = set(chance.choice([(), ("left", "right"), ("forward", "backward")]))
+            levels = [sum(g) // 2 + 150, sum(g) // 2 - 150, 50]
+            grounds = [*GROUNDS, *[level + step for level in levels for step in (-1, 0, 1)] * 2]
         intensities = tuple(chance.choice([0, 1400, 2999, 3000, 3001, chance.randint(1400, 4600)]) for _ in range(7))
         if chance.random() < 0.5:
             intensities = (0, 0, chance.choice([3000, 3001, 4000]), 0, 0, 0, 0)
@@ -127,3 +131,28 @@ def test_a_behaviour_does_what_its_table_says(behaviour: str, seed: int) -> None
     bench, oracle = Bench(behaviour), ORACLES[behaviour]()
     for number, senses in enumerate(histories(seed)):
         assert bench.tick(senses) == oracle.tick(senses), (number, senses)
+
+
+def test_friendly_dances_before_a_friend_as_its_table_says() -> None:
+    bench, oracle = Bench("friendly"), ORACLES["friendly"]()
+    for tick in range(400):
+        senses = Senses(
+            p=(0, 0, 3000 + tick, 0, 0, 0, 0),
+            g=(900, 100) if tick % 50 == 49 else (900, 900),
+            frame=((0, 0, 4000, 0, 0, 0, 0), 1 + tick % 3) if tick % 5 == 0 else None,
+        )
+        assert bench.tick(senses) == oracle.tick(senses), tick
+
+
+def test_investigator_keeps_its_levels_on_the_card(tmp_path: Path) -> None:
+    device = AsebaDevice(options=DeviceOptions(card=tmp_path))
+    bench = Bench("investigator", device)
+    both = frozenset(("backward", "forward"))
+    bench.tick(Senses(g=(200, 300), buttons=both, touched=both))
+    bench.tick(Senses(g=(200, 300)))
+    assert device.get_variable("black") == (400,)
+    bench.tick(Senses(g=(300, 300), buttons=both, touched=both))
+    bench.tick(Senses(g=(300, 300)))
+    assert (tmp_path / "u450.dat").read_bytes() == (450).to_bytes(2, "little") * 2
+    Bench("investigator", device)
+    assert (device.get_variable("black"), device.get_variable("white")) == ((450,), (450,))
