@@ -11,6 +11,7 @@ from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import (
     Clap,
     RemoteKey,
+    SetAmbientLight,
     SetBattery,
     SetCommPayload,
     SetNoiseLevel,
@@ -26,6 +27,7 @@ from thymio_sim_ros.sim.commands import (
         (lambda: Clap(256), "Clap: intensity 256 found, expected 0 to 255"),
         (lambda: Clap(-1), "intensity -1"),
         (lambda: SetNoiseLevel(256), "SetNoiseLevel: intensity 256 found, expected 0 to 255"),
+        (lambda: SetAmbientLight(1024), "SetAmbientLight: level 1024 found, expected 0 to 1023"),
         (lambda: Tilt(3.2, 0.0), "Tilt: roll_rad 3.2 found, expected -3.14159 to 3.14159"),
         (lambda: Tilt(0.0, math.nan), "pitch_rad nan"),
         (lambda: SetTemperature(85.1), "SetTemperature: celsius 85.1 found, expected -40 to 85"),

@@ -16,6 +16,7 @@ from thymio_sim_ros.nodes.convert import CommandError
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.sound import FULL_LEVEL
+from thymio_sim_ros.sim.units import GROUND_FULL
 
 __all__ = ["ROWS"]
 
@@ -53,6 +54,11 @@ def _tilt(message: Float32MultiArray) -> Command:
     return _checked(commands.Tilt, float(roll), float(pitch))
 
 
+def _light(message: Float32) -> Command:
+    convert.finite(message.data, "light")
+    return commands.SetAmbientLight(round(min(max(float(message.data), 0.0), 1.0) * GROUND_FULL))
+
+
 def _temperature(message: Float32) -> Command:
     return _checked(commands.SetTemperature, float(message.data))
 
@@ -72,8 +78,9 @@ ROWS = (
     CommandRow("press/remote", Int8, _remote, profile=qos.EVENTS),
     CommandRow("press/rc5", Int16MultiArray, _rc5, profile=qos.EVENTS),
     CommandRow("press/tilt", Float32MultiArray, _tilt, profile=qos.EVENTS),
+    CommandRow("press/light", Float32, _light, profile=qos.EVENTS),
     CommandRow("press/temperature", Float32, _temperature, profile=qos.EVENTS),
     CommandRow("press/battery", Float32, _battery, profile=qos.EVENTS),
     CommandRow("press/charger", Bool, _charger, profile=qos.EVENTS),
 )
-"""Loudness is 0…1 of 255, temperature in °C, battery in V; a value out of range is refused, loudness limited."""
+"""Loudness is 0…1 of 255, light of 1023, both limited; temperature in °C, battery in V, refused when out of range."""

@@ -232,6 +232,16 @@ class SetNoiseLevel:
 
 
 @dataclass(frozen=True, slots=True)
+class SetAmbientLight:
+    """Light that reaches the ground sensors besides their own, as prox.ground.ambiant tells it, 0…1023."""
+
+    level: int
+
+    def __post_init__(self) -> None:
+        _check(self, 0, 1023, "level")
+
+
+@dataclass(frozen=True, slots=True)
 class SetTemperature:
     """Temperature round the robot in °C, -40…85."""
 
@@ -341,6 +351,7 @@ Command = (
     | Tilt
     | Clap
     | SetNoiseLevel
+    | SetAmbientLight
     | SetTemperature
     | RemoteKey
     | SetBattery

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from itertools import chain
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -24,6 +24,8 @@ from thymio_sim_ros.sim.wheels import WheelArrays
 __all__ = ["CROWD", "Crowd"]
 
 Act = Callable[[Sequence[Any], GroupActuatorView, float], None]
+
+S = TypeVar("S")
 
 CROWD = 6
 """From so many robots on, measuring all at once is quicker (benchmarks/simulator.py)."""
@@ -49,6 +51,9 @@ class _Group:
     @property
     def proximity_model(self) -> str:
         return self._crowd.shared.proximity_model
+
+    def states(self, kind: type[S]) -> list[S]:
+        return self._crowd.states(kind)
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
         return self._crowd.cast(fan)
@@ -126,6 +131,10 @@ class Crowd:
             poses = poses.copy()
             poses[fallen] = [(_NOWHERE_M, index, 0.0) for index in fallen]
         return poses
+
+    def states(self, kind: type[S]) -> list[S]:
+        """The state of one actuator of every robot."""
+        return [robot.state(kind) for robot in self._robots]
 
     def act(self, dt_s: float) -> None:
         """Run the actuators for one tick."""

@@ -146,6 +146,10 @@ class GroupView(Protocol):
         """As in `SensorView`."""
         ...
 
+    def states(self, kind: type[S]) -> Sequence[S]:
+        """The state of one actuator of every robot."""
+        ...
+
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
         """Rays of all robots: the numbers of the sensors that see anything, and how far their rays go (`Raycaster`)."""
         ...

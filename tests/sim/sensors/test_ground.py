@@ -8,6 +8,9 @@ import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, make, sense
 from tests.sim.fake_view import FakeView
+from thymio_sim_ros.sim.actuators.room import RoomState
+from thymio_sim_ros.sim.commands import SetAmbientLight
+from thymio_sim_ros.sim.crowd import CROWD
 from thymio_sim_ros.sim.ground import GroundSample
 from thymio_sim_ros.sim.noise import Noise
 from thymio_sim_ros.sim.readings import GroundReading
@@ -17,8 +20,8 @@ from thymio_sim_ros.sim.world import World
 WHITE, BLACK = GroundSample(1.0, 1.0), GroundSample(0.0, 1.0)
 
 
-def measure(left: GroundSample, right: GroundSample, noise: Noise | None = None) -> GroundReading:
-    view = FakeView(grounds={0.0115: left, -0.0115: right})
+def measure(left: GroundSample, right: GroundSample, noise: Noise | None = None, light: int = 0) -> GroundReading:
+    view = FakeView(grounds={0.0115: left, -0.0115: right}, states=(RoomState(ambient_light=light),))
     if noise is not None:
         view.noise = noise
     reading = SENSOR.measure(view)
@@ -28,6 +31,24 @@ def measure(left: GroundSample, right: GroundSample, noise: Noise | None = None)
 
 def test_words_are_ambient_reflected_and_delta_left_then_right() -> None:
     assert measure(WHITE, BLACK).words == (0, 0, 938, 77, 938, 77)
+
+
+@pytest.mark.parametrize(
+    ("light", "words"),
+    [(50, (50, 50, 988, 127, 938, 77)), (500, (500, 500, 1023, 577, 523, 77)), (1023, (1023,) * 4 + (0, 0))],
+)
+def test_ambient_light_is_added_to_what_is_reflected_up_to_the_limit(light: int, words: tuple[int, ...]) -> None:
+    assert measure(WHITE, BLACK, light=light).words == words
+
+
+@pytest.mark.parametrize("robots", [1, CROWD])
+def test_an_operator_lights_the_ground_of_one_robot(robots: int) -> None:
+    starts = [{**ROBOT, "name": f"robot{index}", "y_m": 0.3 * index} for index in range(robots)]
+    world = World(make([FLOOR], starts), noise=False)
+    world.post("robot0", SetAmbientLight(20))
+    assert sense(world, "ground", "robot0").words == (20, 20, 958, 958, 938, 938)
+    for index in range(1, robots):
+        assert sense(world, "ground", f"robot{index}").words == (0, 0, 938, 938, 938, 938)
 
 
 def test_reflectances_are_greys() -> None:

@@ -1,11 +1,14 @@
-"""What an operator makes of the room round a robot: its temperature, its noise, claps (thymio-robot.md section 7.4)."""
+"""What an operator makes of the room round a robot: its temperature, light and noise, claps.
+
+Sources: thymio-robot.md sections 7.2 and 7.4.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from thymio_sim_ros.sim.actuators import Actuator
-from thymio_sim_ros.sim.commands import Clap, SetNoiseLevel, SetTemperature
+from thymio_sim_ros.sim.commands import Clap, SetAmbientLight, SetNoiseLevel, SetTemperature
 
 __all__ = ["ACTUATOR", "CLAP_NS", "RoomState"]
 
@@ -15,24 +18,29 @@ CLAP_NS = 20_000_000
 
 @dataclass(slots=True)
 class RoomState:
-    """Temperature in °C, steady noise and the last clap as mic.intensity.
+    """Temperature in °C, light as prox.ground.ambiant, steady noise and the last clap as mic.intensity.
 
     The clap sounds until `clap_ends_ns`, and other robots hear it too.
     """
 
     temperature_c: float = 22.0
+    ambient_light: int = 0
     noise_level: int = 0
     clap_level: int = 0
     clap_ends_ns: int = -1
 
 
-def _apply(state: RoomState, command: Clap | SetNoiseLevel | SetTemperature, now_ns: int) -> None:
+def _apply(state: RoomState, command: Clap | SetAmbientLight | SetNoiseLevel | SetTemperature, now_ns: int) -> None:
     if isinstance(command, SetTemperature):
         state.temperature_c = command.celsius
+    elif isinstance(command, SetAmbientLight):
+        state.ambient_light = command.level
     elif isinstance(command, SetNoiseLevel):
         state.noise_level = command.intensity
     else:
         state.clap_level, state.clap_ends_ns = command.intensity, now_ns + CLAP_NS
 
 
-ACTUATOR = Actuator(name="room", accepts=(Clap, SetNoiseLevel, SetTemperature), begin=RoomState, apply=_apply)
+ACTUATOR = Actuator(
+    name="room", accepts=(Clap, SetAmbientLight, SetNoiseLevel, SetTemperature), begin=RoomState, apply=_apply
+)

@@ -1,7 +1,8 @@
 """Two ground sensors (thymio-robot.md section 7.2).
 
 Over floor the count is 60 + 884 / (1 + exp(-9 (g - 0.44))), g being the grey of the footprint, plus noise; it fades
-to 0 as the footprint leaves the floor. The robot's light is the only one: ambient is 0, delta is reflected.
+to 0 as the footprint leaves the floor. Ambient is the operator's light, 0 at first; reflected is the count with that
+added, at most 1023; delta is reflected less ambient.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from thymio_sim_ros.sim import units
+from thymio_sim_ros.sim.actuators.room import RoomState
 from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.columns import Later
 from thymio_sim_ros.sim.ground import GroundSample
@@ -30,7 +32,8 @@ def response(sample: GroundSample) -> float:
 def _measure(view: SensorView) -> GroundReading:
     left, right = (view.ground_at(x, y) for x, y in GROUND_SENSORS)
     counts = (_count(left, view), _count(right, view))
-    return GroundReading(view.now_ns, (0, 0, *counts, *counts), (left.reflectance, right.reflectance))
+    words = _words(view.state(RoomState).ambient_light, *counts)
+    return GroundReading(view.now_ns, words, (left.reflectance, right.reflectance))
 
 
 def _count(sample: GroundSample, view: SensorView) -> int:
@@ -40,6 +43,14 @@ def _count(sample: GroundSample, view: SensorView) -> int:
     return round(max(0.0, min(float(units.GROUND_FULL), value)))
 
 
+def _words(light: int, left: int, right: int) -> tuple[int, ...]:
+    """Ambient, reflected and delta for what each sensor counts of its own light; ten bits hold no more than 1023."""
+    if light == 0:
+        return (0, 0, left, right, left, right)
+    lit_left, lit_right = min(units.GROUND_FULL, left + light), min(units.GROUND_FULL, right + light)
+    return (light, light, lit_left, lit_right, lit_left - light, lit_right - light)
+
+
 def _measure_all(group: GroupView) -> Later:
     now_ns = group.now_ns
     reflectances, floors = group.ground_at(_PLACES)
@@ -47,11 +58,12 @@ def _measure_all(group: GroupView) -> Later:
     over_floor = np.flatnonzero(floors)
     values[over_floor] += group.noise.draw(over_floor // 2, GROUND_NOISE)
     counts = np.rint(np.clip(values, 0.0, units.GROUND_FULL)).astype(int).reshape(-1, 2)
+    lights = [room.ambient_light for room in group.states(RoomState)]
 
     def make(robot: int) -> GroundReading:
         left, right = counts[robot].tolist()
         grey_left, grey_right = reflectances[robot].tolist()
-        return GroundReading(now_ns, (0, 0, left, right, left, right), (grey_left, grey_right))
+        return GroundReading(now_ns, _words(lights[robot], left, right), (grey_left, grey_right))
 
     return Later(len(group), make)
 
