@@ -53,6 +53,20 @@ test("only markers that changed are made anew", () => {
   assert.equal(model.group.children.length, 0);
 });
 
+test("a solid that has only moved keeps its mesh", () => {
+  const wall = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
+  const first = applyMarkers(new Map(), [wall]);
+  const model = new PlaygroundModel();
+  model.update(first);
+  const kept = model.meshes.get("solid/wall/7")?.mesh;
+  const pose = { ...wall.pose, position: { x: 3, y: 4, z: 5 } };
+  model.update(applyMarkers(first, [{ ...wall, action: 3 }, { ...wall, pose }]));
+  assert.equal(model.meshes.get("solid/wall/7")?.mesh, kept);
+  assert.deepEqual(kept?.position.toArray(), [3, 4, 5]);
+  model.update(applyMarkers(first, [{ ...wall, scale: { x: 9, y: 9, z: 9 } }]));
+  assert.notEqual(model.meshes.get("solid/wall/7")?.mesh, kept);
+});
+
 test("every kind of marker is drawn in metres", () => {
   const wall = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const points = [

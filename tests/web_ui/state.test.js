@@ -111,6 +111,19 @@ test("the simulator and its playgrounds are told as JSON", () => {
   assert.deepEqual(playgrounds[1], { name: "base", title: "base", description: "", translations: {} });
 });
 
+test("things that move are kept apart from what stays", () => {
+  const marker = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
+  const can = { ...marker, ns: "solid/can" };
+  let state = after([
+    message("/markers/objects", { markers: [{ action: 3 }, can] }),
+    message("/markers", { markers: [{ action: 3 }, marker] }),
+  ]);
+  assert.deepEqual([state.markers.size, state.objects.size], [1, 1]);
+  assert.deepEqual(snapshot(state).objects, [{ name: "can", pose: marker.pose }]);
+  state = reduce(state, message("/markers/objects", { markers: [{ action: 3 }] }));
+  assert.deepEqual([state.markers.size, state.objects.size], [1, 0]);
+});
+
 test("markers are replaced by namespace and id, and all deleted", () => {
   const marker = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const first = applyMarkers(new Map(), [marker, { ...marker, id: 8 }]);

@@ -26,6 +26,7 @@ from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.placement import PlacementError
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.sensors import all_sensors
 
@@ -122,7 +123,7 @@ class RobotPorts:
         def callback(message: Any) -> None:
             try:
                 handle(message)
-            except CommandError as error:
+            except (CommandError, PlacementError) as error:
                 self._node.get_logger().warning(
                     f"{self.names.topic(topic)} refused: {error}", throttle_duration_sec=WARN_EVERY_S
                 )

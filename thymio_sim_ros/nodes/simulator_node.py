@@ -24,13 +24,15 @@ from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes.convert import ConvertOptions
+from thymio_sim_ros.nodes.fleet import Fleet
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, run_main
-from thymio_sim_ros.nodes.names import ros_names
+from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.params import param
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
 from thymio_sim_ros.nodes.transforms import Transforms
 from thymio_sim_ros.nodes.world_ports import WorldPorts, WorldState
+from thymio_sim_ros.runlog import RunLog
 from thymio_sim_ros.sim.clock import Pacer
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
@@ -60,6 +62,7 @@ class SimulatorParams:
     ground_threshold: int = param(
         200, "Ground counts below are «not reflecting»", name="ground.threshold", low=0, high=1023, fixed=True
     )
+    log: str = param("", "File that a run log is written to, for thymio-sim replay; empty: none", fixed=True)
     cmd_vel_timeout: float = param(0.0, "Seconds after which a velocity command ends; 0 is never", low=0.0, high=3600.0)
 
 
@@ -83,7 +86,8 @@ class Simulator:
         self._last_beat_ns = 0
         self._world_ports = WorldPorts(self.node, publish_clock=self.params.publish_clock)
         self._transforms = Transforms(self.node)
-        self._robots: dict[str, RobotPorts] = {}
+        self._fleet = Fleet(self._ports)
+        self._log = self._open_log(self.params.log)
         self._set_world(playground)
         self._services = [
             self.node.create_service(SetBool, "~/pause", self._on_pause),
@@ -113,13 +117,17 @@ class Simulator:
 
     def advance(self, ticks: int) -> None:
         """Step the world by ticks of 10 ms at once, also while paused, and publish what they give."""
+        if self._fleet.follow(self.world.robots):
+            self._transforms.begin(self._fleet.names)
+            self._publish_state()
         for _ in range(ticks):
             result = self.world.step()
             for robot, sensor, reading in result.readings:
-                ports = self._robots[robot]
+                ports = self._fleet[robot]
                 ports.publish(sensor, reading)
                 self._transforms.take(ports.names, sensor, reading)
             self._world_ports.publish_clock(result.now_ns, last=self.paused)
+        self._world_ports.publish_objects(self.world, last=self.paused)
 
     def reset(self) -> None:
         """World, time and noise as at the start."""
@@ -127,7 +135,9 @@ class Simulator:
         self._begin()
 
     def close(self) -> None:
-        """Destroy the node; the world goes with it."""
+        """Destroy the node; the world goes with it, and its log ends."""
+        if self._log is not None:
+            self._log.close()
         self.node.destroy_node()
 
     def _run_owed(self) -> None:
@@ -146,25 +156,33 @@ class Simulator:
         for note in playground.notes:
             self.node.get_logger().warning(f"playground {self.playground_name}: {note}")
         self.world = self._new_world(playground)
-        names = ros_names(tuple(self.world.robots))
-        if {robot: ports.names for robot, ports in self._robots.items()} != names:
-            for ports in self._robots.values():
-                ports.close()
-            options = ConvertOptions(
-                driver_ranges=self.params.out_of_range == "driver", ground_threshold=self.params.ground_threshold
-            )
-            self._robots = {
-                robot: RobotPorts(
-                    self.node,
-                    name,
-                    self._poster(robot),
-                    options=options,
-                    now_ns=lambda: self.world.now_ns,
-                    timeout_ns=self._timeout_ns,
-                )
-                for robot, name in names.items()
-            }
+        if self._log is not None:
+            self._log.begin(self.playground_name, self.world)
         self._begin()
+
+    def _open_log(self, path: str) -> RunLog | None:
+        if not path:
+            return None
+        try:
+            return RunLog(open(path, "w", encoding="utf-8", newline="\n"), on_error=self._on_full_disk)
+        except OSError as error:
+            self.node.destroy_node()
+            raise StartError(f"log '{path}': {error.strerror}, expected a file that can be written") from error
+
+    def _on_full_disk(self, error: OSError) -> None:
+        self.node.get_logger().error(f"the log ends here: {self.params.log}: {error.strerror}")
+
+    def _ports(self, robot: str, names: RobotNames) -> RobotPorts:
+        return RobotPorts(
+            self.node,
+            names,
+            self._poster(robot),
+            options=ConvertOptions(
+                driver_ranges=self.params.out_of_range == "driver", ground_threshold=self.params.ground_threshold
+            ),
+            now_ns=lambda: self.world.now_ns,
+            timeout_ns=self._timeout_ns,
+        )
 
     def _new_world(self, playground: Playground) -> World:
         chosen = self.params
@@ -173,10 +191,10 @@ class Simulator:
     def _begin(self) -> None:
         """Order at a start: latched topics, then the clock at zero; the first readings follow (section 7)."""
         self._pacer = Pacer(self.params.real_time_factor)
-        for ports in self._robots.values():
-            ports.forget()
-        self._transforms.begin([ports.names for ports in self._robots.values()])
+        self._fleet.begin(self.world.robots)
+        self._transforms.begin(self._fleet.names)
         self._world_ports.publish_scene(self.world.playground)
+        self._world_ports.publish_objects(self.world, last=True)
         self._publish_state()
         self._world_ports.publish_clock(0, last=True)
 
@@ -207,7 +225,7 @@ class Simulator:
             achieved=0.0 if self.paused else self._pacer.achieved,
             seed=self.params.seed,
             now_ns=self.world.now_ns,
-            robots=tuple(ports.names for ports in self._robots.values()),
+            robots=self._fleet.names,
         )
 
     def _publish_state(self) -> None:

@@ -20,9 +20,14 @@ from thymio_sim_ros.nodes.markers import playground_markers
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.sim import playground as playgrounds
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
+from thymio_sim_ros.sim.scene import ObjectSnapshot
+from thymio_sim_ros.sim.world import World
 
 CLOCK_GAP_NS = 18_000_000
 """Shortest wall time between two clock messages: at most about 50 Hz (ros-interface.md section 5)."""
+
+OBJECTS_GAP_NS = 50_000_000
+"""Shortest wall time between two messages of objects that move."""
 
 SLOW = 0.9
 """Below this part of the wanted factor the diagnostics warn."""
@@ -58,7 +63,9 @@ class WorldPorts:
         self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
         self._playgrounds = node.create_publisher(String, "~/playgrounds", qos.LATCHED)
         self._playgrounds.publish(String(data=json.dumps(shipped_playgrounds())))
-        self._last_clock_ns = 0
+        self._objects = node.create_publisher(MarkerArray, "/markers/objects", qos.LATCHED)
+        self._last_clock_ns = self._last_objects_ns = 0
+        self._shown: tuple[Playground, tuple[ObjectSnapshot, ...]] | None = None
 
     def publish_clock(self, now_ns: int, *, last: bool) -> None:
         """Simulated time; limited to 50 Hz of wall time unless it is the `last` one for a while."""
@@ -73,8 +80,25 @@ class WorldPorts:
         self._state.publish(String(data=state.as_json()))
 
     def publish_scene(self, playground: Playground) -> None:
-        """Latched markers of the playground."""
-        self._markers.publish(playground_markers((*playground.floors, *playground.paints, *playground.solids)))
+        """Latched markers of all in the playground that stays where it is."""
+        fixed = [solid for solid in playground.solids if solid.is_fixed]
+        self._markers.publish(playground_markers((*playground.floors, *playground.paints, *fixed)))
+
+    def publish_objects(self, world: World, *, last: bool) -> None:
+        """Latched markers of movable things and doors, when they have moved.
+
+        At most 20 Hz of wall time, unless it is the `last` one for a while.
+        """
+        wall_ns = time.monotonic_ns()
+        if not (last or wall_ns - self._last_objects_ns >= OBJECTS_GAP_NS):
+            return
+        shown = (world.playground, world.objects)
+        if shown == self._shown:
+            return
+        self._shown, self._last_objects_ns = shown, wall_ns
+        solids = {solid.name: solid for solid in world.playground.solids if not solid.is_fixed}
+        placed = [solids[thing.name].at(thing.pose) for thing in world.objects if not thing.is_fallen]
+        self._objects.publish(playground_markers(placed))
 
     def publish_diagnostics(self, state: WorldState, dropped_ticks: int) -> None:
         """Pace of the simulation (ros-interface.md section 5)."""

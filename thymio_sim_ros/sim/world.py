@@ -104,6 +104,11 @@ class World:
         """The robots by name, in the order of the playground, and then as they were added."""
         return MappingProxyType(self._robots)
 
+    @property
+    def objects(self) -> tuple[ObjectSnapshot, ...]:
+        """Where everything is that moves without wheels: movable things, then doors, in the playground's order."""
+        return tuple(ObjectSnapshot(body.name, body.pose, body.is_fallen) for body in self._physics.objects)
+
     def post(self, name: str, command: Command) -> None:
         """Let a command to a robot or a movable thing take effect in the next step.
 
@@ -156,7 +161,7 @@ class World:
         return Snapshot(
             self._clock.now_ns,
             tuple(robot.snapshot() for robot in self._robots.values()),
-            tuple(ObjectSnapshot(body.name, body.pose, body.is_fallen) for body in self._physics.objects),
+            self.objects,
         )
 
     def _add(self, start: RobotStart) -> None:

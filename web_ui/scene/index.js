@@ -40,11 +40,13 @@ export class SceneView {
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(SKY);
     this.playground = new PlaygroundModel(() => this.invalidate());
+    this.objects = new PlaygroundModel(() => this.invalidate());
     const sun = new THREE.DirectionalLight(0xffffff, 1.75);
     sun.position.set(-1.2, -1.6, 3);
     const fill = new THREE.DirectionalLight(0xffffff, 0.5); // so that faces turned away from the sun are not dull
     fill.position.set(1, 1.4, 0.35);
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xccd5de, 1.75), sun, fill, this.playground.group);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xccd5de, 1.75), sun, fill);
+    this.scene.add(this.playground.group, this.objects.group);
     this.camera = new Camera(canvas, () => this.invalidate());
     this.renderer = createRenderer(canvas);
     const software = this.renderer !== null && SOFTWARE.test(graphicsName(this.renderer));
@@ -107,6 +109,7 @@ export class SceneView {
     const state = this.state();
     this.beforeDraw(nowMs);
     if (this.playground.update(state.markers)) this.camera.frame(this.playground.corners());
+    this.objects.update(state.objects);
     const moving = this.#updateRobots(state, nowMs);
     const pose = this.#selectedPose();
     if (pose !== null) this.camera.follow(pose);

@@ -37,8 +37,13 @@ export class PlaygroundModel {
   update(markers) {
     if (markers === this.shown) return false;
     this.shown = markers;
-    for (const [key, { marker }] of [...this.meshes]) {
-      if (markers.get(key) !== marker) this.#remove(key);
+    for (const [key, entry] of [...this.meshes]) {
+      const next = markers.get(key);
+      if (next === entry.marker) continue;
+      if (next !== undefined && isSameSolid(entry.marker, next)) {
+        entry.marker = next;
+        place(entry.mesh, next);
+      } else this.#remove(key);
     }
     for (const [key, marker] of markers) {
       if (!this.meshes.has(key) && marker.type in GEOMETRIES) this.#add(key, marker);
@@ -67,9 +72,7 @@ export class PlaygroundModel {
   #add(key, marker) {
     const picture = marker.texture?.data.length ? Uint8Array.from(marker.texture.data) : null;
     const mesh = picture === null ? this.#plain(marker) : this.#pictured(marker, picture);
-    const { position, orientation } = marker.pose;
-    mesh.position.set(position.x, position.y, position.z);
-    mesh.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w).normalize();
+    place(mesh, marker);
     this.meshes.set(key, { marker, mesh });
     this.group.add(mesh);
   }
@@ -114,6 +117,25 @@ export class PlaygroundModel {
     entry.mesh.material.dispose();
     this.meshes.delete(key);
   }
+}
+
+/** @param {THREE.Mesh} mesh @param {Marker} marker */
+function place(mesh, { pose: { position, orientation } }) {
+  mesh.position.set(position.x, position.y, position.z);
+  mesh.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w).normalize();
+}
+
+/**
+ * Whether two boxes or cylinders differ in their pose at most: they move.
+ *
+ * @param {Marker} one
+ * @param {Marker} two
+ */
+function isSameSolid(one, two) {
+  if (one.texture?.data.length || two.texture?.data.length) return false;
+  /** @param {Marker} marker */
+  const looks = ({ type, scale, color }) => [type, ...Object.values(scale), ...Object.values(color)].join(" ");
+  return (one.type === MARKER.CUBE || one.type === MARKER.CYLINDER) && looks(one) === looks(two);
 }
 
 /** @param {Marker} marker */

@@ -40,7 +40,8 @@ import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
  * @property {Readonly<Record<string, any>>} parameters
  * @property {Simulator | null} simulator
  * @property {PlaygroundInfo[]} playgrounds
- * @property {ReadonlyMap<string, Marker>} markers
+ * @property {ReadonlyMap<string, Marker>} markers  what stays where it is
+ * @property {ReadonlyMap<string, Marker>} objects  movable things and doors
  * @property {Readonly<Record<string, Robot>>} robots
  * @property {Readonly<Record<string, Program>>} programs  by namespace of the runtime that says so
  * @property {string} selected     name of the robot the panels show
@@ -82,6 +83,7 @@ export const INITIAL = {
   simulator: null,
   playgrounds: [],
   markers: new Map(),
+  objects: new Map(),
   robots: {},
   programs: {},
   selected: "",
@@ -183,6 +185,7 @@ function withTopic(state, { topic, value, nowMs = 0 }) {
 
 const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any) => State>} */ ({
   "/markers": (state, value) => ({ ...state, markers: applyMarkers(state.markers, value.markers) }),
+  "/markers/objects": (state, value) => ({ ...state, objects: applyMarkers(state.objects, value.markers) }),
   "/simulator/state"(state, value) {
     const told = JSON.parse(value.data);
     const simulator = {
@@ -256,6 +259,7 @@ export function snapshot(state) {
   return {
     ...state,
     markers: state.markers.size,
+    objects: [...state.objects.values()].map(({ ns, pose }) => ({ name: ns.slice(ns.indexOf("/") + 1), pose })),
     robot: state.robots[state.selected] ?? null,
     program: programOf(state),
   };

@@ -6,7 +6,7 @@ export const PROXIMITY = ["left", "center_left", "center", "center_right", "righ
 export const GROUND = ["left", "right"];
 export const BUTTONS = ["forward", "left", "center", "right", "backward"];
 
-export const GLOBAL_TOPICS = ["/markers", "/simulator/state", "/simulator/playgrounds"];
+export const GLOBAL_TOPICS = ["/markers", "/markers/objects", "/simulator/state", "/simulator/playgrounds"];
 
 /** Topics of one robot, relative to its namespace. */
 export const ROBOT_TOPICS = [

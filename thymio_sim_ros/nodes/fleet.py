@@ -1,0 +1,50 @@
+"""The ports of all robots of a world, while robots come and go."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+
+from thymio_sim_ros.nodes.names import RobotNames, ros_names
+from thymio_sim_ros.nodes.robot_ports import RobotPorts
+
+__all__ = ["Fleet"]
+
+
+class Fleet:
+    """Robots' ports by their name in the world. Invariant: who stays keeps topics and frames."""
+
+    def __init__(self, make: Callable[[str, RobotNames], RobotPorts]) -> None:
+        self._make = make
+        self._ports: dict[str, RobotPorts] = {}
+
+    def __getitem__(self, robot: str) -> RobotPorts:
+        return self._ports[robot]
+
+    @property
+    def names(self) -> tuple[RobotNames, ...]:
+        """Of all robots, in the order of the world."""
+        return tuple(ports.names for ports in self._ports.values())
+
+    def begin(self, robots: Iterable[str]) -> None:
+        """The robots of a playground: one alone has no name, of several each has its own."""
+        self._change(ros_names(tuple(robots)))
+        for ports in self._ports.values():
+            ports.forget()
+
+    def follow(self, robots: Iterable[str]) -> bool:
+        """Whether robots have come or gone; who has come has topics and frames of its name."""
+        robots = list(robots)
+        if robots == list(self._ports):
+            return False
+        known = self._ports
+        self._change({robot: known[robot].names if robot in known else RobotNames(robot) for robot in robots})
+        return True
+
+    def _change(self, names: Mapping[str, RobotNames]) -> None:
+        kept: dict[str, RobotPorts] = {}
+        for robot, ports in self._ports.items():
+            if names.get(robot) == ports.names:
+                kept[robot] = ports
+            else:
+                ports.close()
+        self._ports = {robot: kept.get(robot) or self._make(robot, name) for robot, name in names.items()}
