@@ -15,7 +15,7 @@ from aseba_vm.engine import AUTO, ENGINES, INTERPRETER, WASM
 from aseba_vm.engine_wasm import is_available
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.programs import Writer
-from tests.aseba_vm.vectors import Replay, families, load
+from tests.aseba_vm.vectors import load
 
 pytestmark = pytest.mark.usefixtures("translators_work")
 
@@ -66,28 +66,6 @@ def _compare(words, seed, engines):
             machine.run(limit)
         machines[1].use_engine(engine)
         assert _state(machines[0]) == _state(machines[1])
-
-
-@pytest.mark.parametrize("engine", TRANSLATORS)
-@pytest.mark.parametrize("family", families("aseba-execution"))
-def test_programs_run_as_on_the_reference(family, engine):
-    for vector in families("aseba-execution")[family]:
-        _replay(vector, engine, kills_long_events=False)
-
-
-@pytest.mark.parametrize("engine", TRANSLATORS)
-def test_long_events_are_killed_as_in_the_fork(engine):
-    for vector in load("aseba-execution-2x"):
-        _replay(vector, engine, kills_long_events=True)
-
-
-def _replay(vector, engine, *, kills_long_events):
-    replay = Replay(vector, kills_long_events=kills_long_events, is_traced=False)
-    replay.machine.use_engine(engine)
-    for number, (operation, expected) in enumerate(zip(vector["script"], vector["expect"], strict=False)):
-        record = replay.record(operation)
-        shown = {key: expected[key] for key in expected.keys() - {"trace", "trace_crc"}}
-        assert record == shown, (vector["id"], number, operation)
 
 
 @pytest.mark.parametrize("engines", [*([name] for name in TRANSLATORS), AVAILABLE], ids="-".join)

@@ -7,7 +7,6 @@ import json
 import struct
 import zlib
 from functools import cache
-from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -68,12 +67,6 @@ def load(name: str, folder: Path = SHIPPED) -> tuple[Vector, ...]:
         data = path.read_bytes()
         lines += (gzip.decompress(data) if path.suffix == ".gz" else data).decode("utf-8").split("\n")
     return tuple({**json.loads(line), "folder": folder} for line in lines if line.strip())
-
-
-def families(name: str) -> dict[str, list[Vector]]:
-    """Vectors of a shipped file by family."""
-    ordered = sorted(load(name), key=lambda vector: str(vector["family"]))
-    return {family: list(group) for family, group in groupby(ordered, key=lambda vector: str(vector["family"]))}
 
 
 def target_of(vector: Vector) -> TargetDescription:
