@@ -139,3 +139,14 @@ def test_the_runner_gives_the_robot_its_card(capsys, tmp_path):
     arguments = ("--program", str(program), "--card", str(card), "--layout", "playground", "--motors", "firmware")
     assert cli.main(["runner", "--seconds", "0.1", *arguments]) == 0
     assert (card / "u7.dat").read_bytes() == b"\x01\x00\x02\x00\x03\x00"
+
+
+def test_the_runner_stores_what_was_to_be_heard(capsys, tmp_path):
+    program = tmp_path / "song.aesl"
+    program.write_text("call sound.system(0)")
+    sound = tmp_path / "sound.wav"
+    arguments = ("--program", str(program), "--sound", str(sound))
+    assert cli.main(["runner", "--seconds", "0.5", *arguments]) == 0
+    assert sound.stat().st_size == 44 + 3906
+    capsys.readouterr()
+    assert "nowhere" in refused(capsys, "runner", "--sound", str(tmp_path / "nowhere" / "sound.wav"))

@@ -102,6 +102,7 @@ def run_without_ros(argv: Sequence[str]) -> int:
     options = _runner_parser().parse_args(argv)
     device = _device(options)
     playground, program = _check_files(options.playground, _program(options), options.behaviour, device.layout)
+    from thymio_sim_ros.run_sound import run_with_sound
     from thymio_sim_ros.runlog import RunLog
     from thymio_sim_ros.runner import Runner
 
@@ -119,11 +120,14 @@ def run_without_ros(argv: Sequence[str]) -> int:
             log=log,
         )
         started = time.perf_counter()
-        runner.run(options.seconds)
+        if options.sound is None:
+            runner.run(options.seconds)
+        else:
+            run_with_sound(runner, options.seconds, options.sound)
         if log is not None:
             log.close()
     except OSError as error:
-        raise UsageError(f"{options.log}: {error.strerror}; expected a file that can be written") from error
+        raise UsageError(f"{error.filename}: {error.strerror}; expected a file that can be written") from error
     factor = options.seconds / max(time.perf_counter() - started, 1e-9)
     poses = {
         name: {"x_m": robot.pose.x_m, "y_m": robot.pose.y_m, "yaw_rad": robot.pose.yaw_rad}
@@ -203,6 +207,7 @@ def _runner_parser() -> argparse.ArgumentParser:
     )
     _add_world_options(parser)
     parser.add_argument("--seconds", type=_seconds, default=60.0, help="simulated seconds (default: %(default)g)")
+    parser.add_argument("--sound", type=_path, metavar="FILE.wav", help="store what the robots' loudspeakers said")
     parser.add_argument("--log", type=_path, metavar="FILE", help="write a run log that `thymio-sim replay` does again")
     return parser
 

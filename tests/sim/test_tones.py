@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import pytest
 
-from thymio_sim_ros.sim.tones import BLOCK_NS, SYSTEM_SOUNDS, TRIANGLE, Note, system_sound, tone, wave_samples
+from thymio_sim_ros.sim.tones import BLOCK_NS, SYSTEM_SOUNDS, TRIANGLE, Note, system_sound, tone
 
 
 def test_a_block_takes_as_long_as_the_robot_s_tick() -> None:
@@ -36,18 +34,3 @@ def test_the_wave_at_the_start_is_a_triangle_of_142_samples() -> None:
     assert len(TRIANGLE) == 142
     assert (max(TRIANGLE), min(TRIANGLE), TRIANGLE[0]) == (127, -128, 0)
     assert TRIANGLE.index(127) < TRIANGLE.index(-128)
-
-
-def test_at_the_lowest_frequency_the_wave_is_played_sample_by_sample() -> None:
-    assert wave_samples(TRIANGLE, tone(0, None).frequency_hz, 0, 142) == list(TRIANGLE)
-
-
-def test_a_tone_goes_on_where_its_last_samples_ended() -> None:
-    whole = wave_samples(TRIANGLE, 440.0, 0, 300)
-    assert wave_samples(TRIANGLE, 440.0, 0, 100) + wave_samples(TRIANGLE, 440.0, 100, 200) == whole
-
-
-def test_a_tone_has_as_many_periods_as_hertz() -> None:
-    samples = wave_samples(TRIANGLE, 440.0, 0, 15625)  # two seconds
-    rises = sum(before < 0 <= after for before, after in pairwise(samples))
-    assert rises == pytest.approx(880, abs=1)

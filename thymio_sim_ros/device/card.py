@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import array
 import sys
-import wave
 from collections.abc import Sequence
 from pathlib import Path
+
+from thymio_sim_ros.device import wav
 
 __all__ = ["Card", "CardError", "SoundFile"]
 
@@ -19,11 +20,6 @@ MOST_BYTES = 64_000_000
 """A program's data file grows no longer."""
 MOST_SAMPLES = 10 * 60 * 7813
 """Longest sound that is read: ten minutes."""
-RATES_HZ = (7800, 8000)
-"""Rates of sounds that sound right on the robot (section 9)."""
-WRITTEN_RATE_HZ = 7812
-HEADER_BYTES = 44
-"""What the robot skips at the beginning of a sound (section 9)."""
 
 SoundFile = tuple[bytes, str]
 """Unsigned 8 bit samples, and what is wrong with the file's format, if anything."""
@@ -105,10 +101,10 @@ class Card:
             if path is None or not path.is_file():
                 return None
             with path.open("rb") as file:
-                data = file.read(HEADER_BYTES + MOST_SAMPLES)
+                data = file.read(wav.HEADER_BYTES + MOST_SAMPLES)
         except OSError:
             return None
-        return data[HEADER_BYTES:], _complaint(path)
+        return data[wav.HEADER_BYTES :], wav.complaint(path)
 
     def write_sound(self, name: str, samples: bytes) -> bool:
         """Store unsigned 8 bit samples under a name such as r1; whether that worked."""
@@ -116,11 +112,7 @@ class Card:
         if path is None:
             return False
         try:
-            with wave.open(str(path), "wb") as file:
-                file.setnchannels(1)
-                file.setsampwidth(1)
-                file.setframerate(WRITTEN_RATE_HZ)
-                file.writeframes(samples)
+            wav.write(path, [samples])
         except OSError:
             return False
         return True
@@ -146,17 +138,3 @@ def _as_words(data: bytes) -> list[int]:
     if sys.byteorder == "big":
         values.byteswap()
     return values.tolist()
-
-
-def _complaint(path: Path) -> str:
-    """Why a sound will not sound as its maker meant it: the robot plays the bytes of any file."""
-    expected = "expected 8 bit, 1 channel, 7800 to 8000 Hz"
-    try:
-        with wave.open(str(path), "rb") as file:
-            bits, channels, rate = 8 * file.getsampwidth(), file.getnchannels(), file.getframerate()
-    except (wave.Error, EOFError, OSError):
-        return f"{path.name}: no WAV file found, {expected}"
-    low, high = RATES_HZ
-    if (bits, channels) == (8, 1) and low <= rate <= high:
-        return ""
-    return f"{path.name}: {bits} bit, {channels} channels, {rate} Hz found, {expected}"

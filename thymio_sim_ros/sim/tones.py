@@ -5,7 +5,6 @@ Numbers: thymio-robot.md section 9.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -23,7 +22,6 @@ __all__ = [
     "Note",
     "system_sound",
     "tone",
-    "wave_samples",
 ]
 
 SAMPLE_NS = 128_000
@@ -100,9 +98,3 @@ def system_sound(number: int) -> tuple[Note, ...]:
     """The notes of one of the robot's own sounds; a short tone for a number that is none."""
     known = 0 <= number < len(SYSTEM_SOUNDS)
     return tuple(tone(hz, ticks * BLOCK_NS) for hz, ticks in (SYSTEM_SOUNDS[number] if known else UNKNOWN_SOUND))
-
-
-def wave_samples(wave: Sequence[int], frequency_hz: float, first: int, count: int) -> list[int]:
-    """Samples −128…127 of a tone, from its sample number `first` on."""
-    step = frequency_hz * WAVE_LENGTH * SAMPLE_NS / 1e9
-    return [wave[int(number * step) % WAVE_LENGTH] for number in range(first, first + count)]

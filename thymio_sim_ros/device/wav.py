@@ -1,0 +1,39 @@
+"""Sound files as the robot has them: unsigned 8 bit, one channel, 7800 to 8000 Hz, behind 44 bytes (section 9)."""
+
+from __future__ import annotations
+
+import wave
+from collections.abc import Iterable
+from pathlib import Path
+
+__all__ = ["HEADER_BYTES", "complaint", "write"]
+
+HEADER_BYTES = 44
+"""What the robot skips at the beginning of a sound."""
+RATES_HZ = (7800, 8000)
+"""Rates that sound right on the robot."""
+WRITTEN_RATE_HZ = 7812
+_EXPECTED = "expected 8 bit, 1 channel, 7800 to 8000 Hz"
+
+
+def write(path: Path, parts: Iterable[bytes]) -> None:
+    """Store unsigned 8 bit samples, part after part; OSError."""
+    with wave.open(str(path), "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(1)
+        file.setframerate(WRITTEN_RATE_HZ)
+        for part in parts:
+            file.writeframes(part)
+
+
+def complaint(path: Path) -> str:
+    """Why a file will not sound as its maker meant it, or nothing: the robot plays the bytes of any file."""
+    try:
+        with wave.open(str(path), "rb") as file:
+            bits, channels, rate = 8 * file.getsampwidth(), file.getnchannels(), file.getframerate()
+    except (wave.Error, EOFError, OSError):
+        return f"{path.name}: no WAV file found, {_EXPECTED}"
+    low, high = RATES_HZ
+    if (bits, channels) == (8, 1) and low <= rate <= high:
+        return ""
+    return f"{path.name}: {bits} bit, {channels} channels, {rate} Hz found, {_EXPECTED}"
