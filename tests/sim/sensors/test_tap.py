@@ -7,7 +7,7 @@ import pytest
 from tests.sim.builders import FLOOR, make, post_wall, readings, run, send
 from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.hand import HandState
-from thymio_sim_ros.sim.commands import MotorTargets, Tap
+from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot, Tap
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.sensors import tap
 from thymio_sim_ros.sim.world import World
@@ -47,3 +47,22 @@ def test_creeping_to_a_wall_is_none() -> None:
     steps = run(world, 3.0)
     assert readings(steps, "tap") == []
     assert any(step.contacts for step in steps)
+
+
+def test_a_landing_is_one_tap() -> None:
+    world = World(make([{**FLOOR, "size_x_m": 0.5, "size_y_m": 0.5}]), noise=False)
+    send(world, MotorTargets(500, 500))
+    assert len(readings(run(world, 4.0), "tap")) == 1
+
+
+def test_a_robot_that_is_caught_in_the_air_feels_no_landing() -> None:
+    world = World(make([{**FLOOR, "size_x_m": 0.5, "size_y_m": 0.5}]), noise=False)
+    send(world, MotorTargets(500, 500))
+    while not world.robots["thymio"].is_falling:
+        world.step()
+    run(world, 0.1)
+    send(world, MotorTargets(0, 0))
+    send(world, MoveRobot(0.0, 0.0, 0.0))
+    steps = run(world, 0.5)
+    assert readings(steps, "tap") == []
+    assert {reading.words for reading in readings(steps, "accelerometer")} == {(0, 0, 23)}

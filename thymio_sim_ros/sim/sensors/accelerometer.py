@@ -61,7 +61,7 @@ def _measure(view: SensorView) -> AccelerometerReading:
         forward, left, up = gravity(view.tilt)
         forward += (twist.linear_m_s - memory.get("speed_m_s", 0.0)) / dt_s
         left += twist.linear_m_s * twist.angular_rad_s + memory.pop("hit_m_s", 0.0) / dt_s
-        if memory.pop("is_falling", False):
+        if memory.pop("is_falling", False) and view.is_fallen:
             up += _LANDING_M_S / dt_s
     memory["since_ns"], memory["speed_m_s"] = view.now_ns, twist.linear_m_s
     words = (

@@ -1,6 +1,7 @@
 """A knock: a contact that begins faster than 2 cm/s, or the operator's hand (thymio-robot.md section 7.3).
 
-acc._tap becomes 1; a program clears it.
+So is the landing after a fall, for which it looks as often as the accelerometer measures. acc._tap becomes 1; a program
+clears it.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.commands import Tap
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.readings import TapReading
-from thymio_sim_ros.sim.sensors import NEVER_NS, Sensor
+from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.thymio2 import TAP_SPEED_M_S
 from thymio_sim_ros.sim.view import SensorView
 
@@ -18,17 +19,22 @@ __all__ = ["SENSOR"]
 
 
 def _measure(view: SensorView) -> TapReading | None:
-    taps = view.state(HandState).taps
-    is_knocked = taps != view.memory.get("taps", 0)
-    view.memory["taps"] = taps
-    if is_knocked or any(contact.is_new and contact.speed_m_s > TAP_SPEED_M_S for contact in view.contacts):
+    memory, taps, is_falling = view.memory, view.state(HandState).taps, view.is_falling
+    has_landed = memory.get("is_falling", False) and not is_falling and view.is_fallen
+    is_knocked = taps != memory.get("taps", 0)
+    memory["taps"], memory["is_falling"] = taps, is_falling
+    if has_landed or is_knocked or any(_is_knock(contact) for contact in view.contacts):
         return TapReading(view.now_ns, (1,))
     return None
 
 
+def _is_knock(contact: Contact) -> bool:
+    return contact.is_new and contact.speed_m_s > TAP_SPEED_M_S
+
+
 SENSOR = Sensor(
     name="tap",
-    period_ns=NEVER_NS,
+    period_ns=62_500_000,
     measure=_measure,
     wakes_on=(Tap, Contact),
     aseba=AsebaFace(variables=(("acc._tap", 1),), event="tap"),
