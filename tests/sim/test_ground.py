@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from tests.sim.images import printed
 from thymio_sim_ros.sim.geometry import Point, Pose
 from thymio_sim_ros.sim.ground import Ground, GroundSample
 from thymio_sim_ros.sim.primitives import Floor, Paint
@@ -112,3 +113,19 @@ def test_restoring_takes_all_drawings_away() -> None:
     ground.restore()
     assert ground.sample(0.0, 0.0) == GroundSample(1.0, 1.0)
     assert ground.color_at(0.0, 0.0) == WHITE
+
+
+def test_a_print_of_tiles_reads_as_floors_of_tiles() -> None:
+    greys = [[37 * (3 * row + column) ** 2 % 256 for column in range(8)] for row in range(8)]
+    floors = [
+        floor(grey, column * 0.025, row * 0.025, (column + 1) * 0.025, (row + 1) * 0.025)
+        for row, line in enumerate(greys)
+        for column, grey in enumerate(line)
+    ]
+    rows = [[(grey, grey, grey, 255) for grey in line] for line in reversed(greys)]
+    sheet = printed(rows, 0.2, 0.2, Pose(0.1, 0.1, 0.0))
+    on_paper, tiled = Ground([floor(255, 0.0, 0.0, 0.2, 0.2)], [sheet]), Ground(floors, [])
+    places = [(step * 0.0371 % 0.2, step * 0.0217 % 0.2) for step in range(200)]
+    assert [on_paper.sample(*place).reflectance for place in places] == pytest.approx(
+        [tiled.sample(*place).reflectance for place in places], abs=1e-9
+    )

@@ -146,10 +146,11 @@ class Picture:
         (left, bottom, right, top), rgba = rastered(printed, self.pixel_m, self.origin, self.pixels.shape)
         under = self.pixels[bottom:top, left:right]
         covered = (rgba[..., 3] > 0) & (under > 0)
-        color, opacity = rgba[covered][:, :3], rgba[covered][:, 3:] / 255
-        if (opacity < 1.0).any():
+        color, opacity = rgba[..., :3][covered], rgba[..., 3][covered]
+        if (opacity < 255).any():
+            part = opacity[:, None] / 255
             ground = np.array(self._palette)[under[covered]] * 255
-            color = np.rint(color * opacity + ground * (1 - opacity)).astype(np.uint8)
+            color = np.rint(color * part + ground * (1 - part)).astype(np.uint8)
         if len(color):
             colors, which = few_colors(color, max(1, _MAX_COLORS + 1 - len(self._palette) - _SPARE_COLORS))
             numbers = [self._number((red / 255, green / 255, blue / 255)) for red, green, blue in colors.tolist()]

@@ -8,29 +8,33 @@ keys are refused.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-from thymio_sim_ros.sim import fields, pictures, source, thymio2
+from thymio_sim_ros.sim import fields, pictures, source
+from thymio_sim_ros.sim import playground_checks as checks
 from thymio_sim_ros.sim.fields import (
-    Angle,
-    Coordinate,
     FieldError,
     Name,
-    PenWidth,
-    Shade,
     Text,
     describe,
     join,
     json_schema,
     read,
 )
-from thymio_sim_ros.sim.geometry import Pose, convex_hulls_overlap, disc_overlaps_hull
-from thymio_sim_ros.sim.primitives import Disc, Floor, Mark, Paint, Primitive, Print, Solid, Trigger
-from thymio_sim_ros.sim.shapes import Shape, ShapeKind, all_shapes
+from thymio_sim_ros.sim.playground_values import (
+    Headline,
+    NamedShape,
+    PenStart,
+    Playground,
+    PlaygroundError,
+    RobotStart,
+    Translation,
+)
+from thymio_sim_ros.sim.primitives import Floor, Paint, Primitive, Print, Solid, Trigger
+from thymio_sim_ros.sim.shapes import ShapeKind, all_shapes
 from thymio_sim_ros.sim.source import MAX_BYTES, Beside
 
 __all__ = [
@@ -53,91 +57,6 @@ MAX_ROBOTS = 100
 MAX_PRIMITIVES = 10_000
 MAX_TRANSLATIONS = 50
 LANGUAGE = "[a-z]{2,3}(-[A-Za-z0-9]{2,8})*"
-
-
-class PlaygroundError(Exception):
-    """A playground that is refused: file, path of the key, what was found there, what was expected."""
-
-    def __init__(self, path: str, key: str, found: str, expected: str) -> None:
-        where = f"{path}: {key}" if key else path
-        super().__init__(f"{where}: found {found}, expected {expected}")
-        self.path = path
-        self.key = key
-        self.found = found
-        self.expected = expected
-
-
-@dataclass(frozen=True, slots=True)
-class PenStart:
-    """A pen that a robot has at the start."""
-
-    color: Shade = "#000000"
-    width_m: PenWidth = 0.003
-    down: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class RobotStart:
-    """A robot, where it starts, and the pen that it has then, if any."""
-
-    name: Name
-    x_m: Coordinate
-    y_m: Coordinate
-    yaw_rad: Angle = 0.0
-    pen: PenStart | None = None
-
-    @property
-    def pose(self) -> Pose:
-        """The start as a pose."""
-        return Pose(self.x_m, self.y_m, self.yaw_rad)
-
-
-@dataclass(frozen=True, slots=True)
-class NamedShape:
-    """One shape of the file: its kind's name, its own name, its fields."""
-
-    kind: str
-    name: str
-    shape: Shape
-
-
-@dataclass(frozen=True, slots=True)
-class Translation:
-    """Title and description in another language."""
-
-    title: Text
-    description: Text = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Headline:
-    """What a list of playgrounds shows; translations by language code."""
-
-    title: str
-    description: str
-    translations: tuple[tuple[str, Translation], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Playground:
-    """A checked playground.
-
-    Invariant: names are unique, no robot starts inside a solid or another robot, triggers name doors.
-    """
-
-    name: str
-    title: str
-    description: str
-    shapes: tuple[NamedShape, ...]
-    robots: tuple[RobotStart, ...]
-    solids: tuple[Solid, ...]
-    floors: tuple[Floor, ...]
-    paints: tuple[Mark, ...]
-    translations: tuple[tuple[str, Translation], ...] = ()
-    """By language code, in the order of the file; `title` and `description` are English."""
-    triggers: tuple[Trigger, ...] = ()
-    notes: tuple[str, ...] = ()
-    """What a person should know: what a converted file cannot express, what looks like a mistake."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,11 +159,11 @@ def _build(data: object, name: str, beside: Beside, notes: tuple[str, ...]) -> P
     kinds = {kind.name: kind for kind in all_shapes()}
     shapes = tuple(_shape(item, index, kinds, beside) for index, item in enumerate(shape_items))
     robots = tuple(read(RobotStart, item, f"robots[{index}]") for index, item in enumerate(robot_items))
-    _check_names(shapes, robots)
+    checks.check_names(shapes, robots)
     primitives = _primitives(shapes)
     solids = tuple(primitive for primitive in primitives if isinstance(primitive, Solid))
-    _check_starts(robots, solids)
-    _check_doors(shapes, primitives)
+    checks.check_starts(robots, solids)
+    checks.check_doors(shapes, primitives)
     floors = tuple(primitive for primitive in primitives if isinstance(primitive, Floor))
     return Playground(
         name=name,
@@ -257,7 +176,7 @@ def _build(data: object, name: str, beside: Beside, notes: tuple[str, ...]) -> P
         paints=tuple(primitive for primitive in primitives if isinstance(primitive, Paint | Print)),
         translations=translations,
         triggers=tuple(primitive for primitive in primitives if isinstance(primitive, Trigger)),
-        notes=(*notes, *_off_floor(robots, floors)),
+        notes=(*notes, *checks.off_floor(robots, floors)),
     )
 
 
@@ -312,16 +231,6 @@ class _Label:
     name: Name
 
 
-def _check_names(shapes: Iterable[NamedShape], robots: Iterable[RobotStart]) -> None:
-    seen: dict[str, str] = {}
-    named = [(f"shapes[{index}]", shape.name) for index, shape in enumerate(shapes)]
-    named += [(f"robots[{index}]", robot.name) for index, robot in enumerate(robots)]
-    for key, name in named:
-        if name in seen:
-            raise FieldError(f"{key}.name", f"'{name}' as in {seen[name]}", "a name of its own")
-        seen[name] = key
-
-
 def _primitives(shapes: tuple[NamedShape, ...]) -> list[Primitive]:
     found: list[Primitive] = []
     for index, named in enumerate(shapes):
@@ -337,38 +246,3 @@ def _primitives(shapes: tuple[NamedShape, ...]) -> list[Primitive]:
         if len(found) > MAX_PRIMITIVES:
             raise FieldError(f"shapes[{index}]", f"more than {MAX_PRIMITIVES} parts so far", "a simpler playground")
     return found
-
-
-def _off_floor(robots: tuple[RobotStart, ...], floors: tuple[Floor, ...]) -> list[str]:
-    """Robots that start in the air: allowed, as they may be put elsewhere, but hardly meant."""
-    return [
-        f"robots[{index}]: '{robot.name}' starts where there is no floor"
-        for index, robot in enumerate(robots)
-        if not any(floor.holds((robot.x_m, robot.y_m)) for floor in floors)
-    ]
-
-
-def _check_starts(robots: tuple[RobotStart, ...], solids: tuple[Solid, ...]) -> None:
-    hulls = [robot.pose.place_all(thymio2.hull()) for robot in robots]
-    for index, (robot, hull) in enumerate(zip(robots, hulls, strict=True)):
-        for solid in solids:
-            if isinstance(solid.outline, Disc):
-                hit = disc_overlaps_hull((solid.pose.x_m, solid.pose.y_m), solid.outline.radius_m, hull)
-            else:
-                hit = convex_hulls_overlap(hull, solid.vertices)
-            if hit:
-                raise FieldError(f"robots[{index}]", f"'{robot.name}' inside '{solid.name}'", "a free place")
-    for one, other in combinations(range(len(robots)), 2):
-        if convex_hulls_overlap(hulls[one], hulls[other]):
-            found = f"'{robots[other].name}' inside '{robots[one].name}'"
-            raise FieldError(f"robots[{other}]", found, "a free place")
-
-
-def _check_doors(shapes: tuple[NamedShape, ...], primitives: Iterable[Primitive]) -> None:
-    """Refuse a trigger of what is no door."""
-    doors = [primitive.name for primitive in primitives if isinstance(primitive, Solid) and primitive.slide is not None]
-    keys = {shape.name: f"shapes[{index}].door" for index, shape in enumerate(shapes)}
-    for primitive in primitives:
-        if isinstance(primitive, Trigger) and primitive.door not in doors:
-            expected = "one of the doors " + ", ".join(doors) if doors else "the name of a door; there is none"
-            raise FieldError(keys[primitive.name], describe(primitive.door), expected)

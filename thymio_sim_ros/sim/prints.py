@@ -13,6 +13,9 @@ __all__ = ["few_colors", "rastered"]
 
 _Bytes = npt.NDArray[np.uint8]
 
+_CODES = 1 << 24
+"""Colors of three bytes; tables over all of them are far faster than sorting the pixels of a large print."""
+
 
 def rastered(
     printed: Print, pixel_m: float, origin: tuple[int, int], shape: tuple[int, int]
@@ -44,21 +47,29 @@ def rastered(
     return (left, bottom, right, top), colors
 
 
-def few_colors(colors: _Bytes, most: int) -> tuple[_Bytes, npt.NDArray[np.intp]]:
+def few_colors(colors: _Bytes, most: int) -> tuple[_Bytes, npt.NDArray[np.int32]]:
     """At most `most` colors that stand for n x 3 bytes, and which of them each one becomes.
 
     All that occur, if they are few enough; otherwise near ones are replaced by their mean.
     """
-    wide = colors.astype(np.uint32)
-    codes = (wide[:, 0] << 16) | (wide[:, 1] << 8) | wide[:, 2]
-    for bits in range(9):
-        keep = 0xFF >> bits << bits
-        groups, which = np.unique(codes & (keep << 16 | keep << 8 | keep), return_inverse=True)
+    codes = (colors[:, 0].astype(np.uint32) << 16) | (colors[:, 1].astype(np.uint32) << 8) | colors[:, 2]
+    occurs = np.zeros(_CODES, dtype=bool)
+    occurs[codes] = True
+    distinct = np.flatnonzero(occurs)
+    groups, member = distinct, np.arange(len(distinct))
+    for bits in range(1, 9):
         if len(groups) <= most:
             break
-    count = np.bincount(which)
-    means = [np.bincount(which, weights=colors[:, part]) / count for part in range(3)]
-    return np.rint(np.stack(means, axis=1)).astype(np.uint8), which
+        keep = 0xFF >> bits << bits
+        groups, member = np.unique(distinct & (keep << 16 | keep << 8 | keep), return_inverse=True)
+    parts = np.stack([distinct >> 16, distinct >> 8 & 0xFF, distinct & 0xFF])
+    if len(groups) < len(distinct):
+        number = np.bincount(codes, minlength=_CODES)[distinct]
+        total = np.bincount(member, weights=number)
+        parts = np.stack([np.rint(np.bincount(member, weights=part * number) / total) for part in parts])
+    place = np.zeros(_CODES, dtype=np.int32)
+    place[distinct] = member
+    return parts.T.astype(np.uint8), place[codes]
 
 
 def _blocks(source: _Bytes, across: int, down: int) -> _Bytes:

@@ -15,6 +15,7 @@ from thymio_sim_ros.sim.foreign import Conversion, aseba
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.playground import PlaygroundError
 from thymio_sim_ros.sim.primitives import Disc
+from thymio_sim_ros.sim.world import World
 
 COLORS = '<color name="white" r="1" g="1" b="1"/><color name="orange" r="1.0" g="0.5" b="0"/>'
 WORLD = '<world w="100" h="60" color="white"/>'
@@ -184,3 +185,22 @@ def test_a_converted_world_is_an_ordinary_one() -> None:
         [{"name": "thymio_0", "x_m": 0.5, "y_m": 0.3}],
     )  # fmt: skip
     assert (loaded.solids, loaded.floors, loaded.robots) == (again.solids, again.floors, again.robots)
+
+
+def test_movable_things_and_doors_come_to_life() -> None:
+    body = (
+        '<wall x="20" y="20" l1="6" l2="6" h="5" mass="20" color="orange"/>'
+        '<cylinder x="40" y="20" r="3" h="5" mass="20" color="orange"/>'
+        '<area name="a"><point x="-5" y="-5"/><point x="5" y="-5"/><point x="5" y="15"/><point x="-5" y="15"/></area>'
+        '<door name="d" closedX="60" closedY="30" openedX="70" openedY="30" l1="1" l2="10" h="10" moveDuration="2" '
+        'color="orange"/><activation x="20" y="50" l1="5" l2="2" area="a" door="d"/><robot x="80" y="50"/>'
+    )
+    loaded = playground.loads(text(WORLD + body), "mine.playground")
+    loads = {solid.name: solid.load.mass_kg for solid in loaded.solids if solid.load is not None}
+    assert loads == pytest.approx({"wall": 0.027, "cylinder": 0.027})
+    (door,) = (solid for solid in loaded.solids if solid.slide is not None)
+    assert door.slide is not None
+    assert (door.pose, door.slide.opened, door.slide.duration_s) == (Pose(0.6, 0.3, 0.0), Pose(0.7, 0.3, 0.0), 2.0)
+    (trigger,) = loaded.triggers
+    assert (trigger.door, trigger.holds(0.2, 0.6), trigger.holds(0.2, 0.4)) == ("d", True, False)
+    World(loaded).step()

@@ -1,0 +1,56 @@
+"""What must be true of a playground as a whole: names, places, doors; and what a person should be told.
+
+Each check raises FieldError with the key of what is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from thymio_sim_ros.sim.fields import FieldError, describe
+from thymio_sim_ros.sim.placement import Occupied, footprint_of, footprint_of_robot
+from thymio_sim_ros.sim.playground_values import NamedShape, RobotStart
+from thymio_sim_ros.sim.primitives import Floor, Primitive, Solid, Trigger
+
+__all__ = ["check_doors", "check_names", "check_starts", "off_floor"]
+
+
+def check_names(shapes: Iterable[NamedShape], robots: Iterable[RobotStart]) -> None:
+    """Refuse a name that occurs twice."""
+    seen: dict[str, str] = {}
+    named = [(f"shapes[{index}]", shape.name) for index, shape in enumerate(shapes)]
+    named += [(f"robots[{index}]", robot.name) for index, robot in enumerate(robots)]
+    for key, name in named:
+        if name in seen:
+            raise FieldError(f"{key}.name", f"'{name}' as in {seen[name]}", "a name of its own")
+        seen[name] = key
+
+
+def check_starts(robots: Iterable[RobotStart], solids: Iterable[Solid]) -> None:
+    """Refuse a robot that starts inside a solid or another robot."""
+    occupied = Occupied(map(footprint_of, solids))
+    for index, robot in enumerate(robots):
+        footprint = footprint_of_robot(robot.name, robot.pose)
+        blocker = occupied.blocker(footprint)
+        if blocker is not None:
+            raise FieldError(f"robots[{index}]", f"'{robot.name}' inside '{blocker}'", "a free place")
+        occupied.add(footprint)
+
+
+def off_floor(robots: tuple[RobotStart, ...], floors: tuple[Floor, ...]) -> list[str]:
+    """Robots that start in the air: allowed, as they may be put elsewhere, but hardly meant."""
+    return [
+        f"robots[{index}]: '{robot.name}' starts where there is no floor"
+        for index, robot in enumerate(robots)
+        if not any(floor.holds((robot.x_m, robot.y_m)) for floor in floors)
+    ]
+
+
+def check_doors(shapes: tuple[NamedShape, ...], primitives: Iterable[Primitive]) -> None:
+    """Refuse a trigger of what is no door."""
+    doors = [primitive.name for primitive in primitives if isinstance(primitive, Solid) and primitive.slide is not None]
+    keys = {shape.name: f"shapes[{index}].door" for index, shape in enumerate(shapes)}
+    for primitive in primitives:
+        if isinstance(primitive, Trigger) and primitive.door not in doors:
+            expected = "one of the doors " + ", ".join(doors) if doors else "the name of a door; there is none"
+            raise FieldError(keys[primitive.name], describe(primitive.door), expected)
