@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.device.behaviour_oracle import ARROWS, ORACLES, STOP, Senses, Shown
+from tests.device.behaviour_oracle import ARROWS, ORACLES, STOP, Investigator, Senses, Shown
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.behaviour_host import built_in
 from thymio_sim_ros.device.device import AsebaDevice, DeviceOptions
@@ -90,24 +90,21 @@ def histories(seed: int) -> Iterator[Senses]:
     chance = random.Random(seed)
     p, g, acc = [0] * 7, [900, 900], [0, 0, 23]
     held: set[str] = set()
-    grounds = list(GROUNDS)
     often = ("left", "backward", "forward")[seed % 3]
-    for tick in range(TICKS):
+    for _ in range(TICKS):
         if chance.random() < 0.2:
             reach = chance.choice([0, 300, 1200, 4505, 5300])
             p = [chance.choice([0, chance.choice(BORDERS), chance.randint(0, reach)]) for _ in range(7)]
             p[chance.randrange(5)] = chance.choice(BORDERS)
         if chance.random() < 0.1:
-            g = [chance.choice(grounds), chance.choice(grounds)] if chance.random() < 0.6 else [900, 900]
+            g = [chance.choice(GROUNDS), chance.choice(GROUNDS)] if chance.random() < 0.6 else [900, 900]
         if chance.random() < 0.05:
             acc = chance.choice([[0, 0, 23], [1, -1, 2], [-12, 5, 18], [chance.randint(-32, 32) for _ in range(3)]])
         before = set(held)
         if chance.random() < 0.1:
             held ^= {chance.choice((*ARROWS, *[often] * 6))}
-        if tick > TICKS // 3 and chance.random() < 0.03:
+        if chance.random() < 0.01:
             held = set(chance.choice([(), ("left", "right"), ("forward", "backward")]))
-            levels = [sum(g) // 2 + 150, sum(g) // 2 - 150, 50]
-            grounds = [*GROUNDS, *[level + step for level in levels for step in (-1, 0, 1)] * 2]
         intensities = tuple(chance.choice([0, 1400, 2999, 3000, 3001, chance.randint(1400, 4600)]) for _ in range(7))
         if chance.random() < 0.5:
             intensities = (0, 0, chance.choice([3000, 3001, 4000]), 0, 0, 0, 0)
@@ -142,6 +139,21 @@ def test_friendly_dances_before_a_friend_as_its_table_says() -> None:
             frame=((0, 0, 4000, 0, 0, 0, 0), 1 + tick % 3) if tick % 5 == 0 else None,
         )
         assert bench.tick(senses) == oracle.tick(senses), tick
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_investigator_keeps_to_its_levels_whatever_they_are(seed: int) -> None:
+    chance = random.Random(seed)
+    bench, oracle = Bench("investigator"), Investigator()
+    for pair in ("", "left right", "forward backward", "left right", "left right"):
+        held, shade = frozenset(pair.split()), chance.choice([149, 150, 151, chance.randint(152, 900)])
+        for touched in (held, frozenset[str](), frozenset[str]()):
+            senses = Senses(g=(shade, shade + 1), buttons=held, touched=touched)
+            assert bench.tick(senses) == oracle.tick(senses), senses
+        borders = [level + step for level in (oracle.black, oracle.white) for step in (-1, 0, 1)]
+        for _ in range(200):
+            senses = Senses(g=(chance.choice(borders), chance.choice(borders)))
+            assert bench.tick(senses) == oracle.tick(senses), senses
 
 
 def test_investigator_keeps_its_levels_on_the_card(tmp_path: Path) -> None:
