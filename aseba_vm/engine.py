@@ -248,10 +248,23 @@ class Engine:
             self._made.clear()
             if self._translation.blocks is not None:
                 if self._host is None:
-                    self._host = WasmHost(self) if self._is_wasm else PythonHost(self)
+                    self._host = self._new_host(words)
                 self._host.begin(len(self._translation.blocks.branches))
         self._load()
         return self._translation
+
+    def _new_host(self, words: tuple[int, ...]) -> Host:
+        """Return where translated code is to run; in Python if WebAssembly was not asked for by name and fails."""
+        if self._is_wasm:
+            try:
+                return WasmHost(self)
+            except Exception:
+                if self._is_eager:
+                    raise
+                logging.getLogger(__name__).exception("no memory for WebAssembly: events are translated to Python")
+                self._is_wasm = False
+                self._translation = _translation(words, self._memories, self._natives, is_wasm=False)
+        return PythonHost(self)
 
     def _load(self) -> None:
         """Read from the bytecode what the branches remember."""
@@ -346,9 +359,11 @@ class Engine:
 
 
 def new_engine(name: str, machine: Machine, natives: Mapping[str, Native]) -> Engine | None:
-    """Return an engine by name, None to interpret. Raises ValueError for an unknown name."""
+    """Return an engine by name, None to interpret. Raises ValueError for a name that cannot be used."""
     if name not in ENGINES:
         raise ValueError(f"engine {name!r} is not one of {', '.join(ENGINES)}")
+    if name == WASM and not engine_wasm.is_available():
+        raise ValueError(f"engine {name!r} needs the package wasmtime, which the extra [fast] installs")
     if name == INTERPRETER:
         return None
     return Engine(machine, natives, is_eager=name != AUTO, is_wasm=None if name == AUTO else name == WASM)

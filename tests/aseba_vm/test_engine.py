@@ -9,19 +9,18 @@ import sys
 
 import pytest
 
-from aseba_vm import CompileError, VirtualMachine, compile, engine_python
+from aseba_vm import CompileError, VirtualMachine, compile, engine, engine_python
 from aseba_vm.bytecode import Op
-from aseba_vm.engine import AUTO, ENGINES, INTERPRETER, WASM
+from aseba_vm.engine import INTERPRETER, WASM
 from aseba_vm.engine_wasm import is_available
 from aseba_vm.targets import THYMIO_II
+from tests.aseba_vm.engines import AVAILABLE, TRANSLATORS
 from tests.aseba_vm.programs import Writer
 from tests.aseba_vm.vectors import load
 
 pytestmark = pytest.mark.usefixtures("translators_work")
 
 EVENTS = [("ping", 1), ("pair", 2), ("nothing", 0)]
-AVAILABLE = [name for name in ENGINES if name != WASM or is_available()]
-TRANSLATORS = [name for name in AVAILABLE if name not in (AUTO, INTERPRETER)]
 
 
 def _state(machine):
@@ -212,6 +211,25 @@ def test_a_program_without_an_end_can_be_interrupted(engine):
 def test_an_unknown_engine_is_refused():
     with pytest.raises(ValueError, match="not one of"):
         VirtualMachine(THYMIO_II, engine="steam")
+
+
+def test_webassembly_by_name_needs_its_package(monkeypatch):
+    monkeypatch.setitem(sys.modules, "wasmtime", None)
+    with pytest.raises(ValueError, match=r"needs the package wasmtime, which the extra \[fast\] installs"):
+        VirtualMachine(THYMIO_II, engine=WASM)
+
+
+@pytest.mark.skipif(not is_available(), reason="wasmtime is not installed")
+def test_a_machine_without_memory_for_webassembly_is_translated_to_python(monkeypatch, caplog):
+    def fail(_machine):
+        raise MemoryError
+
+    monkeypatch.setattr(engine, "WasmHost", fail)
+    machine = VirtualMachine(THYMIO_II)
+    machine.load(compile("var n = 0\nwhile n < 9000 do\nn = n + 3\nend", THYMIO_II))
+    machine.run()
+    assert machine.variables[128] == 9000
+    assert "events are translated to Python" in caplog.text
 
 
 def test_a_translator_that_fails_leaves_the_program_to_the_interpreter(monkeypatch, caplog):

@@ -7,15 +7,14 @@ import random
 import pytest
 
 from aseba_vm import VirtualMachine
-from aseba_vm.engine import ENGINES, INTERPRETER, WASM
-from aseba_vm.engine_wasm import is_available
+from aseba_vm.engine import INTERPRETER
 from aseba_vm.natives import NATIVES
 from aseba_vm.outbox import BadCode
 from aseba_vm.targets import THYMIO_II
+from tests.aseba_vm.engines import TRANSLATORS
 
 pytestmark = pytest.mark.usefixtures("translators_work")
 
-TRANSLATORS = [name for name in ENGINES if name != INTERPRETER and (name != WASM or is_available())]
 LIMITS = (0, 1, -1, 2, 127, 128, 16383, 16384, 16385, -16384, -16385, 32767, -32767, -32768)
 STOP, PUSH, NATIVE = 0, 0x1000, 0xC000
 

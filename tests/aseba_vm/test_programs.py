@@ -4,11 +4,11 @@ import pytest
 
 from aseba_vm.bytecode import BINARY_OPERATORS, UNARY_OPERATORS, Op, instructions
 from aseba_vm.compiler import compile
-from aseba_vm.engine import ENGINES
 from aseba_vm.errors import CompileError
 from aseba_vm.lexer import KEYWORDS, SYMBOLS, tokenise
 from aseba_vm.messages import MESSAGES
 from aseba_vm.natives import NATIVES
+from tests.aseba_vm.engines import AVAILABLE
 from tests.aseba_vm.expectations import FOLDER, Scenario
 
 PROGRAMS = sorted(path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob("*.a*s*") if path.is_file())
@@ -18,7 +18,7 @@ def scenario(name):
     return Scenario(name, (FOLDER / name).read_text("utf-8"))
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", AVAILABLE)
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_does_what_its_comments_say(name, engine):
     scenario(name).check(engine)

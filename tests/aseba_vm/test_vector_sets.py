@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from aseba_vm.engine import ENGINES
+from tests.aseba_vm.engines import AVAILABLE
 from tests.aseba_vm.vectors import SHIPPED, is_set, load
 
 ROOT = Path(__file__).parents[2]
@@ -38,7 +38,7 @@ def test_any_part_of_a_set_is_run_plain_or_compressed(tmp_path):
     (tmp_path / "aseba-errors-more.jsonl.gz").write_bytes(gzip.compress("\n".join(lines("aseba-errors", 4)).encode()))
     (tmp_path / "aseba-execution-hidden.jsonl").write_text("\n".join(lines("aseba-execution", 3)), "utf-8")
     (tmp_path / "aseba-execution-hidden-2x.jsonl").write_text("\n".join(lines("aseba-execution-2x", 2)), "utf-8")
-    engines = len(ENGINES) + 1
+    engines = len(AVAILABLE) + 1
     own = 1  # the test of the target
     assert run(tmp_path) == (0, 5 + 4 + (3 + 2) * engines + own, 0)
 
@@ -48,7 +48,7 @@ def test_a_wrong_answer_in_a_set_is_found_in_every_engine(tmp_path):
     vector["expect"][-1]["memory_crc"] ^= 1
     (tmp_path / "aseba-execution.jsonl").write_text(json.dumps(vector), "utf-8")
     code, _, failed = run(tmp_path)
-    assert (code, failed) == (1, len(ENGINES) + 1)
+    assert (code, failed) == (1, len(AVAILABLE) + 1)
 
 
 def test_a_folder_without_vectors_is_refused(tmp_path):

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from aseba_vm import CompileError, aesl
-from aseba_vm.engine import ENGINES, INTERPRETER
+from aseba_vm.engine import INTERPRETER
 from aseba_vm.targets import THYMIO_II
+from tests.aseba_vm.engines import AVAILABLE
 from tests.aseba_vm.vectors import Replay, as_answer, as_list, compiled, targets
 
 TRACED = "one by one"
@@ -36,13 +37,13 @@ def test_what_stops_the_reference_is_an_error_with_a_place(vector):
     assert caught.value.pos is not None
 
 
-@pytest.mark.parametrize("engine", [*ENGINES, TRACED])
+@pytest.mark.parametrize("engine", [*AVAILABLE, TRACED])
 @pytest.mark.vectors("aseba-execution")
 def test_a_program_runs_as_on_the_reference(vector, engine):
     _replay(vector, kills_long_events=False, engine=engine)
 
 
-@pytest.mark.parametrize("engine", [*ENGINES, TRACED])
+@pytest.mark.parametrize("engine", [*AVAILABLE, TRACED])
 @pytest.mark.vectors("aseba-execution-2x")
 def test_long_events_are_killed_as_in_the_fork(vector, engine):
     _replay(vector, kills_long_events=True, engine=engine)
