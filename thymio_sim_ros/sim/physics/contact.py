@@ -6,11 +6,16 @@ from dataclasses import dataclass
 
 from thymio_sim_ros.sim.clock import TICK_NS
 
-__all__ = ["SUB_STEPS", "SUB_STEP_S", "TICK_S", "Contact"]
+__all__ = ["ROBOT_BOUNCE", "SUB_STEPS", "SUB_STEP_S", "TICK_S", "Contact"]
 
 SUB_STEPS = 2
 TICK_S = TICK_NS * 1e-9
 SUB_STEP_S = TICK_S / SUB_STEPS
+
+
+ROBOT_BOUNCE = 2.0**-32
+"""Elasticity of robots. pymunk multiplies those of two shapes; things have theirs divided by this power of two, so that
+they bounce off robots as they should, and robots do not bounce off each other."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,8 @@ from pymunk import batch
 from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS
-from thymio_sim_ros.sim.physics.one_by_one import set_one_by_one
+from thymio_sim_ros.sim.physics.movables import MovableBody
+from thymio_sim_ros.sim.physics.one_by_one import Setter
 from thymio_sim_ros.sim.physics.robots import MOMENT_KG_M2, PUSH_N_S_M, RobotBody
 
 __all__ = ["Fleet"]
@@ -37,9 +38,16 @@ _X, _Y, _ANGLE, _VX, _VY, _TURNING = range(6)
 class Fleet:
     """Robots of one space, always the same. Between ticks their state lies in arrays, or in bodies, or in both."""
 
-    def __init__(self, space: pymunk.Space, bodies: Sequence[RobotBody], *, is_alone: bool) -> None:
+    def __init__(
+        self, space: pymunk.Space, bodies: Sequence[RobotBody], movables: Sequence[MovableBody], *, is_alone: bool
+    ) -> None:
         """`is_alone` when nothing but robots moves in the space."""
         self._space, self._bodies, self._is_alone = space, tuple(bodies), is_alone
+        self._movables = tuple(movables)
+        self._loads: list[MovableBody] = []
+        self._load_slots = np.zeros(0, dtype=np.intp)
+        self._load_state = np.zeros((0, 6))
+        self._setter = Setter([])
         count = len(self._bodies)
         self.driven = np.zeros((2, count))
         """Speed over ground that each wheel gives, m/s: left, then right."""
@@ -51,6 +59,7 @@ class Fleet:
         self._angle = self._speed = self._spin = self._heading = np.zeros(count)
         self._state = np.zeros((count, 6))
         self._stands = np.ones(count, dtype=bool)
+        self._all = np.zeros((0, 6))
         self._ids: npt.NDArray[np.uintp] = np.zeros(0, dtype=np.uintp)
         self._slots = np.zeros(0, dtype=np.intp)
         self._read = batch.Buffer()
@@ -154,6 +163,10 @@ class Fleet:
         """As `RobotBody.end_tick`."""
         self._angle = self._state[:, _ANGLE].copy()
         self._is_told = False
+        loads = self._all[self._load_slots]
+        for index in np.flatnonzero((loads != self._load_state).any(axis=1)).tolist():
+            self._loads[index].settle(*loads[index].tolist())
+        self._load_state = loads
 
     def touching(self) -> list[RobotBody]:
         """Robots that touch something."""
@@ -183,9 +196,13 @@ class Fleet:
         if not np.array_equal(ids, self._ids):
             self._ids = ids.copy()
             slots = {number: slot for slot, number in enumerate(ids.tolist())}
-            bodies = [body for body in self._bodies if not body.is_fallen]
-            self._slots = np.array([slots[body.body.id] for body in bodies], dtype=np.intp)
-        state = np.frombuffer(self._read.float_buf()).reshape(-1, 6)
+            bodies = [body.body for body in self._bodies if not body.is_fallen]
+            self._slots = np.array([slots[body.id] for body in bodies], dtype=np.intp)
+            self._setter = Setter(bodies)
+            self._loads = [movable for movable in self._movables if not movable.is_fallen]
+            self._load_slots = np.array([slots[movable.body.id] for movable in self._loads], dtype=np.intp)
+            self._load_state = np.full((len(self._loads), 6), np.nan)
+        self._all = state = np.frombuffer(self._read.float_buf()).reshape(-1, 6)
         if len(self._slots) == len(self._bodies):
             self._state = state[self._slots]
         else:
@@ -195,7 +212,7 @@ class Fleet:
         """Write speeds, and forces if the fields have them, of all that stand."""
         motion = motion if self._stands.all() else motion[self._stands]
         if not self._is_alone:
-            set_one_by_one([body.body for body in self._bodies if not body.is_fallen], fields, motion)
+            self._setter.set(fields, motion)
             return
         rows = np.zeros((len(self._ids), motion.shape[1]))
         rows[self._slots] = motion

@@ -12,6 +12,7 @@ import math
 import pymunk
 
 from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE
 from thymio_sim_ros.sim.physics.outlines import shape_of
 from thymio_sim_ros.sim.primitives import Disc, Solid
 from thymio_sim_ros.sim.rays import Obstacle, obstacle_of
@@ -33,6 +34,7 @@ class MovableBody:
         assert load is not None
         self._solid = solid
         self.is_moving = self.is_fallen = False
+        self._obstacle: Obstacle | None = None
         outline = solid.outline
         self.reach_m = outline.reach_m
         if isinstance(outline, Disc):
@@ -41,7 +43,7 @@ class MovableBody:
             moment = pymunk.moment_for_poly(load.mass_kg, outline.vertices)
         self.body = pymunk.Body(load.mass_kg, moment)
         self.shape = shape_of(outline, self.body)
-        self.shape.elasticity = load.restitution
+        self.shape.elasticity = load.restitution / ROBOT_BOUNCE
         slide = pymunk.PivotJoint(floor, self.body, (0.0, 0.0), (0.0, 0.0))
         turn = pymunk.GearJoint(floor, self.body, 0.0, 1.0)
         slide.max_bias = turn.max_bias = 0.0
@@ -63,6 +65,8 @@ class MovableBody:
     @property
     def obstacle(self) -> Obstacle:
         """What rays see of it."""
+        if self._obstacle is None:
+            self._obstacle = obstacle_of(self._solid.at(self.pose))
         return self._obstacle
 
     def place(self, pose: Pose) -> None:
@@ -80,14 +84,18 @@ class MovableBody:
 
     def end_tick(self) -> None:
         """Tell the new pose, if it has moved."""
-        vx, vy = self.body.velocity
-        speed = math.hypot(vx, vy) + abs(self.body.angular_velocity) * self.reach_m
-        x_m, y_m = self.body.position
+        body = self.body
+        if not (self.is_fallen or body.is_sleeping):
+            self.settle(*body.position, body.angle, *body.velocity, body.angular_velocity)
+
+    def settle(self, x_m: float, y_m: float, angle: float, vx: float, vy: float, spin: float) -> None:
+        """Be where the body is, with its speeds; slower than `AT_REST_M_S` it rests."""
+        speed = math.hypot(vx, vy) + abs(spin) * self.reach_m
         self.is_moving = speed > AT_REST_M_S
         if not self.is_moving and speed > 0.0:
             self._rest()
-        if (x_m, y_m, self.body.angle) != (self.pose.x_m, self.pose.y_m, self.pose.yaw_rad):
-            self._show(Pose(x_m, y_m, self.body.angle))
+        if (x_m, y_m, angle) != (self.pose.x_m, self.pose.y_m, self.pose.yaw_rad):
+            self._show(Pose(x_m, y_m, angle))
 
     def _rest(self) -> None:
         self.is_moving = False
@@ -95,4 +103,4 @@ class MovableBody:
 
     def _show(self, pose: Pose) -> None:
         self.pose = pose
-        self._obstacle = obstacle_of(self._solid.at(pose))
+        self._obstacle = None

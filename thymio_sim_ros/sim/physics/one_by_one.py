@@ -14,9 +14,32 @@ import numpy.typing as npt
 import pymunk
 from pymunk import _chipmunk_cffi, batch
 
-__all__ = ["set_by_properties", "set_one_by_one"]
+__all__ = ["Setter", "set_by_properties"]
 
 Values = npt.NDArray[np.float64]
+
+
+class Setter:
+    """Sets some bodies of a space; those that are not named sleep on."""
+
+    def __init__(self, bodies: Sequence[pymunk.Body]) -> None:
+        self._bodies = bodies
+        self._buffer = batch.Buffer()
+        self._function = getattr(_chipmunk_cffi.lib, "pmSpaceBodySetIteratorFuncBatched", None)
+        if self._function is not None:
+            self._handles = [body._body for body in bodies]
+            self._data = _chipmunk_cffi.ffi.new("pmBatchedData *")
+            self._data.floatArray, self._data.intArray = self._buffer._float_arr, self._buffer._int_arr
+
+    def set(self, fields: batch.BodyFields, motion: Values) -> None:
+        """As `set_by_properties`; `fields` are those of the columns."""
+        if self._function is None:
+            set_by_properties(self._bodies, motion)
+            return
+        self._buffer.set_float_buf(np.ascontiguousarray(motion))
+        self._buffer._float_arr.num = 0  # it is read from its beginning
+        self._data.fields = fields.value
+        deque(map(self._function, self._handles, repeat(self._data)), maxlen=0)
 
 
 def set_by_properties(bodies: Sequence[pymunk.Body], motion: Values) -> None:
@@ -25,21 +48,3 @@ def set_by_properties(bodies: Sequence[pymunk.Body], motion: Values) -> None:
         body.velocity, body.angular_velocity = (row[0], row[1]), row[2]
         if len(row) > 3:
             body.force, body.torque = (row[3], row[4]), row[5]
-
-
-def _set_by_function(bodies: Sequence[pymunk.Body], fields: batch.BodyFields, motion: Values) -> None:
-    buffer = batch.Buffer()
-    buffer.set_float_buf(motion)
-    data = _chipmunk_cffi.ffi.new("pmBatchedData *")
-    data.fields, data.floatArray, data.intArray = fields.value, buffer._float_arr, buffer._int_arr
-    buffer._float_arr.num = 0  # it is read from its beginning
-    setter = _chipmunk_cffi.lib.pmSpaceBodySetIteratorFuncBatched
-    deque(map(setter, [body._body for body in bodies], repeat(data)), maxlen=0)
-
-
-def set_one_by_one(bodies: Sequence[pymunk.Body], fields: batch.BodyFields, motion: Values) -> None:
-    """As `set_by_properties`; `fields` are those of the columns. Bodies that are not named sleep on."""
-    try:
-        _set_by_function(bodies, fields, np.ascontiguousarray(motion))
-    except AttributeError:
-        set_by_properties(bodies, motion)

@@ -18,7 +18,7 @@ import pymunk
 
 from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.geometry import Pose, wrap_angle
-from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, TICK_S, Contact
+from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE, SUB_STEP_S, SUB_STEPS, TICK_S, Contact
 from thymio_sim_ros.sim.rays import ConvexObstacle
 
 __all__ = ["MOMENT_KG_M2", "PUSH_N_S_M", "ROBOT_TYPE", "RobotBody", "Teller"]
@@ -83,7 +83,7 @@ class RobotBody:
         self.body.angle = pose.yaw_rad
         self.shape = pymunk.Poly(self.body, _HULL)
         self.shape.collision_type = ROBOT_TYPE
-        self.shape.elasticity = 1.0  # pymunk multiplies: what the other has counts
+        self.shape.elasticity = ROBOT_BOUNCE
 
     @property
     def pose(self) -> Pose:

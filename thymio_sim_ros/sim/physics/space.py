@@ -16,7 +16,7 @@ from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.nearby import Mover, Nearby
-from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, Contact
+from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE, SUB_STEP_S, SUB_STEPS, Contact
 from thymio_sim_ros.sim.physics.doors import DoorBody
 from thymio_sim_ros.sim.physics.fleet import Fleet
 from thymio_sim_ros.sim.physics.movables import AT_REST_M_S, MovableBody
@@ -75,7 +75,9 @@ class Physics:
         self._list_movers()
         begin, separate = self._on_begin, self._on_separate
         self._space.on_collision(ROBOT_TYPE, _THING_TYPE, begin, separate=separate)
-        self._space.on_collision(ROBOT_TYPE, ROBOT_TYPE, begin, _without_bounce, separate=separate)
+        self._space.on_collision(ROBOT_TYPE, ROBOT_TYPE, begin, separate=separate)
+        if any(movable.solid.load is not None and movable.solid.load.restitution for movable in self.movables.values()):
+            self._space.on_collision(_THING_TYPE, _THING_TYPE, pre_solve=_bounce)
 
     @property
     def movables(self) -> Mapping[str, MovableBody]:
@@ -149,7 +151,9 @@ class Physics:
         """All robots move as one from now on, until one is added or removed or they disband."""
         self._interrupt()
         is_alone = not self._movables and not self._doors
-        self._fleet = Fleet(self._space, tuple(self._robots.values()), is_alone=is_alone)
+        self._fleet = Fleet(
+            self._space, tuple(self._robots.values()), tuple(self._movables.values()), is_alone=is_alone
+        )
         return self._fleet
 
     def disband(self) -> None:
@@ -176,8 +180,8 @@ class Physics:
                 driver.settle(earlier)
         for driver in drivers:
             driver.end_tick()
-        for movable in self._movables.values():
-            if not (movable.is_fallen or movable.body.is_sleeping):
+        if self._fleet is None:
+            for movable in self._movables.values():
                 movable.end_tick()
         for door in self._doors.values():
             door.end_tick()
@@ -329,9 +333,9 @@ class Physics:
                 robot.touching.pop(its, None)
 
 
-def _without_bounce(arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
-    """Robots do not bounce off each other."""
-    arbiter.restitution = 0.0
+def _bounce(arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+    """Things bounce off each other as their elasticities say."""
+    arbiter.restitution *= ROBOT_BOUNCE * ROBOT_BOUNCE
 
 
 def _middle(points: pymunk.ContactPointSet) -> tuple[float, float]:
