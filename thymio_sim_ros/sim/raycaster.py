@@ -30,7 +30,7 @@ _NOTHING: Indices = np.zeros(0, dtype=np.intp)
 class Fan:
     """Sensors on a robot: places and unit directions of their rays in its frame, and how far and how high they look."""
 
-    __slots__ = ("directions", "height_m", "places", "range_m", "reach_m")
+    __slots__ = ("axes", "cos", "directions", "height_m", "is_narrow", "places", "range_m", "reach_m", "sin")
 
     def __init__(
         self,
@@ -43,6 +43,12 @@ class Fan:
         """x and y, by sensor."""
         self.directions = np.array(directions).transpose(2, 0, 1)
         """x and y, by sensor and ray."""
+        self.axes = self.directions[:, :, self.directions.shape[2] // 2]
+        """x and y of the middle one of each sensor's rays."""
+        self.cos = (self.axes[:, :, None] * self.directions).sum(axis=0).min(axis=1)
+        self.sin = np.sqrt(np.maximum(0.0, 1.0 - self.cos**2))
+        """Of the angle between that and the outermost ray, by sensor."""
+        self.is_narrow = bool((self.cos > 0.0).all())
         self.range_m, self.height_m = range_m, height_m
         self.reach_m = range_m + max(math.hypot(x, y) for x, y in places)
 
@@ -101,8 +107,10 @@ class Raycaster:
         sx = x[:, None] + c[:, None] * px - s[:, None] * py
         sy = y[:, None] + s[:, None] * px + c[:, None] * py
         limit = fan.range_m
-        is_near = (np.abs(sx) - near[:, 4, None] <= limit) & (np.abs(sy) - near[:, 5, None] <= limit)
+        is_near = np.maximum(np.abs(sx) - near[:, 4, None], np.abs(sy) - near[:, 5, None]) <= limit
         pair, sensor = np.nonzero(is_near)
+        if fan.is_narrow:
+            pair, sensor = _facing(fan, pair, sensor, sx[pair, sensor], sy[pair, sensor], c[pair], s[pair], near[pair])
         sx, sy, near, kind = sx[pair, sensor], sy[pair, sensor], near[pair], kinds[thing[pair]]
         rx, ry = fan.directions[:, sensor]
         c, s = c[pair, None], s[pair, None]
@@ -165,7 +173,7 @@ class Raycaster:
     def _meet(self, x: Values, y: Values, dx: Values, dy: Values, near: Values, kind: Indices) -> Values:
         """How far rays go until they enter the obstacle in whose frame they are; inf if they don't."""
         distances = np.empty(dx.shape)
-        for this in np.unique(kind).tolist():
+        for this in (np.flatnonzero(np.bincount(kind - DISC)) + DISC).tolist():
             rows = np.flatnonzero(kind == this)
             ray = (x[rows], y[rows], dx[rows], dy[rows])
             if this == DISC:
@@ -178,6 +186,18 @@ class Raycaster:
                 assert planes is not None
                 distances[rows] = _meet_polygon(*ray, planes)
         return distances
+
+
+def _facing(
+    fan: Fan, pair: Indices, sensor: Indices, x: Values, y: Values, c: Values, s: Values, near: Values
+) -> tuple[Indices, Indices]:
+    """Those whose rays may meet the circle round the thing, in whose frame the sensors are at x, y, turned by c, s."""
+    ax, ay = fan.axes[:, sensor]
+    ax, ay = c * ax - s * ay, s * ax + c * ay
+    radius = np.hypot(near[:, 4], near[:, 5])
+    ahead, aside = -(ax * x + ay * y), np.abs(ax * y - ay * x)
+    facing = np.flatnonzero((aside * fan.cos[sensor] - ahead * fan.sin[sensor] <= radius) & (ahead >= -radius))
+    return pair[facing], sensor[facing]
 
 
 def _meet_discs(x: Values, y: Values, dx: Values, dy: Values, radius: Values) -> Values:
