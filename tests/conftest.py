@@ -1,6 +1,5 @@
 """Fixtures of all tests; those that need ROS come from the package itself, as a teacher would use them."""
 
-import importlib.util
 from pathlib import Path
 
 import hypothesis
@@ -8,8 +7,8 @@ import hypothesis
 hypothesis.settings.register_profile("thymio", deadline=None)  # a loaded machine is no defect
 hypothesis.settings.load_profile("thymio")
 
-if importlib.util.find_spec("rclpy") is not None:
-    pytest_plugins = ["thymio_sim_ros.testing"]
+# The same name as the entry point: where the package is installed, pytest has loaded it already.
+pytest_plugins = ["thymio_sim_ros.pytest_plugin"]
 
 
 def pytest_addoption(parser):

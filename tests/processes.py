@@ -27,6 +27,11 @@ class Process:
             )
 
     @property
+    def pid(self) -> int:
+        """Its process id, and that of its group."""
+        return self._popen.pid
+
+    @property
     def output(self) -> str:
         """Everything printed so far."""
         return self._log.read_text()

@@ -52,12 +52,14 @@ RULES = {
     f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"foxglove_websocket", "websockets"})),
     f"{OURS}.nodes": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.launch": Rule(frozenset(), frozenset({"launch", "launch_ros"})),
-    f"{OURS}.testing": Rule(ALL_OF_OURS, ROS | {"pytest"}),
+    f"{OURS}.testing": Rule(_names("device", "loading", "runner", "sim", "testing"), frozenset({"pytest"})),
+    f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
+    f"{OURS}.pytest_plugin": Rule(ALL_OF_OURS, frozenset({"pytest"})),
     f"{OURS}.cli": Rule(ALL_OF_OURS),
     # resources, loading, suite, webbuild: helpers of the commands, without ROS
     OURS: Rule(ALL_OF_OURS),
 }
-STARTERS = {f"{OURS}.cli", f"{OURS}.testing", f"{OURS}.nodes"}
+STARTERS = {f"{OURS}.cli", f"{OURS}.testing.ros", f"{OURS}.pytest_plugin", f"{OURS}.nodes"}
 
 
 def _sources() -> dict[str, Path]:
@@ -118,7 +120,7 @@ def test_no_module_imports_itself_by_a_detour() -> None:
 
 
 def test_everything_without_ros_can_be_imported_where_rclpy_cannot() -> None:
-    with_ros = (f"{OURS}.nodes", f"{OURS}.testing", f"{OURS}.launch")
+    with_ros = (f"{OURS}.nodes", f"{OURS}.testing.ros", f"{OURS}.launch")
     pure = [module for module in SOURCES if not any(_below(module, name) for name in with_ros)]
     pure = [module for module in pure if not module.endswith("__main__")]
     program = (

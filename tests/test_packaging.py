@@ -67,6 +67,13 @@ def test_console_scripts_agree() -> None:
     assert dict(line.split(" = ") for line in lines) == _pyproject()["project"]["scripts"]
 
 
+def test_the_pytest_plugin_is_entered_in_both_under_the_name_that_conftest_uses() -> None:
+    lines = _setup()["options.entry_points"]["pytest11"].strip().splitlines()
+    entered = dict(line.split(" = ") for line in lines)
+    assert entered == _pyproject()["project"]["entry-points"]["pytest11"]
+    assert entered == {f"{NAME}.pytest_plugin": f"{NAME}.pytest_plugin"}
+
+
 @pytest.mark.parametrize("target", _pyproject()["project"]["scripts"].values())
 def test_a_console_script_leads_to_a_function(target: str) -> None:
     module, function = target.split(":")

@@ -116,6 +116,11 @@ class Runner:
         """Put a finger on a button, or take it off."""
         self.post(robot, PressButton(button, pressed))
 
+    def load(self, robot: str, program: ThymioProgram) -> None:
+        """Give a robot that has a device another program, which begins now; KeyError: it has none."""
+        self.hosts[robot].load(program)
+        self._run_devices()
+
     def reset(self) -> None:
         """World, noise and programs as at the start."""
         self.world.reset()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import http.client
-import os
+import re
 import signal
 import socket
 from collections.abc import Callable, Iterator
@@ -34,8 +34,19 @@ def process(ros_domain, tmp_path) -> Iterator[Callable[..., Process]]:
         one.end()
 
 
-def segments() -> set[str]:
-    return {path.name for path in Path("/dev/shm").glob("fastrtps_*")}
+def segments(pid: int | str) -> set[str]:
+    """Names of the shared memory of ROS that a process uses; none when it is gone or another user's."""
+    try:
+        maps = Path(f"/proc/{pid}/maps").read_text()
+    except OSError:
+        return set()
+    return set(re.findall(r"/dev/shm/(fastrtps_\w+)", maps))
+
+
+def left_behind(used: set[str]) -> set[str]:
+    """Those of these names that are still there though no process uses them; ports outlive their users."""
+    there = {name for name in used if (Path("/dev/shm") / name).exists() and not name.startswith("fastrtps_port")}
+    return there - set().union(*(segments(path.name) for path in Path("/proc").glob("[0-9]*")))
 
 
 def is_free(port: int) -> bool:
@@ -46,7 +57,6 @@ def is_free(port: int) -> bool:
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_the_whole_suite_runs_and_ends(ros, process, number):
     port, foxglove_port = free_port(), free_port()
-    before = segments()
     suite = process("thymio_sim_ros.cli", "--port", str(port), "--foxglove-port", str(foxglove_port))
     odometry: list[Odometry] = []
     ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
@@ -60,24 +70,14 @@ def test_the_whole_suite_runs_and_ends(ros, process, number):
     connection.request("GET", "/config.json")
     assert str(foxglove_port).encode() in connection.getresponse().read()
     connection.close()
+    used = segments(suite.pid)
+    assert used
     suite.signal(number)
     assert suite.wait() == 0, suite.output
     assert is_free(port)
     assert is_free(foxglove_port)
     assert len(suite.output.splitlines()) == 3, suite.output
-    assert segments() <= before | own_segments(ros)
-
-
-def own_segments(ros) -> set[str]:
-    """Segments that exist while only this process uses ROS: its own."""
-    ros.spin()
-    mine = f"{os.getpid()}"
-    return {name for name in segments() if held_by(name, mine)}
-
-
-def held_by(name: str, pid: str) -> bool:
-    """Whether the process maps the segment, or it is a port that outlives its users."""
-    return name in Path(f"/proc/{pid}/maps").read_text() or name.startswith("fastrtps_port")
+    assert left_behind(used) == set()
 
 
 def test_two_interrupts_at_once_end_it_cleanly(ros, process):

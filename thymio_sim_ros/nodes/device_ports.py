@@ -86,6 +86,11 @@ class DevicePorts:
         """Whether a handler still has instructions to execute."""
         return self.device.is_busy
 
+    @property
+    def program(self) -> ThymioProgram:
+        """What the machine runs."""
+        return self._host.program
+
     def load(self, program: ThymioProgram) -> None:
         """Load the program and run its beginning."""
         self._host.load(program)

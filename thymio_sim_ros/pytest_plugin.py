@@ -1,0 +1,146 @@
+"""The pytest plug-in of Thymio Sim ROS: its fixtures are there as soon as the package is installed (docs/testing.md).
+
+pytest imports this module in every project of the environment: it costs nothing, since each fixture imports what it
+needs. Those that need ROS skip their test where there is none.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.nodes.aseba_node import AsebaRuntime
+    from thymio_sim_ros.testing import Classroom, Thymio
+    from thymio_sim_ros.testing.ros import Ros, Simulation
+
+MARK = "thymio"
+KEYWORDS = ("playground", "program", "programs", "seed", "noise")
+NO_ROS = (
+    "ROS is not here: rclpy cannot be imported. Source a ROS 2 Jazzy installation,"
+    " or on Linux x86-64: pip install 'thymio_sim_ros[ros]'"
+)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Make the mark known."""
+    about = f"{MARK}({', '.join(KEYWORDS)}): the simulated world of a test"
+    config.addinivalue_line("markers", about)
+
+
+def _wanted(request: pytest.FixtureRequest) -> dict[str, Any]:
+    """What the marks of a test say; the nearest wins."""
+    wanted: dict[str, Any] = {}
+    for mark in reversed(list(request.node.iter_markers(MARK))):
+        unknown = [*mark.args, *(name for name in mark.kwargs if name not in KEYWORDS)]
+        if unknown:
+            pytest.fail(f"mark {MARK}: found {unknown[0]!r}, expected keywords {', '.join(KEYWORDS)}", pytrace=False)
+        wanted |= mark.kwargs
+    return wanted
+
+
+@pytest.fixture
+def classroom(request: pytest.FixtureRequest) -> Classroom:
+    """A simulated world with its robots, without ROS; the mark `thymio` says which."""
+    from thymio_sim_ros.testing import Classroom
+
+    wanted = _wanted(request)
+    programs = wanted.pop("programs", None)
+    program = wanted.pop("program", "none")
+    return Classroom(programs=program if programs is None else programs, folder=request.path.parent, **wanted)
+
+
+@pytest.fixture
+def thymio(classroom: Classroom) -> Thymio:
+    """The only robot of `classroom`."""
+    if len(classroom) != 1:
+        names = ", ".join(classroom.robots)
+        pytest.fail(f"{len(classroom)} robots here: use the fixture classroom and classroom[name]; names: {names}")
+    return next(iter(classroom))
+
+
+@pytest.fixture
+def ros_domain() -> Iterator[int]:
+    """A ROS domain that no other test of this machine uses; children of this process inherit it."""
+    from thymio_sim_ros.testing.ros.domain import reserved
+
+    with reserved() as domain:
+        yield domain
+
+
+@pytest.fixture
+def ros(request: pytest.FixtureRequest) -> Iterator[Ros]:
+    """A private context and executor in a private domain; afterwards no thread of ours is left."""
+    if importlib.util.find_spec("rclpy") is None:
+        pytest.skip(NO_ROS)
+    from thymio_sim_ros.testing.ros import Ros
+
+    domain = request.getfixturevalue("ros_domain")
+    threads = set(threading.enumerate())
+    ros = Ros(domain, folder=request.path.parent)
+    yield ros
+    ros.close()
+    left = [thread.name for thread in set(threading.enumerate()) - threads if not thread.daemon]
+    assert not left, f"threads left behind: {left}"
+
+
+@pytest.fixture
+def ros_node(ros: Ros) -> Any:
+    """A node of the test's own in the private context."""
+    return ros.node
+
+
+@pytest.fixture
+def spin_until(ros: Ros) -> Callable[..., Any]:
+    """`spin_until(condition, timeout_s=20.0, sim_time=None)`: `Ros.until`."""
+    return ros.until
+
+
+@pytest.fixture
+def simulation(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., Simulation]:
+    """Make a simulator node in this process, stepped by the test; keyword arguments are its parameters."""
+    from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
+    from thymio_sim_ros.testing.ros import Simulation
+    from thymio_sim_ros.testing.sources import beside
+
+    def make(**parameters: Any) -> Simulation:
+        known = {field.name for field in fields(SimulatorParams)}
+        marked = {name: value for name, value in _wanted(request).items() if name in known}
+        wanted = {"playground": "base", **marked, **parameters}
+        wanted["playground"] = beside(wanted["playground"], request.path.parent)
+        defaults = replace(SimulatorParams(start_paused=True), **wanted)
+        made = Simulation(ros, ros.live(Simulator(ros.context, defaults)), folder=request.path.parent)
+        ros.settle()
+        return made
+
+    return make
+
+
+@pytest.fixture
+def runtime(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., AsebaRuntime]:
+    """Make an Aseba runtime node in this process: `runtime("onevent …")` or `runtime(path="line_follower")`.
+
+    Without a program it runs that of the mark `thymio`.
+    """
+    from thymio_sim_ros.nodes.aseba_node import AsebaRuntime, RuntimeParams
+    from thymio_sim_ros.testing.ros import Simulation
+    from thymio_sim_ros.testing.sources import beside, is_name
+
+    def make(source: str = "", *, path: str = "", **parameters: Any) -> AsebaRuntime:
+        folder = request.path.parent
+        if not source and not path:
+            marked = beside(_wanted(request).get("program", ""), folder)
+            source, path = ("", marked) if is_name(marked) else (marked, "")
+        defaults = RuntimeParams(source=source, path=beside(path, folder), **parameters)
+        node: AsebaRuntime = ros.live(AsebaRuntime(ros.context, defaults, use_sim_time=True))
+        if isinstance(ros.simulation, Simulation):
+            ros.simulation.run_program(node)
+        ros.settle()
+        return node
+
+    return make

@@ -1,0 +1,27 @@
+"""What teachers' tests are made of: robots in a simulated world, what they did, and checks of it (docs/testing.md).
+
+The fixtures are in `thymio_sim_ros.pytest_plugin`; what needs ROS is in `thymio_sim_ros.testing.ros`.
+"""
+
+from __future__ import annotations
+
+from thymio_sim_ros.testing.checks import Check, emitted, no_contact, reached, shows, slower_than
+from thymio_sim_ros.testing.classroom import Classroom
+from thymio_sim_ros.testing.line import followed_line
+from thymio_sim_ros.testing.record import Event, Moment, Touch
+from thymio_sim_ros.testing.thymio import Thymio
+
+__all__ = [
+    "Check",
+    "Classroom",
+    "Event",
+    "Moment",
+    "Thymio",
+    "Touch",
+    "emitted",
+    "followed_line",
+    "no_contact",
+    "reached",
+    "shows",
+    "slower_than",
+]

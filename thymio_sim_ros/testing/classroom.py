@@ -1,0 +1,150 @@
+"""Robots and programs in lock-step in a simulated world, without ROS: far faster than real time, and repeatable."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.program import ThymioProgram, load_program
+from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.sim.clock import TICK_NS
+from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.world import World
+from thymio_sim_ros.testing.record import SECOND_NS
+from thymio_sim_ros.testing.report import robot_lines
+from thymio_sim_ros.testing.sources import playground_of, program_of
+from thymio_sim_ros.testing.thymio import Machine, Thymio
+from thymio_sim_ros.testing.waiting import told
+
+__all__ = ["Classroom"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Machine:
+    device: AsebaDevice
+    program: ThymioProgram
+
+
+class Classroom:
+    """A world and its robots. Invariant: time passes only in `run` and `until`, in ticks of 10 ms."""
+
+    def __init__(
+        self,
+        playground: str | Path | Playground = "base",
+        programs: str | Path | ThymioProgram | Mapping[str, str | Path | ThymioProgram] = "none",
+        *,
+        seed: int = 0,
+        noise: bool = True,
+        folder: Path | None = None,
+    ) -> None:
+        """A playground by name, path or text; one program for all robots, or one by robot's name.
+
+        Relative paths begin in `folder`. PlaygroundError, ProgramError: what a file says is wrong; ResourceError: it is
+        not there; KeyError: there is no such robot.
+        """
+        self._folder = folder
+        loaded = playground_of(playground, folder)
+        names = [robot.name for robot in loaded.robots]
+        own = dict.fromkeys(names, load_program("", "none"))
+        if isinstance(programs, Mapping):
+            for name, program in programs.items():
+                _check_robot(name, names)
+                own[name] = program_of(program, folder)
+        else:
+            own = dict.fromkeys(names, program_of(programs, folder))
+        self.runner = Runner(loaded, own, seed=seed, noise=noise)
+        self.robots: Mapping[str, Thymio] = {name: Thymio(name, self) for name in names}
+        self._hear()
+
+    def __getitem__(self, robot: str) -> Thymio:
+        """A robot by its name; KeyError names those there are."""
+        _check_robot(robot, list(self.robots))
+        return self.robots[robot]
+
+    def __iter__(self) -> Iterator[Thymio]:
+        """The robots, in the order of the playground."""
+        return iter(self.robots.values())
+
+    def __len__(self) -> int:
+        return len(self.robots)
+
+    @property
+    def world(self) -> World:
+        """The world itself, for everything else."""
+        return self.runner.world
+
+    @property
+    def now(self) -> float:
+        """Simulated time in s."""
+        return self.runner.now_ns / SECOND_NS
+
+    def run(self, seconds: float) -> None:
+        """Let so many simulated seconds pass."""
+        for _ in range(round(seconds * SECOND_NS / TICK_NS)):
+            self.tick()
+
+    def tick(self) -> None:
+        """Let 10 ms pass."""
+        self.runner.step()
+        self._hear()
+        for name, thymio in self.robots.items():
+            robot = self.world.robots.get(name)
+            if robot is not None:
+                thymio.record.look(robot, self.runner.now_ns)
+
+    def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
+        """Let time pass until the condition is true, at most so many simulated seconds; returns its value.
+
+        Fails the test otherwise, and tells how the robots are.
+        """
+        __tracebackhide__ = True
+        end_ns = self.runner.now_ns + round(seconds * SECOND_NS)
+        while not (value := condition()):
+            if self.runner.now_ns >= end_ns:
+                head = f"not within {seconds:g} simulated s: {what or told(condition)}"
+                pytest.fail("\n".join([head, *robot_lines(self)]))
+            self.tick()
+        return value
+
+    def reset(self) -> None:
+        """World, noise and programs as at the start; the past is forgotten."""
+        self.runner.reset()
+        for thymio in self:
+            thymio.record.clear()
+        self._hear()
+
+    def machine(self, robot: str) -> Machine:
+        """The machine of a robot."""
+        host = self.runner.hosts[robot]
+        return _Machine(host.device, host.program)
+
+    def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
+        """Give a robot a program, which begins at once."""
+        self.runner.load(robot, program_of(program, self._folder))
+        self._hear()
+
+    def emit(self, event: str, args: Sequence[int]) -> None:
+        """Let every robot whose program declares the event hear it in the next tick; LookupError when there is none."""
+        listeners = [device for device in self.runner.devices.values() if device.declares(event)]
+        if not listeners:
+            known = sorted({name for host in self.runner.hosts.values() for name, _ in host.program.events})
+            raise LookupError(f"no program declares the event '{event}', only {', '.join(known) or 'none'}")
+        for device in listeners:
+            device.receive_event(event, args)
+
+    def _hear(self) -> None:
+        for name, event in self.runner.emitted:
+            self.robots[name].record.hear(event.name, event.args, self.runner.now_ns)
+
+
+def _check_robot(name: str, names: Sequence[str]) -> None:
+    if name not in names:
+        near = difflib.get_close_matches(name, names, 1)
+        hint = f"; did you mean '{near[0]}'?" if near else ""
+        raise KeyError(f"no robot '{name}', only {', '.join(names) or 'none'}{hint}")

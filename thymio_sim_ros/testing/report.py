@@ -1,0 +1,47 @@
+"""How robots and their programs are, in lines that a person reads after a failure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from thymio_sim_ros.device.status import FAULT
+from thymio_sim_ros.testing.thymio import Thymio
+
+__all__ = ["robot_lines"]
+
+_LAST_EVENTS = 3
+
+
+def robot_lines(robots: Iterable[Thymio]) -> list[str]:
+    """Two or three lines for each robot: where it is, what its program does, what it said last."""
+    lines: list[str] = []
+    for thymio in robots:
+        if thymio.name in thymio.stage.world.robots:
+            lines += [_place(thymio), *_program(thymio)]
+        else:
+            lines.append(f"{thymio.name}: no longer in the world")
+    return lines
+
+
+def _place(thymio: Thymio) -> str:
+    pose, touching = thymio.pose, thymio.touching
+    turned = round(math.degrees(pose.yaw_rad)) % 360
+    place = f"at ({pose.x_m:.3f}, {pose.y_m:.3f}) m, turned {turned}°, {thymio.speed:.3f} m/s"
+    return f"{thymio.name}: {place}" + (f", touches {', '.join(touching)}" if touching else "")
+
+
+def _program(thymio: Thymio) -> list[str]:
+    machine = thymio.stage.machine(thymio.name)
+    if machine is None:
+        return []
+    status = machine.device.status
+    state = status.state
+    if state == FAULT:
+        state = f"fault in {status.event}, line {status.line}: {status.fault}"
+    lines = [f"  program {machine.program.name}: {state}"]
+    last = thymio.events[-_LAST_EVENTS:]
+    if last:
+        said = ", ".join(f"{event.name} {list(event.args)} at {event.at_s:.2f} s" for event in last)
+        lines.append(f"  emitted {len(thymio.events)} events, last {said}")
+    return lines

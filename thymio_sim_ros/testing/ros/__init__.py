@@ -1,0 +1,13 @@
+"""What tests of ROS nodes are made of: a private graph, nodes under test, topics on record, a stepped simulator.
+
+All nodes live in the test's own process and on one executor; waiting is always for a condition with a deadline, and
+simulated time is stepped, so that a slow machine changes nothing (ros-packaging.md section 7).
+"""
+
+from __future__ import annotations
+
+from thymio_sim_ros.testing.ros.graph import DEADLINE_S, Ros
+from thymio_sim_ros.testing.ros.recorder import Recorder
+from thymio_sim_ros.testing.ros.simulation import Simulation
+
+__all__ = ["DEADLINE_S", "Recorder", "Ros", "Simulation"]

@@ -1,0 +1,59 @@
+"""A ROS domain that nobody else on this machine uses, for as long as a test lasts."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import os
+import socket
+from collections.abc import Iterator
+
+__all__ = ["NoDomainError", "reserved"]
+
+DOMAINS = range(1, 101)
+"""Domain ids whose ports are below the ephemeral ones (ros-packaging.md section 4), but for the default domain."""
+
+DOMAIN_PORT = 17400
+"""Loopback port of domain 0; who holds port + id has the domain."""
+
+_turns = itertools.count(os.getpid())
+
+
+class NoDomainError(Exception):
+    """All domains of this machine are in use."""
+
+
+@contextlib.contextmanager
+def reserved() -> Iterator[int]:
+    """Hold a domain; children inherit it, and messages stay on this machine. Each turn takes another one.
+
+    The domain of the user's own environment is left alone.
+    """
+    own = os.environ.get("ROS_DOMAIN_ID", "0")
+    free = [domain for domain in DOMAINS if str(domain) != own]
+    begin = next(_turns)
+    for turn in range(len(free)):
+        domain = free[(begin + turn) % len(free)]
+        with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as held:
+            try:
+                held.bind(("127.0.0.1", DOMAIN_PORT + domain))
+            except OSError:
+                continue
+            with _environment(ROS_DOMAIN_ID=str(domain), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST"):
+                yield domain
+            return
+    raise NoDomainError(f"no free ROS domain on this machine: {len(free)} are in use")
+
+
+@contextlib.contextmanager
+def _environment(**values: str) -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

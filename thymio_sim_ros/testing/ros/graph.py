@@ -1,0 +1,243 @@
+"""A private ROS graph for one test: a context, an executor, nodes under test, waiting that tells what went wrong."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Protocol
+
+import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import get_default_context, try_shutdown
+
+from thymio_sim_ros.nodes.life import deliver, make_executor
+from thymio_sim_ros.testing.ros import matching, student
+from thymio_sim_ros.testing.ros.recorder import Recorder
+from thymio_sim_ros.testing.sources import beside
+from thymio_sim_ros.testing.waiting import told
+
+__all__ = ["DEADLINE_S", "Ros"]
+
+DEADLINE_S = 20.0
+SLICE_S = 0.02
+DEPTH = 1000
+"""Messages that a recorder may be behind."""
+
+TEST_NODE = "test"
+
+
+class Stepped(Protocol):
+    """What lets simulated time pass in a test."""
+
+    @property
+    def now(self) -> float:
+        """Simulated time in s."""
+
+    def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
+        """Let time pass until a condition is true."""
+
+    def lines(self) -> list[str]:
+        """How time and the robots are, for a person."""
+
+
+class Ros:
+    """A private context with one executor; `until` spins it."""
+
+    def __init__(self, domain: int, *, folder: Path | None = None) -> None:
+        """Files of nodes under test are looked for in `folder` first."""
+        self.domain = domain
+        self.simulation: Stepped | None = None
+        """The simulation of this test, once there is one: it alone lets simulated time pass."""
+        self._folder = folder
+        # Code under test may ask for the default context (`rclpy.ok()`); somebody else's is not touched.
+        self.context = get_default_context()
+        if self.context.ok():
+            self.context = Context()
+        rclpy.init(args=[], context=self.context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
+        self._executor = make_executor(self.context)
+        self._lives: list[Any] = []
+        self._nodes: list[Node] = []
+        self._recorders: list[Recorder] = []
+        self.node = self.make_node(TEST_NODE)
+
+    # --- nodes ---
+
+    def make_node(self, name: str, namespace: str = "") -> Node:
+        """A plain node on the test's executor."""
+        node = Node(
+            name, context=self.context, namespace=namespace, start_parameter_services=False, enable_rosout=False
+        )
+        return self.add(node)
+
+    def add(self, node: Node) -> Node:
+        """Put a node under test on the executor; it is destroyed with the test."""
+        self._executor.add_node(node)
+        self._nodes.append(node)
+        return node
+
+    def live(self, life: Any) -> Any:
+        """Put a `Life` on the executor; it is closed with the test."""
+        self._executor.add_node(life.node)
+        self._lives.append(life)
+        return life
+
+    def start(
+        self,
+        source: type[Node] | str | Path,
+        *,
+        class_name: str = "",
+        name: str = "",
+        namespace: str = "",
+        parameters: Mapping[str, Any] | None = None,
+        remappings: Mapping[str, str] | None = None,
+        use_sim_time: bool | None = None,
+        arguments: Mapping[str, Any] | None = None,
+    ) -> Node:
+        """Start a node under test, and wait until it has found its peers.
+
+        `source` is its class, its file or its module; `arguments` are those of its constructor. It uses simulated time
+        where the test has a simulation. What its constructor raises is raised here.
+        """
+        __tracebackhide__ = True
+        kind = source if isinstance(source, type) else student.load_class(beside(source, self._folder), class_name)
+        if use_sim_time is None:
+            use_sim_time = self.simulation is not None
+        values = {"use_sim_time": use_sim_time, **(parameters or {})}
+        remap = student.remap_arguments(name, namespace, remappings or {})
+        node = self.add(student.start(kind, self.context, remap, values, arguments or {}))
+        self.settle()
+        return node
+
+    def stop(self, node: Node) -> None:
+        """End a node of this test before the test ends."""
+        self._nodes.remove(node)
+        self._executor.remove_node(node)
+        node.destroy_node()
+
+    # --- time ---
+
+    def deliver(self) -> None:
+        """Handle the messages that are there, waiting for none."""
+        deliver(self._executor)
+
+    def spin(self) -> None:
+        """One short turn of the executor."""
+        self._executor.spin_once(timeout_sec=SLICE_S)
+
+    def until(
+        self,
+        condition: Callable[[], Any],
+        timeout_s: float = DEADLINE_S,
+        *,
+        sim_time: float | None = None,
+        what: str = "",
+    ) -> Any:
+        """Spin until the condition is true; returns its value, or fails the test and tells how everything is.
+
+        With `sim_time` the simulation is stepped, at most so many simulated seconds, however long that takes. Without,
+        it waits at most `timeout_s` of real time, and simulated time stands still.
+        """
+        __tracebackhide__ = True
+        if sim_time is not None:
+            return self._simulated().until(condition, sim_time, what=what)
+        deadline = time.monotonic() + timeout_s
+        while not (value := condition()):
+            if time.monotonic() > deadline:
+                self.fail(f"not within {timeout_s:g} s: {what or told(condition)}")
+            self.spin()
+            self._check_context()
+        return value
+
+    def settle(self) -> None:
+        """Wait until all nodes of this test have found each other: from then on no message between them is lost."""
+        __tracebackhide__ = True
+        nodes = [*self._nodes, *(life.node for life in self._lives)]
+        self.until(lambda: matching.is_settled(nodes), what="all publishers and subscriptions found each other")
+
+    # --- topics and services ---
+
+    def collect(
+        self,
+        kind: Any,
+        topic: str,
+        *,
+        latched: bool | None = None,
+        where: Callable[[Any], Any] | None = None,
+        qos: QoSProfile | None = None,
+    ) -> Recorder:
+        """A list that fills with the topic's messages, those that satisfy `where` if given.
+
+        It waits for a publisher and listens as that publishes; earlier messages of a latched topic arrive too, unless
+        `latched` is false. With a `qos` of its own it waits for nobody.
+        """
+        __tracebackhide__ = True
+        name = self.node.resolve_topic_name(topic)
+        recorder = Recorder(kind, name, self.until, self.now, where)
+        if qos is None:
+            self.until(lambda: self.node.count_publishers(name), what=f"a publisher of {name}")
+            qos = matching.as_published(self.node, name, DEPTH, latched=latched)
+        self.node.create_subscription(kind, name, recorder.take, qos)
+        self._recorders.append(recorder)
+        self.settle()
+        return recorder
+
+    def publisher(self, kind: Any, topic: str, *, depth: int = 10) -> Any:
+        """A publisher that already has a subscriber."""
+        __tracebackhide__ = True
+        publisher = self.node.create_publisher(kind, topic, depth)
+        self.until(publisher.get_subscription_count, what=f"a subscriber of {publisher.topic_name}")
+        self.settle()
+        return publisher
+
+    def call(self, kind: Any, name: str, request: Any = None) -> Any:
+        """The answer of a service."""
+        __tracebackhide__ = True
+        client = self.node.create_client(kind, name)
+        self.until(client.service_is_ready, what=f"service {name}")
+        future = client.call_async(kind.Request() if request is None else request)
+        self.until(future.done, what=f"answer of {name}")
+        return future.result()
+
+    # --- reports and the end ---
+
+    def now(self) -> str:
+        """Simulated time for a person, or nothing without a simulation."""
+        return "" if self.simulation is None else f"at {self.simulation.now:.2f} s"
+
+    def fail(self, head: str) -> None:
+        """Fail the test, and tell how robots, programs, records and topics are."""
+        __tracebackhide__ = True
+        lines = [head]
+        if self.simulation is not None:
+            lines += self.simulation.lines()
+        lines += [repr(recorder) for recorder in self._recorders]
+        ours = [TEST_NODE, *(life.node.get_name() for life in self._lives)]
+        pytest.fail("\n".join([*lines, *matching.topic_lines(self.node, ours)]))
+
+    def close(self) -> None:
+        """End lives, nodes, executor and context; nothing of them is left."""
+        for life in reversed(self._lives):
+            self._executor.remove_node(life.node)
+            life.close()
+        for node in self._nodes:
+            self._executor.remove_node(node)
+            node.destroy_node()
+        self._executor.shutdown()
+        if self.context is get_default_context():
+            try_shutdown()
+        else:
+            self.context.try_shutdown()
+
+    def _simulated(self) -> Stepped:
+        if self.simulation is None:
+            raise LookupError("sim_time needs a simulation: let the test call the fixture `simulation` first")
+        return self.simulation
+
+    def _check_context(self) -> None:
+        if not self.context.ok():
+            pytest.fail("a node under test shut ROS down: rclpy.shutdown() belongs to main()")

@@ -1,0 +1,92 @@
+"""The messages of one topic, as they arrive during a test."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Callable, Sequence
+from typing import Any, overload
+
+__all__ = ["Recorder"]
+
+_LONGEST = 200
+_PACKAGE = re.compile(r"\b\w+\.msg\.")
+
+
+class Recorder(Sequence[Any]):
+    """A list that fills with a topic's messages, oldest first."""
+
+    def __init__(
+        self,
+        kind: Any,
+        topic: str,
+        until: Callable[..., Any],
+        now: Callable[[], str],
+        where: Callable[[Any], Any] | None,
+    ) -> None:
+        self.kind = kind
+        self.topic = topic
+        self._until = until
+        self._now = now
+        self._where = where
+        self._messages: list[Any] = []
+        self._last = ""
+
+    def take(self, message: Any) -> None:
+        """A message arrives."""
+        self._last = self._now()
+        if self._where is None or self._where(message):
+            self._messages.append(message)
+
+    @property
+    def latest(self) -> Any:
+        """The last message; LookupError while there is none."""
+        if not self._messages:
+            raise LookupError(f"nothing arrived on {self.topic} yet")
+        return self._messages[-1]
+
+    def next(
+        self,
+        where: Callable[[Any], Any] = lambda _: True,
+        *,
+        timeout: float = 20.0,
+        sim_time: float | None = None,
+    ) -> Any:
+        """Wait for the next message that satisfies a condition; `timeout` and `sim_time` are those of `Ros.until`."""
+        __tracebackhide__ = True
+        begin = len(self._messages)
+
+        def found() -> list[Any]:
+            return [message for message in self._messages[begin:] if where(message)]
+
+        return self._until(found, timeout, sim_time=sim_time, what=f"the next message on {self.topic}")[0]
+
+    def wait(self, count: int = 1, *, timeout: float = 20.0, sim_time: float | None = None) -> None:
+        """Wait until so many messages are there."""
+        __tracebackhide__ = True
+        self._until(lambda: len(self) >= count, timeout, sim_time=sim_time, what=f"{count} messages on {self.topic}")
+
+    def clear(self) -> None:
+        """Forget what has arrived."""
+        self._messages.clear()
+
+    def __repr__(self) -> str:
+        if not self._messages:
+            return f"{self.topic}: nothing arrived"
+        last = textwrap.shorten(_PACKAGE.sub("", str(self._messages[-1])), _LONGEST, placeholder=" …")
+        return f"{self.topic}: {len(self)} messages, last {self._last}: {last}"
+
+    def __len__(self) -> int:
+        return len(self._messages)
+
+    @overload
+    def __getitem__(self, index: int) -> Any: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Any]: ...
+    def __getitem__(self, index: int | slice) -> Any:
+        return self._messages[index]
+
+    def __eq__(self, other: object) -> bool:
+        return self._messages == (other._messages if isinstance(other, Recorder) else other)
+
+    __hash__ = None  # type: ignore[assignment]  # a list that changes, as `list` itself has it

@@ -1,0 +1,156 @@
+"""The simulator node in a test: it is stepped, so that a test counts simulated time, not wall time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from std_msgs.msg import Int16MultiArray, MultiArrayDimension, MultiArrayLayout
+
+from thymio_sim_ros.device.program import ThymioProgram
+from thymio_sim_ros.nodes import qos
+from thymio_sim_ros.nodes.aseba_node import AsebaRuntime
+from thymio_sim_ros.nodes.device_ports import DevicePorts
+from thymio_sim_ros.nodes.names import ros_names
+from thymio_sim_ros.nodes.simulator_node import Simulator
+from thymio_sim_ros.sim.clock import TICK_NS
+from thymio_sim_ros.sim.world import World
+from thymio_sim_ros.testing.record import SECOND_NS
+from thymio_sim_ros.testing.report import robot_lines
+from thymio_sim_ros.testing.ros.graph import Ros
+from thymio_sim_ros.testing.sources import program_of
+from thymio_sim_ros.testing.thymio import Thymio
+from thymio_sim_ros.testing.waiting import told
+
+__all__ = ["Simulation"]
+
+HOPS = 2
+"""Deliveries per tick: a reading reaches a node under test, and its command comes back."""
+
+ANSWER_S = 2.0
+"""Real seconds for what is still under way when simulated time has ended, such as the answer of a service."""
+
+
+class Simulation:
+    """A simulator node and its robots. Invariant: simulated time passes only in `tick`, `step` and `until`."""
+
+    def __init__(self, ros: Ros, simulator: Simulator, *, folder: Path | None = None) -> None:
+        """Relative paths of programs begin in `folder`."""
+        self.ros = ros
+        self.simulator = simulator
+        self._folder = folder
+        self._runtimes: list[AsebaRuntime] = []
+        self._robots = {name: Thymio(name, self) for name in self.world.robots}
+        ros.simulation = self
+
+    @property
+    def world(self) -> World:
+        """The world itself, for the truth."""
+        return self.simulator.world
+
+    @property
+    def now(self) -> float:
+        """Simulated time in s."""
+        return self.world.now_ns / SECOND_NS
+
+    # --- robots ---
+
+    @property
+    def robots(self) -> Mapping[str, Thymio]:
+        """The robots by name, those that came later too."""
+        for name in self.world.robots:
+            if name not in self._robots:
+                self._robots[name] = Thymio(name, self)
+        return self._robots
+
+    def __getitem__(self, robot: str) -> Thymio:
+        return self.robots[robot]
+
+    def __iter__(self) -> Iterator[Thymio]:
+        """The robots, in the order of the playground."""
+        return iter(self.robots.values())
+
+    @property
+    def thymio(self) -> Thymio:
+        """The only robot; LookupError where there are several."""
+        if len(self.robots) != 1:
+            raise LookupError(f"{len(self.robots)} robots: take one by its name: {', '.join(self.robots)}")
+        return next(iter(self))
+
+    def run_program(self, runtime: AsebaRuntime) -> None:
+        """An Aseba runtime node of this test: its machines work with every tick, and what they emit is noted."""
+        self._runtimes.append(runtime)
+        if len(self._runtimes) > 1:
+            return
+        for name, names in ros_names(tuple(self.world.robots)).items():
+            topic = names.topic("aseba/events")
+            self.ros.node.create_subscription(Int16MultiArray, topic, partial(self._hear, name), qos.EVENTS)
+
+    # --- time ---
+
+    def step(self, seconds: float) -> None:
+        """Advance simulated time tick by tick, delivering messages in between."""
+        for _ in range(round(seconds * SECOND_NS / TICK_NS)):
+            self.tick()
+
+    def run(self, seconds: float) -> None:
+        """The same as `step`."""
+        self.step(seconds)
+
+    def tick(self) -> None:
+        """One tick of 10 ms, then whatever messages are there; long handlers of programs go on."""
+        self.simulator.advance(1)
+        for _ in range(HOPS):
+            self.ros.deliver()
+        for runtime in self._runtimes:
+            for ports in runtime.robots:
+                if ports.is_busy:
+                    ports.run()
+        for name, thymio in self.robots.items():
+            robot = self.world.robots.get(name)
+            if robot is not None:
+                thymio.record.look(robot, self.world.now_ns)
+
+    def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
+        """Step until the condition is true, at most so many simulated seconds; returns its value.
+
+        Fails the test otherwise, and tells how robots, programs, records and topics are.
+        """
+        __tracebackhide__ = True
+        for _ in range(round(seconds * SECOND_NS / TICK_NS)):
+            if value := condition():
+                return value
+            self.tick()
+        return self.ros.until(condition, ANSWER_S, what=f"{what or told(condition)} in {seconds:g} simulated s")
+
+    def lines(self) -> list[str]:
+        """How simulated time and the robots are, for a person."""
+        return [f"simulated time: {self.now:.2f} s", *robot_lines(self)]
+
+    # --- programs ---
+
+    def machine(self, robot: str) -> DevicePorts | None:
+        """The machine of a robot, if a runtime node of this test has one for it."""
+        names = ros_names(tuple(self.world.robots))
+        wanted = names[robot].name if robot in names else robot
+        found = (ports for runtime in self._runtimes for ports in runtime.robots if ports.names.name == wanted)
+        return next(found, None)
+
+    def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
+        """Give a robot that has a machine a program."""
+        ports = self.machine(robot)
+        if ports is None:
+            raise LookupError(f"no Aseba machine runs for {robot}: start one with the fixture `runtime`")
+        ports.load(program_of(program, self._folder))
+
+    def emit(self, event: str, args: Sequence[int]) -> None:
+        """Let every robot that knows an event hear it, by the topic aseba/emit of the first that has a machine."""
+        ports = next(ports for runtime in self._runtimes for ports in runtime.robots)
+        layout = MultiArrayLayout(dim=[MultiArrayDimension(label=event, size=len(args), stride=1)])
+        publisher = self.ros.publisher(Int16MultiArray, ports.names.topic("aseba/emit"))
+        publisher.publish(Int16MultiArray(layout=layout, data=list(args)))
+
+    def _hear(self, robot: str, message: Int16MultiArray) -> None:
+        self.robots[robot].record.hear(message.layout.dim[0].label, message.data, self.world.now_ns)

@@ -1,0 +1,49 @@
+"""What a test names, as values: playgrounds and programs by name, by path beside the test, or as text."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from thymio_sim_ros import loading
+from thymio_sim_ros.device.program import ThymioProgram, load_program
+from thymio_sim_ros.sim.playground import Playground
+
+__all__ = ["beside", "is_name", "playground_of", "program_of"]
+
+
+def beside(value: str | Path, folder: Path | None) -> str:
+    """The path of a file that lies in the folder, else the value as it is: a name, a text, a path."""
+    text = str(value)
+    if folder is not None and os.path.isfile(folder / text):  # unlike a Path's, it takes texts that are no paths
+        return str(folder / text)
+    return text
+
+
+def playground_of(value: str | Path | Playground, folder: Path | None = None) -> Playground:
+    """A shipped name, a path (relative ones begin in the folder) or a text as a playground.
+
+    Raises PlaygroundError for what the file says, ResourceError for a file that is not there, OSError.
+    """
+    if isinstance(value, Playground):
+        return value
+    return loading.load_playground(beside(value, folder))[1]
+
+
+def program_of(value: str | Path | ThymioProgram, folder: Path | None = None) -> ThymioProgram:
+    """A built-in behaviour's name, a path (relative ones begin in the folder) or a text as a program.
+
+    A single word is a name or a path, anything else that is no file is a text. Raises ProgramError for what the text
+    says, ResourceError for a file that is not there, OSError.
+    """
+    if isinstance(value, ThymioProgram):
+        return value
+    found = beside(value, folder)
+    if isinstance(value, Path) or is_name(found):
+        return loading.read_program(found)
+    return load_program(found, "program")
+
+
+def is_name(text: str) -> bool:
+    """Whether a text that stands for a program is the name of one, not the program itself."""
+    return bool(text) and (os.path.isfile(text) or len(text.split()) == 1)
