@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import json
 import math
+import re
 from pathlib import Path
+from typing import Any, cast
 
 import jsonschema
 import pytest
@@ -15,6 +18,7 @@ from thymio_sim_ros.sim.geometry import Point, Pose, convex_hulls_overlap
 from thymio_sim_ros.sim.ground import Ground
 from thymio_sim_ros.sim.playground import Playground
 from thymio_sim_ros.sim.primitives import Box, Disc, Print
+from thymio_sim_ros.sim.shapes import all_shapes
 from thymio_sim_ros.sim.shapes.track import Track
 from thymio_sim_ros.sim.world import World
 
@@ -211,3 +215,18 @@ def test_the_example_of_the_readme_loads() -> None:
 def test_the_readme_lists_every_playground() -> None:
     text = (FOLDER / "README.md").read_text()
     assert all(f"`{path.name}`" in text for path in SHIPPED)
+
+
+def test_the_readme_explains_every_field_of_every_kind() -> None:
+    rows = dict(re.findall(r"^\| `(\w+)` \| (.*) \|$", (FOLDER / "README.md").read_text(), re.MULTILINE))
+    for kind in all_shapes():
+        fields = {field.name for field in dataclasses.fields(cast("Any", kind.form))}
+        assert set(re.findall(r"`(\w+)`", rows[kind.name])) == fields
+
+
+def test_the_readme_tells_the_defaults() -> None:
+    rows = dict(re.findall(r"^\| `(\w+)` \| (.*) \|$", (FOLDER / "README.md").read_text(), re.MULTILINE))
+    for kind in all_shapes():
+        for field in dataclasses.fields(cast("Any", kind.form)):
+            if isinstance(field.default, float) and field.name != "yaw_rad":
+                assert f"`{field.name}` ({field.default:g}" in rows[kind.name]

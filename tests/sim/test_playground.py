@@ -73,6 +73,7 @@ def test_broken_json_is_located() -> None:
         ({"title": None}, "title"),
         ({"title": "two\nlines"}, "title"),
         ({"title": "half a pair \ud800"}, "title"),
+        ({"$schema": 3}, "$schema"),
         ({"translations": []}, "translations"),
         ({"translations": {"German": {"title": "x"}}}, "translations.German"),
         ({"translations": {"de": {"description": "x"}}}, "translations.de.title"),
@@ -241,7 +242,20 @@ def test_a_picture_that_cannot_be_read_is_refused_at_its_key() -> None:
     assert refused(with_picture("data:image/png;base64,AAAA")).key == "shapes[1].image"
 
 
+def test_a_file_may_tell_editors_its_schema() -> None:
+    assert playground.loads(json.dumps({**GOOD, "$schema": "playground.schema.json"}), "mine").title == "A title"
+
+
 def test_titles_may_be_translated() -> None:
     text = json.dumps({**GOOD, "translations": {"de": {"title": "Ein Titel"}}})
     ((language, translation),) = playground.loads(text, "mine").translations
     assert (language, translation.title, translation.description) == ("de", "Ein Titel", "")
+
+
+def test_a_robot_that_starts_beside_the_ground_is_accepted_with_a_remark() -> None:
+    loaded = make([FLOOR], [{**ROBOT, "x_m": 9.0}])
+    assert loaded.notes == ("robots[0]: 'thymio' starts where there is no floor",)
+
+
+def test_without_any_ground_there_is_nothing_to_remark() -> None:
+    assert make([], [ROBOT]).notes == ()

@@ -102,6 +102,7 @@ def schema() -> dict[str, Any]:
         form["properties"]["name"] = name
         shapes.append(form)
     top = json_schema(_Titles, extra={"format": {"const": FORMAT}})
+    top["properties"]["$schema"] = {"type": "string", "description": "where an editor finds this schema"}
     top["properties"]["translations"] = {
         "type": "object",
         "patternProperties": {f"^{LANGUAGE}$": json_schema(Translation)},
@@ -131,6 +132,9 @@ def _members(data: object) -> dict[str, object]:
     version = members.pop("format", None)
     if version != FORMAT or isinstance(version, bool):
         raise FieldError("format", describe(version), str(FORMAT))
+    editor = members.pop("$schema", "")
+    if not isinstance(editor, str):
+        raise FieldError("$schema", describe(editor), "a text; only editors read it")
     return members
 
 

@@ -38,7 +38,12 @@ def check_starts(robots: Iterable[RobotStart], solids: Iterable[Solid]) -> None:
 
 
 def off_floor(robots: tuple[RobotStart, ...], floors: tuple[Floor, ...]) -> list[str]:
-    """Robots that start in the air: allowed, as they may be put elsewhere, but hardly meant."""
+    """Robots that start in the air: allowed, as they may be put elsewhere, but hardly meant.
+
+    Without any ground there is no edge either, and nothing falls (sim/footing.py).
+    """
+    if not floors:
+        return []
     return [
         f"robots[{index}]: '{robot.name}' starts where there is no floor"
         for index, robot in enumerate(robots)

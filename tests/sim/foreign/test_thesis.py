@@ -149,7 +149,7 @@ def test_without_a_robot_one_starts_at_the_origin() -> None:
 def test_the_empty_playground_has_a_robot_and_no_floor() -> None:
     found = loaded({"playground": "Empty", "thymios": THYMIO})
     assert (len(found.robots), found.floors) == (1, ())
-    assert found.notes == ("robots[0]: 'thymio' starts where there is no floor",)
+    assert found.notes == ()
 
 
 @pytest.mark.parametrize(
