@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import math
 
 import pytest
 
@@ -13,7 +14,7 @@ from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim import playground as playgrounds
-from thymio_sim_ros.sim.commands import BodyTwist
+from thymio_sim_ros.sim.commands import BodyTwist, MoveRobot, WheelVelocities
 
 TALK = """<network><event size="1" name="hello"/><node name="thymio-II">
 var heard[2]
@@ -216,3 +217,41 @@ def test_the_robot_s_lights_show_an_obstacle_until_the_program_takes_them():
     runner.press("anna", "center")
     runner.run(0.5)
     assert dict(runner.world.snapshot().robots[0].leds)["proximity"] == (1, 2, 3, 4, 5, 6, 7, 8)
+
+
+def test_a_reset_forgets_settings_and_radio():
+    source = "var was\ncall _system.settings.read(0, was)\ncall _system.settings.write(0, 5)\ncall _rf.nodeid(77)"
+    runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "test"))
+    assert runner.devices["bert"].node_id == 77
+    runner.reset()
+    assert runner.devices["bert"].get_variable("was") == (0,)
+    assert runner.devices["bert"].get_variable("_id") == (2,)
+
+
+def test_a_robot_follows_the_line_that_another_one_draws():
+    shapes = [{"kind": "rectangle", "size_x_m": 2.0, "size_y_m": 2.0, "color": "#ffffff"}]
+    pen = {"color": "#000000", "width_m": 0.03}
+    robots = [
+        {"name": "painter", "x_m": 0.0, "y_m": -0.4, "pen": pen},
+        {"name": "follower", "x_m": 0.0, "y_m": 0.0, "yaw_rad": 0.0},
+    ]
+    world = {"format": 1, "title": "Drawing", "shapes": shapes, "robots": robots}
+    playground = playgrounds.loads(json.dumps(world), "drawing")
+    runner = Runner(playground, {"follower": read_program("line_follower")}, noise=False)
+    hold = WheelVelocities(0.0, 0.0)
+    for _ in range(1800):
+        runner.post("painter", BodyTwist(0.1, 0.25))
+        runner.post("follower", hold)
+        runner.step()
+    painter, follower = (runner.world.robots[name] for name in ("painter", "follower"))
+    runner.post("painter", MoveRobot(0.9, 0.9, 0.0))
+    runner.post("follower", MoveRobot(0.0, -0.4, 0.0))
+    runner.devices["follower"].reset()
+    runner.devices["follower"].resume()
+    way = []
+    for _ in range(1500):
+        runner.step()
+        way.append(math.hypot(follower.pose.x_m, follower.pose.y_m))
+    assert painter.pose.x_m > 0.8
+    assert all(0.35 < radius < 0.45 for radius in way)
+    assert follower.pose.y_m > -0.3

@@ -36,6 +36,15 @@ def test_flashed_settings_are_kept_in_a_file(tmp_path: Path) -> None:
     assert [again[address] for address in range(92)] == [settings[address] for address in range(92)]
 
 
+def test_a_new_robot_has_what_the_file_says_or_the_first_values(tmp_path: Path) -> None:
+    for settings, kept in ((Settings(), 0), (Settings(tmp_path / "settings.json"), 2)):
+        settings[0] = 2
+        settings.flash()
+        settings[0] = 3
+        settings.renew()
+        assert settings[0] == kept
+
+
 def test_nothing_is_stored_without_flash(tmp_path: Path) -> None:
     file = tmp_path / "settings.json"
     settings = Settings(file)

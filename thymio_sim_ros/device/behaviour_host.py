@@ -94,7 +94,8 @@ class BehaviourHost:
         self._tell_menu(POWER_ON_TICKS)
 
     def restart(self) -> None:
-        """As `load` or `start` did it."""
+        """As `load` or `start` did it, by a robot that is new again."""
+        self.device.body.renew()
         if isinstance(self._first, str):
             self.start(self._first, self._own)
         else:

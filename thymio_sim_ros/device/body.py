@@ -45,6 +45,7 @@ class Body:
         tell: Tell,
         recalibrate: Callable[[], None],
     ) -> None:
+        self._first_id = node_id
         self.node_id = node_id
         self.network = (0, 0)
         """Channel and network of the radio: robots of different ones do not hear each other."""
@@ -64,6 +65,11 @@ class Body:
         if self.card is not None:
             self.card.close()
         self._send(SetVolume(self.settings.volume_shift))
+
+    def renew(self) -> None:
+        """As for a new robot: unsaved settings and the radio's are forgotten."""
+        self.settings.renew()
+        self.node_id, self.network = self._first_id, (0, 0)
 
     def advance(self, now_ns: int, intensity: int) -> None:
         """Time has come so far, and the microphone tells this intensity."""

@@ -40,10 +40,9 @@ class Settings:
     def __init__(self, file: Path | None = None) -> None:
         """SettingsError when the file is there and holds something else."""
         self._file = file
-        self._flashed = _first_values()
-        if file is not None and file.exists():
-            self._flashed = _read(file)
-        self._words = list(self._flashed)
+        self._flashed: list[int] = []
+        self._words: list[int] = []
+        self.renew()
 
     def __len__(self) -> int:
         return len(self._words)
@@ -79,6 +78,12 @@ class Settings:
         except OSError as error:
             return f"settings are not stored: {self._file}: {error.strerror}"
         return ""
+
+    def renew(self) -> None:
+        """As for a new robot: what the file says, or the first values."""
+        file = self._file
+        self._flashed = _read(file) if file is not None and file.exists() else _first_values()
+        self._words = list(self._flashed)
 
     def restart(self) -> None:
         """What was not flashed is lost."""
