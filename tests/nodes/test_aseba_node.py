@@ -363,7 +363,7 @@ def test_a_robot_is_switched_off_and_on_again(ros, simulation, runtime):
     status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.02)
     ros.publisher(Empty, "/shutdown").publish(Empty())
-    sim.until(lambda: values(status[-1])["state"] == "off")
+    sim.until(lambda: status and values(status[-1])["state"] == "off")
     sim.step(0.3)
     stopped = sim.world.robots["thymio"].pose
     sim.step(0.3)
