@@ -12,15 +12,17 @@ __all__ = ["ACTUATOR", "ButtonState"]
 
 @dataclass(slots=True)
 class ButtonState:
-    """Whether each button is held, in the order of `BUTTONS`."""
+    """Whether each button is held, in the order of `BUTTONS`; `words` are the same as 0 or 1."""
 
     pressed: dict[str, bool] = field(default_factory=lambda: dict.fromkeys(BUTTONS, False))
+    words: tuple[int, ...] = (0,) * len(BUTTONS)
 
 
 def _apply(state: ButtonState, command: PressButton, _now_ns: int) -> None:
     if command.button not in state.pressed:
         raise ValueError(f"PressButton: found {command.button!r}, expected one of {', '.join(BUTTONS)}")
     state.pressed[command.button] = command.pressed
+    state.words = tuple(map(int, state.pressed.values()))
 
 
 ACTUATOR = Actuator(name="buttons", accepts=(PressButton,), begin=ButtonState, apply=_apply)

@@ -13,8 +13,7 @@ __all__ = ["SENSOR"]
 
 
 def _measure(view: SensorView) -> ButtonsReading:
-    pressed = view.state(ButtonState).pressed
-    return ButtonsReading(view.now_ns, tuple(map(int, pressed.values())))
+    return ButtonsReading(view.now_ns, view.state(ButtonState).words)
 
 
 SENSOR = Sensor(

@@ -16,19 +16,21 @@ __all__ = ["SENSOR"]
 
 
 def _measure(view: SensorView) -> MotorReading:
-    wheels = view.wheels
-    left, right = wheels.speeds_m_s
-    speeds = (units.speed_to_units(left), units.speed_to_units(right))
-    if wheels.control is None:
-        pwms = (units.units_to_pwm(speeds[0]), units.units_to_pwm(speeds[1]))
-    else:
-        pwms = (round(wheels.control[0].output), round(wheels.control[1].output))
-    return MotorReading(
-        view.now_ns,
-        (*speeds, *pwms),
-        wheels.angles_rad,
-        (left / WHEEL_RADIUS_M, right / WHEEL_RADIUS_M),
-    )
+    wheels, memory = view.wheels, view.memory
+    speeds = wheels.speeds_m_s
+    if speeds != memory.get("speeds"):
+        memory["speeds"], memory["faces"] = speeds, _faces(*speeds)
+    words, velocities = memory["faces"]
+    if wheels.control is not None:
+        words = (*words[:2], *(round(loop.output) for loop in wheels.control))
+    return MotorReading(view.now_ns, words, wheels.angles_rad, velocities)
+
+
+def _faces(left_m_s: float, right_m_s: float) -> tuple[tuple[int, int, int, int], tuple[float, float]]:
+    """Words, and velocities in rad/s, of wheels at these speeds."""
+    left, right = units.speed_to_units(left_m_s), units.speed_to_units(right_m_s)
+    words = (left, right, units.units_to_pwm(left), units.units_to_pwm(right))
+    return words, (left_m_s / WHEEL_RADIUS_M, right_m_s / WHEEL_RADIUS_M)
 
 
 SENSOR = Sensor(
