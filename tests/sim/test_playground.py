@@ -97,7 +97,7 @@ def test_broken_json_is_located() -> None:
         ({"robots": [{**ROBOT, "name": "double__score"}]}, "robots[0].name"),
         ({"robots": [{**ROBOT, "yaw_rad": 7}]}, "robots[0].yaw_rad"),
         ({"robots": [{"name": "lost"}]}, "robots[0].x_m"),
-        ({"robots": [{**ROBOT, "name": f"robot{i}"} for i in range(101)]}, "robots"),
+        ({"robots": [{**ROBOT, "name": f"robot{i}"} for i in range(1001)]}, "robots"),
         ({"shapes": [FLOOR] * 1001}, "shapes"),
     ],
 )

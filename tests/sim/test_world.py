@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.sim.builders import FLOOR, ROBOT, box, make, readings, run, send, shipped
+from tests.sim.builders import FLOOR, GREY, ROBOT, box, make, readings, run, send, shipped
 from thymio_sim_ros.sim.commands import (
     BodyTwist,
     Clap,
@@ -29,12 +29,17 @@ from thymio_sim_ros.sim.commands import (
     Tap,
     Tilt,
 )
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.geometry import LEVEL, Pose
+from thymio_sim_ros.sim.playground import Playground, RobotStart
 from thymio_sim_ros.sim.world import StepResult, World
 
 FROZEN = "edaac86a25b534d6"
 """Hash of `minute()`. It changes only when the simulation is meant to change; say so in the commit."""
+
+FROZEN_PUSHING = "3a3cdfdfefabbbd3"
+"""Hash of `pushing()`, likewise."""
+
+SENSED = ("ground", "motor", "proximity")
 
 TWO = ({**ROBOT, "name": "a"}, {**ROBOT, "name": "b", "y_m": 0.3})
 
@@ -57,6 +62,36 @@ def digest(seed: int) -> str:
             found.update(f"{name}{reading.words}".encode())
         pose = world.robots["thymio"].pose
         found.update(f"{pose.x_m:.6f} {pose.y_m:.6f} {pose.yaw_rad:.6f}".encode())
+    return found.hexdigest()[:16]
+
+
+def pushing(seed: int) -> str:
+    """Hash of 30 s in which robots push things, open a door, fall, are put back, come and go."""
+    gate = {"closed_x_m": 0.0, "closed_y_m": 1.0, "opened_x_m": 0.5, "opened_y_m": 1.0, "move_s": 1.5}
+    things = [
+        {"kind": "door", "name": "gate", **gate, "size_x_m": 0.4, "size_y_m": 0.02, "height_m": 0.1, "color": GREY},
+        {"kind": "activation", "x_m": 0.0, "y_m": -1.0, "size_x_m": 0.1, "size_y_m": 0.1, "door": "gate",
+         "area_m": [[-1, 0], [1, 0], [1, 2], [-1, 2]]},
+        *({**box(-0.6 + 0.3 * index, 0.5, 0.06, 0.06), "name": f"crate_{index}", "mass_kg": 0.05 * (index + 1)}
+          for index in range(5)),
+    ]  # fmt: skip
+    dice = random.Random(11)
+    world = World(make([{**FLOOR, "size_x_m": 1.6, "size_y_m": 2.2}, *things], TWO), seed=seed)
+    found = hashlib.sha256()
+    for tick in range(3000):
+        if tick % 50 == 0:
+            for robot in world.robots:
+                world.post(robot, MotorTargets(dice.randint(100, 500), dice.randint(100, 500)))
+        if tick == 1000:
+            world.spawn(RobotStart("late", -0.6, -1.0))
+        if tick == 2000:
+            world.remove("late")
+        for name, robot in world.robots.items():
+            if robot.tilt != LEVEL and not robot.is_falling:
+                world.post(name, MoveRobot(dice.uniform(-0.3, 0.3), dice.uniform(-0.3, 0.0), 0.0))
+        step = world.step()
+        found.update(repr([reading.words for _, name, reading in step.readings if name in SENSED]).encode())
+        found.update(repr([(thing.name, f"{thing.pose.x_m:.6f}", thing.is_fallen) for thing in world.objects]).encode())
     return found.hexdigest()[:16]
 
 
@@ -89,6 +124,10 @@ def test_another_seed_gives_another_minute() -> None:
 
 def test_the_minute_is_the_frozen_one() -> None:
     assert digest(5) == FROZEN
+
+
+def test_pushing_falling_and_opening_are_the_frozen_ones() -> None:
+    assert pushing(5) == FROZEN_PUSHING
 
 
 def test_a_log_of_commands_replays_a_run() -> None:

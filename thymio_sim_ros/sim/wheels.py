@@ -44,8 +44,11 @@ class Wheels:
     def drive(self, commanded: tuple[float, float], slip: tuple[float, float], limit_m_s: float) -> None:
         """Aim at speeds; the floor gets them times slip. Both are limited: far above, nothing of the slip is left."""
         left, right = commanded
-        self.commanded = (_limited(left, limit_m_s), _limited(right, limit_m_s))
-        self.ground = (_limited(left * slip[0], limit_m_s), _limited(right * slip[1], limit_m_s))
+        ground = (left * slip[0], right * slip[1])
+        if max(left, right, *ground) > limit_m_s or min(left, right, *ground) < -limit_m_s:
+            commanded = (_limited(left, limit_m_s), _limited(right, limit_m_s))
+            ground = (_limited(ground[0], limit_m_s), _limited(ground[1], limit_m_s))
+        self.commanded, self.ground = commanded, ground
 
     def roll(self, covered_m_s: tuple[float, float], dt_s: float) -> None:
         """Count a tick in which the robot covered ground at this speed at each wheel."""

@@ -220,6 +220,8 @@ class Physics:
         """Doors open while somebody is in an area of theirs, and close again."""
         if not self._doors:
             return
+        if not self._doors:
+            return
         wanted_open = {
             trigger.door
             for trigger, x, y, reach_m in self._triggers
