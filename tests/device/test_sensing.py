@@ -10,6 +10,7 @@ import pytest
 
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim import playground
 from thymio_sim_ros.sim.commands import (
@@ -296,3 +297,9 @@ def test_the_same_seed_and_commands_give_the_same_variables():
         return seen
 
     assert play() == play()
+
+
+def test_in_the_shipped_world_of_two_robots_they_hear_each_other_at_once():
+    runner = Runner(load_playground("two_robots")[1], load_program(TALKER, "test"))
+    runner.run(1.0)
+    assert [device.get_variable("n") for device in runner.devices.values()] == [(10,), (10,)]
