@@ -13,7 +13,10 @@ from typing import Any, cast
 import jsonschema
 import pytest
 
+from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim import playground, thymio2
+from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
 from thymio_sim_ros.sim.geometry import Point, Pose, convex_hulls_overlap
 from thymio_sim_ros.sim.ground import Ground
 from thymio_sim_ros.sim.playground import Playground
@@ -32,6 +35,11 @@ LANGUAGES = ["de", "fr", "it"]
 
 def loaded(name: str) -> Playground:
     return playground.load(FOLDER / f"{name}.json")
+
+
+def steps(world: World, seconds: float) -> None:
+    for _ in range(round(seconds * 100)):
+        world.step()
 
 
 def test_their_names_stay_as_they_are() -> None:
@@ -197,6 +205,48 @@ def test_the_classroom_has_twenty_robots() -> None:
 
 def test_the_table_has_no_border() -> None:
     assert all(solid.load is not None for solid in loaded("table").solids)
+
+
+def test_on_the_table_a_robot_falls_over_the_edge() -> None:
+    world = World(loaded("table"))
+    world.post("thymio", MotorTargets(400, 400))
+    steps(world, 15.0)
+    assert world.robots["thymio"].is_fallen
+
+
+def test_in_the_arena_a_robot_pushes_what_is_light_and_stops_at_a_post() -> None:
+    start = {"can_1": Pose(-0.3, 0.05, 0.0), "post_1": Pose(-0.4, -0.6, 0.0)}
+    found = {}
+    for name, pose in start.items():
+        world = World(loaded("arena"))
+        world.post("thymio", MoveRobot(pose.x_m, pose.y_m, pose.yaw_rad))
+        world.post("thymio", MotorTargets(200, 200))
+        steps(world, 4.0)
+        found[name] = world.robots["thymio"].pose.x_m - pose.x_m
+    assert found["can_1"] > 0.2
+    assert found["post_1"] < 0.05
+
+
+def test_the_two_robots_hear_each_other() -> None:
+    text = "var heard\ncall prox.comm.enable(1)\nprox.comm.tx = {}\nonevent prox.comm\nheard = prox.comm.rx"
+    programs = {name: load_program(text.format(number), name) for name, number in (("red", 5), ("blue", 7))}
+    runner = Runner(loaded("two_robots"), programs)
+    runner.run(2.0)
+    assert {name: device.get_variable("heard") for name, device in runner.devices.items()} == {
+        "red": (7,),
+        "blue": (5,),
+    }
+
+
+def test_the_gate_opens_before_its_plates_only() -> None:
+    opened = {}
+    for x_m in (-0.5, -0.3, 0.3):
+        world = World(loaded("gate"))
+        world.post("thymio", MoveRobot(x_m, -0.25, math.pi / 2))
+        steps(world, 3.0)
+        (door,) = world.snapshot().objects
+        opened[x_m] = door.pose.y_m > 0.2
+    assert opened == {-0.5: False, -0.3: True, 0.3: True}
 
 
 def test_the_gate_has_a_door_and_a_plate_on_either_side() -> None:
