@@ -59,5 +59,5 @@ def _forget() -> None:
     """Whatever was derived from the plug-ins that there were."""
     registry.forget()
     for cached in (bindings.sensors, bindings.outputs, bindings.natives, bindings.at_reset, layout.target,
-                   behaviour_host.built_in):  # fmt: skip
+                   layout.fitting, behaviour_host.built_in):  # fmt: skip
         cached.cache_clear()

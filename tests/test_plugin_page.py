@@ -14,6 +14,7 @@ from tests import plugin_page
 from tests.sim.builders import FLOOR, make
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim import actuators, playground, sensors, shapes
@@ -114,6 +115,30 @@ def test_a_broken_one_is_named_and_the_others_go_on(
     (told,) = (record.getMessage() for record in caplog.records)
     assert told.startswith("plug-in 'compass' of the package thymio_extras (thymio_sim_ros.sensors) is left out")
     assert said in told
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "said"),
+    [
+        ("compass", '("compass.heading", 1)', '("prox.horizontal", 1)', "variable prox.horizontal"),
+        ("hop", 'Native("hop", ("millimetres",)', 'Native("leds.top", ("millimetres",)', "native leds.top"),
+    ],
+)
+def test_programs_see_nothing_of_one_that_does_not_fit_the_robot(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+    name: str,
+    old: str,
+    new: str,
+    said: str,
+) -> None:
+    with variant(tmp_path, monkeypatch, f"thymio_extras/{name}.py", old, new):
+        runner = Runner(make([FLOOR]), load_program("motor.left.target = 100", "a"))
+        runner.run(0.2)
+        assert name in {plugin.name for plugin in (*sensors.all_sensors(), *actuators.all_actuators())}
+    (told,) = (record.getMessage() for record in caplog.records)
+    assert told.startswith(f"programs see nothing of the plug-in '{name}': {said}")
 
 
 def test_a_folder_that_is_missing_is_named(

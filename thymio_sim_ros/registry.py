@@ -19,7 +19,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Protocol, TypeVar
 
-__all__ = ["RegistryError", "collect", "folders", "forget"]
+__all__ = ["RegistryError", "collect", "folders", "forget", "own_names"]
 
 PREFIX = "thymio_sim_ros"
 NAME = re.compile(r"[a-z](_?[a-z0-9])*")
@@ -57,9 +57,7 @@ def collect(
     the export, or with one that is no `kind`. What others add goes through `guard`, which should let it break alone.
     """
     found: dict[str, T] = {}
-    for name in sorted(info.name for info in pkgutil.iter_modules(package.__path__)):
-        if name.startswith("_"):
-            continue
+    for name in own_names(package):
         module = importlib.import_module(f"{package.__name__}.{name}")
         plugin = getattr(module, export, None)
         if not isinstance(plugin, kind):
@@ -68,6 +66,12 @@ def collect(
     for plugin in _added(f"{PREFIX}.{package.__name__.rpartition('.')[2]}", export, kind, tuple(found)):
         found[plugin.name] = guard(plugin)
     return tuple(found[name] for name in sorted(found))
+
+
+def own_names(package: ModuleType) -> tuple[str, ...]:
+    """Names of the modules of a folder of plug-ins, which are those of the plug-ins."""
+    names = (info.name for info in pkgutil.iter_modules(package.__path__))
+    return tuple(sorted(name for name in names if not name.startswith("_")))
 
 
 @functools.cache

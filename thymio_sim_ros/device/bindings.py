@@ -9,11 +9,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from thymio_sim_ros.device.layout import THYMIO, target
-from thymio_sim_ros.sim.actuators import all_actuators
+from thymio_sim_ros.device.layout import THYMIO, fitting, target
 from thymio_sim_ros.sim.aseba_face import AsebaFace, Native
 from thymio_sim_ros.sim.commands import Command
-from thymio_sim_ros.sim.sensors import all_sensors
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +52,7 @@ def sensors(layout: str = THYMIO) -> dict[str, SensorBinding]:
     """Every sensor that Aseba sees, by name; variables that the layout lacks are left out."""
     addresses = target(layout).addresses
     found = {}
-    for sensor in all_sensors():
+    for sensor in fitting()[0]:
         if not (sensor.aseba.variables or sensor.aseba.event):
             continue
         slots = tuple(_slots(sensor.aseba, layout))
@@ -79,7 +77,7 @@ def outputs(layout: str = THYMIO) -> tuple[OutputBinding, ...]:
     addresses = target(layout).addresses
     return tuple(
         OutputBinding(tuple(Slot(*addresses[name]) for name, _ in output.variables), output.command)
-        for actuator in all_actuators()
+        for actuator in fitting()[1]
         for output in actuator.aseba.outputs
         if all(name in addresses for name, _ in output.variables)
     )
@@ -88,13 +86,13 @@ def outputs(layout: str = THYMIO) -> tuple[OutputBinding, ...]:
 @cache
 def natives() -> dict[str, Native]:
     """Every native function that reaches an actuator, by name."""
-    return {native.name: native for actuator in all_actuators() for native in actuator.aseba.natives}
+    return {native.name: native for actuator in fitting()[1] for native in actuator.aseba.natives}
 
 
 @cache
 def at_reset() -> tuple[Command, ...]:
     """What a reset of the robot tells its actuators."""
-    return tuple(command for actuator in all_actuators() for command in actuator.aseba.at_reset)
+    return tuple(command for actuator in fitting()[1] for command in actuator.aseba.at_reset)
 
 
 def _slots(face: AsebaFace, layout: str) -> Iterator[Slot]:

@@ -6,16 +6,19 @@ them by name, bytecode by place.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
 from aseba_vm import LocalEvent, NativeFunction, Parameter, TargetDescription, Variable
 from aseba_vm.targets import THYMIO_II
+from thymio_sim_ros import registry
+from thymio_sim_ros.sim import actuators, sensors
 from thymio_sim_ros.sim.actuators import Actuator, all_actuators
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 
-__all__ = ["LAYOUTS", "PLAYGROUND", "THYMIO", "Layout", "extend", "target"]
+__all__ = ["LAYOUTS", "PLAYGROUND", "THYMIO", "Layout", "extend", "fitting", "target"]
 
 THYMIO, PLAYGROUND = "thymio", "playground"
 
@@ -69,10 +72,47 @@ LAYOUTS: Mapping[str, Layout] = {
 @cache
 def target(layout: str = THYMIO) -> TargetDescription:
     """The target of this installation in one of LAYOUTS."""
-    return extend(LAYOUTS[layout].base, all_sensors(), all_actuators())
+    return extend(LAYOUTS[layout].base, *fitting())
 
 
-def extend(base: TargetDescription, sensors: Sequence[Sensor], actuators: Sequence[Actuator]) -> TargetDescription:
+@cache
+def fitting() -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
+    """All sensors and actuators, but for those of other packages that do not fit: they stay unknown to programs.
+
+    One does not fit when it gives a variable or native that exists, of the robot or of another one, another size.
+    """
+    try:
+        extend(THYMIO_II, all_sensors(), all_actuators())
+    except ValueError:
+        return _one_by_one()
+    return all_sensors(), all_actuators()
+
+
+def _one_by_one() -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
+    """Ours, then those of others that fit what is there."""
+    all_of_them: tuple[Sensor | Actuator, ...] = (*all_sensors(), *all_actuators())
+    ours = {*registry.own_names(sensors), *registry.own_names(actuators)}
+    kept: list[Sensor | Actuator] = []
+    for plugin in sorted(all_of_them, key=lambda plugin: plugin.name not in ours):
+        try:
+            extend(THYMIO_II, *_parted([*kept, plugin]))
+        except ValueError as error:
+            if plugin.name in ours:
+                raise
+            logging.getLogger(__name__).warning("programs see nothing of the plug-in '%s': %s", plugin.name, error)
+        else:
+            kept.append(plugin)
+    return _parted([plugin for plugin in all_of_them if plugin in kept])
+
+
+def _parted(plugins: Sequence[Sensor | Actuator]) -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
+    return (
+        tuple(plugin for plugin in plugins if isinstance(plugin, Sensor)),
+        tuple(plugin for plugin in plugins if isinstance(plugin, Actuator)),
+    )
+
+
+def extend(base: TargetDescription, sensing: Sequence[Sensor], acting: Sequence[Actuator]) -> TargetDescription:
     """The base in its own order; what only a plug-in knows comes after it, and programs keep their room.
 
     What the robot has and the base leaves out stays out. ValueError when a plug-in gives a name that exists another
@@ -81,9 +121,9 @@ def extend(base: TargetDescription, sensors: Sequence[Sensor], actuators: Sequen
     variables = {variable.name: variable for variable in (*THYMIO_II.variables, *base.variables)}
     events = {event.name: event for event in base.local_events}
     natives = {native.name: native for native in (*THYMIO_II.natives, *base.natives)}
-    faces = [sensor.aseba for sensor in sensors]
+    faces = [sensor.aseba for sensor in sensing]
     declared = [variable for face in faces for variable in face.variables]
-    declared += [pair for actuator in actuators for output in actuator.aseba.outputs for pair in output.variables]
+    declared += [pair for actuator in acting for output in actuator.aseba.outputs for pair in output.variables]
     for name, size in declared:
         if variables.setdefault(name, Variable(name, size)).size != size:
             raise ValueError(f"variable {name}: a plug-in declares {size} words, expected {variables[name].size}")
@@ -91,7 +131,7 @@ def extend(base: TargetDescription, sensors: Sequence[Sensor], actuators: Sequen
         edges = [name for name, _ in face.variables] if face.edge_events else []
         for name in [*edges, *([face.event] if face.event else [])]:
             events.setdefault(name, LocalEvent(name))
-    for native in (native for actuator in actuators for native in actuator.aseba.natives):
+    for native in (native for actuator in acting for native in actuator.aseba.natives):
         parameters = tuple(Parameter(name, size) for name, size in native.signature)
         known = natives.setdefault(native.name, NativeFunction(native.name, parameters, native.description))
         sizes, expected = ([one.size for one in both] for both in (parameters, known.parameters))

@@ -25,7 +25,8 @@ class Guard:
 
     def __init__(self, name: str) -> None:
         self._name = name
-        self._broken: set[int] = set()
+        self._broken: dict[int, Any] = {}
+        """States by their identity; held, so that no other takes it over."""
 
     def begin(self, make: Callable[[], Any]) -> Any:
         """A state for one robot."""
@@ -42,7 +43,7 @@ class Guard:
         try:
             act(state, *arguments)
         except Exception:
-            self._broken.add(id(state))
+            self._broken[id(state)] = state
             _tell("actuator", self._name)
 
 
