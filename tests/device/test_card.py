@@ -155,3 +155,19 @@ def test_a_file_cannot_stand_for_a_card(tmp_path: Path) -> None:
     file.touch()
     with pytest.raises(CardError, match=r"file: File exists; expected a folder"):
         Card(file)
+
+
+def test_a_card_that_was_taken_out_has_no_files(card: Card) -> None:
+    card.open(1)
+    for path in card.folder.iterdir():
+        path.unlink()
+    card.folder.rmdir()
+    assert (card.write([1]), card.read(1), card.open(2), card.read_sound("p1")) == (0, [], False, None)
+    assert not card.write_sound("r1", b"abc")
+
+
+def test_links_that_lead_round_and_pipes_are_no_files(card: Card) -> None:
+    os.symlink(card.folder / "u2.dat", card.folder / "u1.dat")
+    os.symlink(card.folder / "u1.dat", card.folder / "u2.dat")
+    os.mkfifo(card.folder / "u3.dat")
+    assert [card.open(number) for number in (1, 2, 3)] == [False] * 3

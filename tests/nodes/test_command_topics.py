@@ -6,6 +6,7 @@ import pytest
 from std_msgs.msg import (
     Bool,
     ColorRGBA,
+    Empty,
     Float32,
     Float32MultiArray,
     Int8,
@@ -21,6 +22,7 @@ from thymio_sim_ros.sim.commands import (
     LED_GROUPS,
     EnableComm,
     MotorTargets,
+    PlayGesture,
     PlaySamples,
     PlaySystemSound,
     PlayTone,
@@ -34,6 +36,7 @@ from thymio_sim_ros.sim.commands import (
     SetVolume,
     SetWave,
     ShowOnLeds,
+    StopGesture,
     StopSound,
 )
 from thymio_sim_ros.sim.tones import TRIANGLE
@@ -105,6 +108,12 @@ def test_the_pen_is_moved_colored_and_turned_round():
     assert decode("pen/width", Float32(data=0.03125)) == SetPen(width_m=0.03125)
 
 
+def test_gestures_have_a_period_whose_sign_is_the_direction():
+    assert decode("led/gesture/kit", Float32(data=-0.5)) == PlayGesture("kit", -0.5)
+    assert decode("led/gesture/alive", Empty()) == PlayGesture("alive", 4.0)
+    assert decode("led/gesture/off", Empty()) == StopGesture()
+
+
 def test_an_alarm_is_switched():
     assert decode("alarm", Bool(data=True)) == SetAlarm(True)
 
@@ -124,6 +133,7 @@ def test_a_sound_is_stopped_by_a_negative_number():
         ("sound/wave", Int8MultiArray(data=[1, 2]), "2 values found, expected 142 samples"),
         ("sound/samples", UInt8MultiArray(data=bytes(5_000_000)), "5000000 samples found"),
         ("led/single", Int16MultiArray(data=[1]), "1 values found"),
+        ("led/gesture/blink", Float32(data=0.0), "period 0 s found, expected 0.1 to 60"),
         ("led/own", Float32MultiArray(data=[1.0]), "group '' found"),
         ("led/circle", Float32MultiArray(data=[1.0]), "1 values found, expected 8 intensities"),
         ("sound_threshold", Float32(data=float("nan")), "threshold is nan"),

@@ -118,12 +118,16 @@ class Card:
         return True
 
     def _path(self, name: str) -> Path | None:
-        """Where a file of this name is or would be; None when that is not in the folder."""
+        """Where a file of this name is or would be; None when that is no file in the folder."""
         path = self.folder / name
-        if not path.exists():
-            found = sorted(other for other in self.folder.iterdir() if other.name.lower() == name)
-            path = found[0] if found else path
-        return path if path.resolve().parent == self.folder else None
+        try:
+            if not path.exists():
+                found = sorted(other for other in self.folder.iterdir() if other.name.lower() == name)
+                path = found[0] if found else path
+            is_free = path.is_file() or not path.exists()
+            return path if is_free and path.resolve().parent == self.folder else None
+        except (OSError, RuntimeError):  # the folder is gone, or links lead round in a circle
+            return None
 
 
 def _as_bytes(words: Sequence[int]) -> bytes:

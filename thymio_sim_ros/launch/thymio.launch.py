@@ -16,6 +16,11 @@ ARGUMENTS = {
     "playground": ("line", "playground: a shipped name or a file"),
     "program": ("line_follower", "Aseba program: a built-in behaviour, an .aesl file, or none"),
     "behaviour": ("", "what the robot is switched on with, such as menu; '' is the program"),
+    "card": ("", "folder that stands for the robot's memory card; '' is no card"),
+    "settings": ("", "folder that keeps the robot's settings; '' forgets them"),
+    "layout": ("thymio", "order of variables and natives: thymio or playground"),
+    "events": ("firmware", "how events meet: firmware or playground"),
+    "motor_model": ("ideal", "how motors follow: ideal or firmware"),
     "seed": ("0", "seed of all noise"),
     "real_time_factor": ("1.0", "simulated seconds per second; 0: as fast as possible"),
     "cmd_vel_timeout": ("0.0", "seconds after which a velocity command ends; 0: never"),
@@ -37,11 +42,16 @@ def generate_launch_description() -> LaunchDescription:
         "seed": ParameterValue(value["seed"], value_type=int),
         "real_time_factor": ParameterValue(value["real_time_factor"], value_type=float),
         "cmd_vel_timeout": ParameterValue(value["cmd_vel_timeout"], value_type=float),
+        "motor_model": ParameterValue(value["motor_model"], value_type=str),
         "out_of_range": ParameterValue(range_convention, value_type=str),
     }
     runtime = {
         "script.path": ParameterValue(value["program"], value_type=str),
         "behaviour": ParameterValue(value["behaviour"], value_type=str),
+        "card": ParameterValue(value["card"], value_type=str),
+        "settings": ParameterValue(value["settings"], value_type=str),
+        "layout": ParameterValue(value["layout"], value_type=str),
+        "events": ParameterValue(value["events"], value_type=str),
         "use_sim_time": True,
     }
     bridge = {"port": ParameterValue(value["foxglove_port"], value_type=int), "use_sim_time": True}

@@ -16,6 +16,7 @@ from rclpy.qos import QoSProfile
 from std_msgs.msg import (
     Bool,
     ColorRGBA,
+    Empty,
     Float32,
     Float32MultiArray,
     Int8,
@@ -39,6 +40,8 @@ __all__ = ["BODY_LEDS", "ROWS", "CommandRow", "led_topic", "topic_of"]
 BODY_LEDS = ("top", "bottom_left", "bottom_right")
 """Groups that are one color: their topics are those of the driver."""
 
+ALIVE_S = 4.0
+"""Period of the gesture that shows that the robot lives. Own choice."""
 MOST_SAMPLES = 10 * 60 * 7813
 """Samples of one sound: ten minutes."""
 
@@ -213,6 +216,22 @@ def _decode_payload(message: Int16) -> Command:
     return commands.SetCommPayload(int(message.data))
 
 
+def _decode_gesture(message: Float32, *, name: str) -> Command:
+    """Its period in s; the sign is the direction."""
+    try:
+        return commands.PlayGesture(name, float(message.data))
+    except ValueError as error:
+        raise CommandError(str(error)) from error
+
+
+def _decode_alive(_message: Empty) -> Command:
+    return commands.PlayGesture("alive", ALIVE_S)
+
+
+def _decode_still(_message: Empty) -> Command:
+    return commands.StopGesture()
+
+
 def _decode_alarm(message: Bool) -> Command:
     return commands.SetAlarm(bool(message.data))
 
@@ -247,6 +266,10 @@ def _rows() -> Iterator[CommandRow]:
             yield CommandRow(led_topic(group), Float32MultiArray, decode, _encode_levels, qos.LEDS)
     yield CommandRow("led/single", Int16MultiArray, _decode_single, _encode_single, qos.LEDS)
     yield CommandRow("led/own", Float32MultiArray, _decode_own, _encode_own, qos.LEDS)
+    for name in ("circle", "blink", "kit"):
+        yield CommandRow(f"led/gesture/{name}", Float32, partial(_decode_gesture, name=name), profile=qos.LEDS)
+    yield CommandRow("led/gesture/alive", Empty, _decode_alive, profile=qos.LEDS)
+    yield CommandRow("led/gesture/off", Empty, _decode_still, profile=qos.LEDS)
     yield CommandRow("sound/tone", Float32MultiArray, _decode_tone, _encode_tone, qos.EVENTS)
     yield CommandRow("sound/system", Int8, _decode_system, _encode_system, qos.EVENTS)
     yield CommandRow("sound/samples", UInt8MultiArray, _decode_samples, _encode_samples, qos.EVENTS)

@@ -31,6 +31,9 @@ LED_GROUPS: dict[str, int] = {
 }
 """LED groups and their number of lights (thymio-robot.md sections 6.3 and 8)."""
 
+LED_GESTURES = ("circle", "blink", "kit", "alive")
+"""Lights that move by themselves (ros-interface.md section 4.2)."""
+
 LED_FULL = 32
 """Brightness of a fully lit LED (thymio-robot.md section 8.1)."""
 
@@ -101,6 +104,25 @@ class ReleaseLeds:
     """The lights of one group go off and back to the robot's own rules."""
 
     group: str
+
+
+@dataclass(frozen=True, slots=True)
+class PlayGesture:
+    """Lights that move by themselves: one of `LED_GESTURES`, with a period of 0.1…60 s, negative for backwards."""
+
+    name: str
+    period_s: float
+
+    def __post_init__(self) -> None:
+        if self.name not in LED_GESTURES:
+            raise ValueError(f"PlayGesture: {self.name!r} found, expected one of {', '.join(LED_GESTURES)}")
+        if not 0.1 <= abs(self.period_s) <= 60.0:
+            raise ValueError(f"PlayGesture: period {self.period_s:g} s found, expected 0.1 to 60, either sign")
+
+
+@dataclass(frozen=True, slots=True)
+class StopGesture:
+    """The lights of a gesture go back to the robot's own rules."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -335,6 +357,8 @@ Command = (
     | SetLed
     | ShowOnLeds
     | ReleaseLeds
+    | PlayGesture
+    | StopGesture
     | PlayTone
     | PlaySystemSound
     | PlaySamples

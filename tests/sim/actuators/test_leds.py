@@ -2,10 +2,24 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
+from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.leds import ACTUATOR, LED_NUMBERS, LedState
-from thymio_sim_ros.sim.commands import LED_GROUPS, ReleaseLeds, SetLed, SetLeds, ShowOnLeds
+from thymio_sim_ros.sim.commands import (
+    LED_GESTURES,
+    LED_GROUPS,
+    Command,
+    PlayGesture,
+    ReleaseLeds,
+    SetLed,
+    SetLeds,
+    ShowOnLeds,
+    StopGesture,
+)
+from thymio_sim_ros.sim.gestures import GESTURES
 
 
 def test_every_group_has_a_native_of_its_size() -> None:
@@ -109,3 +123,61 @@ def test_a_released_group_is_dark_and_shows_the_rules_again() -> None:
 
 def test_a_reset_releases_every_group() -> None:
     assert ACTUATOR.aseba.at_reset == tuple(ReleaseLeds(group) for group in LED_GROUPS)
+
+
+def lights(*commands: Command, seconds: float = 1.0) -> list[dict[str, tuple[int, ...]]]:
+    """All lights in each tick after commands at time 0."""
+    state, shown = LedState(), []
+    for command in commands:
+        ACTUATOR.apply(state, command, 0)
+    assert ACTUATOR.update is not None
+    for tick in range(round(seconds * 100)):
+        ACTUATOR.update(state, FakeView(now_ns=tick * 10_000_000), 0.01)
+        shown.append(dict(state.levels))
+    return shown
+
+
+def test_a_gesture_runs_round_the_circle_in_its_period() -> None:
+    brightest = [max(range(8), key=ticks["circle"].__getitem__) for ticks in lights(PlayGesture("circle", 0.8))]
+    assert brightest[0:80:10] == [0, 1, 2, 3, 4, 5, 6, 7]
+
+
+def test_a_negative_period_runs_backwards() -> None:
+    brightest = [max(range(8), key=ticks["circle"].__getitem__) for ticks in lights(PlayGesture("circle", -0.8))]
+    assert brightest[0:80:10] == [0, 7, 6, 5, 4, 3, 2, 1]
+
+
+def test_blinking_is_half_on_half_off() -> None:
+    shown = [ticks["circle"] for ticks in lights(PlayGesture("blink", 0.5))]
+    assert [shown[tick] for tick in (0, 24, 25, 49, 50)] == [(32,) * 8, (32,) * 8, (0,) * 8, (0,) * 8, (32,) * 8]
+
+
+def test_kit_goes_to_and_fro_at_the_front() -> None:
+    shown = [ticks["proximity"] for ticks in lights(PlayGesture("kit", 1.0))]
+    assert [shown[tick].index(max(shown[tick])) for tick in (0, 10, 50, 90)] == [0, 1, 5, 1]
+    assert all(levels[6:] == (0, 0) for levels in shown)
+
+
+def test_a_gesture_ends_when_it_is_stopped_replaced_or_its_lights_are_set() -> None:
+    dark = (0,) * 8
+    assert lights(PlayGesture("blink", 60.0), StopGesture())[0]["circle"] == dark
+    replaced = lights(PlayGesture("blink", 60.0), PlayGesture("kit", 1.0))[0]
+    assert (replaced["circle"], replaced["proximity"][0]) == (dark, 32)
+    assert lights(PlayGesture("blink", 60.0), SetLeds("circle", (1,) * 8))[-1]["circle"] == (1,) * 8
+    assert lights(PlayGesture("blink", 60.0), SetLeds("top", (1, 2, 3)))[-1]["circle"] == (32,) * 8
+
+
+def test_a_gesture_keeps_the_robot_s_own_rules_away_and_gives_the_lights_back() -> None:
+    own = ShowOnLeds("circle", (9,) * 8)
+    assert lights(PlayGesture("blink", 60.0), own)[-1]["circle"] == (32,) * 8
+    assert lights(PlayGesture("blink", 60.0), StopGesture(), own)[-1]["circle"] == (9,) * 8
+
+
+@pytest.mark.parametrize(("name", "period_s"), [("dance", 1.0), ("blink", 0.0), ("blink", -0.05), ("kit", math.nan)])
+def test_a_gesture_that_cannot_be_is_refused(name: str, period_s: float) -> None:
+    with pytest.raises(ValueError, match="PlayGesture"):
+        PlayGesture(name, period_s)
+
+
+def test_every_gesture_has_a_shape() -> None:
+    assert set(GESTURES) == set(LED_GESTURES)

@@ -1,6 +1,7 @@
 """The lights: brightness 0…32 for each light of each group (thymio-robot.md sections 6.3 and 8).
 
-The robot's own rules show the sensors on them until somebody, a program or ROS, takes a group over.
+The robot's own rules show the sensors on them until somebody, a program or ROS, takes a group over. A gesture moves
+the lights of one group until it is stopped, or somebody else sets them.
 """
 
 from __future__ import annotations
@@ -11,7 +12,19 @@ from dataclasses import dataclass, field
 from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.aseba_face import ActuatorFace, Native, Output
-from thymio_sim_ros.sim.commands import LED_FULL, LED_GROUPS, Command, ReleaseLeds, SetLed, SetLeds, ShowOnLeds
+from thymio_sim_ros.sim.commands import (
+    LED_FULL,
+    LED_GROUPS,
+    Command,
+    PlayGesture,
+    ReleaseLeds,
+    SetLed,
+    SetLeds,
+    ShowOnLeds,
+    StopGesture,
+)
+from thymio_sim_ros.sim.gestures import Gesture
+from thymio_sim_ros.sim.view import ActuatorView
 
 __all__ = ["ACTUATOR", "LED_NUMBERS", "LedState"]
 
@@ -58,19 +71,35 @@ LED_NUMBERS = _numbers()
 
 @dataclass(slots=True)
 class LedState:
-    """Levels 0…32 of every group, in the order of `LED_GROUPS`; groups that the robot's own rules have lost."""
+    """Levels 0…32 of every group, in the order of `LED_GROUPS`; groups that the robot's own rules lost; a gesture."""
 
     levels: dict[str, tuple[int, ...]] = field(
         default_factory=lambda: {group: (0,) * size for group, size in LED_GROUPS.items()}
     )
     taken: set[str] = field(default_factory=set)
+    gesture: Gesture | None = None
+
+    def set(self, group: str, levels: tuple[int, ...]) -> None:
+        """Take a group over; what moved it ends."""
+        self.levels[group] = _limited(group, levels)
+        self.taken.add(group)
+        if self.gesture is not None and self.gesture.group == group:
+            self.gesture = None
+
+    def release(self, group: str) -> None:
+        """Darken a group and give it back to the robot's own rules."""
+        self.set(group, (0,) * LED_GROUPS[group])
+        self.taken.discard(group)
 
 
-def _apply(state: LedState, command: SetLeds | SetLed | ShowOnLeds | ReleaseLeds, _now_ns: int) -> None:
+def _apply(
+    state: LedState,
+    command: SetLeds | SetLed | ShowOnLeds | ReleaseLeds | PlayGesture | StopGesture,
+    now_ns: int,
+) -> None:
     match command:
         case SetLeds(group, levels):
-            state.levels[group] = _limited(group, levels)
-            state.taken.add(group)
+            state.set(group, levels)
         case ShowOnLeds(group, levels):
             if group not in state.taken:
                 state.levels[group] = _limited(group, levels)
@@ -81,8 +110,21 @@ def _apply(state: LedState, command: SetLeds | SetLed | ShowOnLeds | ReleaseLeds
                 levels = state.levels[group]
                 state.levels[group] = _limited(group, (*levels[:index], level, *levels[index + 1 :]))
         case ReleaseLeds(group):
-            state.levels[group] = (0,) * LED_GROUPS[group]
-            state.taken.discard(group)
+            state.release(group)
+        case PlayGesture(name, period_s):
+            if state.gesture is not None:
+                state.release(state.gesture.group)
+            gesture = Gesture(name, period_s, now_ns)
+            state.set(gesture.group, gesture.levels(now_ns))
+            state.gesture = gesture
+        case StopGesture():
+            if state.gesture is not None:
+                state.release(state.gesture.group)
+
+
+def _update(state: LedState, view: ActuatorView, _dt_s: float) -> None:
+    if state.gesture is not None:
+        state.levels[state.gesture.group] = state.gesture.levels(view.now_ns)
 
 
 def _limited(group: str, levels: tuple[int, ...]) -> tuple[int, ...]:
@@ -117,9 +159,11 @@ def _group_natives() -> Iterator[Native]:
 
 ACTUATOR = Actuator(
     name="leds",
-    accepts=(SetLeds, SetLed, ShowOnLeds, ReleaseLeds),
+    accepts=(SetLeds, SetLed, ShowOnLeds, ReleaseLeds, PlayGesture, StopGesture),
     begin=LedState,
     apply=_apply,
+    update=_update,
+    is_idle=lambda state: state.gesture is None,
     aseba=ActuatorFace(
         outputs=tuple(
             Output(((name, LED_GROUPS[group]),), _setter(group))
