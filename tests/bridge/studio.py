@@ -100,3 +100,14 @@ class Studio:
                 self.services = {k: v for k, v in self.services.items() if v.id not in message.service_ids}
             else:
                 self.received.append(message)
+
+
+def set_and_answer(studio: Studio, *parameters: ms.Parameter) -> list[ms.ServerMessage]:
+    """Set parameters; everything told from the wish to its answer."""
+    studio.read()
+    studio.received.clear()
+    studio.send(ms.SetParameters(parameters, "mine"))
+    told: list[ms.ServerMessage] = []
+    while not (told and isinstance(told[-1], ms.ParameterValues) and told[-1].id == "mine"):
+        told.append(studio.next(object))
+    return told

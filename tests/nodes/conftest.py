@@ -1,5 +1,50 @@
 """Node tests need ROS; without it this folder is left out."""
 
+from __future__ import annotations
+
 import importlib.util
 
+import pytest
+
 collect_ignore_glob = [] if importlib.util.find_spec("rclpy") else ["test_*.py"]
+
+
+@pytest.fixture
+def bridge(ros):
+    """Make a Foxglove bridge on a free port."""
+    from thymio_sim_ros.nodes.foxglove_node import FoxgloveBridge, FoxgloveParams
+
+    def make(use_sim_time=False, **parameters):
+        defaults = FoxgloveParams(port=0, **parameters)
+        return ros.live(FoxgloveBridge(context=ros.context, use_sim_time=use_sim_time, defaults=defaults))
+
+    return make
+
+
+@pytest.fixture
+def studio(ros, bridge):
+    """A client of a bridge with default parameters."""
+    from tests.bridge.studio import Studio
+
+    with Studio(bridge().port, ros.until) as client:
+        yield client
+
+
+@pytest.fixture
+def peer(ros):
+    """A node with parameters, one of which has opinions."""
+    from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+    from rclpy.node import Node
+
+    node = ros.add(Node("peer", context=ros.context, enable_rosout=False))
+    node.declare_parameter("speed", 1.5)
+    node.declare_parameter("count", 3)
+    node.declare_parameter("program", "good")
+    node.declare_parameter("fixed", 1, ParameterDescriptor(read_only=True))
+
+    def check(parameters):
+        is_bad = any(item.name == "program" and item.value == "bad" for item in parameters)
+        return SetParametersResult(successful=not is_bad, reason="line 3, column 5: bad" if is_bad else "")
+
+    node.add_on_set_parameters_callback(check)
+    return node

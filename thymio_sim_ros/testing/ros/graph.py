@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -132,7 +133,7 @@ class Ros:
     def until(
         self,
         condition: Callable[[], Any],
-        timeout_s: float = DEADLINE_S,
+        timeout: float = DEADLINE_S,
         *,
         sim_time: float | None = None,
         what: str = "",
@@ -140,15 +141,15 @@ class Ros:
         """Spin until the condition is true; returns its value, or fails the test and tells how everything is.
 
         With `sim_time` the simulation is stepped, at most so many simulated seconds, however long that takes. Without,
-        it waits at most `timeout_s` of real time, and simulated time stands still.
+        it waits at most `timeout` seconds of real time, and simulated time stands still.
         """
         __tracebackhide__ = True
         if sim_time is not None:
             return self._simulated().until(condition, sim_time, what=what)
-        deadline = time.monotonic() + timeout_s
+        deadline = time.monotonic() + timeout
         while not (value := condition()):
             if time.monotonic() > deadline:
-                self.fail(f"not within {timeout_s:g} s: {what or told(condition)}")
+                self.fail(f"not within {timeout:g} s: {what or told(condition)}")
             self.spin()
             self._check_context()
         return value
@@ -221,13 +222,17 @@ class Ros:
 
     def close(self) -> None:
         """End lives, nodes, executor and context; nothing of them is left."""
-        for life in reversed(self._lives):
-            self._executor.remove_node(life.node)
-            life.close()
-        for node in self._nodes:
-            self._executor.remove_node(node)
-            node.destroy_node()
-        self._executor.shutdown()
+        with contextlib.ExitStack() as end:  # each step is done even when another fails
+            end.callback(self._close_context)
+            end.callback(self._executor.shutdown)
+            for node in self._nodes:
+                end.callback(node.destroy_node)
+                end.callback(self._executor.remove_node, node)
+            for life in self._lives:
+                end.callback(life.close)
+                end.callback(self._executor.remove_node, life.node)
+
+    def _close_context(self) -> None:
         if self.context is get_default_context():
             try_shutdown()
         else:

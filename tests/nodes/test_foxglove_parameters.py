@@ -1,0 +1,91 @@
+"""Parameters of all nodes, read, set and watched by a real client."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.bridge.studio import Studio, set_and_answer
+from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.vocabulary import StatusLevel
+
+
+def test_parameters_of_all_nodes_can_be_read(studio, peer):
+    assert studio.parameter("/peer.speed") == 1.5
+    assert studio.parameter("/peer.program") == "good"
+    assert studio.parameter("/foxglove_bridge.port") == 0
+
+
+def test_a_parameter_is_set_and_its_old_complaint_removed(studio, peer):
+    studio.parameter("/peer.program")
+    told = set_and_answer(studio, ms.Parameter("/peer.program", "better"))
+    assert told == [
+        ms.RemoveStatus(("parameter:/peer.program",)),
+        ms.ParameterValues((ms.Parameter("/peer.program", "better"),), "mine"),
+    ]
+    assert peer.get_parameter("program").value == "better"
+
+
+def test_a_refused_value_is_told_before_the_answer_with_the_value_in_force(studio, peer):
+    studio.parameter("/peer.program")
+    told = set_and_answer(studio, ms.Parameter("/peer.program", "bad"))
+    assert told == [
+        ms.Status(StatusLevel.ERROR, "/peer.program: line 3, column 5: bad", "parameter:/peer.program"),
+        ms.ParameterValues((ms.Parameter("/peer.program", "good"),), "mine"),
+    ]
+
+
+def test_several_values_are_answered_together_each_with_its_own_fate(studio, peer):
+    studio.parameter("/peer.program")
+    wishes = ms.Parameter("/peer.speed", 2), ms.Parameter("/peer.program", "bad"), ms.Parameter("/no/node.x", 1)
+    removed, *complaints, answer = set_and_answer(studio, *wishes)
+    assert removed == ms.RemoveStatus(("parameter:/peer.speed",))
+    assert {status.id for status in complaints} == {"parameter:/peer.program", "parameter:/no/node.x"}
+    expected = (ms.Parameter("/peer.speed", 2.0, "float64"), ms.Parameter("/peer.program", "good"))
+    assert answer == ms.ParameterValues(expected, "mine")
+
+
+@pytest.mark.parametrize(
+    ("wish", "text"),
+    [
+        (ms.Parameter("/peer.fixed", 2), "/peer.fixed: "),
+        (ms.Parameter("/peer.speed", "fast"), "/peer.speed: "),
+        (ms.Parameter("/peer.count", (1, "x")), "/peer.count: a list must have elements of one kind"),
+        (ms.Parameter("/peer", 1), "/peer: not offered by this bridge"),
+        (ms.Parameter("/peer.count", 2**70), "/peer.count: expected an integer of 64 bits"),
+    ],
+)
+def test_what_cannot_be_set_is_refused_with_a_reason(studio, peer, wish, text):
+    studio.parameter("/peer.program")
+    status, _ = set_and_answer(studio, wish)
+    assert status.message.startswith(text)
+    assert len(status.message) > len(text) or text.count(":") == 1
+
+
+def test_a_change_from_elsewhere_reaches_those_who_asked(ros, bridge, peer):
+    port = bridge().port
+    with Studio(port, ros.until) as watcher, Studio(port, ros.until) as setter:
+        setter.parameter("/peer.speed")
+        watcher.send(ms.SubscribeParameterUpdates(("/peer.speed",)))
+        watcher.send(ms.GetParameters((), "settle"))
+        watcher.next(ms.ParameterValues, lambda answer: answer.id == "settle")
+        set_and_answer(setter, ms.Parameter("/peer.speed", 3.5))
+        assert watcher.next(ms.ParameterValues).parameters == (ms.Parameter("/peer.speed", 3.5, "float64"),)
+
+
+def test_a_change_by_the_node_itself_reaches_those_who_asked(studio, peer):
+    studio.parameter("/peer.count")
+    studio.send(ms.SubscribeParameterUpdates(("/peer.count",)))
+    studio.send(ms.GetParameters((), "settle"))
+    studio.next(ms.ParameterValues, lambda answer: answer.id == "settle")
+    peer.set_parameters([peer.get_parameter("count").__class__("count", value=4)])
+    assert studio.next(ms.ParameterValues).parameters == (ms.Parameter("/peer.count", 4),)
+
+
+def test_unlisted_parameters_are_neither_shown_nor_set(ros, bridge, peer):
+    with Studio(bridge(param_whitelist=(r"/peer\.speed",)).port, ros.until) as studio:
+        studio.parameter("/peer.speed")
+        studio.send(ms.GetParameters((), "all"))
+        answer = studio.next(ms.ParameterValues, lambda values: values.id == "all")
+        assert [item.name for item in answer.parameters] == ["/peer.speed"]
+        status, _ = set_and_answer(studio, ms.Parameter("/peer.count", 9))
+        assert status.message == "/peer.count: not offered by this bridge"

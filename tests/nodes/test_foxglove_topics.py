@@ -1,0 +1,123 @@
+"""Topics of ROS as channels for a real client: bytes, types, latched messages, comings and goings."""
+
+from __future__ import annotations
+
+import pytest
+from geometry_msgs.msg import Twist
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import deserialize_message, serialize_message
+from std_msgs.msg import Bool, String
+
+from tests.bridge.studio import Studio
+from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.nodes import tf_messages
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+def test_the_bytes_of_a_message_arrive_as_they_were_published(ros, studio):
+    publisher = ros.node.create_publisher(String, "/chat", 10)
+    studio.subscribe(7, "/chat")
+    ros.until(publisher.get_subscription_count)
+    message = String(data="hello")
+    publisher.publish(message)
+    data = studio.next(ms.MessageData)
+    assert (data.subscription_id, data.payload) == (7, serialize_message(message))
+
+
+def test_a_channel_carries_the_type_and_its_definition(ros, studio):
+    ros.node.create_publisher(String, "/chat", 10)
+    channel = studio.channel("/chat")
+    assert (channel.encoding, channel.schema_name, channel.schema_encoding) == ("cdr", "std_msgs/msg/String", "ros2msg")
+    assert "string data" in channel.schema
+
+
+def test_a_topic_with_subscribers_only_is_a_channel_too(ros, studio):
+    ros.node.create_subscription(Twist, "/cmd_vel", lambda _: None, 10)
+    assert studio.channel("/cmd_vel").schema_name == "geometry_msgs/msg/Twist"
+
+
+def test_ros_is_subscribed_only_while_somebody_watches(ros, studio):
+    publisher = ros.node.create_publisher(String, "/chat", 10)
+    studio.subscribe(1, "/chat")
+    ros.until(lambda: publisher.get_subscription_count() == 1)
+    studio.send(ms.Unsubscribe((1,)))
+    ros.until(lambda: publisher.get_subscription_count() == 0)
+
+
+def test_a_client_that_leaves_ends_its_subscriptions(ros, bridge):
+    publisher = ros.node.create_publisher(String, "/chat", 10)
+    with Studio(bridge().port, ros.until) as studio:
+        studio.subscribe(1, "/chat")
+        ros.until(lambda: publisher.get_subscription_count() == 1)
+    ros.until(lambda: publisher.get_subscription_count() == 0)
+
+
+def test_a_best_effort_publisher_is_heard(ros, studio):
+    publisher = ros.node.create_publisher(String, "/chat", BEST_EFFORT)
+    studio.subscribe(1, "/chat")
+    ros.until(publisher.get_subscription_count)
+    publisher.publish(String(data="x"))
+    assert studio.next(ms.MessageData).subscription_id == 1
+
+
+def test_a_latched_message_is_given_to_every_newcomer_once(ros, bridge):
+    publisher = ros.node.create_publisher(String, "/description", LATCHED)
+    publisher.publish(String(data="old"))
+    port = bridge().port
+    with Studio(port, ros.until) as first, Studio(port, ros.until) as second:
+        first.subscribe(1, "/description")
+        payload = first.next(ms.MessageData).payload
+        assert deserialize_message(payload, String).data == "old"
+        second.subscribe(2, "/description")
+        assert second.next(ms.MessageData).payload == payload
+        publisher.publish(String(data="new"))
+        for client in (first, second):
+            assert deserialize_message(client.next(ms.MessageData).payload, String).data == "new"
+
+
+def test_a_latched_publisher_that_comes_after_the_client_is_heard(ros, studio):
+    ros.node.create_subscription(String, "/description", lambda _: None, 1)
+    studio.subscribe(1, "/description")
+    publisher = ros.node.create_publisher(String, "/description", LATCHED)
+    publisher.publish(String(data="late"))
+    assert deserialize_message(studio.next(ms.MessageData).payload, String).data == "late"
+
+
+def test_clients_that_come_and_go_leave_no_subscription_behind(ros, bridge):
+    publisher = ros.node.create_publisher(String, "/chat", 10)
+    port = bridge().port
+    for number in range(20):
+        with Studio(port, ros.until) as studio:
+            studio.subscribe(number, "/chat")
+            studio.advertise(number, "/back", "std_msgs/msg/String")
+            ros.until(lambda: ros.node.count_publishers("/back"))
+    ros.until(lambda: publisher.get_subscription_count() == 0)
+    ros.until(lambda: ros.node.count_publishers("/back") == 0)
+
+
+def test_a_vanished_topic_is_taken_away(ros, studio):
+    publisher = ros.node.create_publisher(String, "/chat", 10)
+    studio.channel("/chat")
+    ros.node.destroy_publisher(publisher)
+    ros.until(lambda: "/chat" not in studio.read().channels)
+
+
+def test_hidden_and_unlisted_topics_are_not_offered(ros, bridge):
+    with Studio(bridge(topic_whitelist=("/list.*",)).port, ros.until) as studio:
+        for topic in ("/other", "/_hidden/list", "/list/_hidden", "/list/shown"):
+            ros.node.create_publisher(Bool, topic, 1)
+        studio.channel("/list/shown")
+        assert set(studio.channels) == {"/list/shown"}
+
+
+@pytest.mark.skipif(not tf_messages.available(), reason="no transforms here")
+def test_transforms_reach_the_client_without_tf2_msgs(ros, studio):
+    publisher = ros.node.create_publisher(tf_messages.TFMessage, "/tf", 10)
+    studio.subscribe(1, "/tf")
+    assert "MSG: geometry_msgs/TransformStamped" in studio.channel("/tf").schema
+    ros.until(publisher.get_subscription_count)
+    data = tf_messages.encode([tf_messages.Transform(5, "odom", "base_link", (1.0, 2.0, 0.0), (0.0, 0.0, 0.0, 1.0))])
+    publisher.publish(data)
+    assert studio.next(ms.MessageData).payload == data
