@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import thymio_sim_ros
 from tests.sim.builders import FLOOR, ROBOT, box, make, shipped
 from thymio_sim_ros import cli
 from thymio_sim_ros.loading import read_program
@@ -164,8 +165,19 @@ def test_the_command_tells_what_differs(tmp_path: Path, capsys: pytest.CaptureFi
     capsys.readouterr()
     assert cli.main(["replay", str(path)]) == cli.DIFFERENT
     captured = capsys.readouterr()
-    assert "run 1, tick 1 gives something else than then" in captured.err
+    assert captured.err.endswith("run 1, tick 1 gives something else than then\n")
     assert json.loads(captured.out)["identical"] is False
+
+
+def test_the_command_tells_when_another_version_made_the_log(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "run.jsonl"
+    cli.main(["runner", "--playground", "line", "--seconds", "1", "--log", str(path)])
+    made_by = f'"made_by": "{thymio_sim_ros.__version__}"'
+    path.write_text(path.read_text().replace('"seed": 0', '"seed": 1').replace(made_by, '"made_by": "0.0.1"'))
+    cli.main(["replay", str(path)])
+    assert f"(then 0.0.1, now {thymio_sim_ros.__version__})" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("content", [None, "nonsense\n"], ids=["missing", "damaged"])

@@ -141,7 +141,7 @@ def replay_run(argv: Sequence[str]) -> int:
     """Replay a run log; 1 when something differs."""
     options = _replay_parser().parse_args(argv)
     from thymio_sim_ros.replay import replay
-    from thymio_sim_ros.runlog import RunLogError
+    from thymio_sim_ros.runlog import RunLogError, made_by
 
     started = time.perf_counter()
     try:
@@ -155,7 +155,10 @@ def replay_run(argv: Sequence[str]) -> int:
         print(f"thymio-sim: {options.file}: the log was cut off; replayed as far as it goes", file=sys.stderr)
     if found.differs is not None:
         run, tick = found.differs
-        print(f"thymio-sim: {options.file}: run {run}, tick {tick} gives something else than then", file=sys.stderr)
+        maker = made_by(options.file)
+        versions = "" if maker == thymio_sim_ros.__version__ else f" (then {maker}, now {thymio_sim_ros.__version__})"
+        told = f"run {run}, tick {tick} gives something else than then{versions}"
+        print(f"thymio-sim: {options.file}: {told}", file=sys.stderr)
     report = {"runs": found.runs, "seconds": found.seconds, "identical": found.differs is None}
     print(json.dumps(report | {"real_time_factor": round(factor, 1)}, indent=2))
     return 0 if found.differs is None else DIFFERENT

@@ -35,7 +35,7 @@ from thymio_sim_ros.sim.playground import Playground, PlaygroundError, RobotStar
 from thymio_sim_ros.sim.playground_text import dumps
 from thymio_sim_ros.sim.world import World
 
-__all__ = ["Begun", "Checked", "Ended", "Line", "RunLog", "RunLogError", "digest", "read"]
+__all__ = ["Begun", "Checked", "Ended", "Line", "RunLog", "RunLogError", "digest", "made_by", "read"]
 
 FORMAT = "thymio-sim run log"
 VERSION = 1
@@ -168,6 +168,12 @@ def read(path: Path) -> Iterator[tuple[int, Line]]:
             raise RunLogError(str(path), number + 1, "found bytes that are not UTF-8, expected text") from error
     if number == 0:
         raise RunLogError(str(path), 1, f"found nothing, expected a {FORMAT}")
+
+
+def made_by(path: Path) -> str:
+    """The version of the program that wrote a log that `read` reads."""
+    with path.open(encoding="utf-8") as file:
+        return str(json.loads(file.readline()).get("made_by"))
 
 
 def _check_head(data: object) -> None:

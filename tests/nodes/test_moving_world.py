@@ -104,7 +104,7 @@ def test_reset_brings_back_the_robots_of_the_playground(ros, simulation):
     sim.simulator.reset()
     odometry.clear()
     sim.until(lambda: odometry)
-    assert [names.name for names in sim.simulator._fleet.names] == [""]
+    assert [names.name for names in sim.simulator._roster.names] == [""]
 
 
 def test_a_place_that_is_not_free_is_refused_and_the_node_goes_on(ros, simulation):

@@ -24,12 +24,12 @@ from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes.convert import ConvertOptions
-from thymio_sim_ros.nodes.fleet import Fleet
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, run_main
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.params import param
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
+from thymio_sim_ros.nodes.roster import Roster
 from thymio_sim_ros.nodes.transforms import Transforms
 from thymio_sim_ros.nodes.world_ports import WorldPorts, WorldState
 from thymio_sim_ros.runlog import RunLog
@@ -86,7 +86,7 @@ class Simulator:
         self._last_beat_ns = 0
         self._world_ports = WorldPorts(self.node, publish_clock=self.params.publish_clock)
         self._transforms = Transforms(self.node)
-        self._fleet = Fleet(self._ports)
+        self._roster = Roster(self._ports)
         self._log = self._open_log(self.params.log)
         self._set_world(playground)
         self._services = [
@@ -117,13 +117,13 @@ class Simulator:
 
     def advance(self, ticks: int) -> None:
         """Step the world by ticks of 10 ms at once, also while paused, and publish what they give."""
-        if self._fleet.follow(self.world.robots):
-            self._transforms.begin(self._fleet.names)
+        if self._roster.follow(self.world.robots):
+            self._transforms.begin(self._roster.names)
             self._publish_state()
         for _ in range(ticks):
             result = self.world.step()
             for robot, sensor, reading in result.readings:
-                ports = self._fleet[robot]
+                ports = self._roster[robot]
                 ports.publish(sensor, reading)
                 self._transforms.take(ports.names, sensor, reading)
             self._world_ports.publish_clock(result.now_ns, last=self.paused)
@@ -191,8 +191,8 @@ class Simulator:
     def _begin(self) -> None:
         """Order at a start: latched topics, then the clock at zero; the first readings follow (section 7)."""
         self._pacer = Pacer(self.params.real_time_factor)
-        self._fleet.begin(self.world.robots)
-        self._transforms.begin(self._fleet.names)
+        self._roster.begin(self.world.robots)
+        self._transforms.begin(self._roster.names)
         self._world_ports.publish_scene(self.world.playground)
         self._world_ports.publish_objects(self.world, last=True)
         self._publish_state()
@@ -225,7 +225,7 @@ class Simulator:
             achieved=0.0 if self.paused else self._pacer.achieved,
             seed=self.params.seed,
             now_ns=self.world.now_ns,
-            robots=self._fleet.names,
+            robots=self._roster.names,
         )
 
     def _publish_state(self) -> None:

@@ -18,6 +18,7 @@ GATE = {
     "kind": "door", "name": "gate", "closed_x_m": 0.5, "closed_y_m": 0.0, "opened_x_m": 0.5, "opened_y_m": 0.6,
     "size_x_m": 0.02, "size_y_m": 0.6, "height_m": 0.1, "move_s": 2.0, "color": GREY,
 }  # fmt: skip
+BOX = {"height_m": 0.1, "color": GREY}
 PLATE = {
     "kind": "activation", "name": "plate", "x_m": -0.5, "y_m": 0.5, "size_x_m": 0.1, "size_y_m": 0.1, "door": "gate",
     "area_m": [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]],
@@ -114,3 +115,30 @@ def test_an_activation_of_what_is_no_door_is_refused(shapes: list[dict[str, Any]
     text = json.dumps({"format": 1, "title": "test", "shapes": shapes, "robots": []})
     with pytest.raises(PlaygroundError, match=r"\.door: found 'gate', expected the name of a door; there is none"):
         playground.loads(text, "test")
+
+
+def test_a_closing_door_pushes_a_thing_at_rest() -> None:
+    crate = {"kind": "box", "name": "crate", "x_m": 0.5, "y_m": -0.1, "size_x_m": 0.06, "size_y_m": 0.06}
+    world = build({**GATE, "closed_y_m": 0.6, "opened_y_m": 0.0}, PLATE, {**crate, **BOX, "y_m": -0.4, "mass_kg": 0.5})
+    run(world, 1.0)
+    enter(world)
+    run(world, 3.0)
+    (crate_now, _) = world.snapshot().objects
+    assert crate_now.pose.y_m == pytest.approx(-0.3 - 0.03, abs=0.08)
+    assert crate_now.pose.y_m < -0.32
+
+
+def test_a_robot_between_a_door_and_a_wall_is_squeezed_and_not_thrown() -> None:
+    wall = {"kind": "wall", "start_x_m": 0.3, "start_y_m": -0.42, "end_x_m": 0.7, "end_y_m": -0.42, "color": GREY}
+    world = build(GATE, PLATE, wall)
+    enter(world)
+    run(world, 2.5)
+    send(world, MoveRobot(0.5, -0.1, math.pi / 2))
+    leave(world)
+    world.step()
+    before = world.robots["thymio"].pose
+    for _ in range(300):
+        world.step()
+        pose = world.robots["thymio"].pose
+        assert math.dist((pose.x_m, pose.y_m), (before.x_m, before.y_m)) < 0.03
+        before = pose

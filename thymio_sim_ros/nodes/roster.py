@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterable, Mapping
 from thymio_sim_ros.nodes.names import RobotNames, ros_names
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
 
-__all__ = ["Fleet"]
+__all__ = ["Roster"]
 
 
-class Fleet:
+class Roster:
     """Robots' ports by their name in the world. Invariant: who stays keeps topics and frames."""
 
     def __init__(self, make: Callable[[str, RobotNames], RobotPorts]) -> None:
