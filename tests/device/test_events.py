@@ -64,3 +64,10 @@ def test_what_waits_is_forgotten_and_timers_stop() -> None:
     waiting.advance(0)
     waiting.advance(100 * MILLISECOND_NS)
     assert everything(waiting) == []
+
+
+def test_a_machine_that_stands_still_collects_no_events_without_end() -> None:
+    waiting = queue(PLAYGROUND)
+    for _ in range(10 * MOST_WAITING):
+        waiting.arrive(5)
+    assert len(everything(waiting)) == MOST_WAITING

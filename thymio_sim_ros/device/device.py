@@ -7,9 +7,8 @@ for lights and button sounds, its card, settings and radio. A reset clears all v
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 
 from aseba_vm import VirtualMachine
 from aseba_vm.outbox import BadCode, DivisionByZero, Emitted, NodeSpecific, OutOfBounds
@@ -20,30 +19,17 @@ from thymio_sim_ros.device.events import POLICIES, EventQueue, GlobalEvent
 from thymio_sim_ros.device.layout import LAYOUTS, target
 from thymio_sim_ros.device.natives import native_functions
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
+from thymio_sim_ros.device.outputs import Outputs
 from thymio_sim_ros.device.own_rules import PERIOD_NS, OwnRules
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.device.settings import Settings
 from thymio_sim_ros.device.status import FAULT, INIT, OFF, PAUSED, RUNNING, STOPPED, DeviceStatus, sentence
-from thymio_sim_ros.sim.commands import (
-    LED_GROUPS,
-    Command,
-    MotorTargets,
-    PlaySamples,
-    PlaySystemSound,
-    PlayTone,
-    ReleaseLeds,
-    SetLed,
-    SetLeds,
-    StopSound,
-)
+from thymio_sim_ros.sim.commands import LED_GROUPS, Command, PlaySystemSound, ReleaseLeds
 from thymio_sim_ros.sim.tones import SHUT_DOWN
 
 __all__ = ["AsebaDevice", "DeviceStatus", "EmittedEvent"]
 
 INT16 = range(-0x8000, 0x8000)
-SOUNDS = PlayTone | PlaySystemSound | PlaySamples | StopSound
-"""Commands with which a program uses sound."""
-NOTHING: Mapping[str, Sequence[int]] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +50,6 @@ class AsebaDevice:
         self._addresses = self._target.addresses
         self._first_values = LAYOUTS[self.layout].first_values
         self._sensors = bindings.sensors(self.layout)
-        self._outputs = bindings.outputs(self.layout)
         self._queue = EventQueue(POLICIES[options.events], tuple(map(self._event_index, ("timer0", "timer1"))))
         self._periods = self._addresses["timer.period"]
         self._intensity = self._addresses["mic.intensity"][0]
@@ -73,29 +58,27 @@ class AsebaDevice:
         self._rules = OwnRules(self._addresses)
         self._rules_ns = 0
         self._now_ns = 0
-        self._has_used_sound = False
         self._last: dict[str, list[int]] = {}
         self._event = ""
         self._begun = 0
-        self._commands: list[Command] = []
         self._events: list[EmittedEvent] = []
         self._notices: list[str] = []
         self._noticed: set[str] = set()
         self._is_changed = True
-        self._sent: list[list[int]] = []
-        self._lit: dict[str, tuple[int, ...]] = {}
         self._state = RUNNING
         self._fault: DeviceStatus | None = None
+        settings = Settings(options.settings_file)
+        self._outputs = Outputs(self.layout, settings, self._rules)
         self.body = Body(
             node_id,
             card=None if options.card is None else Card(options.card),
-            settings=Settings(options.settings_file),
-            send=self._send,
+            settings=settings,
+            send=self._outputs.send,
             tell=self._tell,
-            recalibrate=self._tell_motors_again,
+            recalibrate=self._outputs.tell_motors_again,
         )
         self._vm = VirtualMachine(
-            self._target, native_functions(self._send, self.body), node_id, on_reset=self._on_reset
+            self._target, native_functions(self._outputs.send, self.body), node_id, on_reset=self._on_reset
         )
         self.load(load_program("", "none", self.layout))
 
@@ -164,7 +147,7 @@ class AsebaDevice:
             return
         if event == self._rc5:
             self._rules.flash_remote()
-        if event not in handled or (event == self._sound_finished and not self._has_used_sound):
+        if event not in handled or (event == self._sound_finished and not self._outputs.has_used_sound):
             return
         if binding.above is None or new[0] > memory[binding.above] != 0:
             queue.arrive(event)
@@ -258,7 +241,7 @@ class AsebaDevice:
         self._queue.clear()
         self._halt()
         self.body.stop_recording()
-        self._commands += [*(ReleaseLeds(group) for group in LED_GROUPS), PlaySystemSound(SHUT_DOWN)]
+        self._outputs.tell(*(ReleaseLeds(group) for group in LED_GROUPS), PlaySystemSound(SHUT_DOWN))
         self._state, self._fault = OFF, None
 
     def take_commands(self) -> list[Command]:
@@ -270,16 +253,11 @@ class AsebaDevice:
         if not 0 <= self._now_ns - self._rules_ns < PERIOD_NS:
             self._rules_ns = self._now_ns - self._now_ns % PERIOD_NS
             if self._state != OFF:
-                self._commands += self._rules.look(self._vm.variables.words)
-        commands, self._commands = self._commands, []
-        if not self._is_changed:
-            return commands
-        self._is_changed = False
-        for output, sent in zip(self._outputs, self._sent, strict=True):
-            words = self._words(output)
-            if words != sent:
-                sent[:] = words
-                commands.append(self._output(output, words))
+                self._outputs.tell(*self._rules.look(self._vm.variables.words))
+        commands = self._outputs.take()
+        if self._is_changed:
+            self._is_changed = False
+            commands += self._outputs.take_changes()
         return commands
 
     def take_events(self) -> list[EmittedEvent]:
@@ -366,53 +344,6 @@ class AsebaDevice:
         for name in ("motor.left.target", "motor.right.target"):
             self.set_variable(name, (0,))
 
-    def _send(self, command: Command, writes: Mapping[str, Sequence[int]] = NOTHING) -> None:
-        """A native's command and the variables that it sets; what they mean is told by the command already.
-
-        Lights that a program sets again and again to the same are told once.
-        """
-        if isinstance(command, SOUNDS):
-            self._has_used_sound = True
-            self._rules.silence()
-        elif isinstance(command, SetLed):
-            self._lit.clear()
-        if not isinstance(command, SetLeds):
-            self._commands.append(command)
-        elif self._lit.get(command.group) != command.levels:
-            self._lit[command.group] = command.levels
-            self._rules.take(command.group)
-            self._commands.append(command)
-        for variable, words in writes.items():
-            if variable not in self._addresses:
-                continue
-            address, _ = self._addresses[variable]
-            self._vm.write_variables(address, words)
-            for output, sent in zip(self._outputs, self._sent, strict=True):
-                if output.slots[0].address == address:
-                    sent[:] = self._words(output)
-
-    def _output(self, output: bindings.OutputBinding, words: Sequence[int]) -> Command:
-        """The command of variables that changed; wheels get what the settings make of it, lights are taken over."""
-        command = output.command(words)
-        if isinstance(command, MotorTargets):
-            return self.body.settings.calibrate(command)
-        if isinstance(command, SetLeds):
-            self._lit[command.group] = command.levels
-            self._rules.take(command.group)
-        return command
-
-    def _tell_motors_again(self) -> None:
-        """The same targets are another command now."""
-        address, _ = self._addresses["motor.left.target"]
-        for output, sent in zip(self._outputs, self._sent, strict=True):
-            if output.slots[0].address == address:
-                sent.clear()
-
-    def _words(self, output: bindings.OutputBinding) -> list[int]:
-        """What the variables of an output hold."""
-        memory = self._vm.variables.words
-        return [word for slot in output.slots for word in memory[slot.address : slot.address + slot.size]]
-
     def _tell(self, notice: str) -> None:
         if notice not in self._noticed:
             self._noticed.add(notice)
@@ -435,9 +366,5 @@ class AsebaDevice:
         self._event, self._begun = INIT, vm.instructions
         self._queue.reset()
         self._rules.reset()
-        self._lit.clear()
-        self._has_used_sound = False
-        self._sent = [self._words(output) for output in self._outputs]
-        at_rest = [output.command(words) for output, words in zip(self._outputs, self._sent, strict=True)]
-        self._commands = at_rest + [command for command in bindings.at_reset() if command not in at_rest]
+        self._outputs.reset(vm)
         self.body.reset()

@@ -16,7 +16,7 @@ from thymio_sim_ros.device.timers import Timers
 __all__ = ["FIRMWARE", "MOST_WAITING", "POLICIES", "EventQueue", "GlobalEvent", "Policy"]
 
 MOST_WAITING = 100
-"""Global events that may wait for a machine; more are lost."""
+"""Global events that may wait for a machine, and local ones where each counts; more are lost."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,5 +123,6 @@ class EventQueue:
         self._timers.reset()
 
     def _add(self, events: list[int], index: int) -> None:
-        if not (self.policy.coalesces and index in events):
+        is_flagged = self.policy.coalesces and index in events
+        if not is_flagged and len(events) < MOST_WAITING:
             events.append(index)

@@ -1,0 +1,81 @@
+"""What actuators are told of natives and variables, and what is not told twice."""
+
+from __future__ import annotations
+
+import pytest
+
+from aseba_vm import VirtualMachine
+from thymio_sim_ros.device.layout import THYMIO, target
+from thymio_sim_ros.device.outputs import Outputs
+from thymio_sim_ros.device.own_rules import OwnRules
+from thymio_sim_ros.device.settings import Settings
+from thymio_sim_ros.sim.commands import MotorTargets, PlayTone, SetLed, SetLeds, SetVolume
+
+RED, GREEN = SetLeds("top", (32, 0, 0)), SetLeds("top", (0, 32, 0))
+
+
+class Told(Outputs):
+    """Outputs of a machine whose variables a test writes."""
+
+    def __init__(self) -> None:
+        self.settings = Settings()
+        super().__init__(THYMIO, self.settings, OwnRules(target().addresses))
+        self.machine = VirtualMachine(target())
+        self.reset(self.machine)
+        self.take()
+
+    def write(self, name: str, *words: int) -> None:
+        self.machine.write_variables(target().addresses[name][0], words)
+
+
+@pytest.fixture
+def outputs() -> Told:
+    return Told()
+
+
+def test_a_variable_is_told_when_it_changed(outputs: Told) -> None:
+    outputs.write("motor.left.target", 100)
+    assert outputs.take_changes() == [MotorTargets(100, 0)]
+    assert outputs.take_changes() == []
+
+
+def test_a_native_s_variable_is_not_told_a_second_time(outputs: Told) -> None:
+    outputs.send(RED, {"leds.top": (32, 0, 0)})
+    assert (outputs.take(), outputs.take_changes()) == ([RED], [])
+    outputs.write("leds.top", 0, 32, 0)
+    assert outputs.take_changes() == [GREEN]
+
+
+def test_lights_that_are_set_to_what_they_are_are_told_once(outputs: Told) -> None:
+    for command in (RED, RED, GREEN, GREEN, RED):
+        outputs.send(command)
+    assert outputs.take() == [RED, GREEN, RED]
+
+
+def test_a_single_light_makes_its_group_news_again(outputs: Told) -> None:
+    for command in (RED, SetLed(3, 7), RED):
+        outputs.send(command)
+    assert outputs.take() == [RED, SetLed(3, 7), RED]
+
+
+def test_a_new_correction_tells_the_same_targets_again(outputs: Told) -> None:
+    outputs.write("motor.left.target", 256)
+    outputs.take_changes()
+    outputs.settings[8] = 300
+    outputs.tell_motors_again()
+    assert outputs.take_changes() == [MotorTargets(300, 0)]
+
+
+def test_sound_is_used_from_its_first_command_on(outputs: Told) -> None:
+    outputs.send(SetVolume(3))
+    assert not outputs.has_used_sound
+    outputs.send(PlayTone(440, None))
+    assert outputs.has_used_sound
+    outputs.reset(outputs.machine)
+    assert not outputs.has_used_sound
+
+
+def test_a_reset_tells_every_actuator(outputs: Told) -> None:
+    outputs.reset(outputs.machine)
+    kinds = {type(command).__name__ for command in outputs.take()}
+    assert {"MotorTargets", "ReleaseLeds", "StopSound", "SetWave", "EnableComm", "SetSoundThreshold"} <= kinds

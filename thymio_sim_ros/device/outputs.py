@@ -1,0 +1,122 @@
+"""What the actuators are told: by natives at once, by variables that a program wrote when they differ from before."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from aseba_vm import VirtualMachine
+from thymio_sim_ros.device import bindings
+from thymio_sim_ros.device.own_rules import OwnRules
+from thymio_sim_ros.device.settings import Settings
+from thymio_sim_ros.sim.commands import (
+    Command,
+    MotorTargets,
+    PlaySamples,
+    PlaySystemSound,
+    PlayTone,
+    SetLed,
+    SetLeds,
+    StopSound,
+)
+
+__all__ = ["Outputs"]
+
+_SOUNDS = PlayTone | PlaySystemSound | PlaySamples | StopSound
+"""Commands with which a program uses sound."""
+_NOTHING: Mapping[str, Sequence[int]] = MappingProxyType({})
+
+
+class Outputs:
+    """Commands of one device that wait to be taken. Invariant: `_sent` is what the variables told last."""
+
+    def __init__(self, layout: str, settings: Settings, rules: OwnRules) -> None:
+        """`settings` correct the wheels; `rules` lose the lights and the sounds that a program uses."""
+        self.has_used_sound = False
+        """Whether the program has used sound since the reset."""
+        self._outputs = bindings.outputs(layout)
+        self._settings = settings
+        self._rules = rules
+        self._vm: VirtualMachine | None = None
+        self._waiting: list[Command] = []
+        self._sent: list[list[int]] = []
+        self._lit: dict[str, tuple[int, ...]] = {}
+
+    def reset(self, vm: VirtualMachine) -> None:
+        """All variables are 0: tell what that means, and what a reset tells every actuator."""
+        self._vm = vm
+        self._lit.clear()
+        self.has_used_sound = False
+        self._sent = [self._words(output) for output in self._outputs]
+        at_rest = [output.command(words) for output, words in zip(self._outputs, self._sent, strict=True)]
+        self._waiting = at_rest + [command for command in bindings.at_reset() if command not in at_rest]
+
+    def tell(self, *commands: Command) -> None:
+        """Commands of the robot itself."""
+        self._waiting += commands
+
+    def send(self, command: Command, writes: Mapping[str, Sequence[int]] = _NOTHING) -> None:
+        """A native's command and the variables that it sets; what they mean is told by the command already.
+
+        Lights that a program sets again and again to the same are told once.
+        """
+        if isinstance(command, _SOUNDS):
+            self.has_used_sound = True
+            self._rules.silence()
+        elif isinstance(command, SetLed):
+            self._lit.clear()
+        if not isinstance(command, SetLeds):
+            self._waiting.append(command)
+        elif self._lit.get(command.group) != command.levels:
+            self._waiting.append(self._taken_over(command))
+        for variable, words in writes.items():
+            self._write(variable, words)
+
+    def take(self) -> list[Command]:
+        """What was sent since the last time."""
+        commands, self._waiting = self._waiting, []
+        return commands
+
+    def take_changes(self) -> list[Command]:
+        """What variables say that changed since the last time."""
+        commands: list[Command] = []
+        for output, sent in zip(self._outputs, self._sent, strict=True):
+            words = self._words(output)
+            if words != sent:
+                sent[:] = words
+                commands.append(self._meant(output.command(words)))
+        return commands
+
+    def tell_motors_again(self) -> None:
+        """The same targets are another command now."""
+        for output, sent in zip(self._outputs, self._sent, strict=True):
+            if isinstance(output.command(self._words(output)), MotorTargets):
+                sent.clear()
+
+    def _meant(self, command: Command) -> Command:
+        """What a command of variables comes to: wheels are corrected, lights taken over."""
+        if isinstance(command, MotorTargets):
+            return self._settings.calibrate(command)
+        return self._taken_over(command) if isinstance(command, SetLeds) else command
+
+    def _taken_over(self, command: SetLeds) -> SetLeds:
+        self._lit[command.group] = command.levels
+        self._rules.take(command.group)
+        return command
+
+    def _write(self, variable: str, words: Sequence[int]) -> None:
+        """Set a variable of the machine, if its layout has it, as if it had been told."""
+        assert self._vm is not None
+        if variable not in self._vm.target.addresses:
+            return
+        address, _ = self._vm.target.addresses[variable]
+        self._vm.write_variables(address, words)
+        for output, sent in zip(self._outputs, self._sent, strict=True):
+            if output.slots[0].address == address:
+                sent[:] = self._words(output)
+
+    def _words(self, output: bindings.OutputBinding) -> list[int]:
+        """What the variables of an output hold."""
+        assert self._vm is not None
+        memory = self._vm.variables.words
+        return [word for slot in output.slots for word in memory[slot.address : slot.address + slot.size]]
