@@ -68,3 +68,16 @@ def test_the_origin_of_odometry_leads_to_the_truth():
     origin = origin_of(truth, odometry)
     x, y = origin.place((odometry.x_m, odometry.y_m))
     assert (x, y, origin.yaw_rad + odometry.yaw_rad) == pytest.approx((truth.x_m, truth.y_m, truth.yaw_rad))
+
+
+def test_a_picture_is_a_texture_and_a_mosaic_for_viewers_without_textures():
+    _, playground = load_playground("line_gradient")
+    (print_,) = playground.paints
+    message = playground_markers((*playground.floors, *playground.paints))
+    (marker,) = (marker for marker in message.markers if marker.ns == "paint/track")
+    assert (marker.scale.x, marker.scale.y) == pytest.approx((print_.size_x_m, print_.size_y_m))
+    assert bytes(marker.texture.data[:4]) == b"\x89PNG"
+    assert len(marker.points) == len(marker.colors) == len(marker.uv_coordinates) > 0
+    assert {abs(point.x) <= 0.5 and abs(point.y) <= 0.5 for point in marker.points} == {True}
+    assert {(round(point.x + 0.5 - uv.u, 6), round(point.y + 0.5 - uv.v, 6)) for point, uv in
+            zip(marker.points, marker.uv_coordinates, strict=True)} == {(0.0, 0.0)}  # fmt: skip

@@ -134,3 +134,9 @@ def test_what_is_no_picture_is_refused_with_its_key(uri: str) -> None:
 @pytest.mark.parametrize("side", [8193, 60_000, 2**31 - 1])
 def test_a_picture_of_too_many_pixels_is_refused_before_it_is_unpacked(side: int) -> None:
     assert "pixels" in refused(data_uri(png_of_size(side, side), "image/png")).found
+
+
+def test_a_picture_to_look_at_may_be_made_smaller() -> None:
+    rows = [[WHITE] * 100] * 40
+    smaller = decode(data_uri(pictures.encode_png(pixels(rows), most=50), "image/png"))
+    assert (smaller.columns, smaller.rows) == (50, 20)

@@ -27,6 +27,10 @@ LAYER_M = 0.0002
 """Each paint lies this much above the one before, so that a viewer need not guess which covers which."""
 
 
+MOST_TEXELS = 2048
+"""Side of the largest picture that is sent to be looked at; graphics hardware takes at least twice that."""
+
+
 def playground_markers(primitives: Iterable[Drawable]) -> MarkerArray:
     """Markers of all primitives, in their order; neighbouring paint of one shape and color is one marker."""
     markers = [Marker(action=Marker.DELETEALL)]
@@ -96,7 +100,7 @@ def _print(printed: Print, number: int, height_m: float) -> Marker:
             marker.points.append(PointMsg(x=u - 0.5, y=v - 0.5))
             marker.uv_coordinates.append(UVCoordinate(u=u, v=v))
     marker.texture_resource = f"embedded://{printed.name}"
-    marker.texture = CompressedImage(format="png", data=pictures.encode_png(pixels))
+    marker.texture = CompressedImage(format="png", data=pictures.encode_png(pixels, most=MOST_TEXELS))
     return marker
 
 

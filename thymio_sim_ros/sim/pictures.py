@@ -104,9 +104,10 @@ def css_color(value: object, *, key: str) -> str:
     return f"#{red:02x}{green:02x}{blue:02x}"
 
 
-def encode_png(pixels: Pixels) -> bytes:
-    """The pixels as a PNG file."""
+def encode_png(pixels: Pixels, *, most: int = MAX_SIDE) -> bytes:
+    """The pixels as a PNG file, made smaller where a side has more than `most`."""
     image = _pillow("").frombytes("RGBA", (pixels.columns, pixels.rows), pixels.rgba)
+    image.thumbnail((most, most))
     out = io.BytesIO()
     image.save(out, "PNG", compress_level=6)
     return out.getvalue()
