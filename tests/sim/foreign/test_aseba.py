@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,6 +14,7 @@ from thymio_sim_ros.sim import playground, source, xml_tree
 from thymio_sim_ros.sim.fields import FieldError
 from thymio_sim_ros.sim.foreign import Conversion, aseba
 from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.ground import Ground
 from thymio_sim_ros.sim.playground import PlaygroundError
 from thymio_sim_ros.sim.primitives import Disc
 from thymio_sim_ros.sim.world import World
@@ -204,3 +206,14 @@ def test_movable_things_and_doors_come_to_life() -> None:
     (trigger,) = loaded.triggers
     assert (trigger.door, trigger.holds(0.2, 0.6), trigger.holds(0.2, 0.4)) == ("d", True, False)
     World(loaded).step()
+
+
+def test_a_band_of_the_texture_lies_where_the_reference_has_it(tmp_path: Path) -> None:
+    """playground-formats.md 1.2: rows 40 to 59 of 200 from the top are y = 70 to 80 cm of a world of a metre."""
+    (tmp_path / "band.png").write_bytes(png([[BLACK if 40 <= row < 60 else WHITE] * 4 for row in range(200)]))
+    path = tmp_path / "band.playground"
+    path.write_text(text('<world w="100" h="100" color="orange" groundTexture="band.png"/>'))
+    loaded = playground.load(path)
+    ground = Ground(loaded.floors, loaded.paints)
+    dark = [step for step in range(100) if ground.color_at(0.5, step / 100 + 0.005) == (0.0, 0.0, 0.0)]
+    assert dark == list(range(70, 80))
