@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.sim.builders import PLAYGROUNDS
 from thymio_sim_ros.cli import main
 from thymio_sim_ros.sim import playground
 
@@ -63,3 +64,14 @@ def test_a_broken_file_is_refused_and_nothing_written(maze: Path, capsys: pytest
 def test_files_that_cannot_be_used_are_named(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["convert", *arguments]) == 2
     assert "nowhere" in capsys.readouterr().err
+
+
+def test_the_schema_that_is_written_is_the_published_one(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["convert", "--schema"]) == 0
+    assert capsys.readouterr().out == (PLAYGROUNDS / "playground.schema.json").read_text()
+
+
+def test_a_file_is_required(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["convert"])
+    assert "one of the arguments FILE --schema is required" in capsys.readouterr().err

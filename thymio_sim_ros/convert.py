@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.sim.playground import PlaygroundError
+from thymio_sim_ros.sim.playground import PlaygroundError, schema
 from thymio_sim_ros.sim.playground_text import dumps
 
 __all__ = ["run"]
@@ -30,6 +31,8 @@ example:
 def run(argv: Sequence[str]) -> int:
     """Convert one file; the exit code."""
     options = _parser().parse_args(argv)
+    if options.schema:
+        return _write(json.dumps(schema(), indent=1) + "\n", options.output)
     try:
         _, playground = load_playground(options.file)
     except (PlaygroundError, resources.ResourceError, OSError) as error:
@@ -38,14 +41,17 @@ def run(argv: Sequence[str]) -> int:
         _say(f"{options.file}: {note}", 0)
     if options.strict and playground.notes:
         return INCOMPLETE
-    text = dumps(playground)
-    if options.output is None:
+    return _write(dumps(playground), options.output)
+
+
+def _write(text: str, output: Path | None) -> int:
+    if output is None:
         sys.stdout.write(text)
         return 0
     try:
-        options.output.write_text(text, encoding="utf-8")
+        output.write_text(text, encoding="utf-8")
     except OSError as error:
-        return _say(f"{options.output}: {error.strerror}; expected a file that can be written", REFUSED)
+        return _say(f"{output}: {error.strerror}; expected a file that can be written", REFUSED)
     return 0
 
 
@@ -62,7 +68,11 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    parser.add_argument("file", metavar="FILE", help="the playground to convert")
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument("file", metavar="FILE", nargs="?", help="the playground to convert")
+    source.add_argument(
+        "--schema", action="store_true", help="write the JSON schema of our format instead, plug-ins included"
+    )
     parser.add_argument("-o", "--output", type=Path, metavar="OUT", help="file to write (default: standard output)")
     parser.add_argument("--strict", action="store_true", help="write nothing unless everything can be expressed")
     return parser
