@@ -12,7 +12,7 @@ from thymio_sim_ros.nodes import convert
 from thymio_sim_ros.nodes.convert import CommandError, ConvertOptions
 from thymio_sim_ros.nodes.names import RobotNames, ros_names, topic_word
 from thymio_sim_ros.sim import commands, readings
-from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.geometry import Pose, Tilt
 from thymio_sim_ros.sim.geometry import Twist as BodyMotion
 from thymio_sim_ros.sim.sensors import all_sensors
 
@@ -85,6 +85,19 @@ def test_odometry_and_truth_have_their_frames_and_covariances():
     assert (odometry.twist.twist.linear.x, truth.twist.twist.angular.z) == (0.1, 0.4)
     assert min(odometry.pose.covariance) >= 0.0
     assert sum(truth.pose.covariance) == 0.0
+
+
+@pytest.mark.parametrize("tilt", [Tilt(0.0, 0.8), Tilt(0.8, 0.0), Tilt(-0.3, 0.4), Tilt(0.0, 0.0)])
+def test_the_truth_tells_how_a_robot_leans(tilt):
+    rest = BodyMotion(0.0, 0.0)
+    reading = readings.PoseReading(0, (), Pose(0, 0, 0), rest, Pose(0, 0, math.pi / 2), rest, tilt)
+    q = encode("ground_truth/odom", reading).pose.pose.orientation
+    forward_up, left_up = 2 * (q.x * q.z - q.w * q.y), 2 * (q.y * q.z + q.w * q.x)
+    assert (forward_up, left_up) == pytest.approx(
+        (-math.sin(tilt.pitch_rad), math.sin(tilt.roll_rad) * math.cos(tilt.pitch_rad))
+    )
+    assert convert.yaw_of(q) == pytest.approx(math.pi / 2)
+    assert q.x**2 + q.y**2 + q.z**2 + q.w**2 == pytest.approx(1.0)
 
 
 def test_leds_are_labelled_parts_of_one_array():

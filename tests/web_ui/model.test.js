@@ -27,11 +27,21 @@ test(`a robot has fewer than ${TRIANGLES} triangles`, () => {
 
 test("a robot stands where it is said to, and its parts with it", () => {
   const model = new RobotModel("");
-  const latest = { pose: { x: 1, y: 2, z: 0, yaw: Math.PI / 2 }, stampNs: 0, arrivedMs: 0 };
+  const pose = { x: 1, y: 2, z: 0, yaw: Math.PI / 2, roll: 0, pitch: 0 };
+  const latest = { pose, stampNs: 0, arrivedMs: 0 };
   assert.equal(model.update({ ...NEW_ROBOT, latest }, null, 0), false);
   const place = model.partPosition("button.center");
   assert.ok(place !== null && Math.abs(place.x - 1) < 1e-9 && Math.abs(place.y - 2.048) < 1e-9);
   assert.equal(model.partPosition("no such part"), null);
+});
+
+test("a robot that leans on its nose has its front below", () => {
+  const model = new RobotModel("");
+  const pose = { x: 0, y: 0, z: 0, yaw: Math.PI / 2, roll: 0, pitch: 0.8 };
+  model.update({ ...NEW_ROBOT, latest: { pose, stampNs: 0, arrivedMs: 0 } }, null, 0);
+  const front = model.partPosition("button.forward");
+  const back = model.partPosition("button.backward");
+  assert.ok(front !== null && back !== null && front.z < back.z && front.y > back.y);
 });
 
 test("a robot nobody has placed is not drawn", () => {

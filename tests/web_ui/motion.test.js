@@ -6,7 +6,7 @@ import { LEVELS, Quality } from "../../web_ui/scene/quality.js";
 
 /** @param {number} x @param {number} yaw @param {number} arrivedMs @param {number} [stampNs] */
 function sample(x, yaw, arrivedMs, stampNs = arrivedMs * 1e6) {
-  return { pose: { x, y: 0, z: 0, yaw }, stampNs, arrivedMs };
+  return { pose: { x, y: 0, z: 0, yaw, roll: 0, pitch: 0 }, stampNs, arrivedMs };
 }
 
 test("between two messages the robot is on its way", () => {

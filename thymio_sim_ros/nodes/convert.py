@@ -37,7 +37,7 @@ from thymio_sim_ros.nodes import qos, senses
 from thymio_sim_ros.nodes.headers import SECOND_NS, stamped
 from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
 from thymio_sim_ros.sim import commands, readings
-from thymio_sim_ros.sim.geometry import Pose, Twist
+from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt, Twist
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.tones import VOLUME_OFF
 
@@ -84,9 +84,19 @@ class Row:
     on_change: bool = False
 
 
-def quaternion(yaw_rad: float) -> Quaternion:
-    """A turn about z."""
-    return Quaternion(z=math.sin(yaw_rad / 2), w=math.cos(yaw_rad / 2))
+def quaternion(yaw_rad: float, tilt: Tilt = LEVEL) -> Quaternion:
+    """A turn about z, of a body that leans."""
+    z, w = math.sin(yaw_rad / 2), math.cos(yaw_rad / 2)
+    if tilt == LEVEL:
+        return Quaternion(z=z, w=w)
+    sr, cr = math.sin(tilt.roll_rad / 2), math.cos(tilt.roll_rad / 2)
+    sp, cp = math.sin(tilt.pitch_rad / 2), math.cos(tilt.pitch_rad / 2)
+    return Quaternion(
+        x=w * cp * sr - z * sp * cr,
+        y=w * sp * cr + z * cp * sr,
+        z=z * cp * cr - w * sp * sr,
+        w=w * cp * cr + z * sp * sr,
+    )
 
 
 def yaw_of(rotation: Quaternion) -> float:
@@ -163,6 +173,7 @@ def _odometry(reading: readings.PoseReading, names: RobotNames, options: Convert
 
 def _truth(reading: readings.PoseReading, names: RobotNames, options: ConvertOptions) -> Odometry:
     message = _odometry_message(reading.truth, reading.truth_twist, (0.0,) * 6, options)
+    message.pose.pose.orientation = quaternion(reading.truth.yaw_rad, reading.tilt)
     message.child_frame_id = names.frame("base_link")
     return stamped(message, reading.stamp_ns, MAP_FRAME)
 

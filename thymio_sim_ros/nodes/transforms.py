@@ -1,7 +1,7 @@
 """/tf and /tf_static of all robots (ros-interface.md sections 4.1 and 8).
 
-`odom → base_link` is the wheels' odometry; `map → odom` makes up for its drift, so that `map → base_link` is
-the truth (perfect localisation); the wheels turn by their angles.
+`odom → base_link` is the wheels' odometry and how the robot leans; `map → odom` makes up for its drift, so that
+`map → base_link` is the truth (perfect localisation); the wheels turn by their angles.
 """
 
 from __future__ import annotations
@@ -12,10 +12,11 @@ from collections.abc import Sequence
 from rclpy.node import Node
 
 from thymio_sim_ros.nodes import qos, tf_messages
+from thymio_sim_ros.nodes.convert import quaternion
 from thymio_sim_ros.nodes.description import fixed_frames, wheel_position
 from thymio_sim_ros.nodes.names import MAP_FRAME, SIDES, RobotNames
 from thymio_sim_ros.nodes.tf_messages import Transform
-from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.readings import MotorReading, PoseReading, Reading
 
 NO_TURN = (0.0, 0.0, 0.0, 1.0)
@@ -54,7 +55,7 @@ class Transforms:
         ns, base, odom = reading.stamp_ns, names.frame("base_link"), names.frame("odom")
         frames = [
             _planar(ns, MAP_FRAME, odom, origin_of(reading.truth, reading.odometry)),
-            _planar(ns, odom, base, reading.odometry),
+            _planar(ns, odom, base, reading.odometry, reading.tilt),
         ]
         for side, angle in zip(SIDES, self._angles.get(names.name, (0.0, 0.0)), strict=True):
             turn = (0.0, math.sin(angle / 2), 0.0, math.cos(angle / 2))
@@ -71,6 +72,6 @@ def origin_of(truth: Pose, odometry: Pose) -> Pose:
     )
 
 
-def _planar(ns: int, frame: str, child: str, pose: Pose) -> Transform:
-    rotation = (0.0, 0.0, math.sin(pose.yaw_rad / 2), math.cos(pose.yaw_rad / 2))
-    return Transform(ns, frame, child, (pose.x_m, pose.y_m, 0.0), rotation)
+def _planar(ns: int, frame: str, child: str, pose: Pose, tilt: Tilt = LEVEL) -> Transform:
+    turn = quaternion(pose.yaw_rad, tilt)
+    return Transform(ns, frame, child, (pose.x_m, pose.y_m, 0.0), (turn.x, turn.y, turn.z, turn.w))

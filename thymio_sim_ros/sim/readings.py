@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from thymio_sim_ros.sim import units
-from thymio_sim_ros.sim.geometry import Pose, Twist
+from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt, Twist
 from thymio_sim_ros.sim.primitives import Color, Stroke
 
 
@@ -61,7 +61,7 @@ class MotorReading:
 
 @dataclass(frozen=True, slots=True)
 class PoseReading:
-    """Where the robot is: wheel odometry since the start, and the truth; twists in the body's frame."""
+    """Where the robot is: wheel odometry since the start, and the truth; twists in the body's frame; how it leans."""
 
     stamp_ns: int
     words: tuple[int, ...]
@@ -69,6 +69,7 @@ class PoseReading:
     odometry_twist: Twist
     truth: Pose
     truth_twist: Twist
+    tilt: Tilt = LEVEL
 
 
 @dataclass(frozen=True, slots=True)

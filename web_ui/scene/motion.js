@@ -29,6 +29,8 @@ export function poseAt(previous, latest, nowMs) {
       y: from.y + (to.y - from.y) * part,
       z: from.z + (to.z - from.z) * part,
       yaw: from.yaw + shortestTurn(from.yaw, to.yaw) * part,
+      roll: from.roll + (to.roll - from.roll) * part,
+      pitch: from.pitch + (to.pitch - from.pitch) * part,
     },
     arrived: false,
   };

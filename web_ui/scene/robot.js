@@ -46,7 +46,7 @@ export class RobotModel {
     this.hovered = hovered;
     const { pose, arrived } = poseAt(robot.previous, robot.latest, nowMs);
     this.group.position.set(pose.x, pose.y, pose.z);
-    this.group.rotation.z = pose.yaw;
+    this.group.rotation.set(pose.roll, pose.pitch, pose.yaw, "ZYX");
     return !arrived;
   }
 

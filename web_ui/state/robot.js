@@ -2,7 +2,7 @@
 
 import { BUTTONS } from "./names.js";
 
-/** @typedef {{ x: number, y: number, z: number, yaw: number }} Pose  metres and radians, map frame */
+/** @typedef {{ x: number, y: number, z: number, yaw: number, roll: number, pitch: number }} Pose  metres, radians */
 /** @typedef {{ pose: Pose, stampNs: number, arrivedMs: number }} PoseSample */
 /**
  * @typedef {object} Program
@@ -70,7 +70,10 @@ function poseSample(odometry, nowMs) {
   const { position, orientation: q } = odometry.pose.pose;
   const yaw = Math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
   const { sec, nanosec } = odometry.header.stamp;
-  return { pose: { x: position.x, y: position.y, z: position.z, yaw }, stampNs: sec * 1e9 + nanosec, arrivedMs: nowMs };
+  const roll = Math.atan2(2 * (q.w * q.x + q.y * q.z), 1 - 2 * (q.x * q.x + q.y * q.y));
+  const pitch = Math.asin(Math.max(-1, Math.min(1, 2 * (q.w * q.y - q.z * q.x))));
+  const { x, y, z } = position;
+  return { pose: { x, y, z, yaw, roll, pitch }, stampNs: sec * 1e9 + nanosec, arrivedMs: nowMs };
 }
 
 /** @param {Robot} robot @param {any} value */

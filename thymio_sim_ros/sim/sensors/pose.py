@@ -11,7 +11,7 @@ __all__ = ["SENSOR"]
 
 def _measure(view: SensorView) -> PoseReading:
     wheels = view.wheels
-    return PoseReading(view.now_ns, (), wheels.odometry, wheels.twist, view.pose, view.twist)
+    return PoseReading(view.now_ns, (), wheels.odometry, wheels.twist, view.pose, view.twist, view.tilt)
 
 
 SENSOR = Sensor(name="pose", period_ns=50_000_000, measure=_measure)
