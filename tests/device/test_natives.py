@@ -6,12 +6,19 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
+from aseba_vm.natives import NATIVES
+from tests.sim.builders import make
 from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.natives import native_functions
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.sim.commands import Command, MotorTargets, PlaySamples, PlaySystemSound, SetVolume, StopSound
 from thymio_sim_ros.sim.tones import BLOCK_NS
+from thymio_sim_ros.sim.world import World
 
 CLICK = bytes([128, 200]) * 300
 
@@ -219,3 +226,34 @@ def test_events_of_the_playground_cut_off_a_long_handler() -> None:
     assert device.get_variable("n") == (2,)
     assert device.get_variable("long")[0] < 1000
     assert device.take_notices() == ["motor cuts off prox, which takes more than 1000 instructions"]
+
+
+def test_no_native_of_the_robot_is_left_without_a_function() -> None:
+    device = AsebaDevice()
+    functions = native_functions(device._outputs.send, device.body)
+    assert sorted({*functions, *NATIVES}) == sorted(native.name for native in target().natives)
+
+
+WORDS = st.one_of(st.sampled_from([0, 1, -1, 8, 32767, -32768]), st.integers(-32768, 32767))
+
+
+@settings(max_examples=300, deadline=None)
+@given(data=st.data(), name=st.sampled_from([native.name for native in target().natives]))
+def test_a_native_takes_any_words_and_the_world_takes_what_comes_of_it(
+    tmp_path_factory: pytest.TempPathFactory, data: st.DataObject, name: str
+) -> None:
+    (native,) = (native for native in target().natives if native.name == name)
+    sizes = [parameter.size if parameter.size > 0 else 4 for parameter in native.parameters]
+    names = [f"a{index}" for index in range(len(sizes))]
+    declared = "".join(f"var {variable}[{size}]\n" for variable, size in zip(names, sizes, strict=True))
+    device = AsebaDevice(options=DeviceOptions(card=tmp_path_factory.getbasetemp() / "card"))
+    device.load(load_program(f"{declared}onevent prox\ncall {name}({', '.join(names)})", "test"))
+    run(device)
+    for variable, size in zip(names, sizes, strict=True):
+        device.set_variable(variable, data.draw(st.lists(WORDS, min_size=size, max_size=size)))
+    device.feed("proximity", (0,) * 7)
+    world = World(make())
+    for command in run(device):
+        world.post("thymio", command)
+    world.step()
+    assert device.status.state in ("running", "fault", "off")
