@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
 import pytest
 
-from aseba_vm import TargetDescription
 from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.layout import extend, target
@@ -15,21 +11,6 @@ from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.aseba_face import ActuatorFace, AsebaFace, Native, Output
 from thymio_sim_ros.sim.commands import MotorTargets, SetLeds
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
-
-FIRMWARE_14 = Path(__file__).parents[1] / "data" / "device" / "thymio2.json"
-
-
-def test_the_layout_is_that_of_firmware_14():
-    reference = TargetDescription.from_data(json.loads(FIRMWARE_14.read_text()))
-    ours = target()
-    assert [(v.name, v.size) for v in ours.variables] == [(v.name, v.size) for v in reference.variables]
-    assert [e.name for e in ours.local_events] == [e.name for e in reference.local_events]
-    assert [n.name for n in ours.natives] == [n.name for n in reference.natives]
-    assert [[p.size for p in n.parameters] for n in ours.natives] == [
-        [p.size for p in n.parameters] for n in reference.natives
-    ]
-    sizes = (ours.variables_size, ours.bytecode_size, ours.stack_size)
-    assert sizes == (reference.variables_size, reference.bytecode_size, reference.stack_size)
 
 
 def test_every_sensor_that_aseba_sees_is_bound():

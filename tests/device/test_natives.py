@@ -203,9 +203,11 @@ def test_a_restart_in_the_middle_of_a_handler_ends_it() -> None:
 
 
 def test_a_program_that_restarts_without_end_leaves_room_for_others() -> None:
-    device = start("var n = 0\nn++\ncall _system.reboot()")
-    device.run(1000)
-    assert device.is_busy
+    device = start("var n = 0\nn++\ncall _system.reboot()\nn = 100")
+    for _ in range(3):
+        device.run(1000)
+        assert device.is_busy
+        assert device.get_variable("n") == (0,)
 
 
 def test_events_of_the_playground_cut_off_a_long_handler() -> None:

@@ -172,7 +172,8 @@ class AsebaDevice:
             elif queue.has_incoming and vm.instructions - self._begun >= turn:
                 self._start_global(queue.take_incoming())
             vm.run(min(turn, end - vm.instructions))
-            self._listen()
+            if self._listen():
+                break  # a robot that restarts takes a while
             if queue.policy.kills and vm.is_active and not queue.waits:
                 break  # the rest of a long handler belongs to the next step
         if not vm.is_active:
@@ -323,7 +324,8 @@ class AsebaDevice:
     def _event_index(self, name: str) -> int:
         return 0xFFFE - self._target.local_event_number(name)
 
-    def _listen(self) -> None:
+    def _listen(self) -> bool:
+        """Take what the machine has said; whether the robot began anew or was switched off by it."""
         for message in self._vm.take_messages():
             if isinstance(message, Emitted):
                 if message.number < len(self._names):
@@ -339,6 +341,7 @@ class AsebaDevice:
             self._restart()
         elif wanted:
             self.switch_off()
+        return bool(wanted)
 
     def _halt(self) -> None:
         for name in ("motor.left.target", "motor.right.target"):
