@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from aseba_vm.bytecode import EventEntry, SubEntry
+from aseba_vm.bytecode import EventEntry, SubEntry, instructions
 from aseba_vm.compiler import Program
 from aseba_vm.outbox import ExecutionState
 from aseba_vm.vm import VirtualMachine
@@ -35,12 +35,10 @@ class Debugger:
         self.program = program
         start = 2 * len(program.events) + 1
         self._places: dict[int, int] = {}
-        for pc in reversed(range(start, len(program.words))):
+        for pc, _ in instructions(program.words, start):
             row = program.lines[pc]
             if row is not None:
-                self._places[row] = pc
-        for row in self._places:
-            self._places[row] = program.addresses_of(row)[0]
+                self._places.setdefault(row, pc)
 
     # -- where it is
 

@@ -142,6 +142,9 @@ MESSAGES: Mapping[str, str] = {
     " as its last statement does not always return",
 }
 
+LANGUAGES: Mapping[str, Mapping[str, str]] = {"en": MESSAGES}
+"""Language → its sentences; a table that lacks one leaves it to English."""
+
 TOKENS: Mapping[str, str] = {
     "identifier": "a name",
     "integer": "a number",
@@ -156,7 +159,7 @@ _LONGEST = 60
 
 def wording(kind: str, arguments: Sequence[object], messages: Mapping[str, str] = MESSAGES) -> str:
     """Return the sentence for an error or a warning; an unknown kind is its own sentence."""
-    template = messages.get(kind)
+    template = messages.get(kind, MESSAGES.get(kind))
     if template is None:
         return " ".join([kind, *map(str, arguments)])
     words: dict[str, str] = {}

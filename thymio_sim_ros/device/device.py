@@ -7,13 +7,14 @@ for lights and button sounds, its card, settings and radio. A reset clears all v
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from aseba_vm import VirtualMachine
 from aseba_vm.outbox import BadCode, DivisionByZero, Emitted, NodeSpecific, OutOfBounds
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.body import RESTART, Body
+from thymio_sim_ros.device.breakpoints import Breakpoints, LineDebugger
 from thymio_sim_ros.device.card import Card
 from thymio_sim_ros.device.events import POLICIES, EventQueue, GlobalEvent
 from thymio_sim_ros.device.layout import LAYOUTS, target
@@ -50,7 +51,8 @@ class AsebaDevice:
         self._addresses = self._target.addresses
         self._first_values = LAYOUTS[self.layout].first_values
         self._sensors = bindings.sensors(self.layout)
-        self._queue = EventQueue(POLICIES[options.events], tuple(map(self._event_index, ("timer0", "timer1"))))
+        self._timer_events = tuple(map(self._event_index, ("timer0", "timer1")))
+        self._queue = EventQueue(POLICIES[options.events], self._timer_events)
         self._periods = self._addresses["timer.period"]
         self._intensity = self._addresses["mic.intensity"][0]
         self._sound_finished = self._event_index("sound.finished")
@@ -62,6 +64,8 @@ class AsebaDevice:
         self._event = ""
         self._begun = 0
         self._events: list[EmittedEvent] = []
+        self._watched: frozenset[int] = frozenset()
+        self._happened: list[str] = []
         self._notices: list[str] = []
         self._noticed: set[str] = set()
         self._is_changed = True
@@ -101,7 +105,7 @@ class AsebaDevice:
             return self._fault
         if not self._vm.is_active:
             return DeviceStatus(self._state)
-        return DeviceStatus(self._state, self._event, self._program.line_of(self._vm.pc))
+        return DeviceStatus(self._state, self._event, self._program.line_of(self._vm.pc), pc=self._vm.pc)
 
     def load(self, program: ThymioProgram, *, warm: bool = False) -> None:
         """Replace the program; the robot is reset and the next `run` begins with the initialisation.
@@ -115,6 +119,8 @@ class AsebaDevice:
         self._program = program
         self._names = [name for name, _ in program.events]
         self._handled = frozenset(0xFFFE - event.number for event in program.program.events)
+        self._vm.clear_breakpoints()
+        self._debugger = LineDebugger(self._vm, program)
         words = program.program.words
         self._vm.set_bytecode((*words, *[0] * (self._target.bytecode_size - len(words))))
         for sensor, reading in readings:
@@ -133,24 +139,24 @@ class AsebaDevice:
         if len(words) != binding.size:
             raise ValueError(f"{len(words)} words found, expected {binding.size}")
         new = list(words)
-        memory, old, handled, queue = self._vm.variables.words, self._last.get(sensor), self._handled, self._queue
+        memory, old, wanted = self._vm.variables.words, self._last.get(sensor), self._handled | self._watched
         for address, begin, end in binding.runs:
             memory[address : address + end - begin] = new[begin:end]
         if new != (old or [0] * binding.size):
             for slot in binding.slots:
                 begin, end = slot.begin, slot.begin + slot.size
-                if slot.edge in handled and new[begin:end] != (old[begin:end] if old else [0] * slot.size):
-                    queue.arrive(slot.edge)
+                if slot.edge in wanted and new[begin:end] != (old[begin:end] if old else [0] * slot.size):
+                    self._happen(slot.edge)
         self._last[sensor] = new
         event = binding.event
         if event is None:
             return
         if event == self._rc5:
             self._rules.flash_remote()
-        if event not in handled or (event == self._sound_finished and not self._outputs.has_used_sound):
+        if event not in wanted or (event == self._sound_finished and not self._outputs.has_used_sound):
             return
         if binding.above is None or new[0] > memory[binding.above] != 0:
-            queue.arrive(event)
+            self._happen(event)
 
     def advance(self, now_ns: int) -> None:
         """Simulated time has come so far; `run` raises the events of timers whose period ended on the way."""
@@ -203,6 +209,11 @@ class AsebaDevice:
         """Let events run (again); a robot that is off is switched on."""
         if self._state == OFF:
             self._restart()
+        elif self._debugger.leave_breakpoint():
+            self._is_changed = True
+            self._listen()
+            if self._state != FAULT:
+                self._run_again()
         else:
             self._run_again()
 
@@ -217,11 +228,25 @@ class AsebaDevice:
         if self._state == OFF:
             return
         self.pause()
-        while not self._vm.is_active and self._queue.waits:
-            self._start_next()
+        self._start_if_idle()
         self._vm.step()
         self._is_changed = True
         self._listen()
+
+    def step_line(self) -> None:
+        """Execute up to the next line; between events, stand before the first line of the next event that waits."""
+        if self._state == OFF:
+            return
+        self.pause()
+        if self._start_if_idle():
+            return
+        self._debugger.step_line()
+        self._is_changed = True
+        self._listen()
+
+    def set_breakpoints(self, lines: Sequence[int]) -> Breakpoints:
+        """Stop before these lines of the program's file (from 1) and no others; what became of each."""
+        return self._debugger.set_breakpoints(lines)
 
     def stop(self) -> None:
         """Abandon the handler; wheels stand still."""
@@ -266,6 +291,15 @@ class AsebaDevice:
         events, self._events = self._events, []
         return events
 
+    def watch_events(self, names: Collection[str]) -> None:
+        """Remember when these local events happen, whether the program handles them or not."""
+        self._watched = frozenset(index for index, event in enumerate(self._target.local_events) if event.name in names)
+
+    def take_local_events(self) -> list[str]:
+        """Those watched events that happened since the last time, in order."""
+        happened, self._happened = self._happened, []
+        return happened
+
     def take_notices(self) -> list[str]:
         """What the user should know, each thing once."""
         notices, self._notices = self._notices, []
@@ -291,6 +325,20 @@ class AsebaDevice:
         self._vm.write_variables(address, words)
         self._is_changed = True
 
+    def _happen(self, index: int) -> None:
+        if index in self._handled:
+            self._queue.arrive(index)
+        if index in self._watched:
+            self._happened.append(self._target.local_events[index].name)
+
+    def _start_if_idle(self) -> bool:
+        """Start the next event if none is being handled; whether one was started."""
+        if self._vm.is_active:
+            return False
+        while not self._vm.is_active and self._queue.waits:
+            self._start_next()
+        return self._vm.is_active
+
     def _run_again(self) -> None:
         self._vm.resume()
         self._state, self._fault = RUNNING, None
@@ -310,6 +358,8 @@ class AsebaDevice:
             self._start_global(event)
         elif event is not None:
             self._begin(self._target.local_events[event].name)
+            if event in self._watched and event in self._timer_events:
+                self._happened.append(self._event)
             self._vm.receive(0xFFFE - event, self.node_id, ())
 
     def _start_global(self, event: GlobalEvent) -> None:
@@ -333,9 +383,11 @@ class AsebaDevice:
             elif isinstance(message, OutOfBounds | DivisionByZero | NodeSpecific | BadCode) and not self.body.wanted:
                 line = self._program.line_of(message.pc)
                 self._state = FAULT
-                self._fault = DeviceStatus(FAULT, self._event, line, sentence(message.reason))
+                self._fault = DeviceStatus(FAULT, self._event, line, sentence(message.reason), message.pc)
                 self._queue.clear()
                 self._halt()
+        if self._state == RUNNING and self._vm.is_step_by_step:
+            self._state = PAUSED  # at a breakpoint
         wanted, self.body.wanted = self.body.wanted, ""
         if wanted == RESTART:
             self._restart()

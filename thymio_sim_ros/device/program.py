@@ -1,11 +1,17 @@
-"""From the text that a user hands over to a program for the Thymio, or an error with its place in that text."""
+"""From the text that a user hands over to programs for Thymios, or an error with its place in that text."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 from aseba_vm import AeslError, CompileError, Program, aesl, compile
 from thymio_sim_ros.device.layout import THYMIO, target
+
+__all__ = ["ProgramError", "ThymioFile", "ThymioProgram", "load_file", "load_program", "memory_use", "parse", "select"]
+
+NO_CONSTANTS: Mapping[str, int] = MappingProxyType({})
 
 
 class ProgramError(Exception):
@@ -22,7 +28,10 @@ class ProgramError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class ThymioProgram:
-    """A compiled program with the definitions it shares with others; `lines` are those of its rows in its file."""
+    """A compiled program with the definitions it shares with others; `lines` are those of its rows in its file.
+
+    `node` is the part of the file that it comes from; that of bare text has no name.
+    """
 
     name: str
     source: str
@@ -31,11 +40,20 @@ class ThymioProgram:
     constants: tuple[tuple[str, int], ...]
     lines: tuple[int, ...]
     layout: str = THYMIO
+    node: aesl.Node = field(default=aesl.Node(""), compare=False)
 
     def line_of(self, pc: int) -> int | None:
         """Line in the file, from 1, of an address of the bytecode."""
         row = self.program.row_of(pc)
         return None if row is None else self.lines[row]
+
+
+@dataclass(frozen=True, slots=True)
+class ThymioFile:
+    """The programs of a file in its order, at least one; kinds of robot that other nodes of it are for."""
+
+    programs: tuple[ThymioProgram, ...]
+    others: tuple[str, ...] = ()
 
 
 def load_program(text: str, name: str, layout: str = THYMIO) -> ThymioProgram:
@@ -44,27 +62,76 @@ def load_program(text: str, name: str, layout: str = THYMIO) -> ThymioProgram:
     Of a file with several programs for a Thymio the first is taken, and refused if another one is wrong. It is
     compiled for one of `layout.LAYOUTS` and runs on no other.
     """
-    text = text.removeprefix("\ufeff").replace("\r\n", "\n")
+    return load_file(text, name, layout).programs[0]
+
+
+def load_file(
+    text: str,
+    name: str,
+    layout: str = THYMIO,
+    *,
+    constants: Mapping[str, int] = NO_CONSTANTS,
+    robots: Collection[str] = (),
+) -> ThymioFile:
+    """All programs of a text for Thymios or for robots of these names; ProgramError if one of them is wrong.
+
+    `constants` take the place of those that the file defines, or are added to them.
+    """
     try:
-        network = aesl.loads(text, strict=True) if aesl.is_aesl(text) else aesl.bare(text, target().name)
+        network = parse(text, constants)
+        nodes, others = select(network, robots)
     except AeslError as error:
         raise ProgramError(name, error.line, error.column, str(error)) from error
-    programs = [_compile(name, node, network, layout) for node in network.nodes if node.name == target().name]
-    if not programs:
+    return ThymioFile(tuple(_compile(name, node, network, layout, is_one=len(nodes) == 1) for node in nodes), others)
+
+
+def parse(text: str, constants: Mapping[str, int] = NO_CONSTANTS) -> aesl.Network:
+    """What a file says, or bare text as a node without a name. Raises AeslError."""
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n")
+    network = aesl.loads(text, strict=True) if aesl.is_aesl(text) else aesl.bare(text, "")
+    return replace(network, constants=tuple({**dict(network.constants), **constants}.items()))
+
+
+def select(network: aesl.Network, robots: Collection[str] = ()) -> tuple[list[aesl.Node], tuple[str, ...]]:
+    """The nodes for Thymios or for robots of these names, and the names of the others. AeslError if there are none."""
+    wanted = {"", target().name, *robots}
+    nodes = [node for node in network.nodes if node.name in wanted]
+    others = tuple(dict.fromkeys(node.name for node in network.nodes if node.name not in wanted))
+    if not nodes:
         line, column = network.nodes[0].place(0)
-        found = ", ".join(dict.fromkeys(f"'{node.name}'" for node in network.nodes))
-        refusal = AeslError("aesl-other-robot", (target().name, found), line + 1, column + 1)
-        raise ProgramError(name, refusal.line, refusal.column, str(refusal))
-    return programs[0]
+        found = ", ".join(f"'{other}'" for other in others)
+        raise AeslError("aesl-other-robot", (target().name, found), line + 1, column + 1)
+    return nodes, others
 
 
-def _compile(name: str, node: aesl.Node, network: aesl.Network, layout: str) -> ThymioProgram:
+def memory_use(program: Program, layout: str = THYMIO) -> dict[str, tuple[int, int]]:
+    """Words in use and words there are of variables, bytecode and stack (the deepest event, by estimate)."""
+    memory = target(layout)
+    return {
+        "variables": (program.allocated, memory.variables_size),
+        "bytecode": (len(program.words), memory.bytecode_size),
+        "stack": (program.stack_need, memory.stack_size),
+    }
+
+
+def called(node: aesl.Node) -> str:
+    """A node as it is called in sentences."""
+    return f"node '{node.name}' {node.node_id}" if node.node_id else f"node '{node.name}'"
+
+
+def _compile(name: str, node: aesl.Node, network: aesl.Network, layout: str, *, is_one: bool) -> ThymioProgram:
     try:
         program = compile(node.code, target(layout), events=network.events, constants=network.constants)
     except CompileError as error:
+        message = str(error) if is_one else f"{called(node)}: {error}"
         if error.pos is None:
-            raise ProgramError(name, None, None, str(error)) from error
+            raise ProgramError(name, None, None, message) from error
         row, col = node.place(error.pos.offset)
-        raise ProgramError(name, row + 1, col + 1, str(error)) from error
-    lines = tuple(row + 1 for row in node.rows_in_file())
-    return ThymioProgram(name, node.code, program, network.events, network.constants, lines, layout)
+        raise ProgramError(name, row + 1, col + 1, message) from error
+    return ThymioProgram(
+        name, node.code, program, network.events, network.constants, _lines(node), layout, replace(node, plugins=())
+    )
+
+
+def _lines(node: aesl.Node) -> tuple[int, ...]:
+    return tuple(row + 1 for row in node.rows_in_file())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 RUNNING, PAUSED, STOPPED, FAULT, OFF = "running", "paused", "stopped", "fault", "off"
 
@@ -19,15 +19,16 @@ _SENTENCES: Mapping[str, str] = {
 
 @dataclass(frozen=True, slots=True)
 class DeviceStatus:
-    """State (`running`, `paused`, `stopped`, `fault`, `off`), the event being handled, and its source line from 1.
+    """State (`running`, `paused`, `stopped`, `fault`, `off`), the event being handled, its source line from 1, its pc.
 
-    Between events, event is empty and line None. After a fault they say where it happened, and `fault` why.
+    Between events, event is empty, line and pc None. After a fault they say where it happened, and `fault` why.
     """
 
     state: str
     event: str = ""
     line: int | None = None
     fault: str = ""
+    pc: int | None = field(default=None, compare=False)  # the place is the line
 
 
 def sentence(reason: str) -> str:
