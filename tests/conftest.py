@@ -8,7 +8,7 @@ hypothesis.settings.register_profile("thymio", deadline=None)  # a loaded machin
 hypothesis.settings.load_profile("thymio")
 
 # The same name as the entry point: where the package is installed, pytest has loaded it already.
-pytest_plugins = ["thymio_sim_ros.pytest_plugin"]
+pytest_plugins = ["pytester", "thymio_sim_ros.pytest_plugin"]
 
 
 def pytest_addoption(parser):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib.util
 import threading
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
@@ -78,7 +79,9 @@ def ros(request: pytest.FixtureRequest) -> Iterator[Ros]:
     """A private context and executor in a private domain; afterwards no thread of ours is left."""
     if importlib.util.find_spec("rclpy") is None:
         pytest.skip(NO_ROS)
-    from thymio_sim_ros.testing.ros import Ros
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # lark, imported by rosidl_parser
+        from thymio_sim_ros.testing.ros import Ros
 
     domain = request.getfixturevalue("ros_domain")
     threads = set(threading.enumerate())

@@ -27,7 +27,8 @@ def robot_lines(robots: Iterable[Thymio]) -> list[str]:
 def _place(thymio: Thymio) -> str:
     pose, touching = thymio.pose, thymio.touching
     turned = round(math.degrees(pose.yaw_rad)) % 360
-    place = f"at ({pose.x_m:.3f}, {pose.y_m:.3f}) m, turned {turned}°, {thymio.speed:.3f} m/s"
+    x, y, speed = (round(value, 3) + 0.0 for value in (pose.x_m, pose.y_m, thymio.speed))  # never -0.000
+    place = f"at ({x:.3f}, {y:.3f}) m, turned {turned}°, {speed:.3f} m/s"
     return f"{thymio.name}: {place}" + (f", touches {', '.join(touching)}" if touching else "")
 
 

@@ -74,7 +74,8 @@ class Recorder(Sequence[Any]):
         if not self._messages:
             return f"{self.topic}: nothing arrived"
         last = textwrap.shorten(_PACKAGE.sub("", str(self._messages[-1])), _LONGEST, placeholder=" …")
-        return f"{self.topic}: {len(self)} messages, last {self._last}: {last}"
+        when = f" {self._last}" if self._last else ""
+        return f"{self.topic}: {len(self)} messages, last{when}: {last}"
 
     def __len__(self) -> int:
         return len(self._messages)

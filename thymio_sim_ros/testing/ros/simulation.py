@@ -32,6 +32,8 @@ HOPS = 2
 ANSWER_S = 2.0
 """Real seconds for what is still under way when simulated time has ended, such as the answer of a service."""
 
+_NO_MACHINE = "no Aseba machine runs for {}: start one with the fixture `runtime`"
+
 
 class Simulation:
     """A simulator node and its robots. Invariant: simulated time passes only in `tick`, `step` and `until`."""
@@ -142,12 +144,14 @@ class Simulation:
         """Give a robot that has a machine a program."""
         ports = self.machine(robot)
         if ports is None:
-            raise LookupError(f"no Aseba machine runs for {robot}: start one with the fixture `runtime`")
+            raise LookupError(_NO_MACHINE.format(robot))
         ports.load(program_of(program, self._folder))
 
     def emit(self, event: str, args: Sequence[int]) -> None:
         """Let every robot that knows an event hear it, by the topic aseba/emit of the first that has a machine."""
-        ports = next(ports for runtime in self._runtimes for ports in runtime.robots)
+        ports = next((ports for runtime in self._runtimes for ports in runtime.robots), None)
+        if ports is None:
+            raise LookupError(_NO_MACHINE.format("any robot"))
         layout = MultiArrayLayout(dim=[MultiArrayDimension(label=event, size=len(args), stride=1)])
         publisher = self.ros.publisher(Int16MultiArray, ports.names.topic("aseba/emit"))
         publisher.publish(Int16MultiArray(layout=layout, data=list(args)))

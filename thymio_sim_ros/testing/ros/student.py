@@ -112,6 +112,9 @@ def _run_file(path: Path) -> Any:
     finally:
         sys.path.remove(str(path.parent))
         sys.modules.pop(name, None)
+        for value in vars(module).values():
+            if isinstance(value, Node):
+                value.destroy_node()
     return module
 
 

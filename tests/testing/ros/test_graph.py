@@ -1,0 +1,264 @@
+"""The private graph of a test: nodes under test, waiting, and what it says when waiting was in vain."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+
+import pytest
+import rclpy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import Range
+from std_msgs.msg import Bool, String
+from std_srvs.srv import Trigger
+
+from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
+from thymio_sim_ros.testing.ros import Ros, Simulation
+from thymio_sim_ros.testing.ros.domain import reserved
+
+BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class Echo(Node):
+    """Says what it hears."""
+
+    def __init__(self, prefix="", **kwargs):
+        super().__init__("echo", **kwargs)
+        self.prefix = prefix or self.declare_parameter("prefix", "").value
+        self.mouth = self.create_publisher(String, "said", 10)
+        self.create_subscription(String, "heard", self.hear, 10)
+
+    def hear(self, message):
+        if message.data == "bang":
+            raise ValueError("I fell over")
+        if message.data == "bye":
+            rclpy.shutdown(context=self.context)
+            return
+        self.mouth.publish(String(data=self.prefix + message.data))
+
+
+class Timed(Node):
+    """Counts ten times a second."""
+
+    def __init__(self):
+        super().__init__("timed")
+        self.times = []
+        self.create_timer(0.1, lambda: self.times.append(self.get_clock().now().nanoseconds))
+
+
+class Wanderer(Node):
+    """Goes on until something is ahead."""
+
+    def __init__(self):
+        super().__init__("wanderer")
+        self.wheels = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_subscription(Range, "proximity/center", self.look, 10)
+
+    def look(self, seen):
+        command = Twist()
+        command.linear.x, command.angular.z = (0.1, 0.0) if seen.range > 0.1 else (0.0, 1.0)
+        self.wheels.publish(command)
+
+
+def test_a_node_under_test_needs_to_know_nothing_of_tests(ros):
+    node = ros.start(Echo)
+    said = ros.collect(String, "said")
+    ros.publisher(String, "heard").publish(String(data="hello"))
+    assert said.next().data == "hello"
+    assert node.context is ros.context
+
+
+def test_it_gets_parameters_names_and_arguments(ros):
+    node = ros.start(Echo, name="parrot", namespace="zoo", parameters={"prefix": "ps"}, remappings={"said": "cried"})
+    assert node.get_fully_qualified_name() == "/zoo/parrot"
+    said = ros.collect(String, "/zoo/cried")
+    ros.publisher(String, "/zoo/heard").publish(String(data="t"))
+    assert said.next().data == "pst"
+    assert ros.start(Echo, arguments={"prefix": "x"}).prefix == "x"
+
+
+def test_what_a_callback_raises_is_raised_in_the_test(ros):
+    ros.start(Echo)
+    ros.publisher(String, "heard").publish(String(data="bang"))
+    with pytest.raises(ValueError, match="I fell over"):
+        ros.until(lambda: False, 5.0)
+
+
+def test_a_node_that_shuts_ros_down_is_told_to_leave_that(ros):
+    ros.start(Echo)
+    ros.publisher(String, "heard").publish(String(data="bye"))
+    with pytest.raises(pytest.fail.Exception, match=r"rclpy.shutdown\(\) belongs to main"):
+        ros.until(lambda: False, 5.0)
+
+
+def test_a_node_that_is_stopped_is_gone(ros):
+    node = ros.start(Echo)
+    ros.stop(node)
+    ros.until(lambda: "echo" not in ros.node.get_node_names())
+
+
+def test_timers_follow_simulated_time(ros, simulation):
+    sim = simulation()
+    node = ros.start(Timed)
+    sim.step(1.0)
+    assert [time // 100_000_000 for time in node.times] == list(range(1, len(node.times) + 1))
+    assert len(node.times) in (9, 10)
+
+
+def test_without_a_simulation_timers_follow_real_time(ros):
+    node = ros.start(Timed)
+    ros.until(lambda: len(node.times) == 2)
+
+
+def test_the_same_run_is_the_same_bit_for_bit():
+    poses = []
+    for _ in range(3):
+        with reserved() as domain:
+            ros = Ros(domain)
+            poses.append(drive(ros))
+            ros.close()
+    assert poses[0] == poses[1] == poses[2]
+    assert poses[0].x_m > 0.2
+
+
+def drive(ros):
+    """Where the wanderer is after five seconds among the obstacles."""
+    sim = Simulation(ros, ros.live(Simulator(ros.context, SimulatorParams(playground="obstacle", start_paused=True))))
+    ros.settle()
+    ros.start(Wanderer)
+    sim.step(5.0)
+    return sim.thymio.pose
+
+
+def test_a_recorder_listens_as_it_is_published(ros):
+    publisher = ros.node.create_publisher(Bool, "light", BEST_EFFORT)
+    lights = ros.collect(Bool, "light")
+    publisher.publish(Bool(data=True))
+    lights.wait()
+    assert lights.latest.data
+
+
+def test_a_recorder_may_wait_for_nobody(ros):
+    lights = ros.collect(Bool, "light", qos=BEST_EFFORT)
+    ros.node.create_publisher(Bool, "light", BEST_EFFORT)
+    ros.settle()
+    assert len(lights) == 0
+
+
+def test_time_that_passes_in_vain_is_told_with_all_that_is_known(ros, simulation):
+    sim = simulation()
+    ros.start(Wanderer, remappings={"cmd_vel": "cmd_vle"})
+    ros.collect(Odometry, "odom")
+    with pytest.raises(pytest.fail.Exception) as caught:
+        sim.until(lambda: sim.thymio.pose.x_m > 0.1, seconds=0.2)
+    lines = str(caught.value).splitlines()
+    assert lines[0] == "not within 2 s: sim.thymio.pose.x_m > 0.1 in 0.2 simulated s"
+    assert lines[1:3] == ["simulated time: 0.20 s", "thymio: at (0.000, 0.000) m, turned 0°, 0.000 m/s"]
+    assert lines[3].startswith("/odom: 4 messages, last at 0.20 s: Odometry(header=Header(")
+    assert "/cmd_vle geometry_msgs/msg/Twist: 1 publishers, 0 subscribers (nobody listens)" in lines
+    assert "/proximity/center sensor_msgs/msg/Range: 1 publishers, 1 subscribers" in lines
+    assert lines[-1].endswith(" topics that only the test and the simulation use")
+
+
+def test_qualities_that_do_not_fit_are_told(ros):
+    ros.node.create_publisher(Bool, "light", BEST_EFFORT)
+    ros.make_node("viewer").create_subscription(Bool, "light", lambda _: None, 10)
+    with pytest.raises(pytest.fail.Exception, match=r"/light .*\(test and viewer do not fit in QoS\)"):
+        ros.until(lambda: False, 0.0)
+
+
+def test_time_of_a_simulation_that_there_is_not_cannot_pass(ros):
+    with pytest.raises(LookupError, match="sim_time needs a simulation"):
+        ros.until(lambda: True, sim_time=1.0)
+
+
+def test_simulated_time_passes_while_waiting(ros, simulation, spin_until, ros_node):
+    sim = simulation()
+    spin_until(lambda: sim.now > 0.5, sim_time=1.0)
+    assert sim.now == pytest.approx(0.51)
+    assert ros_node is ros.node
+
+
+def test_an_interrupted_test_leaves_nothing_behind(ros_domain):
+    """As pytest-timeout does it: a signal's handler raises in the middle of waiting."""
+
+    def stop(_number, _frame):
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, stop)
+    threads = set(threading.enumerate())
+    try:
+        ros = Ros(ros_domain)
+        ros.start(Echo)
+        signal.setitimer(signal.ITIMER_REAL, 0.05)
+        with pytest.raises(TimeoutError):
+            ros.until(lambda: False)
+        ros.close()
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    assert set(threading.enumerate()) == threads
+    assert not ros.context.ok()
+
+
+def test_the_end_is_complete_even_when_a_node_spoils_it(ros_domain):
+    class Bad(Node):
+        def destroy_node(self):
+            super().destroy_node()
+            raise RuntimeError("no")
+
+    ros = Ros(ros_domain)
+    ros.start(type("BadOne", (Bad,), {"__init__": lambda self: super(Bad, self).__init__("bad")}))
+    with pytest.raises(RuntimeError, match="no"):
+        ros.close()
+    assert not ros.context.ok()
+
+
+def test_a_default_context_of_somebody_else_is_left_alone(ros_domain):
+    rclpy.init(args=[], domain_id=ros_domain)
+    try:
+        ros = Ros(ros_domain)
+        ros.close()
+        assert rclpy.ok()
+    finally:
+        rclpy.shutdown()
+
+
+def test_code_under_test_may_use_the_default_context(ros):
+    assert rclpy.ok()
+    assert rclpy.create_node("plain").context is ros.context
+
+
+def test_every_test_has_a_domain_of_its_own():
+    own = os.environ.get("ROS_DOMAIN_ID")
+    with reserved() as one, reserved() as other:
+        assert one != other
+        assert os.environ["ROS_DOMAIN_ID"] == str(other)
+        assert str(own or 0) not in (str(one), str(other))
+    assert os.environ.get("ROS_DOMAIN_ID") == own
+
+
+def test_two_domains_hear_nothing_of_each_other(ros):
+    ros.node.create_publisher(String, "secret", 10)
+    with reserved() as domain:
+        other = Ros(domain)
+        other.start(Echo)
+        said = other.collect(String, "said")
+        other.publisher(String, "heard").publish(String(data="x"))
+        said.wait()
+        assert "/secret" not in dict(other.node.get_topic_names_and_types())
+        other.close()
+
+
+def test_a_service_is_called(ros):
+    ros.node.create_service(Trigger, "open", lambda _request, answer: answer)
+    assert ros.call(Trigger, "open").success is False
+
+
+def test_contexts_are_private(ros):
+    assert isinstance(ros.context, Context)
+    assert ros.node.get_node_names() == ["test"]

@@ -1,0 +1,94 @@
+"""Node classes that others wrote: found in files and modules, started in the test."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+import rclpy
+from rclpy.node import Node
+
+from thymio_sim_ros.testing.ros.student import StudentError, load_class
+
+HEAD = "import rclpy\nfrom rclpy.node import Node\n"
+GREETER = HEAD + 'class Greeter(Node):\n    def __init__(self):\n        super().__init__("greeter")\n'
+UNGUARDED = GREETER + "rclpy.init()\nnode = Greeter()\ntry:\n    rclpy.spin(node)\nfinally:\n    rclpy.shutdown()\n"
+LOOP = GREETER + "rclpy.init()\nnode = Greeter()\nwhile rclpy.ok():\n    rclpy.spin_once(node)\nrclpy.shutdown()\n"
+
+
+@pytest.fixture
+def handed_in(tmp_path):
+    """Write what a student hands in."""
+
+    def write(text, name="greeter.py"):
+        path = tmp_path / name
+        path.write_text(text)
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize("text", [GREETER, UNGUARDED, LOOP], ids=["guarded", "spins at once", "loops at once"])
+def test_a_file_becomes_a_node(ros, handed_in, text):
+    node = ros.start(handed_in(text))
+    assert node.get_name() == "greeter"
+    assert type(node).__name__ == "Greeter"
+    ros.until(lambda: ros.node.get_node_names().count("greeter") == 1)
+    assert rclpy.ok()
+
+
+def test_a_file_beside_the_test_is_found(ros, handed_in):
+    node_file = handed_in(GREETER)
+    ros._folder = node_file.parent  # the folder of the test, as the fixture gives it
+    assert ros.start("greeter.py").get_name() == "greeter"
+
+
+def test_a_module_is_named_with_dots(ros, handed_in, monkeypatch):
+    monkeypatch.syspath_prepend(handed_in(GREETER, "my_greeter.py").parent)
+    assert ros.start("my_greeter").get_name() == "greeter"
+    sys.modules.pop("my_greeter")
+
+
+def test_a_file_may_import_its_neighbours(ros, handed_in):
+    handed_in("NAME = 'neighbour'\n", "my_names.py")
+    text = GREETER.replace('"greeter"', "NAME").replace(HEAD, HEAD + "from my_names import NAME\n")
+    assert ros.start(handed_in(text)).get_name() == "neighbour"
+    sys.modules.pop("my_names")
+
+
+def test_of_several_classes_the_last_heir_or_the_named_one_is_taken(handed_in):
+    path = handed_in(GREETER + "class Louder(Greeter):\n    pass\n")
+    assert load_class(path).__name__ == "Louder"
+    assert load_class(path, "Greeter").__name__ == "Greeter"
+
+
+@pytest.mark.parametrize(
+    ("text", "class_name", "told"),
+    [
+        ("x = 1\n", "", "expected one class derived from rclpy.node.Node, found none"),
+        (GREETER + GREETER.replace(HEAD, "").replace("Greeter", "Other"), "", "found Greeter, Other"),
+        (GREETER, "Greter", "expected a class Greter derived from rclpy.node.Node, found Greeter"),
+    ],
+)
+def test_what_is_no_node_is_refused(handed_in, text, class_name, told):
+    with pytest.raises(StudentError, match=told):
+        load_class(handed_in(text), class_name)
+
+
+def test_a_file_that_is_not_there_or_wrong_is_told(handed_in):
+    with pytest.raises(StudentError, match="no such file"):
+        load_class("nowhere.py")
+    with pytest.raises(SyntaxError):
+        load_class(handed_in("class Greeter(:\n"))
+    with pytest.raises(ModuleNotFoundError, match="no_such_module"):
+        load_class("no_such_module")
+
+
+def test_a_class_that_goes_round_super_is_told_so(ros):
+    class Direct(Node):
+        def __init__(self):
+            Node.__init__(self, "direct")
+
+    with pytest.raises(StudentError, match=r"Direct calls Node.__init__ itself: expected super\(\).__init__"):
+        ros.start(Direct)
+    ros.until(lambda: "direct" not in ros.node.get_node_names())
