@@ -1,6 +1,7 @@
 """Bodies, contacts and what rays meet: the only package that knows pymunk.
 
-`space` steps all bodies; `robots`, `movables` and `doors` hold one kind of body each; `contact` is what they tell.
+`space` steps all bodies; `robots`, `movables` and `doors` hold one kind of body each, `fleet` many robots at once;
+`gates` opens doors, `touches` knows who touches what, `quiet` for how long nothing can happen.
 """
 
 from __future__ import annotations

@@ -5,22 +5,21 @@ While nothing is in anybody's reach and nothing moves by itself, pymunk rests an
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any
 
 import pymunk
 
-from thymio_sim_ros.sim import thymio2
-from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.nearby import Mover, Nearby
-from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE, SUB_STEP_S, SUB_STEPS, Contact
+from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, Contact
 from thymio_sim_ros.sim.physics.doors import DoorBody
 from thymio_sim_ros.sim.physics.fleet import Fleet
+from thymio_sim_ros.sim.physics.gates import Gates
 from thymio_sim_ros.sim.physics.movables import AT_REST_M_S, MovableBody
-from thymio_sim_ros.sim.physics.robots import ROBOT_TYPE, RobotBody
+from thymio_sim_ros.sim.physics.quiet import LOOK_ROUND_TICKS, quiet_ticks
+from thymio_sim_ros.sim.physics.robots import RobotBody
+from thymio_sim_ros.sim.physics.touches import Touches
 from thymio_sim_ros.sim.primitives import Disc, Solid, Trigger
 from thymio_sim_ros.sim.rays import Obstacle, Surroundings, obstacle_of
 
@@ -32,14 +31,6 @@ _ITERATIONS = 40
 """Of the solver: with fewer, mirrored worlds do not push mirrored."""
 _DROWSY_S = 0.1
 """What has been at rest for so long costs nothing until it is touched."""
-_LONGEST_WAY_M = thymio2.MAX_SPEED_M_S * TICK_NS * 1e-9
-_SAFE_M = 0.005
-_LOOK_ROUND_TICKS = 10
-_MOST_QUIET_TICKS = 100
-_FAR_M = thymio2.HULL_RADIUS_M + _SAFE_M + _MOST_QUIET_TICKS * _LONGEST_WAY_M
-"""What is farther away does not shorten the quiet."""
-_THING_TYPE = 2
-"""pymunk's collision type of everything but robots."""
 
 
 class Physics:
@@ -51,33 +42,28 @@ class Physics:
         self._space.iterations = _ITERATIONS
         self._space.idle_speed_threshold = AT_REST_M_S
         self._space.sleep_time_threshold = _DROWSY_S
-        self._names: dict[pymunk.Shape, str] = {}
-        self._robots: dict[pymunk.Shape, RobotBody] = {}
+        solids = tuple(solids)
+        bouncing = any(solid.load is not None and solid.load.restitution for solid in solids)
+        self._touches = Touches(self._space, self._tell_fleet, do_things_bounce=bouncing)
+        self._robots: dict[RobotBody, None] = {}
         self._movables: dict[str, MovableBody] = {}
-        self._doors: dict[str, DoorBody] = {}
-        self._triggers = tuple((trigger, *trigger.middle, trigger.reach_m) for trigger in triggers)
+        self._gates = Gates(solids, triggers)
         self._fleet: Fleet | None = None
         self._quiet_ticks = 0
         self._engine_ticks = 0
-        fixed = []
         for solid in solids:
             if solid.load is not None:
-                self._add_movable(solid)
+                self._movables[solid.name] = movable = MovableBody(solid, self._space.static_body)
+                self._add(solid.name, movable.shape, movable.body, *movable.joints)
             elif solid.slide is not None:
-                self._doors[solid.name] = door = DoorBody(solid)
+                door = self._gates.doors[solid.name]
                 self._add(solid.name, door.shape, door.body)
             else:
                 self._add(solid.name, self._fixed_shape(solid))
-                fixed.append(obstacle_of(solid))
-        self.fixed: tuple[Obstacle, ...] = tuple(fixed)
+        self.fixed: tuple[Obstacle, ...] = tuple(obstacle_of(solid) for solid in solids if solid.is_fixed)
         """What rays see of everything that never moves."""
-        self._nearby = Nearby(fixed)
+        self._nearby = Nearby(self.fixed)
         self._list_movers()
-        begin, separate = self._on_begin, self._on_separate
-        self._space.on_collision(ROBOT_TYPE, _THING_TYPE, begin, separate=separate)
-        self._space.on_collision(ROBOT_TYPE, ROBOT_TYPE, begin, separate=separate)
-        if any(movable.solid.load is not None and movable.solid.load.restitution for movable in self.movables.values()):
-            self._space.on_collision(_THING_TYPE, _THING_TYPE, pre_solve=_bounce)
 
     @property
     def movables(self) -> Mapping[str, MovableBody]:
@@ -87,20 +73,20 @@ class Physics:
     @property
     def doors(self) -> Mapping[str, DoorBody]:
         """All doors by name, in the order of the playground."""
-        return MappingProxyType(self._doors)
+        return self._gates.doors
 
     def loose(self) -> list[Obstacle | None]:
         """What rays see of movables, then of doors; None for what has fallen."""
         found = [None if movable.is_fallen else movable.obstacle for movable in self._movables.values()]
-        return [*found, *(door.obstacle for door in self._doors.values())]
+        return [*found, *(door.obstacle for door in self.doors.values())]
 
     def add_robot(self, name: str, pose: Pose) -> RobotBody:
         """A robot's body, at rest at a pose."""
         self.disband()
         self._interrupt()
         robot = RobotBody(name, pose)
-        self._robots[robot.shape] = robot
-        self._add(name, robot.shape, robot.body)
+        self._robots[robot] = None
+        self._add(robot, robot.shape, robot.body)
         self._list_movers()
         return robot
 
@@ -110,15 +96,15 @@ class Physics:
         self._interrupt()
         if not robot.is_fallen:
             self._space.remove(robot.shape, robot.body)
-        self._forget(robot.shape)
-        del self._robots[robot.shape], self._names[robot.shape]
+        self._touches.unwatch(robot.shape)
+        del self._robots[robot]
         self._list_movers()
 
     def drop_robot(self, robot: RobotBody) -> None:
         """Let a robot fall below the floor, where nothing touches or sees it."""
         self._interrupt()
         self._space.remove(robot.shape, robot.body)
-        self._forget(robot.shape)
+        self._touches.forget(robot.shape)
         robot.fall()
         self._list_movers()
 
@@ -126,7 +112,7 @@ class Physics:
         """Let a thing fall below the floor."""
         self._interrupt()
         self._space.remove(movable.shape, movable.body, *movable.joints)
-        self._forget(movable.shape)
+        self._touches.forget(movable.shape)
         movable.fall()
         self._list_movers()
 
@@ -145,15 +131,13 @@ class Physics:
     @property
     def objects(self) -> tuple[MovableBody | DoorBody, ...]:
         """Movables and doors, always in the same order."""
-        return (*self._movables.values(), *self._doors.values())
+        return (*self._movables.values(), *self.doors.values())
 
     def gather(self) -> Fleet:
         """All robots move as one from now on, until one is added or removed or they disband."""
         self._interrupt()
-        is_alone = not self._movables and not self._doors
-        self._fleet = Fleet(
-            self._space, tuple(self._robots.values()), tuple(self._movables.values()), is_alone=is_alone
-        )
+        is_alone = not self._movables and not self.doors
+        self._fleet = Fleet(self._space, tuple(self._robots), tuple(self._movables.values()), is_alone=is_alone)
         return self._fleet
 
     def disband(self) -> None:
@@ -165,7 +149,9 @@ class Physics:
     def step(self) -> tuple[Contact, ...]:
         """One tick; the contacts at its end, by robot and in the order in which they began."""
         self._nearby.stir()
-        self._swing_doors()
+        self._gates.begin_tick(self._nearby)
+        if not self._gates.are_still:
+            self._stop_gliding()
         if self._quiet_ticks > 0:
             self._glide()
             return ()
@@ -183,10 +169,9 @@ class Physics:
         if self._fleet is None:
             for movable in self._movables.values():
                 movable.end_tick()
-        for door in self._doors.values():
-            door.end_tick()
+        self._gates.end_tick()
         self._engine_ticks += 1
-        if self._engine_ticks % _LOOK_ROUND_TICKS == 0:
+        if self._engine_ticks % LOOK_ROUND_TICKS == 0:
             self._quiet_ticks = self._count_quiet_ticks()
         touching = self._standing() if self._fleet is None else self._fleet.touching()
         return tuple(contact for robot in touching for contact in robot.touching.values())
@@ -214,28 +199,11 @@ class Physics:
 
     def _standing(self) -> list[RobotBody]:
         """Robots that have not fallen."""
-        return [robot for robot in self._robots.values() if not robot.is_fallen]
-
-    def _swing_doors(self) -> None:
-        """Doors open while somebody is in an area of theirs, and close again."""
-        if not self._doors:
-            return
-        if not self._doors:
-            return
-        wanted_open = {
-            trigger.door
-            for trigger, x, y, reach_m in self._triggers
-            for robot in self._nearby.movers(x, y, reach_m)
-            if isinstance(robot, RobotBody) and trigger.holds(robot.pose.x_m, robot.pose.y_m)
-        }
-        for name, door in self._doors.items():
-            door.begin_tick(is_wanted_open=name in wanted_open)
-            if door.is_moving:
-                self._stop_gliding()
+        return [robot for robot in self._robots if not robot.is_fallen]
 
     def _glide(self) -> None:
         """A tick in which nothing can be touched."""
-        for robot in self._robots.values():
+        for robot in self._robots:
             if not robot.is_fallen:
                 robot.glide()
         self._quiet_ticks -= 1
@@ -257,48 +225,26 @@ class Physics:
 
     def _wake(self) -> None:
         """Let the engine take over."""
-        for robot in self._robots.values():
+        for robot in self._robots:
             robot.wake()
 
     def _count_quiet_ticks(self) -> int:
         """For how many ticks no robot can reach anything, however it drives."""
         robots = self._standing()
-        if self._fleet is not None or any(robot.touching for robot in robots):
+        is_still = self._gates.are_still and not any(movable.is_moving for movable in self._movables.values())
+        if self._fleet is not None or not is_still or any(robot.touching for robot in robots):
             return 0
-        if any(movable.is_moving for movable in self._movables.values()):
-            return 0
-        if any(door.is_moving for door in self._doors.values()):
-            return 0
-        free_m = _FAR_M
-        for robot in robots:
-            x, y = robot.pose.x_m, robot.pose.y_m
-            for obstacle in self._nearby.fixed(x, y, _FAR_M):
-                left, bottom, right, top = obstacle.bounds
-                free_m = min(free_m, math.hypot(max(left - x, 0.0, x - right), max(bottom - y, 0.0, y - top)))
-            for mover in self._nearby.movers(x, y, 2 * _FAR_M):
-                away_m = math.hypot(mover.pose.x_m - x, mover.pose.y_m - y)
-                if isinstance(mover, RobotBody):
-                    free_m = min(free_m, away_m / 2) if mover is not robot else free_m
-                else:
-                    free_m = min(free_m, away_m - mover.reach_m)
-        return max(0, int((free_m - thymio2.HULL_RADIUS_M - _SAFE_M) / _LONGEST_WAY_M))
+        return quiet_ticks(robots, self._nearby)
 
     def _list_movers(self) -> None:
         """Tell `nearby` who moves now."""
         movers: list[Mover] = [*self._standing()]
         movers += [movable for movable in self._movables.values() if not movable.is_fallen]
-        self._nearby.replace_movers([*movers, *self._doors.values()])
+        self._nearby.replace_movers([*movers, *self.doors.values()])
 
-    def _add(self, name: str, shape: pymunk.Shape, *parts: pymunk.Body | pymunk.Constraint) -> None:
-        if not shape.collision_type:
-            shape.collision_type = _THING_TYPE
-        self._names[shape] = name
+    def _add(self, owner: RobotBody | str, shape: pymunk.Shape, *parts: pymunk.Body | pymunk.Constraint) -> None:
+        self._touches.watch(shape, owner)
         self._space.add(*parts, shape)
-
-    def _add_movable(self, solid: Solid) -> None:
-        movable = MovableBody(solid, self._space.static_body)
-        self._movables[solid.name] = movable
-        self._add(solid.name, movable.shape, movable.body, *movable.joints)
 
     def _fixed_shape(self, solid: Solid) -> pymunk.Shape:
         body = self._space.static_body
@@ -306,47 +252,6 @@ class Physics:
             return pymunk.Circle(body, solid.outline.radius_m, (solid.pose.x_m, solid.pose.y_m))
         return pymunk.Poly(body, solid.vertices)
 
-    def _forget(self, shape: pymunk.Shape) -> None:
-        """Nobody touches a shape any more."""
-        for robot in self._robots.values():
-            robot.touching.pop(shape, None)
-
     def _tell_fleet(self) -> None:
         if self._fleet is not None:
             self._fleet.has_news = True
-
-    def _on_begin(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
-        self._tell_fleet()
-        one, other = arbiter.shapes
-        points = arbiter.contact_point_set
-        x, y = _middle(points)
-        speed = max(0.0, (_velocity(one, (x, y)) - _velocity(other, (x, y))).dot(points.normal))
-        for mine, its in ((one, other), (other, one)):
-            robot = self._robots.get(mine)
-            if robot is not None:
-                robot.touching[its] = Contact(robot.name, self._names[its], x, y, speed, True)
-
-    def _on_separate(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
-        self._tell_fleet()
-        one, other = arbiter.shapes
-        for mine, its in ((one, other), (other, one)):
-            robot = self._robots.get(mine)
-            if robot is not None:
-                robot.touching.pop(its, None)
-
-
-def _bounce(arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
-    """Things bounce off each other as their elasticities say."""
-    arbiter.restitution *= ROBOT_BOUNCE * ROBOT_BOUNCE
-
-
-def _middle(points: pymunk.ContactPointSet) -> tuple[float, float]:
-    """The middle of a contact, whichever of its points and shapes come first."""
-    ends = [end for point in points.points for end in (point.point_a, point.point_b)]
-    return (math.fsum(end.x for end in ends) / len(ends), math.fsum(end.y for end in ends) / len(ends))
-
-
-def _velocity(shape: pymunk.Shape, point: tuple[float, float]) -> pymunk.Vec2d:
-    """Of a shape's body where it is touched."""
-    assert shape.body is not None
-    return shape.body.velocity_at_world_point(point)
