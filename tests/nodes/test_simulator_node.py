@@ -238,6 +238,16 @@ def test_a_refused_upload_names_its_file_and_the_old_world_stays(ros, simulation
     assert sim.world is world
 
 
+def test_the_state_tells_what_a_file_could_not_express(ros, simulation):
+    simulation(
+        playground='<aseba-playground><color name="w"/><world w="90" h="90" color="w"/><feeder/></aseba-playground>'
+    )
+    states = ros.collect(String, "/simulator/state", latched=True)
+    ros.until(lambda: states)
+    (note,) = json.loads(states[-1].data)["notes"]
+    assert note.startswith("line 1: <feeder> left out")
+
+
 def set_parameter(ros, name, value):
     request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
     return ros.call(SetParameters, "/simulator/set_parameters", request).results[0]

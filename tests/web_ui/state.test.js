@@ -107,7 +107,7 @@ test("the simulator and its playgrounds are told as JSON", () => {
     ),
     message("/simulator/playgrounds", json([{ name: "line", title: "Line", description: "d" }, { name: "base" }])),
   ]);
-  assert.deepEqual(simulator, { playground: "line", title: "Line", paused: true, factor: 2, achieved: 1.5, robots: null });
+  assert.deepEqual(simulator, { playground: "line", title: "Line", notes: [], paused: true, factor: 2, achieved: 1.5, robots: null });
   assert.deepEqual(playgrounds[1], { name: "base", title: "base", description: "", translations: {} });
 });
 

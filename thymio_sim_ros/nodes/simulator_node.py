@@ -38,6 +38,9 @@ from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
 from thymio_sim_ros.sim.world import World
 
+MOST_NOTES = 20
+"""Remarks about a playground that the state tells; all of them are in the log."""
+
 HEARTBEAT_NS = SECOND_NS
 """While paused the clock is repeated at 1 Hz, so that late nodes get it."""
 
@@ -220,6 +223,7 @@ class Simulator:
         return WorldState(
             playground=self.playground_name,
             title=self.world.playground.title,
+            notes=self.world.playground.notes[:MOST_NOTES],
             paused=self.paused,
             real_time_factor=self.params.real_time_factor,
             achieved=0.0 if self.paused else self._pacer.achieved,

@@ -39,6 +39,7 @@ class WorldState:
 
     playground: str
     title: str
+    notes: tuple[str, ...]
     paused: bool
     real_time_factor: float
     achieved: float

@@ -56,6 +56,7 @@ export const de = {
   "playground.open": "Öffnen …",
   "playground.openHelp": "Eine Spielfeld-Datei (.json, .playground oder .zip) öffnen",
   "playground.sending": "{name} wird geladen …",
+  "playground.remarks": "Bemerkungen zu dieser Datei ({count})",
   "playground.refused": "{name} wurde nicht geladen. Das Spielfeld bleibt, wie es war.",
   time: "Zeit",
   "time.pause": "Pause",

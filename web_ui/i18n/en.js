@@ -58,6 +58,7 @@ export const en = {
   "playground.open": "Open …",
   "playground.openHelp": "Open a playground file (.json, .playground or .zip)",
   "playground.sending": "Loading {name} …",
+  "playground.remarks": "Remarks on this file ({count})",
   "playground.refused": "{name} was not loaded. The playground stays as it was.",
   time: "Time",
   "time.pause": "Pause",

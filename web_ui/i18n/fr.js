@@ -56,6 +56,7 @@ export const fr = {
   "playground.open": "Ouvrir …",
   "playground.openHelp": "Ouvrir un fichier de terrain (.json, .playground ou .zip)",
   "playground.sending": "Chargement de {name} …",
+  "playground.remarks": "Remarques sur ce fichier ({count})",
   "playground.refused": "{name} n’a pas été chargé. Le terrain reste comme il était.",
   time: "Temps",
   "time.pause": "Pause",

@@ -57,6 +57,7 @@ export const it = {
   "playground.open": "Aprire …",
   "playground.openHelp": "Aprire un file di campo (.json, .playground o .zip)",
   "playground.sending": "Caricamento di {name} …",
+  "playground.remarks": "Osservazioni su questo file ({count})",
   "playground.refused": "{name} non è stato caricato. Il campo resta com’era.",
   time: "Tempo",
   "time.pause": "Pausa",

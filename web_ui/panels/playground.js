@@ -10,6 +10,9 @@ export function playgroundPanel({ t, language, actions, announce }) {
   const select = h("select", { id: "playground-choice", "aria-label": t("playground.choose") });
   select.addEventListener("change", () => actions.loadPlayground(select.value));
   const description = h("p", { class: "description" });
+  const summary = h("summary");
+  const notes = h("ul");
+  const remarks = h("details", { class: "remarks", hidden: true }, summary, notes);
   const fault = h("p", { class: "fault", hidden: true });
   const element = card(
     "playground",
@@ -27,9 +30,11 @@ export function playgroundPanel({ t, language, actions, announce }) {
       }),
     ),
     description,
+    remarks,
     fault,
   );
   let listed = "";
+  let noted = "";
   /** @type {import("../state/index.js").Upload | null} */ let shown = null;
   return {
     slot: "side",
@@ -51,6 +56,14 @@ export function playgroundPanel({ t, language, actions, announce }) {
       if (document.activeElement !== select || playground?.phase !== "sending") select.value = current;
       const chosen = playgrounds.find(({ name }) => name === current);
       setText(description, chosen === undefined ? "" : translated(chosen, language).description);
+      const told = JSON.stringify(simulator?.notes ?? []);
+      if (told !== noted) {
+        noted = told;
+        const texts = simulator?.notes ?? [];
+        setText(summary, t("playground.remarks", { count: texts.length }));
+        notes.replaceChildren(...texts.map((text) => h("li", {}, text)));
+        remarks.hidden = texts.length === 0;
+      }
       if (playground === shown) return;
       shown = playground;
       const text =

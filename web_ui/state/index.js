@@ -23,6 +23,7 @@ import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
  * @typedef {object} Simulator
  * @property {string} playground
  * @property {string} title
+ * @property {string[]} notes   what its file says that is left out or looks like a mistake
  * @property {boolean} paused
  * @property {number} factor     wanted
  * @property {number} achieved
@@ -191,6 +192,7 @@ const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any) => Sta
     const simulator = {
       playground: told.playground ?? "",
       title: told.title ?? told.playground ?? "",
+      notes: told.notes ?? [],
       paused: told.paused ?? false,
       factor: told.real_time_factor ?? 1,
       achieved: told.achieved ?? 0,

@@ -137,6 +137,11 @@ def test_what_cannot_be_expressed_is_told_with_its_line(body: str, note: str) ->
     assert note in found
 
 
+def test_remarks_come_in_the_order_of_the_lines() -> None:
+    notes = converted('\n<camera/>\n<feeder/>\n<robot x="50" y="30" port="1"/>\n<teapot/>').notes
+    assert [note.partition(":")[0] for note in notes] == ["line 4", "line 5", "line 6", "line 7"]
+
+
 def test_metadata_is_passed_over_without_a_word() -> None:
     assert converted('<author name="A"/><thanks name="B"/><externalLink name="C"/>').notes == []
 
@@ -145,6 +150,7 @@ def test_metadata_is_passed_over_without_a_word() -> None:
     ("body", "key", "found"),
     [
         ('<wall x="a" y="0"/>', "line 3: <wall> x", "'a'"),
+        ('<wall x="1_0" y="0"/>', "line 3: <wall> x", "'1_0'"),
         ('<wall x="nan" y="0"/>', "line 3: <wall> x", "'nan'"),
         ('<robot x="1e999" y="0"/>', "line 3: <robot> x", "'1e999'"),
         ('<activation area="b" door="d"/>', "line 3: <activation>", "the area 'b'"),

@@ -66,6 +66,7 @@ class _Reader:
             if element.tag == "area"
         }
         self._doors: dict[str, str] = {}
+        self._remarks: list[tuple[int, str]] = []
 
     def read(self) -> Conversion:
         self._world()
@@ -84,13 +85,17 @@ class _Reader:
                 self._note(element, _NOT_EXPRESSED.get(element.tag, "it is not known here"))
         for element in self._elements("camera"):
             self._note(element, "the view is chosen in the page")
+        self._out.notes = [text for _, text in sorted(self._remarks)]
         return self._out
 
     def _elements(self, tag: str) -> Iterator[Element]:
         return (element for element in self._root.children if element.tag == tag)
 
+    def _remark(self, element: Element, text: str) -> None:
+        self._remarks.append((element.line, f"{_place(element)}{text}"))
+
     def _note(self, element: Element, why: str) -> None:
-        self._out.notes.append(f"{_place(element)} left out: {why}")
+        self._remark(element, f" left out: {why}")
 
     def _world(self) -> None:
         worlds = list(self._elements("world"))
@@ -125,7 +130,7 @@ class _Reader:
                 },
             )
         if world.attributes.get("energyScoringSystemEnabled", "false").lower() in ("true", "1"):
-            self._out.notes.append(f"{_place(world)}: the energy score is left out, it is for e-pucks only")
+            self._remark(world, ": the energy score is left out, it is for e-pucks only")
 
     def _wall(self, element: Element) -> None:
         self._out.add_shape(
@@ -216,12 +221,12 @@ class _Reader:
         )
         for attribute in ("port", "nodeId"):
             if attribute in element.attributes:
-                self._out.notes.append(f"{_place(element)}: {attribute} left out, robots are found by their names")
+                self._remark(element, f": {attribute} left out, robots are found by their names")
 
     def _color_of(self, element: Element) -> str:
         name = element.attributes.get("color", "")
         if name not in self._colors:
-            self._out.notes.append(f"{_place(element)}: no color '{name}' is declared, so it is grey")
+            self._remark(element, f": no color '{name}' is declared, so it is grey")
         return self._colors.get(name, DEFAULT_COLOR)
 
 
@@ -260,7 +265,7 @@ def _number(element: Element, attribute: str, default: float = 0.0) -> float:
     if not text:
         return default
     try:
-        value = float(text)
+        value = float(text.replace("_", "?"))  # Python alone takes 1_000 for a number
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
