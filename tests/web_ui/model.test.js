@@ -50,6 +50,26 @@ test("a robot nobody has placed is not drawn", () => {
   assert.equal(model.group.visible, false);
 });
 
+test("a trail grows without its finished strokes being made anew", () => {
+  const strip = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
+  /** @param {number} id @param {number} points */
+  const stroke = (id, points) => ({
+    ...strip,
+    ns: "pen",
+    id,
+    type: 4,
+    points: Array.from({ length: points }, (_, x) => ({ x, y: 0, z: 0 })),
+  });
+  const model = new PlaygroundModel();
+  const everything = { ...strip, action: 3 };
+  model.update(applyMarkers(new Map(), [everything, stroke(0, 4), stroke(1, 2)]));
+  const [finished, growing] = [model.meshes.get("pen/0")?.mesh, model.meshes.get("pen/1")?.mesh];
+  assert.ok(finished !== undefined && growing !== undefined);
+  model.update(applyMarkers(new Map(), [everything, stroke(0, 4), stroke(1, 3)]));
+  assert.equal(model.meshes.get("pen/0")?.mesh, finished);
+  assert.notEqual(model.meshes.get("pen/1")?.mesh, growing);
+});
+
 test("only markers that changed are made anew", () => {
   const wall = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const first = applyMarkers(new Map(), [wall, { ...wall, id: 8, type: 3 }]);

@@ -124,6 +124,15 @@ test("things that move are kept apart from what stays", () => {
   assert.deepEqual([state.markers.size, state.objects.size], [1, 0]);
 });
 
+test("what a pen drew belongs to its robot", () => {
+  const marker = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
+  const state = after([
+    { type: "channels", topics: ["/a/ground_truth/odom", "/b/ground_truth/odom"] },
+    message("/a/pen/trail", { markers: [{ action: 3 }, { ...marker, ns: "a/pen" }] }),
+  ]);
+  assert.deepEqual([state.robots.a.trail.size, state.robots.b.trail.size, state.markers.size], [1, 0, 0]);
+});
+
 test("markers are replaced by namespace and id, and all deleted", () => {
   const marker = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const first = applyMarkers(new Map(), [marker, { ...marker, id: 8 }]);

@@ -36,7 +36,7 @@ export class SceneView {
     this.requested = false;
     this.showSensors = true;
     /** @type {Target | null} */ this.hovered = null;
-    /** @type {Map<string, { model: RobotModel, label: HTMLElement }>} */ this.robots = new Map();
+    /** @type {Map<string, { model: RobotModel, trail: PlaygroundModel, label: HTMLElement }>} */ this.robots = new Map();
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(SKY);
     this.playground = new PlaygroundModel(() => this.invalidate());
@@ -122,10 +122,11 @@ export class SceneView {
 
   /** @param {State} state @param {number} nowMs */
   #updateRobots(state, nowMs) {
-    for (const [name, { model, label }] of [...this.robots]) {
+    for (const [name, { model, trail, label }] of [...this.robots]) {
       if (name in state.robots) continue;
-      this.scene.remove(model.group);
+      this.scene.remove(model.group, trail.group);
       model.dispose();
+      trail.dispose();
       label.remove();
       this.robots.delete(name);
     }
@@ -133,12 +134,13 @@ export class SceneView {
     for (const [name, robot] of Object.entries(state.robots)) {
       let entry = this.robots.get(name);
       if (entry === undefined) {
-        entry = { model: new RobotModel(name), label: document.createElement("span") };
+        entry = { model: new RobotModel(name), trail: new PlaygroundModel(), label: document.createElement("span") };
         entry.label.className = "robot-label";
         this.labels.append(entry.label);
-        this.scene.add(entry.model.group);
+        this.scene.add(entry.model.group, entry.trail.group);
         this.robots.set(name, entry);
       }
+      entry.trail.update(robot.trail);
       const hovered = this.hovered?.robot === name ? this.hovered.button : null;
       moving = entry.model.update(robot, hovered, nowMs) || moving;
       for (const { group } of entry.model.sensing) group.visible = this.showSensors;

@@ -40,7 +40,7 @@ export class PlaygroundModel {
     for (const [key, entry] of [...this.meshes]) {
       const next = markers.get(key);
       if (next === entry.marker) continue;
-      if (next !== undefined && isSameSolid(entry.marker, next)) {
+      if (next !== undefined && (isSameSolid(entry.marker, next) || isSameStrip(entry.marker, next))) {
         entry.marker = next;
         place(entry.mesh, next);
       } else this.#remove(key);
@@ -136,6 +136,22 @@ function isSameSolid(one, two) {
   /** @param {Marker} marker */
   const looks = ({ type, scale, color }) => [type, ...Object.values(scale), ...Object.values(color)].join(" ");
   return (one.type === MARKER.CUBE || one.type === MARKER.CYLINDER) && looks(one) === looks(two);
+}
+
+/**
+ * Whether two strips are the same: a trail is told again as a whole when the pen has drawn on.
+ *
+ * @param {Marker} one
+ * @param {Marker} two
+ */
+function isSameStrip(one, two) {
+  if (one.type !== MARKER.LINE_STRIP || two.type !== MARKER.LINE_STRIP || one.points.length !== two.points.length) {
+    return false;
+  }
+  /** @param {Marker} marker */
+  const looks = ({ scale, color, points }) =>
+    [points[0], points.at(-1), scale, color].flatMap((part) => Object.values(part ?? {})).join(" ");
+  return looks(one) === looks(two);
 }
 
 /** @param {Marker} marker */

@@ -17,6 +17,7 @@ export const ROBOT_TOPICS = [
   "raw/ground",
   "raw/motor",
   "aseba/status",
+  "pen/trail",
   ...PROXIMITY.map((name) => `proximity/${name}`),
   ...GROUND.map((name) => `ground/${name}`),
   ...BUTTONS.map((name) => `buttons/${name}`),

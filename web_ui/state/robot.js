@@ -1,7 +1,9 @@
 // What the page knows of one robot, and how each of its topics changes that.
 
+import { applyMarkers } from "./markers.js";
 import { BUTTONS } from "./names.js";
 
+/** @typedef {import("./markers.js").Marker} Marker */
 /** @typedef {{ x: number, y: number, z: number, yaw: number, roll: number, pitch: number }} Pose  metres, radians */
 /** @typedef {{ pose: Pose, stampNs: number, arrivedMs: number }} PoseSample */
 /**
@@ -23,6 +25,7 @@ import { BUTTONS } from "./names.js";
  * @property {Record<string, number>} ground                     Range: ±Infinity
  * @property {Record<string, number[]>} raw                      Thymio integers by sensor
  * @property {Record<string, boolean>} buttons
+ * @property {ReadonlyMap<string, Marker>} trail                 what its pen has drawn
  */
 
 /** @type {Robot} */
@@ -36,6 +39,7 @@ export const NEW_ROBOT = {
   ground: {},
   raw: {},
   buttons: Object.fromEntries(BUTTONS.map((name) => [name, false])),
+  trail: new Map(),
 };
 
 /** One row per topic, or per folder of topics (then `leaf` is the rest of the name). */
@@ -50,6 +54,7 @@ const READERS = /** @type {Record<string, (robot: Robot, value: any, leaf: strin
   proximity: (robot, value, leaf) => ({ ...robot, proximity: { ...robot.proximity, [leaf]: value.range } }),
   ground: (robot, value, leaf) => ({ ...robot, ground: { ...robot.ground, [leaf]: value.range } }),
   buttons: (robot, value, leaf) => ({ ...robot, buttons: { ...robot.buttons, [leaf]: value.data } }),
+  "pen/trail": (robot, value) => ({ ...robot, trail: applyMarkers(robot.trail, value.markers) }),
   raw: (robot, value, leaf) => ({ ...robot, raw: { ...robot.raw, [leaf]: value.data } }),
 });
 
