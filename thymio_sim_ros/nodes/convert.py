@@ -271,7 +271,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
     "loudspeaker": (
         Row("sound/state/wave", Int8MultiArray, _heard_wave, profile=qos.LATCHED, always=True, on_change=True),
         Row("sound/state/samples", UInt8MultiArray, _heard_samples, profile=qos.EVENTS),
-        Row("sound/state", Float32MultiArray, _sound, profile=qos.EVENTS),
+        Row("sound/state", Float32MultiArray, _sound, profile=qos.LATCHED, always=True),
     ),
 }
 """Sensor name → topics in SI units. Besides, every sensor that Aseba sees has `raw/<sensor>`."""
