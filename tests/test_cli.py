@@ -125,6 +125,11 @@ def test_settings_that_cannot_be_read_are_one_line(capsys, tmp_path):
     assert "sound_shift: expected 1 whole numbers" in refused(capsys, "runner", "--settings", str(tmp_path))
 
 
+def test_a_log_in_no_folder_is_one_line(capsys, tmp_path):
+    path = tmp_path / "nowhere" / "run.jsonl"
+    assert refused(capsys, "--log", str(path)).endswith("run.jsonl: expected a file in a folder that exists")
+
+
 @pytest.mark.parametrize("option", ["--layout", "--events", "--motors"])
 def test_a_choice_that_does_not_exist_lists_the_others(capsys, option):
     with pytest.raises(SystemExit, match="2"):

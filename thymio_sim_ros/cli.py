@@ -77,7 +77,10 @@ def start_suite(argv: Sequence[str]) -> int:
         foxglove=not options.headless,
         seed=options.seed,
         real_time_factor=options.real_time_factor,
+        log="" if options.log is None else str(options.log),
     )
+    if options.log is not None and (options.log.is_dir() or not options.log.parent.is_dir()):
+        raise UsageError(f"{options.log}: expected a file in a folder that exists")
     _check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
     if suite.web:
         _check_port(suite.port, "the page", "--port")
@@ -211,7 +214,6 @@ def _runner_parser() -> argparse.ArgumentParser:
     _add_world_options(parser)
     parser.add_argument("--seconds", type=_seconds, default=60.0, help="simulated seconds (default: %(default)g)")
     parser.add_argument("--sound", type=_path, metavar="FILE.wav", help="store what the robots' loudspeakers said")
-    parser.add_argument("--log", type=_path, metavar="FILE", help="write a run log that `thymio-sim replay` does again")
     return parser
 
 
@@ -235,6 +237,7 @@ def _add_world_options(parser: argparse.ArgumentParser) -> None:
         help="what the robot is switched on with, such as menu; the program then waits in the menu",
     )
     parser.add_argument("--seed", type=int, default=Suite.seed, help="seed of all noise (default: %(default)s)")
+    parser.add_argument("--log", type=_path, metavar="FILE", help="write a run log that `thymio-sim replay` does again")
     robot = parser.add_argument_group("the robot")
     robot.add_argument(
         "--card",

@@ -18,8 +18,8 @@ class Suite:
     """One start of simulator, Aseba runtime, Foxglove bridge and page.
 
     `playground`: shipped name, path or JSON text; `program`: behaviour or path; `behaviour`: what the robot is
-    switched on with instead, the program then waiting in its menu. `cmd_vel_timeout_s`: browser teleop sends nothing on
-    release, hence half a second (ros-interface.md section 13).
+    switched on with instead, the program then waiting in its menu; `log`: file of a run log, empty for none.
+    `cmd_vel_timeout_s`: browser teleop sends nothing on release, hence half a second (ros-interface.md section 13).
     """
 
     playground: str = "line"
@@ -32,5 +32,6 @@ class Suite:
     web: bool = True
     foxglove: bool = True
     seed: int = 0
+    log: str = ""
     real_time_factor: float = 1.0
     cmd_vel_timeout_s: float = 0.5

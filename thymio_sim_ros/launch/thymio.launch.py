@@ -22,6 +22,7 @@ ARGUMENTS = {
     "events": ("firmware", "how events meet: firmware or playground"),
     "motor_model": ("ideal", "how motors follow: ideal or firmware"),
     "seed": ("0", "seed of all noise"),
+    "log": ("", "file of a run log for thymio-sim replay; '' is none"),
     "real_time_factor": ("1.0", "simulated seconds per second; 0: as fast as possible"),
     "cmd_vel_timeout": ("0.0", "seconds after which a velocity command ends; 0: never"),
     "driver_compat": ("false", "report ranges as the existing Thymio driver does (-1 for nothing)"),
@@ -40,6 +41,7 @@ def generate_launch_description() -> LaunchDescription:
     simulator = {
         "playground": ParameterValue(value["playground"], value_type=str),
         "seed": ParameterValue(value["seed"], value_type=int),
+        "log": ParameterValue(value["log"], value_type=str),
         "real_time_factor": ParameterValue(value["real_time_factor"], value_type=float),
         "cmd_vel_timeout": ParameterValue(value["cmd_vel_timeout"], value_type=float),
         "motor_model": ParameterValue(value["motor_model"], value_type=str),
