@@ -259,3 +259,15 @@ def test_a_native_takes_any_words_and_the_world_takes_what_comes_of_it(
         world.post("thymio", command)
     world.step()
     assert device.status.state in ("running", "fault", "off")
+
+
+@pytest.mark.parametrize(("events", "heard"), [("firmware", 50), ("playground", 20)])
+def test_buttons_are_heard_as_often_as_the_policy_says(events: str, heard: int) -> None:
+    device = AsebaDevice(options=DeviceOptions(events=events))
+    device.load(load_program("var n = 0\nonevent buttons\nn++", "test"))
+    for tick in range(100):
+        if tick % 2 == 0:
+            device.feed("buttons", (0,) * 5)
+        device.advance(tick * 10_000_000)
+        run(device)
+    assert device.get_variable("n") == (heard,)

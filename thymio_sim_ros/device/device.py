@@ -57,6 +57,8 @@ class AsebaDevice:
         self._intensity = self._addresses["mic.intensity"][0]
         self._sound_finished = self._event_index("sound.finished")
         self._rc5 = self._event_index("rc5")
+        self._slow = self._queue.policy.periods_ns
+        self._heard: dict[str, int] = {}
         self._rules = OwnRules(self._addresses)
         self._rules_ns = 0
         self._now_ns = 0
@@ -138,6 +140,8 @@ class AsebaDevice:
         binding = self._sensors[sensor]
         if len(words) != binding.size:
             raise ValueError(f"{len(words)} words found, expected {binding.size}")
+        if sensor in self._slow and not self._is_due(sensor):
+            return
         new = list(words)
         memory, old, wanted = self._vm.variables.words, self._last.get(sensor), self._handled | self._watched
         for address, begin, end in binding.runs:
@@ -348,6 +352,12 @@ class AsebaDevice:
         self.body.settings.restart()
         self._vm.reset()
         self._run_again()
+
+    def _is_due(self, sensor: str) -> bool:
+        """Whether a new period of a sensor that is heard less often has begun."""
+        number = self._now_ns // self._slow[sensor]
+        before, self._heard[sensor] = self._heard.get(sensor), number
+        return number != before
 
     def _start_next(self) -> None:
         """Start the next event, or count time up to the next timer event; at the end comes what belongs to now."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from thymio_sim_ros.device.timers import Timers
 
@@ -23,18 +23,20 @@ MOST_WAITING = 100
 class Policy:
     """How local events meet: whether those that wait are one, whether they end a handler that runs.
 
-    `turn`: instructions of a handler before something else may happen.
+    `turn`: instructions of a handler before something else may happen. `periods_ns`: sensors that are heard less often
+    than they measure.
     """
 
     coalesces: bool
     kills: bool
     turn: int
+    periods_ns: Mapping[str, int] = field(default_factory=dict)
 
 
 FIRMWARE, PLAYGROUND = "firmware", "playground"
 POLICIES: Mapping[str, Policy] = {
     FIRMWARE: Policy(coalesces=True, kills=False, turn=65535),
-    PLAYGROUND: Policy(coalesces=False, kills=True, turn=1000),
+    PLAYGROUND: Policy(coalesces=False, kills=True, turn=1000, periods_ns={"buttons": 50_000_000}),
 }
 """The robot, and the reference playground."""
 
