@@ -79,13 +79,13 @@ def ros(request: pytest.FixtureRequest) -> Iterator[Ros]:
     """A private context and executor in a private domain; afterwards no thread of ours is left."""
     if importlib.util.find_spec("rclpy") is None:
         pytest.skip(NO_ROS)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # lark, imported by rosidl_parser
-        from thymio_sim_ros.testing.ros import Ros
-
     domain = request.getfixturevalue("ros_domain")
     threads = set(threading.enumerate())
-    ros = Ros(domain, folder=request.path.parent)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # lark, imported with the first node's messages
+        from thymio_sim_ros.testing.ros import Ros
+
+        ros = Ros(domain, folder=request.path.parent)
     yield ros
     ros.close()
     left = [thread.name for thread in set(threading.enumerate()) - threads if not thread.daemon]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import threading
 
@@ -231,15 +230,6 @@ def test_a_default_context_of_somebody_else_is_left_alone(ros_domain):
 def test_code_under_test_may_use_the_default_context(ros):
     assert rclpy.ok()
     assert rclpy.create_node("plain").context is ros.context
-
-
-def test_every_test_has_a_domain_of_its_own():
-    own = os.environ.get("ROS_DOMAIN_ID")
-    with reserved() as one, reserved() as other:
-        assert one != other
-        assert os.environ["ROS_DOMAIN_ID"] == str(other)
-        assert str(own or 0) not in (str(one), str(other))
-    assert os.environ.get("ROS_DOMAIN_ID") == own
 
 
 def test_two_domains_hear_nothing_of_each_other(ros):

@@ -16,6 +16,11 @@ DOMAINS = range(1, 101)
 DOMAIN_PORT = 17400
 """Loopback port of domain 0; who holds port + id has the domain."""
 
+DISCOVERY_PORT = 7400
+PORTS_PER_DOMAIN = 250
+PARTICIPANT_PORTS = (0, *range(10, 32, 2))
+"""UDP ports of a domain (ros-packaging.md section 4): discovery by multicast, then its first participants'."""
+
 _turns = itertools.count(os.getpid())
 
 
@@ -39,10 +44,27 @@ def reserved() -> Iterator[int]:
                 held.bind(("127.0.0.1", DOMAIN_PORT + domain))
             except OSError:
                 continue
+            if _is_spoken_in(domain):
+                continue
             with _environment(ROS_DOMAIN_ID=str(domain), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST"):
                 yield domain
             return
     raise NoDomainError(f"no free ROS domain on this machine: {len(free)} are in use")
+
+
+def _is_spoken_in(domain: int) -> bool:
+    """Whether somebody who holds nothing uses the domain."""
+    first = DISCOVERY_PORT + PORTS_PER_DOMAIN * domain
+    return not all(_is_free(first + port) for port in PARTICIPANT_PORTS)
+
+
+def _is_free(port: int) -> bool:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.bind(("", port))
+        except OSError:
+            return False
+    return True
 
 
 @contextlib.contextmanager

@@ -82,11 +82,20 @@ class Simulation:
         return next(iter(self))
 
     def run_program(self, runtime: AsebaRuntime) -> None:
-        """An Aseba runtime node of this test: its machines work with every tick, and what they emit is noted."""
+        """An Aseba runtime node of this test: its machines work with every tick, and what they emit is noted.
+
+        It waits until the node knows the robots: a latched message takes its time.
+        """
+        robots = ros_names(tuple(self.world.robots))
+        if runtime.params.follow_simulator:
+            wanted = [names.name for names in robots.values()]
+            self.ros.until(
+                lambda: [ports.names.name for ports in runtime.robots] == wanted, what="the runtime knows the robots"
+            )
         self._runtimes.append(runtime)
         if len(self._runtimes) > 1:
             return
-        for name, names in ros_names(tuple(self.world.robots)).items():
+        for name, names in robots.items():
             topic = names.topic("aseba/events")
             self.ros.node.create_subscription(Int16MultiArray, topic, partial(self._hear, name), qos.EVENTS)
 

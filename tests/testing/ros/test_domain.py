@@ -1,0 +1,45 @@
+"""Domains: private to a test, free of others, left as they were found."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+import rclpy
+from rclpy.context import Context
+
+from thymio_sim_ros.testing.ros import domain
+from thymio_sim_ros.testing.ros.domain import NoDomainError, reserved
+
+
+def test_every_test_has_a_domain_of_its_own():
+    own = os.environ.get("ROS_DOMAIN_ID")
+    with reserved() as one, reserved() as other:
+        assert one != other
+        assert os.environ["ROS_DOMAIN_ID"] == str(other)
+        assert os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
+    assert os.environ.get("ROS_DOMAIN_ID") == own
+
+
+def test_the_user_s_own_domain_is_left_alone(monkeypatch):
+    monkeypatch.setattr(domain, "DOMAINS", range(91, 93))
+    monkeypatch.setenv("ROS_DOMAIN_ID", "91")
+    with reserved() as one:
+        assert one == 92
+        monkeypatch.setenv("ROS_DOMAIN_ID", "91")
+        with pytest.raises(NoDomainError, match="1 are in use"), reserved():
+            pass
+
+
+def test_a_domain_in_which_somebody_speaks_is_left_alone(monkeypatch):
+    context = Context()
+    with reserved() as busy:
+        rclpy.init(args=[], context=context, domain_id=busy)
+    node = rclpy.create_node("somebody", context=context)
+    monkeypatch.setattr(domain, "DOMAINS", [busy])
+    try:
+        with pytest.raises(NoDomainError), reserved():
+            pass
+    finally:
+        node.destroy_node()
+        context.try_shutdown()
