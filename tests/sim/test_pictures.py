@@ -97,9 +97,49 @@ def test_an_svg_that_depends_on_something_else_is_refused(body: str, found: str)
     assert (error.key, error.found) == ("image (SVG line 1)", found)
 
 
-def test_an_svg_that_repeats_itself_without_end_is_refused() -> None:
-    groups = [f'<g id="g{i + 1}"><use href="#g{i}"/><use href="#g{i}"/></g>' for i in range(40)]
-    assert "elements to draw" in refused(svg_uri('<rect id="g0" width="1" height="1"/>' + "".join(groups))).found
+DOUBLING = {
+    "use": ('<g id="g{n}"><use href="#g{m}"/><use href="#g{m}"/></g>', '<rect id="g0" width="1" height="1"/>'),
+    "pattern": (
+        '<pattern id="g{n}" width="1" height="1"><rect fill="url(#g{m})" width="1" height="1"/>'
+        '<rect fill="url(#g{m})" width="1" height="1"/></pattern>',
+        '<pattern id="g0" width="1" height="1"/>',
+    ),
+    "clipPath": ('<clipPath id="g{n}" clip-path="url(#g{m})"><use href="#g{m}"/></clipPath>', '<clipPath id="g0"/>'),
+}
+
+
+@pytest.mark.parametrize("kind", DOUBLING)
+def test_an_svg_that_repeats_itself_without_end_is_refused(kind: str) -> None:
+    step, start = DOUBLING[kind]
+    steps = "".join(step.format(n=n + 1, m=n) for n in range(30))
+    assert "elements to draw" in refused(svg_uri(start + steps + '<rect fill="url(#g30)"/>')).found
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "<g opacity='0.9'>" * 60 + "</g>" * 60,
+        '<rect id="g0"/>' + "".join(f'<g id="g{n + 1}"><use href="#g{n}"/></g>' for n in range(3000)),
+        "".join(f'<g id="g{n}"><use href="#g{n + 1}"/></g>' for n in range(3000)) + '<rect id="g3000"/>',
+    ],
+)
+def test_an_svg_that_is_too_deep_is_refused(body: str) -> None:
+    assert refused(svg_uri(body)).found == "elements more than 40 deep"
+
+
+def test_a_circle_of_references_is_refused() -> None:
+    body = '<g id="a"><use href="#b"/></g><g id="b"><use href="#a"/></g><rect width="9" height="9"/>'
+    assert "elements to draw" in refused(svg_uri(body)).found
+
+
+def test_references_in_a_style_sheet_are_refused() -> None:
+    assert refused(svg_uri("<style>rect { fill: url(#a) }</style>")).found == "url(…) in <style>"
+
+
+def test_an_svg_of_a_large_ground_is_drawn_coarser() -> None:
+    pytest.importorskip("resvg_py")
+    found = decode(svg_uri("<rect/>", 'viewBox="0 0 100 100"'), 50.0)
+    assert found.columns * found.rows <= 6_000_000
 
 
 @pytest.mark.parametrize("attributes", ["", 'viewBox="0 0 1 100000"', 'width="10" height="0"', 'viewBox="0 0 a b"'])
