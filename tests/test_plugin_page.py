@@ -194,3 +194,11 @@ def test_a_shape_that_raises_refuses_the_playground_with_its_key(
         path = resources.find_playground("slalom_field")
         with pytest.raises(playground.PlaygroundError, match=r"shapes\[1\]: found KeyError: 'posts'"):
             playground.load(path)
+
+
+@pytest.mark.usefixtures("extras")
+def test_a_robot_can_be_switched_on_with_its_behaviour() -> None:
+    runner = Runner(load_playground("slalom_field")[1], behaviour="go_north")
+    (robot,) = runner.world.robots.values()
+    runner.run(6.0)
+    assert math.degrees(robot.pose.yaw_rad) == pytest.approx(90, abs=15)
