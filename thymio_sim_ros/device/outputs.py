@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from aseba_vm import VirtualMachine
 from thymio_sim_ros.device import bindings
+from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.own_rules import OwnRules
 from thymio_sim_ros.device.settings import Settings
 from thymio_sim_ros.sim.commands import (
@@ -34,6 +35,7 @@ class Outputs:
         """`settings` correct the wheels; `rules` lose the lights and the sounds that a program uses."""
         self.has_used_sound = False
         """Whether the program has used sound since the reset."""
+        self._addresses = target(layout).addresses
         self._outputs = bindings.outputs(layout)
         self._settings = settings
         self._rules = rules
@@ -107,9 +109,9 @@ class Outputs:
     def _write(self, variable: str, words: Sequence[int]) -> None:
         """Set a variable of the machine, if its layout has it, as if it had been told."""
         assert self._vm is not None
-        if variable not in self._vm.target.addresses:
+        if variable not in self._addresses:
             return
-        address, _ = self._vm.target.addresses[variable]
+        address, _ = self._addresses[variable]
         self._vm.write_variables(address, words)
         for output, sent in zip(self._outputs, self._sent, strict=True):
             if output.slots[0].address == address:
