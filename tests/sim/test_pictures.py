@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import struct
+import sys
 import zlib
 
 import pytest
@@ -180,3 +181,15 @@ def test_a_picture_to_look_at_may_be_made_smaller() -> None:
     rows = [[WHITE] * 100] * 40
     smaller = decode(data_uri(pictures.encode_png(pixels(rows), most=50), "image/png"))
     assert (smaller.columns, smaller.rows) == (50, 20)
+
+
+@pytest.mark.parametrize(
+    ("module", "package", "uri"),
+    [("resvg_py", "resvg-py", svg_uri("<rect/>")), ("PIL.Image", "Pillow", png_uri([[WHITE]]))],
+)
+def test_without_its_package_a_picture_is_refused_with_the_way_out(
+    monkeypatch: pytest.MonkeyPatch, module: str, package: str, uri: str
+) -> None:
+    monkeypatch.setitem(sys.modules, module, None)
+    error = refused(uri)
+    assert (error.key, error.expected) == ("image", f"`pip install {package}`")
