@@ -27,8 +27,8 @@ Act = Callable[[Sequence[Any], GroupActuatorView, float], None]
 
 S = TypeVar("S")
 
-CROWD = 6
-"""From so many robots on, measuring all at once is quicker (benchmarks/simulator.py)."""
+CROWD = 14
+"""From so many robots on, all at once is quicker (measured, docs/performance.md)."""
 
 _NOWHERE_M = -1e6
 
@@ -126,8 +126,8 @@ class Crowd:
     def poses(self) -> Values:
         """Where they really are now: rows x, y, yaw; who has fallen is far from any floor."""
         poses = self._fleet.poses
-        fallen = [index for index, robot in enumerate(self._robots) if robot.is_fallen]
-        if fallen:
+        fallen = self._fleet.fallen
+        if len(fallen):
             poses = poses.copy()
             poses[fallen] = [(_NOWHERE_M, index, 0.0) for index in fallen]
         return poses
@@ -158,8 +158,7 @@ class Crowd:
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
         """What the rays of all robots meet now (`Raycaster.cast`)."""
-        fallen = {index for index, robot in enumerate(self._robots) if robot.body.is_fallen}
-        self._caster.move(self.shared.physics.loose(), fallen)
+        self._caster.move(self.shared.physics.loose(), frozenset(self._fleet.fallen.tolist()))
         return self._caster.cast(self.poses, fan)
 
     def measure(self, due: Sequence[int]) -> Columns:

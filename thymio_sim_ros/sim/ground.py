@@ -172,18 +172,21 @@ class Ground:
     def _footprints(self, rows: _Indices, columns: _Indices) -> tuple[_Values, _Values]:
         """Samples by the pixels of their taps; summed in the order of `_weigh`."""
         height, width = self._picture.pixels.shape
-        seen = self._picture.pixels[rows.clip(0, height - 1)[:, :, None], columns.clip(0, width - 1)[:, None, :]]
-        seen[((rows < 0) | (rows == height))[:, :, None] | ((columns < 0) | (columns == width))[:, None, :]] = 0
+        columns = columns.T  # the taps along x come first, so that their sum is quick
+        seen = self._picture.pixels[rows.clip(0, height - 1)[None, :, :], columns.clip(0, width - 1)[:, :, None]]
+        if rows.min() < 0 or rows.max() == height or columns.min() < 0 or columns.max() == width:
+            beyond = ((rows < 0) | (rows == height))[None, :, :] | ((columns < 0) | (columns == width))[:, :, None]
+            seen[beyond] = 0
         grey = self._mean(self._picture.greys[seen])
         if seen.all():
             return grey, np.ones_like(grey)
         return _over_floor(grey, self._mean((seen == 0).astype(float)))
 
     def _mean(self, values: _Values) -> _Values:
-        """The weighted mean over rows and columns of taps: along the columns, then along the rows."""
-        across = self._weights[0] * values[:, :, 0]
+        """The weighted mean over the taps of footprints, by tap along x, footprint, tap along y."""
+        across = self._weights[0] * values[0]
         for tap in range(1, _TAPS):
-            across += self._weights[tap] * values[:, :, tap]
+            across += self._weights[tap] * values[tap]
         mean: _Values = self._weights[0] * across[:, 0]
         for tap in range(1, _TAPS):
             mean += self._weights[tap] * across[:, tap]

@@ -19,6 +19,8 @@ from thymio_sim_ros.sim.rays import Obstacle
 __all__ = ["Fan", "Indices", "Raycaster", "Values"]
 
 _MARGIN_M = 0.15
+_SAME_M = 1e-9
+"""Sizes closer than this are those of the same thing."""
 _TINY = 1e-300
 """Stands for 0 where a ray runs along a side."""
 _HULL_FRAME, _HULL_PLANES = polygon_in_frame(thymio2.hull())
@@ -65,7 +67,7 @@ class Raycaster:
         self._loose = list(loose)
         self._fallen: frozenset[int] = frozenset()
         self._lists: dict[Fan, tuple[Values, Indices, Indices]] = {}
-        """For each fan: where the robots were, and the pairs that were near then."""
+        """For each fan: where loose things and robots were, and the pairs that were near then."""
 
     def move(self, loose: Sequence[Obstacle | None], fallen: Collection[int] = ()) -> None:
         """The things that can move, each at its place of old or elsewhere, in their first order; None for what is gone.
@@ -78,8 +80,11 @@ class Raycaster:
         for index, obstacle in enumerate(loose):
             if obstacle is not self._loose[index]:
                 self._loose[index] = obstacle
+                row = self._frames.rows[self._fixed + index]
+                size = row[4:].copy()
                 self._frames.put(self._fixed + index, obstacle)
-                self._lists.clear()
+                if np.abs(row[4:] - size).max() > _SAME_M:
+                    self._lists.clear()
 
     def cast(self, poses: Values, fan: Fan) -> tuple[Indices, Values]:
         """Rays of robots at `poses` (rows x, y, yaw): which sensors see anything, and how far each of their rays goes.
@@ -143,8 +148,9 @@ class Raycaster:
     def _near(self, poses: Values, frames: Values, fan: Fan) -> tuple[Indices, Indices]:
         """Pairs of robots and things, at least as high as the rays, that may be in reach: robot by robot."""
         found = self._lists.get(fan)
-        if found is None or np.abs(poses[:, :2] - found[0]).max(initial=0.0) > _MARGIN_M / 3:
-            found = self._lists[fan] = (poses[:, :2].copy(), *self._pairs(poses, frames, fan))
+        places = np.concatenate((frames[self._fixed : len(frames) - len(poses), :2], poses[:, :2]))
+        if found is None or np.abs(places - found[0]).max(initial=0.0) > _MARGIN_M / 3:
+            found = self._lists[fan] = (places, *self._pairs(poses, frames, fan))
         return found[1:]
 
     def _pairs(self, poses: Values, frames: Values, fan: Fan) -> tuple[Indices, Indices]:
@@ -154,7 +160,7 @@ class Raycaster:
         wide_x = np.minimum(half, np.abs(frames[:, 2]) * frames[:, 4] + np.abs(frames[:, 3]) * frames[:, 5]) + reach
         wide_y = np.minimum(half, np.abs(frames[:, 3]) * frames[:, 4] + np.abs(frames[:, 2]) * frames[:, 5]) + reach
         own = len(frames) - len(poses)
-        wide_x[own:] = wide_y[own:] = half[own:] + reach  # robots turn
+        wide_x[self._fixed :] = wide_y[self._fixed :] = half[self._fixed :] + reach  # what moves may turn
         high = np.flatnonzero(frames[:, HEIGHT] >= fan.height_m)
         order = np.argsort(poses[:, 0], kind="stable")
         xs = poses[order, 0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.sim.enki.scenes import Scene
@@ -19,8 +20,13 @@ def test_a_ground_reads_as_measured(scene: Scene) -> None:
     ground = ground_of(scene)
     start = scene["robots"][0]
     pose = Pose(start["x"], start["y"], start["theta"])
-    counts = [response(ground.sample(*pose.place(place))) for place in thymio2.GROUND_SENSORS]
-    assert counts == pytest.approx(scene["noiseless"], abs=2)
+    places = [pose.place(place) for place in thymio2.GROUND_SENSORS]
+    samples = [ground.sample(*place) for place in places]
+    assert [response(sample) for sample in samples] == pytest.approx(scene["noiseless"], abs=2)
+    reflectances, floors = ground.sample_all(*np.array(places).T)
+    assert list(zip(reflectances.tolist(), floors.tolist(), strict=True)) == [
+        (sample.reflectance, sample.floor) for sample in samples
+    ]
 
 
 def ground_of(scene: Scene) -> Ground:

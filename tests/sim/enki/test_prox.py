@@ -12,7 +12,9 @@ GRAZE_M = 1e-9
 
 
 @pytest.mark.enki("prox")
-def test_a_scene_reads_as_measured_in_enki_mode(scene: Scene) -> None:
+@pytest.mark.parametrize("crowd", [10**9, 1], ids=["alone", "at once"])
+def test_a_scene_reads_as_measured_in_enki_mode(monkeypatch: pytest.MonkeyPatch, scene: Scene, crowd: int) -> None:
+    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
     found = [_read(scene, grown_m) for grown_m in (0.0, GRAZE_M, -GRAZE_M)]
     expected = pytest.approx(scene["noiseless"], abs=2)
     assert any(words == expected for words in found), (found[0], scene["noiseless"])

@@ -26,6 +26,7 @@ from thymio_sim_ros.sim.physics.robots import MOMENT_KG_M2, PUSH_N_S_M, RobotBod
 __all__ = ["Fleet"]
 
 Values = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.intp]
 
 _Fields = batch.BodyFields
 _SPEEDS = _Fields.VELOCITY | _Fields.ANGULAR_VELOCITY
@@ -53,9 +54,10 @@ class Fleet:
         """Speed over ground that each wheel gives, m/s: left, then right."""
         self.covered = np.zeros((2, count))
         """Speed over ground at each wheel, mean of the last tick, m/s."""
-        self.has_news = True
-        """To be set when a contact begins or ends."""
-        self._touching = self._is_free = np.zeros(count, dtype=bool)
+        self.changed: set[RobotBody] = set(self._bodies)
+        """To be filled with those for whom a contact begins or ends."""
+        self._index = {body: index for index, body in enumerate(self._bodies)}
+        self._touching, self._is_free = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         self._angle = self._speed = self._spin = self._heading = np.zeros(count)
         self._state = np.zeros((count, 6))
         self._stands = np.ones(count, dtype=bool)
@@ -81,6 +83,13 @@ class Fleet:
             self._take()
         return self._state[:, :3]
 
+    @property
+    def fallen(self) -> Indices:
+        """The numbers of those who have fallen."""
+        if self._is_released:
+            self._take()
+        return np.flatnonzero(~self._stands)
+
     def tell(self) -> None:
         """Write to the bodies what the last tick has made of them."""
         if self._is_told:
@@ -94,7 +103,8 @@ class Fleet:
     def release(self) -> None:
         """Let the bodies be changed until the next tick."""
         self.tell()
-        self._is_released = self.has_news = True
+        self._is_released = True
+        self.changed.update(self._bodies)
 
     def begin_tick(self) -> None:
         """As `RobotBody.begin_tick`."""
@@ -103,12 +113,13 @@ class Fleet:
         self._look_at_contacts()
         self._is_free = ~self._touching
         self.covered = self.driven.copy()
-        for index in np.flatnonzero(self._touching).tolist():
-            touching = self._bodies[index].touching
-            for key, contact in touching.items():
+        touching = np.flatnonzero(self._touching)
+        self.covered[:, touching] = 0.0
+        for index in touching.tolist():
+            contacts = self._bodies[index].touching
+            for key, contact in contacts.items():
                 if contact.is_new:
-                    touching[key] = replace(contact, is_new=False)
-            self.covered[:, index] = 0.0
+                    contacts[key] = replace(contact, is_new=False)
 
     def push(self) -> None:
         """As `RobotBody.push`."""
@@ -173,9 +184,9 @@ class Fleet:
         return [self._bodies[index] for index in np.flatnonzero(self._touching).tolist()]
 
     def _look_at_contacts(self) -> None:
-        if self.has_news:
-            self._touching = np.array([bool(body.touching) for body in self._bodies], dtype=bool)
-            self.has_news = False
+        for body in self.changed:
+            self._touching[self._index[body]] = bool(body.touching)
+        self.changed.clear()
 
     def _take(self) -> None:
         """Read what the bodies are."""

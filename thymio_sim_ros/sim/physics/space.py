@@ -252,6 +252,6 @@ class Physics:
             return pymunk.Circle(body, solid.outline.radius_m, (solid.pose.x_m, solid.pose.y_m))
         return pymunk.Poly(body, solid.vertices)
 
-    def _tell_fleet(self) -> None:
+    def _tell_fleet(self, robot: RobotBody) -> None:
         if self._fleet is not None:
-            self._fleet.has_news = True
+            self._fleet.changed.add(robot)

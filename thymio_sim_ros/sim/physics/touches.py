@@ -20,10 +20,10 @@ _THING_TYPE = 2
 class Touches:
     """The contacts in a space. Invariant: every shape in it has a name here, every robot's shape its robot.
 
-    `news` is called when a contact begins or ends.
+    `news` is called with a robot when a contact of it begins or ends.
     """
 
-    def __init__(self, space: pymunk.Space, news: Callable[[], None], *, do_things_bounce: bool) -> None:
+    def __init__(self, space: pymunk.Space, news: Callable[[RobotBody], None], *, do_things_bounce: bool) -> None:
         self._news = news
         self._names: dict[pymunk.Shape, str] = {}
         self._robots: dict[pymunk.Shape, RobotBody] = {}
@@ -53,7 +53,6 @@ class Touches:
         del self._names[shape]
 
     def _on_begin(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
-        self._news()
         one, other = arbiter.shapes
         points = arbiter.contact_point_set
         x, y = _middle(points)
@@ -61,14 +60,15 @@ class Touches:
         for mine, its in ((one, other), (other, one)):
             robot = self._robots.get(mine)
             if robot is not None:
+                self._news(robot)
                 robot.touching[its] = Contact(robot.name, self._names[its], x, y, speed, True)
 
     def _on_separate(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
-        self._news()
         one, other = arbiter.shapes
         for mine, its in ((one, other), (other, one)):
             robot = self._robots.get(mine)
             if robot is not None:
+                self._news(robot)
                 robot.touching.pop(its, None)
 
 
