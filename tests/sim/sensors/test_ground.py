@@ -43,7 +43,7 @@ def test_ambient_light_is_added_to_what_is_reflected_up_to_the_limit(light: int,
 
 @pytest.mark.parametrize("robots", [1, CROWD])
 def test_an_operator_lights_the_ground_of_one_robot(robots: int) -> None:
-    starts = [{**ROBOT, "name": f"robot{index}", "y_m": 0.3 * index} for index in range(robots)]
+    starts = [{**ROBOT, "name": f"robot{index}", "y_m": 0.13 * index} for index in range(robots)]
     world = World(make([FLOOR], starts), noise=False)
     world.post("robot0", SetAmbientLight(20))
     assert sense(world, "ground", "robot0").words == (20, 20, 958, 958, 938, 938)
