@@ -37,6 +37,17 @@ export class Actions {
     this.client.publish(robotTopic(robot, `press/${button}`), "std_msgs/msg/Bool", { data: pressed });
   }
 
+  /**
+   * What an operator does to the selected robot.
+   *
+   * @param {string} name    topic relative to the robot
+   * @param {string} type
+   * @param {Record<string, any>} value
+   */
+  operate(name, type, value) {
+    this.client.publish(robotTopic(this.store.state.selected, name), type, value);
+  }
+
   /** Everything stands still: every program stopped, every wheel told zero. */
   async stop() {
     const { services, robots } = this.store.state;

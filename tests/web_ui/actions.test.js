@@ -41,6 +41,14 @@ test("a finger on a button is published to its robot", () => {
   ]);
 });
 
+test("what an operator does is published to the selected robot", () => {
+  const { actions, asked, store } = prepared();
+  connect(store, ["/a/ground_truth/odom", "/b/ground_truth/odom"], []);
+  store.dispatch({ type: "select", robot: "b" });
+  actions.operate("press/clap", "std_msgs/msg/Float32", { data: 1 });
+  assert.deepEqual(asked, [["publish", "/b/press/clap", "std_msgs/msg/Float32", { data: 1 }]]);
+});
+
 test("stop ends every program first, and then tells every wheel zero", async () => {
   const { actions, asked, store } = prepared();
   connect(store, ["/a/ground_truth/odom", "/b/ground_truth/odom"], ["/a/aseba/stop", "/b/aseba/stop", "/a/aseba/run"]);

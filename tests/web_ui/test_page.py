@@ -137,6 +137,45 @@ def test_a_click_on_the_centre_button_reaches_the_program(suite, page, tmp_path)
     )
 
 
+SENSES = """\
+timer.period[0] = 20
+onevent tap
+call leds.top(32, 0, 0)
+onevent rc5
+if rc5.command == 87 then call leds.circle(32, 0, 0, 0, 0, 0, 0, 0) end
+onevent temperature
+if temperature > 300 then call leds.bottom.left(0, 32, 0) end
+onevent timer0
+if acc[0] < -10 then call leds.bottom.right(0, 0, 32) end
+"""
+
+
+def test_what_an_operator_does_reaches_the_program(suite, page, tmp_path):
+    program = tmp_path / "senses.aesl"
+    program.write_text(SENSES)
+    open_page(page, suite("--playground", "base", "--program", str(program)))
+    for control, group in (
+        ("tap", "top"),
+        ("remote", "circle"),
+        ("temperature", "bottom_left"),
+        ("roll", "bottom_right"),
+    ):
+        assert max(page.evaluate("(group) => window.thymio.state().robot.leds[group]", group)) == 0
+        if control == "tap":
+            page.click("[data-operate=tap]")
+        elif control == "remote":
+            page.click("[data-key='87']")
+        else:
+            page.locator(f"[data-operate={control}]").fill("45")
+        page.wait_for_function("(group) => Math.max(...window.thymio.state().robot.leds[group]) === 1", arg=group)
+
+
+def test_the_pen_leaves_a_trail(suite, page):
+    open_page(page, suite())
+    page.select_option("[data-operate=pen]", "down")
+    page.wait_for_function("() => window.thymio.state().robot.trail > 0")
+
+
 def press(page, part):
     """A real pointer on a part of the model, once the view has settled; held until the page has heard of it."""
     page.wait_for_function("() => window.thymio.state().markers > 0")

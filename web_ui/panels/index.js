@@ -9,6 +9,7 @@ import { programPanel } from "./program.js";
 import { robotsPanel } from "./robots.js";
 import { sensorsPanel } from "./sensors.js";
 import { stopPanel } from "./stop.js";
+import { surroundingsPanel } from "./surroundings.js";
 import { timePanel } from "./time.js";
 import { viewsPanel } from "./views.js";
 
@@ -44,5 +45,6 @@ export const PANELS = [
   programPanel,
   playgroundPanel,
   sensorsPanel,
+  surroundingsPanel,
   timePanel,
 ];

@@ -35,6 +35,23 @@ export const STATUS_ERROR = 2;
 /** Definitions of what the page publishes; a server that knows the topic advertises the same. */
 const OWN_SCHEMAS = /** @type {Record<string, string>} */ ({
   "std_msgs/msg/Bool": "bool data",
+  "std_msgs/msg/Empty": "",
+  "std_msgs/msg/Float32": "float32 data",
+  "std_msgs/msg/Int8": "int8 data",
+  "std_msgs/msg/ColorRGBA": "float32 r\nfloat32 g\nfloat32 b\nfloat32 a",
+  "std_msgs/msg/Float32MultiArray": [
+    "MultiArrayLayout layout",
+    "float32[] data",
+    "=".repeat(80),
+    "MSG: std_msgs/MultiArrayLayout",
+    "MultiArrayDimension[] dim",
+    "uint32 data_offset",
+    "=".repeat(80),
+    "MSG: std_msgs/MultiArrayDimension",
+    "string label",
+    "uint32 size",
+    "uint32 stride",
+  ].join("\n"),
   "geometry_msgs/msg/Twist": [
     "Vector3 linear",
     "Vector3 angular",

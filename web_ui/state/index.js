@@ -252,6 +252,11 @@ export function programOf(state) {
   return state.programs[state.selected] ?? state.programs[""] ?? null;
 }
 
+/** @param {Robot | undefined} robot */
+function visible(robot) {
+  return robot === undefined ? null : { ...robot, trail: robot.trail.size };
+}
+
 /**
  * What tests see of the state: plain data, with the selected robot and its program at hand.
  *
@@ -262,7 +267,7 @@ export function snapshot(state) {
     ...state,
     markers: state.markers.size,
     objects: [...state.objects.values()].map(({ ns, pose }) => ({ name: ns.slice(ns.indexOf("/") + 1), pose })),
-    robot: state.robots[state.selected] ?? null,
+    robot: visible(state.robots[state.selected]),
     program: programOf(state),
   };
 }
