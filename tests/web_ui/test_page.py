@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,6 +15,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 pytest.importorskip("rclpy")
 
 from tests.processes import Process, free_port, wait_for_port
+from tests.sim.images import BLACK, WHITE, png
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 DEADLINE_MS = 60_000
@@ -208,3 +210,23 @@ def test_another_playground_can_be_chosen(suite, page):
     open_page(page, suite())
     page.select_option("#playground-choice", "obstacle")
     page.wait_for_function("window.thymio.state().simulator.playground === 'obstacle'")
+
+
+def test_a_playground_of_aseba_is_opened_with_remarks_and_a_broken_one_is_refused(suite, page, tmp_path):
+    colors = '<color name="white" r="1" g="1" b="1"/>'
+    world = '<world w="100" h="100" color="white" groundTexture="ground.png"/><robot x="50" y="50"/><feeder/>'
+    archive = tmp_path / "my maze.playground"
+    with zipfile.ZipFile(archive, "w") as packed:
+        packed.writestr("world.xml", f"<aseba-playground>{colors}{world}</aseba-playground>")
+        packed.writestr("ground.png", png([[BLACK, WHITE]]))
+    broken = tmp_path / "broken.playground"
+    broken.write_text("<aseba-playground>\n<world w='wide'/></aseba-playground>")
+    open_page(page, suite("--playground", "base"))
+    page.set_input_files("#playground-file", str(archive))
+    page.wait_for_function("window.thymio.state().simulator.playground === 'my maze.playground'")
+    playwright.expect(page.locator("details.remarks")).to_contain_text("<feeder> left out")
+    page.set_input_files("#playground-file", str(broken))
+    playwright.expect(page.locator("p.fault", has_text="broken.playground")).to_contain_text(
+        "line 2: <world> w: found 'wide', expected a number"
+    )
+    assert page.evaluate("window.thymio.state().simulator.playground") == "my maze.playground"
