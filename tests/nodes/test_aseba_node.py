@@ -244,11 +244,12 @@ def test_parameters_describe_themselves(ros, simulation, runtime):
     runtime()
     from rcl_interfaces.srv import DescribeParameters
 
-    request = DescribeParameters.Request(names=["real_time_factor", "seed"])
-    factor, seed = ros.call(DescribeParameters, "/simulator/describe_parameters", request).descriptors
+    request = DescribeParameters.Request(names=["real_time_factor", "motor_model"])
+    factor, model = ros.call(DescribeParameters, "/simulator/describe_parameters", request).descriptors
     assert "as fast as possible" in factor.description
     assert factor.floating_point_range[0].to_value == 1000.0
-    assert seed.read_only
+    assert model.read_only
+    assert model.additional_constraints == "one of: ideal, firmware"
     assert not ros.call(SetParameters, "/simulator/set_parameters", too_fast()).results[0].successful
 
 

@@ -42,7 +42,7 @@ SIMULATOR_STATE = "/simulator/state"
 class RuntimeParams:
     """Parameters of the Aseba runtime node."""
 
-    robots: list[str] = param(  # noqa: RUF009  (makes a field, as `field` does)
+    robots: list[str] = param(
         [""], "Namespaces of the robots that run the program at first; '' is the only robot", fixed=True
     )
     follow_simulator: bool = param(

@@ -50,7 +50,8 @@ MOST_SAMPLES = 10 * 60 * 7813
 class CommandRow:
     """One topic: `decode` gives the command of a message or raises CommandError.
 
-    `encode` gives the message of a command; the row's topic is then what `topic_of` says of the command.
+    `encode` gives the message of a command; the row's topic is then what `topic_of` says of the command. `about`:
+    content and units, for the reference.
     """
 
     topic: str
@@ -58,6 +59,7 @@ class CommandRow:
     decode: Callable[[Any], Command]
     encode: Callable[[Any], Any] | None = None
     profile: QoSProfile = field(default_factory=lambda: qos.COMMAND)
+    about: str = ""
 
 
 def led_topic(group: str) -> str:
@@ -256,33 +258,104 @@ def _decode_pen_width(message: Float32) -> Command:
 
 
 def _rows() -> Iterator[CommandRow]:
-    yield CommandRow("motor/target", Int16MultiArray, _decode_targets, _encode_targets)
+    yield CommandRow(
+        "motor/target",
+        Int16MultiArray,
+        _decode_targets,
+        _encode_targets,
+        about="left, right in Thymio units, ±500; they hold until the next ones",
+    )
     for group in commands.LED_GROUPS:
         if group in BODY_LEDS:
             decode = partial(_decode_color, group=group)
-            yield CommandRow(led_topic(group), ColorRGBA, decode, _encode_color, qos.LEDS)
+            yield CommandRow(
+                led_topic(group), ColorRGBA, decode, _encode_color, qos.LEDS, about="0…1; alpha is ignored"
+            )
         else:
             decode = partial(_decode_levels, group=group)
-            yield CommandRow(led_topic(group), Float32MultiArray, decode, _encode_levels, qos.LEDS)
-    yield CommandRow("led/single", Int16MultiArray, _decode_single, _encode_single, qos.LEDS)
-    yield CommandRow("led/own", Float32MultiArray, _decode_own, _encode_own, qos.LEDS)
+            yield CommandRow(
+                led_topic(group),
+                Float32MultiArray,
+                decode,
+                _encode_levels,
+                qos.LEDS,
+                about=f"{commands.LED_GROUPS[group]} intensities 0…1; none: back to the robot's own rules",
+            )
+    yield CommandRow(
+        "led/single",
+        Int16MultiArray,
+        _decode_single,
+        _encode_single,
+        qos.LEDS,
+        about="number of the light 0…38, brightness 0…32",
+    )
+    yield CommandRow(
+        "led/own",
+        Float32MultiArray,
+        _decode_own,
+        _encode_own,
+        qos.LEDS,
+        about="what the robot shows by itself; the group in layout.dim[0].label",
+    )
     for name in ("circle", "blink", "kit"):
-        yield CommandRow(f"led/gesture/{name}", Float32, partial(_decode_gesture, name=name), profile=qos.LEDS)
-    yield CommandRow("led/gesture/alive", Empty, _decode_alive, profile=qos.LEDS)
-    yield CommandRow("led/gesture/off", Empty, _decode_still, profile=qos.LEDS)
-    yield CommandRow("sound/tone", Float32MultiArray, _decode_tone, _encode_tone, qos.EVENTS)
-    yield CommandRow("sound/system", Int8, _decode_system, _encode_system, qos.EVENTS)
-    yield CommandRow("sound/samples", UInt8MultiArray, _decode_samples, _encode_samples, qos.EVENTS)
-    yield CommandRow("sound/wave", Int8MultiArray, _decode_wave, _encode_wave, qos.EVENTS)
-    yield CommandRow("sound/volume", Int8, _decode_volume, _encode_volume, qos.EVENTS)
-    yield CommandRow("sound_threshold", Float32, _decode_threshold, _encode_threshold)
-    yield CommandRow("comm/enable", Bool, _decode_enable, _encode_enable)
-    yield CommandRow("comm/tx", Int16, _decode_payload, _encode_payload)
-    yield CommandRow("alarm", Bool, _decode_alarm)
-    yield CommandRow("pen/down", Bool, _decode_pen_down)
-    yield CommandRow("pen/color", ColorRGBA, _decode_pen_color)
-    yield CommandRow("pen/width", Float32, _decode_pen_width)
+        yield CommandRow(
+            f"led/gesture/{name}",
+            Float32,
+            partial(_decode_gesture, name=name),
+            profile=qos.LEDS,
+            about="period in s, its sign the direction",
+        )
+    yield CommandRow(
+        "led/gesture/alive", Empty, _decode_alive, profile=qos.LEDS, about="the gesture of a robot that lives"
+    )
+    yield CommandRow(
+        "led/gesture/off", Empty, _decode_still, profile=qos.LEDS, about="no gesture; its lights go back to the robot"
+    )
+    yield CommandRow(
+        "sound/tone",
+        Float32MultiArray,
+        _decode_tone,
+        _encode_tone,
+        qos.EVENTS,
+        about="Hz, s; 0 s until stopped, a negative time stops",
+    )
+    yield CommandRow(
+        "sound/system", Int8, _decode_system, _encode_system, qos.EVENTS, about="the robot's sound 0…7, -1 stops"
+    )
+    yield CommandRow(
+        "sound/samples",
+        UInt8MultiArray,
+        _decode_samples,
+        _encode_samples,
+        qos.EVENTS,
+        about="unsigned 8 bit at 7812.5 Hz, at most ten minutes",
+    )
+    yield CommandRow(
+        "sound/wave",
+        Int8MultiArray,
+        _decode_wave,
+        _encode_wave,
+        qos.EVENTS,
+        about="the period that tones are made of, 142 samples",
+    )
+    yield CommandRow(
+        "sound/volume",
+        Int8,
+        _decode_volume,
+        _encode_volume,
+        qos.EVENTS,
+        about="bits that samples lose: 0 is loudest, 8 is off",
+    )
+    yield CommandRow(
+        "sound_threshold", Float32, _decode_threshold, _encode_threshold, about="0…1 of 255: louder is told on `sound`"
+    )
+    yield CommandRow("comm/enable", Bool, _decode_enable, _encode_enable, about="infrared communication on or off")
+    yield CommandRow("comm/tx", Int16, _decode_payload, _encode_payload, about="the value that is sent, 0…2047")
+    yield CommandRow("alarm", Bool, _decode_alarm, about="while true the sound of an arrow button every three seconds")
+    yield CommandRow("pen/down", Bool, _decode_pen_down, about="true: the pen draws")
+    yield CommandRow("pen/color", ColorRGBA, _decode_pen_color, about="0…1; alpha 0 erases")
+    yield CommandRow("pen/width", Float32, _decode_pen_width, about="m, 0.001…0.1")
 
 
 ROWS = tuple(_rows())
-"""Every topic that carries commands one to one; robot_ports adds those that need more than the message."""
+"""Every topic that carries commands one to one; robot_inputs adds those that need more than the message."""

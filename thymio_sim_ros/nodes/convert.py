@@ -46,8 +46,19 @@ PROXIMITY_MIN_M, PROXIMITY_MAX_M, PROXIMITY_FOV_RAD = 0.0215, 0.14, 0.3
 GROUND_MIN_M, GROUND_MAX_M, GROUND_FOV_RAD = 0.009, 0.03, 0.3
 LASER_STEP_RAD, LASER_ANGLE_RAD, LASER_OFFSET_M = 0.32, 0.64, 0.08
 
+JOINTS, TRUTH = "joint_states", "ground_truth/odom"
+
 TRAIL_M = 0.0015
 """Height of what pens drew, for viewers: above all paint."""
+
+
+@dataclass(frozen=True, slots=True)
+class RangeFields:
+    """What the Range of one proximity sensor says about it: m, m, rad."""
+
+    min_m: float = PROXIMITY_MIN_M
+    max_m: float = PROXIMITY_MAX_M
+    fov_rad: float = PROXIMITY_FOV_RAD
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,11 +66,12 @@ class ConvertOptions:
     """What a user may choose about the content of messages.
 
     `driver_ranges`: −1 and minimum instead of ±inf (ros-interface.md section 4.3). `ground_threshold`: count.
-    Covariance diagonals: x y z roll pitch yaw.
+    `proximity`: in Thymio's order. Covariance diagonals: x y z roll pitch yaw.
     """
 
     driver_ranges: bool = False
     ground_threshold: int = 200
+    proximity: tuple[RangeFields, ...] = (RangeFields(),) * len(PROXIMITY)
     pose_covariance: tuple[float, ...] = (1e-4, 1e-4, 0.0, 0.0, 0.0, 1e-3)
     twist_covariance: tuple[float, ...] = (1e-5, 1e-5, 0.0, 0.0, 0.0, 1e-4)
 
@@ -71,13 +83,16 @@ Encode = Callable[[Any, RobotNames, ConvertOptions], Any]
 class Row:
     """One topic made from one sensor: `encode` gives the message, or None for nothing new.
 
-    `every_ns`: only readings whose stamp is a multiple; 0 all. `always`: published also when nobody listens.
-    `on_change`: only when the message differs from the last one.
+    `about`: its content and units, for the reference; `frame`: the usual name of its header's frame, if it has one.
+    `every_ns`: not more often than that; 0 all. `always`: published also when nobody listens. `on_change`: only when
+    the message differs from the last one.
     """
 
     topic: str
     type: type
     encode: Encode
+    about: str = ""
+    frame: str = ""
     profile: QoSProfile = field(default_factory=lambda: qos.SENSOR)
     every_ns: int = 0
     always: bool = False
@@ -105,16 +120,16 @@ def yaw_of(rotation: Quaternion) -> float:
 
 
 def _range(reading: readings.ProximityReading, names: RobotNames, options: ConvertOptions, *, index: int) -> Range:
-    value = reading.ranges_m[index]
+    value, said = reading.ranges_m[index], options.proximity[index]
     if options.driver_ranges:
-        value = -1.0 if math.isinf(value) else max(value, PROXIMITY_MIN_M)
-    elif value < PROXIMITY_MIN_M:
+        value = -1.0 if math.isinf(value) else max(value, said.min_m)
+    elif value < said.min_m:
         value = -math.inf
     message = Range(
         radiation_type=Range.INFRARED,
-        field_of_view=PROXIMITY_FOV_RAD,
-        min_range=PROXIMITY_MIN_M,
-        max_range=PROXIMITY_MAX_M,
+        field_of_view=said.fov_rad,
+        min_range=said.min_m,
+        max_range=said.max_m,
         range=value,
     )
     return stamped(message, reading.stamp_ns, names.frame(f"proximity_{PROXIMITY[index]}_link"))
@@ -175,7 +190,7 @@ def _truth(reading: readings.PoseReading, names: RobotNames, options: ConvertOpt
     message = _odometry_message(reading.truth, reading.truth_twist, (0.0,) * 6, options)
     message.pose.pose.orientation = quaternion(reading.truth.yaw_rad, reading.tilt)
     message.child_frame_id = names.frame("base_link")
-    return stamped(message, reading.stamp_ns, MAP_FRAME)
+    return stamped(message, reading.stamp_ns, names.frame(MAP_FRAME))
 
 
 def _odometry_message(pose: Pose, twist: Twist, covariance: tuple[float, ...], options: ConvertOptions) -> Odometry:
@@ -220,7 +235,7 @@ def _trail(reading: readings.PenReading, names: RobotNames, _options: ConvertOpt
         marker.color = ColorRGBA(r=red, g=green, b=blue, a=1.0)
         marker.scale.x = stroke.width_m
         marker.points = [Point(x=x, y=y, z=TRAIL_M) for x, y in stroke.points]
-        message.markers.append(stamped(marker, reading.stamp_ns, MAP_FRAME))
+        message.markers.append(stamped(marker, reading.stamp_ns, names.frame(MAP_FRAME)))
     return message
 
 
@@ -241,37 +256,126 @@ def layout(dimensions: Iterable[tuple[str, int]]) -> MultiArrayLayout:
 
 
 ROWS: dict[str, tuple[Row, ...]] = {
-    "ground": (*(Row(f"ground/{side}", Range, partial(_ground, index=i)) for i, side in enumerate(SIDES)),),
+    "ground": (
+        *(
+            Row(
+                f"ground/{side}",
+                Range,
+                partial(_ground, index=i),
+                "-inf: the floor reflects, +inf: it does not; as the driver has it 0 and 1",
+                f"ground_{side}_link",
+            )
+            for i, side in enumerate(SIDES)
+        ),
+    ),
     "proximity": (
-        *(Row(f"proximity/{name}", Range, partial(_range, index=i)) for i, name in enumerate(PROXIMITY)),
-        Row("proximity/laser", LaserScan, _laser),
+        *(
+            Row(
+                f"proximity/{name}",
+                Range,
+                partial(_range, index=i),
+                "distance in m of a wall; +inf: nothing, -inf: too close; as the driver has it -1 and the minimum",
+                f"proximity_{name}_link",
+            )
+            for i, name in enumerate(PROXIMITY)
+        ),
+        Row(
+            "proximity/laser",
+            LaserScan,
+            _laser,
+            "the five front sensors from right to left, m from the robot's middle; intensities are counts",
+            "laser_link",
+        ),
     ),
     "buttons": (
         *(
-            Row(f"buttons/{name}", Bool, partial(_button, index=i), on_change=True, always=True)
+            Row(
+                f"buttons/{name}",
+                Bool,
+                partial(_button, index=i),
+                "true while it is pressed",
+                on_change=True,
+                always=True,
+            )
             for i, name in enumerate(commands.BUTTONS)
         ),
-        Row("buttons", Joy, _joy, every_ns=SECOND_NS // 10),
+        Row("buttons", Joy, _joy, "backward, left, center, forward, right", "base_link", every_ns=SECOND_NS // 10),
     ),
-    "motor": (Row("joint_states", JointState, _joints, every_ns=SECOND_NS // 20),),
+    "motor": (
+        Row(
+            JOINTS,
+            JointState,
+            _joints,
+            "wheel angles in rad, not wrapped, and speeds in rad/s, left then right",
+            every_ns=SECOND_NS // 20,
+        ),
+    ),
     "pose": (
-        Row("odom", Odometry, _odometry, always=True),
-        Row("ground_truth/odom", Odometry, _truth),
+        Row("odom", Odometry, _odometry, "by the wheels, from zero; they slip", "odom", always=True),
+        Row(TRUTH, Odometry, _truth, "where the robot really is", MAP_FRAME),
     ),
-    "leds": (Row("led/state", Float32MultiArray, _leds, profile=qos.LATCHED, always=True),),
-    "accelerometer": (Row("imu", Imu, senses.imu),),
-    "temperature": (Row("temperature", Temperature, senses.temperature),),
-    "battery": (Row("battery", BatteryState, senses.battery),),
-    "collision": (Row("collision", Bool, senses.collision, on_change=True, always=True),),
-    "tap": (Row("tap", Empty, senses.tap),),
-    "sound": (Row("sound", Float32, senses.sound),),
-    "remote": (Row("remote", Int8, senses.remote),),
-    "comm": (Row("comm/received", Int16, senses.received),),
-    "pen": (Row("pen/trail", MarkerArray, _trail, profile=qos.LATCHED, always=True),),
+    "leds": (
+        Row(
+            "led/state",
+            Float32MultiArray,
+            _leds,
+            "brightness 0…1 of every light, a labelled dimension for each group",
+            profile=qos.LATCHED,
+            always=True,
+        ),
+    ),
+    "accelerometer": (Row("imu", Imu, senses.imu, "acceleration alone, m/s²; g upwards at rest", "base_link"),),
+    "temperature": (Row("temperature", Temperature, senses.temperature, "°C, in tenths", "base_link"),),
+    "battery": (Row("battery", BatteryState, senses.battery, "V, charge 0…1, charging or not", "base_link"),),
+    "collision": (
+        Row(
+            "collision",
+            Bool,
+            senses.collision,
+            "whether anything but the floor is touched",
+            on_change=True,
+            always=True,
+        ),
+    ),
+    "tap": (Row("tap", Empty, senses.tap, "a shock was felt"),),
+    "sound": (Row("sound", Float32, senses.sound, "loudness 0…1 above `sound_threshold`"),),
+    "remote": (Row("remote", Int8, senses.remote, "command 0…127 of a key of an RC5 remote control"),),
+    "comm": (Row("comm/received", Int16, senses.received, "value of an infrared frame"),),
+    "pen": (
+        Row(
+            "pen/trail",
+            MarkerArray,
+            _trail,
+            "what the pen drew, a line strip for each stroke",
+            profile=qos.LATCHED,
+            always=True,
+        ),
+    ),
     "loudspeaker": (
-        Row("sound/state/wave", Int8MultiArray, _heard_wave, profile=qos.LATCHED, always=True, on_change=True),
-        Row("sound/state/samples", UInt8MultiArray, _heard_samples, profile=qos.EVENTS),
-        Row("sound/state", Float32MultiArray, _sound, profile=qos.LATCHED, always=True),
+        Row(
+            "sound/state/wave",
+            Int8MultiArray,
+            _heard_wave,
+            "the period that tones are made of, 142 samples",
+            profile=qos.LATCHED,
+            always=True,
+            on_change=True,
+        ),
+        Row(
+            "sound/state/samples",
+            UInt8MultiArray,
+            _heard_samples,
+            "unsigned 8 bit at 7812.5 Hz of a sound that begins",
+            profile=qos.EVENTS,
+        ),
+        Row(
+            "sound/state",
+            Float32MultiArray,
+            _sound,
+            "Hz, s, volume 0…1 of what plays; zeros for silence",
+            profile=qos.LATCHED,
+            always=True,
+        ),
     ),
 }
 """Sensor name → topics in SI units. Besides, every sensor that Aseba sees has `raw/<sensor>`."""
@@ -279,7 +383,10 @@ ROWS: dict[str, tuple[Row, ...]] = {
 
 def rows_of(sensor: Sensor) -> tuple[Row, ...]:
     """Topics of a sensor; one added by a plug-in has those of its words."""
-    raw = (Row(f"raw/{sensor.name}", Int16MultiArray, _words),) if sensor.aseba.variables or sensor.aseba.event else ()
+    variables = ", ".join(f"`{name}`" if size == 1 else f"`{name}[{size}]`" for name, size in sensor.aseba.variables)
+    about = f"Aseba's integers: {variables}" if variables else "the event, without values"
+    is_seen = sensor.aseba.variables or sensor.aseba.event
+    raw = (Row(f"raw/{sensor.name}", Int16MultiArray, _words, about),) if is_seen else ()
     return ROWS.get(sensor.name, ()) + raw
 
 

@@ -31,7 +31,7 @@ MOST_TEXELS = 2048
 """Side of the largest picture that is sent to be looked at; graphics hardware takes at least twice that."""
 
 
-def playground_markers(primitives: Iterable[Drawable]) -> MarkerArray:
+def playground_markers(primitives: Iterable[Drawable], frame: str = MAP_FRAME) -> MarkerArray:
     """Markers of all primitives, in their order; neighbouring paint of one shape and color is one marker."""
     markers = [Marker(action=Marker.DELETEALL)]
     layer = 0
@@ -50,6 +50,8 @@ def playground_markers(primitives: Iterable[Drawable]) -> MarkerArray:
         layer += kind is Paint
         namespace = "floor" if kind is Floor else "paint"
         markers.append(_patches(f"{namespace}/{name}", len(markers), outlines, color, layer * LAYER_M))
+    for marker in markers:
+        marker.header.frame_id = frame
     return MarkerArray(markers=markers)
 
 
@@ -110,9 +112,7 @@ def _corners(tile: Tile) -> tuple[Point, ...]:
 
 def _marker(namespace: str, number: int, color: Color) -> Marker:
     red, green, blue = color
-    marker = Marker(ns=namespace, id=number, action=Marker.ADD, color=ColorRGBA(r=red, g=green, b=blue, a=1.0))
-    marker.header.frame_id = MAP_FRAME
-    return marker
+    return Marker(ns=namespace, id=number, action=Marker.ADD, color=ColorRGBA(r=red, g=green, b=blue, a=1.0))
 
 
 def _fan(outline: Sequence[Point]) -> Iterator[Point]:

@@ -7,6 +7,7 @@ name is the namespace and the prefix of its frames and joints: `/thymio_1/odom`,
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 PROXIMITY = ("left", "center_left", "center", "center_right", "right", "rear_left", "rear_right")
@@ -18,25 +19,70 @@ MAP_FRAME = "map"
 
 
 @dataclass(frozen=True, slots=True)
+class FrameNames:
+    """What a user may call frames and joints; a robot's prefix comes before all but the map's."""
+
+    map: str = MAP_FRAME
+    odom: str = "odom"
+    base_link: str = "base_link"
+    left_wheel_joint: str = "left_wheel_joint"
+    right_wheel_joint: str = "right_wheel_joint"
+
+
+USUAL = FrameNames()
+
+
+@dataclass(frozen=True, slots=True)
 class RobotNames:
-    """Topic and frame names of one robot; `name` is empty where it is the only one."""
+    """Topic and frame names of one robot; `name` is empty where it is the only one. `prefix` None: the name."""
 
     name: str
+    prefix: str | None = None
+    frames: FrameNames = USUAL
 
     def topic(self, relative: str) -> str:
         """Absolute topic name."""
         return f"/{self.name}/{relative}" if self.name else f"/{relative}"
 
     def frame(self, relative: str) -> str:
-        """Frame or joint name."""
-        return f"{self.name}/{relative}" if self.name else relative
+        """Frame or joint name; `relative` is its usual one."""
+        if relative == MAP_FRAME:
+            return self.frames.map
+        prefix = self.name if self.prefix is None else self.prefix
+        called = getattr(self.frames, relative, relative)
+        return f"{prefix}/{called}" if prefix else called
+
+
+@dataclass(frozen=True, slots=True)
+class Naming:
+    """How the robots of a simulation get their names in ROS.
+
+    `prefix` comes before those of all frames. `namespaced_tf`: frames have bare names, on `tf` of the
+    robot's namespace. `keeps_names`: also a robot alone has its own.
+    """
+
+    prefix: str = ""
+    namespaced_tf: bool = False
+    keeps_names: bool = False
+    frames: FrameNames = USUAL
+
+    def one(self, robot: str) -> RobotNames:
+        """A robot that comes to others."""
+        if self.namespaced_tf:
+            return RobotNames(robot, "", self.frames)
+        return RobotNames(robot, "/".join(part for part in (self.prefix, robot) if part), self.frames)
+
+    def all(self, robots: Iterable[str]) -> dict[str, RobotNames]:
+        """World name → names in ROS, for the robots of one playground."""
+        robots = tuple(robots)
+        if len(robots) == 1 and not self.keeps_names:
+            return {robots[0]: self.one("")}
+        return {robot: self.one(robot) for robot in robots}
 
 
 def ros_names(robots: tuple[str, ...]) -> dict[str, RobotNames]:
-    """World name → names in ROS, for the robots of one playground."""
-    if len(robots) == 1:
-        return {robots[0]: RobotNames("")}
-    return {robot: RobotNames(robot) for robot in robots}
+    """World name → names in ROS, for the robots of one playground, where nobody chose otherwise."""
+    return Naming().all(robots)
 
 
 def topic_word(event: str) -> str:

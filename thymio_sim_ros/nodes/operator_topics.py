@@ -72,15 +72,37 @@ def _charger(message: Bool) -> Command:
 
 
 ROWS = (
-    CommandRow("press/tap", Empty, _tap, profile=qos.EVENTS),
-    CommandRow("press/clap", Float32, lambda message: commands.Clap(_level(message)), profile=qos.EVENTS),
-    CommandRow("press/sound", Float32, lambda message: commands.SetNoiseLevel(_level(message)), profile=qos.EVENTS),
-    CommandRow("press/remote", Int8, _remote, profile=qos.EVENTS),
-    CommandRow("press/rc5", Int16MultiArray, _rc5, profile=qos.EVENTS),
-    CommandRow("press/tilt", Float32MultiArray, _tilt, profile=qos.EVENTS),
-    CommandRow("press/light", Float32, _light, profile=qos.EVENTS),
-    CommandRow("press/temperature", Float32, _temperature, profile=qos.EVENTS),
-    CommandRow("press/battery", Float32, _battery, profile=qos.EVENTS),
-    CommandRow("press/charger", Bool, _charger, profile=qos.EVENTS),
+    CommandRow("press/tap", Empty, _tap, profile=qos.EVENTS, about="a knock on the body"),
+    CommandRow(
+        "press/clap",
+        Float32,
+        lambda message: commands.Clap(_level(message)),
+        profile=qos.EVENTS,
+        about="a clap beside the robot, 0…1; others hear it by their distance",
+    ),
+    CommandRow(
+        "press/sound",
+        Float32,
+        lambda message: commands.SetNoiseLevel(_level(message)),
+        profile=qos.EVENTS,
+        about="steady noise round the robot, 0…1",
+    ),
+    CommandRow("press/remote", Int8, _remote, profile=qos.EVENTS, about="a key of a remote control, 0…127"),
+    CommandRow(
+        "press/rc5", Int16MultiArray, _rc5, profile=qos.EVENTS, about="address 0…31, command 0…127 of a remote control"
+    ),
+    CommandRow(
+        "press/tilt",
+        Float32MultiArray,
+        _tilt,
+        profile=qos.EVENTS,
+        about="roll, pitch in rad: hold the robot at this angle until told otherwise",
+    ),
+    CommandRow(
+        "press/light", Float32, _light, profile=qos.EVENTS, about="light on the ground besides the sensors' own, 0…1"
+    ),
+    CommandRow("press/temperature", Float32, _temperature, profile=qos.EVENTS, about="°C round the robot, -40…85"),
+    CommandRow("press/battery", Float32, _battery, profile=qos.EVENTS, about="V of the battery, 0…5"),
+    CommandRow("press/charger", Bool, _charger, profile=qos.EVENTS, about="whether the charger is connected"),
 )
 """Loudness is 0…1 of 255, light of 1023, both limited; temperature in °C, battery in V, refused when out of range."""

@@ -4,16 +4,17 @@
     class Params:
         real_time_factor: float = param(1.0, "Simulated seconds per second", low=0.0, high=1000.0)
 
-`declare` declares them all and returns the values in force; descriptors (text, range, read-only flag) come
-from the fields, so that `ros2 param describe` and the code cannot disagree.
+`declare` declares them all and returns the values in force; descriptors (text, range, choices, read-only flag) come
+from the fields, so that `ros2 param describe`, the reference and the code cannot disagree. `updated` gives the values
+after a change; what no descriptor can refuse is refused by `refusal`.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable
-from dataclasses import Field, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import Field, dataclass, field
 from typing import Any, TypeVar
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
@@ -34,48 +35,156 @@ def param(
     low: float | None = None,
     high: float | None = None,
     fixed: bool = False,
+    choices: Sequence[str] = (),
+    size: int | None = None,
 ) -> Any:
-    """A field of a parameter dataclass; `name` where it has dots, `fixed`: read-only once the node runs."""
-    metadata = {"text": text, "low": low, "high": high, "fixed": fixed} | ({"name": name} if name else {})
+    """A field of a parameter dataclass; `name` where it has dots, `fixed`: read-only once the node runs.
+
+    `low` and `high` limit a number, or each of an array; `choices`: all texts it may be; `size`: an array's length.
+    """
+    metadata = {"text": text, "low": low, "high": high, "fixed": fixed, "choices": tuple(choices), "size": size}
+    if name:
+        metadata["name"] = name
     if isinstance(default, list):
         return field(default_factory=lambda: list(default), metadata=metadata)
     return field(default=default, metadata=metadata)
 
 
+def group(default: Any, name: str) -> Any:
+    """A field that holds parameters of its own; their names begin with `name` and a dot."""
+    return field(default=default, metadata={"group": name})
+
+
+@dataclass(frozen=True)
+class Declared:
+    """One parameter: its full name, its field's path in the dataclass, its default and what its field says."""
+
+    name: str
+    path: tuple[str, ...]
+    default: Any
+    metadata: Mapping[str, Any]
+
+    @property
+    def descriptor(self) -> ParameterDescriptor:
+        """What `ros2 param describe` tells."""
+        said = self.metadata
+        expected = [f"one of: {', '.join(said['choices'])}"] if said["choices"] else []
+        expected += [f"{said['size']} values"] if said["size"] is not None else []
+        expected += [f"each {_limits(said)}"] if isinstance(self.default, list) and _limits(said) else []
+        descriptor = ParameterDescriptor(
+            description=said["text"], read_only=said["fixed"], additional_constraints="; ".join(expected)
+        )
+        low, high = said["low"], said["high"]
+        if (low is None and high is None) or isinstance(self.default, list):
+            return descriptor
+        if isinstance(self.default, float):
+            bounds = FloatingPointRange(
+                from_value=-math.inf if low is None else float(low), to_value=math.inf if high is None else float(high)
+            )
+            descriptor.floating_point_range = [bounds]
+        else:
+            descriptor.integer_range = [IntegerRange(from_value=int(low or 0), to_value=int(high or 0))]
+        return descriptor
+
+    def refusal(self, value: Any) -> str:
+        """Why this value is refused, or nothing; what a descriptor refuses is not asked here."""
+        said = self.metadata
+        if said["choices"] and value not in said["choices"]:
+            return f"{self.name} is '{value}', expected {' or '.join(said['choices'])}"
+        if isinstance(value, float) and not math.isfinite(value):
+            return f"{self.name} is {value}, expected a finite number"
+        if not isinstance(self.default, list):
+            return ""
+        if said["size"] is not None and len(value) != said["size"]:
+            return f"{self.name}: {len(value)} values found, expected {said['size']}"
+        for number, item in enumerate(value):
+            if isinstance(item, float) and not _is_within(item, said):
+                return f"{self.name}[{number}] is {item}, expected {_limits(said) or 'a finite number'}"
+        return ""
+
+
+def _limits(said: Mapping[str, Any]) -> str:
+    low, high = said["low"], said["high"]
+    if low is None and high is None:
+        return ""
+    if high is None:
+        return f"at least {low:g}"
+    return f"at most {high:g}" if low is None else f"{low:g} to {high:g}"
+
+
+def _is_within(value: float, said: Mapping[str, Any]) -> bool:
+    low = -math.inf if said["low"] is None else said["low"]
+    high = math.inf if said["high"] is None else said["high"]
+    return bool(math.isfinite(value) and low <= value <= high)
+
+
+def declared(values: Any) -> Iterator[Declared]:
+    """Every parameter of a dataclass and its groups, in order; defaults are those of this object."""
+    return _declared(values, "", ())
+
+
+def _declared(values: Any, prefix: str, path: tuple[str, ...]) -> Iterator[Declared]:
+    for item in dataclasses.fields(values):
+        here, value = (*path, item.name), getattr(values, item.name)
+        if "group" in item.metadata:
+            yield from _declared(value, f"{prefix}{item.metadata['group']}.", here)
+        else:
+            yield Declared(prefix + _name(item), here, value, item.metadata)
+
+
+def _name(item: Field[Any]) -> str:
+    return str(item.metadata.get("name", item.name))
+
+
 def declare(node: Node, defaults: T) -> T:
     """Declare every field on the node; returns the dataclass with the values in force.
 
-    A value from the command line that a descriptor refuses is a StartError.
+    A value from the command line that a descriptor or a field refuses is a StartError.
     """
-    values = {}
-    for item in dataclasses.fields(defaults):  # type: ignore[arg-type]  # T is always a dataclass
-        default = getattr(defaults, item.name)
-        name = item.metadata.get("name", item.name)
+    values = defaults
+    for one in declared(defaults):
         try:
-            parameter = node.declare_parameter(name, default, _descriptor(item, default))
+            parameter = node.declare_parameter(one.name, one.default, one.descriptor)
         except (InvalidParameterTypeException, InvalidParameterValueException) as error:
             reason = " ".join(str(error).split())
-            raise StartError(f"parameter {name} of {node.get_name()}: {reason}") from error
-        value = parameter.value
-        values[item.name] = default if value is None else value
-    return dataclasses.replace(defaults, **values)  # type: ignore[type-var]
+            raise StartError(f"parameter {one.name} of {node.get_name()}: {reason}") from error
+        value = one.default if parameter.value is None else _plain(parameter.value)
+        reason = one.refusal(value)
+        if reason:
+            raise StartError(reason)
+        values = _with(values, one.path, value)
+    return values
 
 
-def _descriptor(item: Field[Any], default: Any) -> ParameterDescriptor:
-    text, low, high = item.metadata["text"], item.metadata["low"], item.metadata["high"]
-    descriptor = ParameterDescriptor(description=text, read_only=item.metadata["fixed"])
-    if low is None and high is None:
-        return descriptor
-    if isinstance(default, float):
-        bounds = FloatingPointRange(
-            from_value=-math.inf if low is None else float(low), to_value=math.inf if high is None else float(high)
-        )
-        descriptor.floating_point_range = [bounds]
-    else:
-        descriptor.integer_range = [IntegerRange(from_value=int(low or 0), to_value=int(high or 0))]
-    return descriptor
+def refusal(values: Any, parameters: Iterable[Parameter]) -> str:
+    """Why a change is refused by what the fields say, or nothing."""
+    known = {one.name: one for one in declared(values)}
+    reasons = (known[one.name].refusal(_plain(one.value)) for one in parameters if one.name in known)
+    return next((reason for reason in reasons if reason), "")
+
+
+def updated(values: T, parameters: Iterable[Parameter]) -> T:
+    """The values after a change; parameters of others do not matter."""
+    paths = {one.name: one.path for one in declared(values)}
+    for parameter in parameters:
+        if parameter.name in paths and parameter.value is not None:
+            values = _with(values, paths[parameter.name], _plain(parameter.value))
+    return values
 
 
 def changes(parameters: Iterable[Parameter]) -> dict[str, Any]:
     """Parameter list of a callback as name → value."""
     return {parameter.name: parameter.value for parameter in parameters}
+
+
+def _plain(value: Any) -> Any:
+    """Arrays of parameters as lists."""
+    return value if isinstance(value, str | bytes | int | float | bool) or value is None else list(value)
+
+
+def _with(values: T, path: tuple[str, ...], value: Any) -> T:
+    """The same with one field, maybe of a group, set."""
+    first, *rest = path
+    if rest:
+        value = _with(getattr(values, first), tuple(rest), value)
+    return dataclasses.replace(values, **{first: value})  # type: ignore[type-var]  # T is always a dataclass

@@ -32,7 +32,7 @@ _NUMBERS: dict[Any, Callable[[float], object]] = {
 def rows() -> tuple[CommandRow, ...]:
     """One row for each command that only a plug-in knows; those with other fields than numbers have none."""
     return tuple(
-        CommandRow(topic, Float64MultiArray, _decoder(kind), _encode)
+        CommandRow(topic, Float64MultiArray, _decoder(kind), _encode, about=_about(kind))
         for actuator in all_actuators()
         for kind, topic in _topics(actuator).items()
     )
@@ -56,6 +56,10 @@ def _has_only_numbers(kind: type[Any]) -> bool:
         return False
     hints = typing.get_type_hints(kind)
     return all(hints[field.name] in _NUMBERS for field in dataclasses.fields(kind))
+
+
+def _about(kind: type[Any]) -> str:
+    return ", ".join(field.name for field in dataclasses.fields(kind)) or "no values"
 
 
 def _word(name: str) -> str:

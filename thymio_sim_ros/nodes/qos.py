@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos_overriding_options import QoSOverridingOptions
 
 
 def _reliable(depth: int, durability: DurabilityPolicy = DurabilityPolicy.VOLATILE) -> QoSProfile:
@@ -23,3 +25,15 @@ COMMAND = _reliable(1)
 LEDS = _reliable(10)
 EVENTS = _reliable(100)
 """Aseba events: nothing lost in bursts."""
+
+
+def overridable(node: Node, topic: str) -> QoSOverridingOptions | None:
+    """The parameters `qos_overrides.<topic>.publisher.…`, declared only where the node was started with one of them.
+
+    For every topic of a hundred robots they would be ten thousand parameters.
+    """
+    # rclpy tells nobody what a node was started with but the node itself.
+    started_with = node._parameter_overrides
+    if any(name.startswith(f"qos_overrides.{topic}.publisher.") for name in started_with):
+        return QoSOverridingOptions.with_default_policies()
+    return None

@@ -6,33 +6,59 @@ commands and posts them. Topics that nobody listens to cost a count, nothing mor
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
-from geometry_msgs.msg import PoseWithCovarianceStamped, TwistStamped
-from geometry_msgs.msg import Twist as TwistMsg
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
-from std_msgs.msg import Bool, Empty, Float64MultiArray, String
+from std_msgs.msg import String
 from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import Trigger
 
-from thymio_sim_ros.nodes import command_topics, convert, operator_topics, plugin_topics, qos
-from thymio_sim_ros.nodes.command_topics import CommandRow
+from thymio_sim_ros.nodes import convert, qos
 from thymio_sim_ros.nodes.convert import CommandError, ConvertOptions, Row
 from thymio_sim_ros.nodes.description import urdf
-from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.robot_inputs import Moment, RobotInput, robot_inputs
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.placement import PlacementError
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.sensors import all_sensors
 
+__all__ = ["DESCRIPTION", "SERVICES", "WARN_EVERY_S", "PortOptions", "RobotPorts"]
+
 Post = Callable[[Command], None]
 
 WARN_EVERY_S = 5.0
+
+DESCRIPTION = "robot_description"
+
+SERVICES: Mapping[str, tuple[type, str]] = {
+    "is_ready": (EmptyService, "answers when the robot is in the world"),
+    "reset_odometry": (Trigger, "the odometry starts again from zero: `odom -> base_link` jumps once"),
+}
+"""Type and meaning of every service of a robot."""
+
+
+@dataclass(frozen=True, slots=True)
+class PortOptions:
+    """What a user may choose about the topics of all robots, once; `every_ns`: of topics with a rate of their own."""
+
+    stamped_cmd_vel: bool = False
+    left_out: frozenset[str] = frozenset()
+    every_ns: Mapping[str, int] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class _Outlet:
+    """The publisher of a row, what it sent last, and when it may send again."""
+
+    row: Row
+    publisher: Any
+    every_ns: int
+    last: Any = None
+    next_ns: int = 0
 
 
 class RobotPorts:
@@ -44,54 +70,61 @@ class RobotPorts:
         names: RobotNames,
         post: Post,
         *,
-        options: ConvertOptions,
-        now_ns: Callable[[], int],
-        timeout_ns: Callable[[], int],
+        content: Callable[[], ConvertOptions],
+        moment: Callable[[], Moment],
+        options: PortOptions,
+        on_refusal: Callable[[], None] = lambda: None,
     ) -> None:
+        """`content` and `moment` are asked with every message; `on_refusal` is called for each that is refused."""
         self.names = names
-        self.options = options
         self._node = node
         self._post = post
-        self._timeout_ns = timeout_ns
-        self._now_ns = now_ns
-        self._publishers: dict[str, list[tuple[Row, Any]]] = {
+        self._content, self._moment, self._on_refusal = content, moment, on_refusal
+        self._outlets: dict[str, list[_Outlet]] = {
             sensor.name: [
-                (row, node.create_publisher(row.type, names.topic(row.topic), row.profile))
+                self._outlet(row, options.every_ns.get(row.topic, row.every_ns))
                 for row in convert.rows_of(sensor)
+                if row.topic not in options.left_out
             ]
             for sensor in all_sensors()
         }
-        self._last: dict[str, Any] = {}
-        self._description = node.create_publisher(String, names.topic("robot_description"), qos.LATCHED)
-        self._description.publish(String(data=urdf(names)))
+        self._description: Any = None
+        if DESCRIPTION not in options.left_out:
+            self._description = node.create_publisher(String, names.topic(DESCRIPTION), qos.LATCHED)
+            self._description.publish(String(data=urdf(names)))
         self._subscriptions = [
-            node.create_subscription(kind, names.topic(topic), self._guarded(topic, handle), profile)
-            for topic, kind, handle, profile in self._inputs()
+            node.create_subscription(one.type, names.topic(one.topic), self._taker(one), one.profile)
+            for one in robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel)
         ]
+        handlers = {"is_ready": lambda _request, response: response, "reset_odometry": self._reset_odometry}
         self._services = [
-            node.create_service(EmptyService, names.topic("is_ready"), lambda _request, response: response),
-            node.create_service(Trigger, names.topic("reset_odometry"), self._reset_odometry),
+            node.create_service(kind, names.topic(word), handlers[word]) for word, (kind, _) in SERVICES.items()
         ]
 
     def publish(self, sensor: str, reading: Reading) -> None:
         """Send one reading on every topic made from it."""
-        for row, publisher in self._publishers[sensor]:
-            if row.every_ns and reading.stamp_ns % row.every_ns:
+        for outlet in self._outlets[sensor]:
+            row = outlet.row
+            if outlet.every_ns:
+                if reading.stamp_ns < outlet.next_ns:
+                    continue
+                outlet.next_ns = (reading.stamp_ns // outlet.every_ns + 1) * outlet.every_ns
+            if not row.always and not outlet.publisher.get_subscription_count():
                 continue
-            if not row.always and not publisher.get_subscription_count():
-                continue
-            message = row.encode(reading, self.names, self.options)
+            message = row.encode(reading, self.names, self._content())
             if message is None:
                 continue
             if row.on_change:
-                if self._last.get(row.topic) == message:
+                if outlet.last == message:
                     continue
-                self._last[row.topic] = message
-            publisher.publish(message)
+                outlet.last = message
+            outlet.publisher.publish(message)
 
     def forget(self) -> None:
         """Send the next reading of every kind, also an unchanged one: the world was reset."""
-        self._last.clear()
+        for outlets in self._outlets.values():
+            for outlet in outlets:
+                outlet.last, outlet.next_ns = None, outlet.every_ns
 
     def close(self) -> None:
         """Take all topics and services of this robot out of the graph."""
@@ -99,67 +132,31 @@ class RobotPorts:
             self._node.destroy_service(service)
         for subscription in self._subscriptions:
             self._node.destroy_subscription(subscription)
-        for ports in self._publishers.values():
-            for _, publisher in ports:
-                self._node.destroy_publisher(publisher)
-        self._node.destroy_publisher(self._description)
+        for outlets in self._outlets.values():
+            for outlet in outlets:
+                self._node.destroy_publisher(outlet.publisher)
+        if self._description is not None:
+            self._node.destroy_publisher(self._description)
 
-    def _inputs(self) -> list[tuple[str, type, Callable[[Any], None], QoSProfile]]:
-        """Topic, type, handler and profile of everything this robot listens to (ros-interface.md section 4.2)."""
-        return [
-            ("cmd_vel", TwistMsg, self._on_twist, qos.COMMAND),
-            ("cmd_vel_stamped", TwistStamped, self._on_stamped_twist, qos.COMMAND),
-            ("wheels/command", Float64MultiArray, self._on_wheels, qos.COMMAND),
-            *(
-                (row.topic, row.type, self._poster(row), row.profile)
-                for row in (*command_topics.ROWS, *operator_topics.ROWS, *plugin_topics.rows())
-            ),
-            ("led/off", Empty, self._on_leds_off, qos.LEDS),
-            *((f"press/{button}", Bool, self._press(button), qos.EVENTS) for button in commands.BUTTONS),
-            ("initialpose", PoseWithCovarianceStamped, self._on_pose, qos.COMMAND),
-        ]
+    def _outlet(self, row: Row, every_ns: int) -> _Outlet:
+        topic = self.names.topic(row.topic)
+        publisher = self._node.create_publisher(
+            row.type, topic, row.profile, qos_overriding_options=qos.overridable(self._node, topic)
+        )
+        return _Outlet(row, publisher, every_ns, next_ns=every_ns)
 
-    def _guarded(self, topic: str, handle: Callable[[Any], None]) -> Callable[[Any], None]:
-        def callback(message: Any) -> None:
+    def _taker(self, one: RobotInput) -> Callable[[Any], None]:
+        def take(message: Any) -> None:
             try:
-                handle(message)
+                for command in one.commands(message, self._moment()):
+                    self._post(command)
             except (CommandError, PlacementError) as error:
+                self._on_refusal()
                 self._node.get_logger().warning(
-                    f"{self.names.topic(topic)} refused: {error}", throttle_duration_sec=WARN_EVERY_S
+                    f"{self.names.topic(one.topic)} refused: {error}", throttle_duration_sec=WARN_EVERY_S
                 )
 
-        return callback
-
-    def _on_twist(self, message: TwistMsg) -> None:
-        self._post(convert.body_twist(message, self._timeout_ns()))
-
-    def _on_stamped_twist(self, message: TwistStamped) -> None:
-        timeout_ns = self._timeout_ns()
-        sent_ns = message.header.stamp.sec * SECOND_NS + message.header.stamp.nanosec
-        age_ns = self._now_ns() - sent_ns
-        if timeout_ns and sent_ns and age_ns > timeout_ns:
-            raise CommandError(f"stamp is {age_ns / 1e9:.3f} s old, expected at most {timeout_ns / 1e9:.3f} s")
-        self._post(convert.body_twist(message.twist, timeout_ns))
-
-    def _on_wheels(self, message: Float64MultiArray) -> None:
-        self._post(convert.wheel_velocities(message.data, self._timeout_ns()))
-
-    def _poster(self, row: CommandRow) -> Callable[[Any], None]:
-        return lambda message: self._post(row.decode(message))
-
-    def _on_leds_off(self, _message: Empty) -> None:
-        for group, size in commands.LED_GROUPS.items():
-            self._post(commands.SetLeds(group, (0,) * size))
-
-    def _press(self, button: str) -> Callable[[Bool], None]:
-        return lambda message: self._post(commands.PressButton(button, bool(message.data)))
-
-    def _on_pose(self, message: PoseWithCovarianceStamped) -> None:
-        pose = message.pose.pose
-        yaw = convert.yaw_of(pose.orientation)
-        if not all(map(math.isfinite, (pose.position.x, pose.position.y, yaw))):
-            raise CommandError("pose has a value that is not finite")
-        self._post(commands.MoveRobot(pose.position.x, pose.position.y, yaw))
+        return take
 
     def _reset_odometry(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._post(commands.ResetOdometry())

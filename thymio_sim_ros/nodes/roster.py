@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
-from thymio_sim_ros.nodes.names import RobotNames, ros_names
+from thymio_sim_ros.nodes.names import Naming, RobotNames
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
 
 __all__ = ["Roster"]
@@ -13,8 +13,8 @@ __all__ = ["Roster"]
 class Roster:
     """Robots' ports by their name in the world. Invariant: who stays keeps topics and frames."""
 
-    def __init__(self, make: Callable[[str, RobotNames], RobotPorts]) -> None:
-        self._make = make
+    def __init__(self, make: Callable[[str, RobotNames], RobotPorts], naming: Naming) -> None:
+        self._make, self._naming = make, naming
         self._ports: dict[str, RobotPorts] = {}
 
     def __getitem__(self, robot: str) -> RobotPorts:
@@ -25,9 +25,14 @@ class Roster:
         """Of all robots, in the order of the world."""
         return tuple(ports.names for ports in self._ports.values())
 
+    @property
+    def by_robot(self) -> dict[str, RobotNames]:
+        """The same by their names in the world."""
+        return {robot: ports.names for robot, ports in self._ports.items()}
+
     def begin(self, robots: Iterable[str]) -> None:
         """The robots of a playground: one alone has no name, of several each has its own."""
-        self._change(ros_names(tuple(robots)))
+        self._change(self._naming.all(robots))
         for ports in self._ports.values():
             ports.forget()
 
@@ -37,7 +42,7 @@ class Roster:
         if robots == list(self._ports):
             return False
         known = self._ports
-        self._change({robot: known[robot].names if robot in known else RobotNames(robot) for robot in robots})
+        self._change({robot: known[robot].names if robot in known else self._naming.one(robot) for robot in robots})
         return True
 
     def _change(self, names: Mapping[str, RobotNames]) -> None:

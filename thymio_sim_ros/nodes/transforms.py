@@ -8,8 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 
 from thymio_sim_ros.nodes import qos, tf_messages
 from thymio_sim_ros.nodes.convert import quaternion
@@ -19,47 +22,99 @@ from thymio_sim_ros.nodes.tf_messages import Transform
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.readings import MotorReading, PoseReading, Reading
 
-NO_TURN = (0.0, 0.0, 0.0, 1.0)
+__all__ = ["TransformOptions", "Transforms", "origin_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class TransformOptions:
+    """What is published: `map → odom`, the wheels, the fixed frames; and whether in each robot's namespace."""
+
+    publish_map: bool = True
+    publish_wheels: bool = True
+    publish_static: bool = True
+    namespaced: bool = False
+
+
+class _Channel:
+    """Publishers of one transform topic, and for each the transforms of this tick."""
+
+    def __init__(self, node: Node, word: str, profile: QoSProfile) -> None:
+        self.word = word
+        self._node, self._profile = node, profile
+        self._publishers: dict[str, Any] = {}
+        self._waiting: dict[str, list[Transform]] = {}
+
+    def open(self, topics: set[str]) -> None:
+        """Have publishers of these topics, and of no other."""
+        self._waiting.clear()
+        for topic in self._publishers.keys() - topics:
+            self._node.destroy_publisher(self._publishers.pop(topic))
+        for topic in topics - self._publishers.keys():
+            self._publishers[topic] = self._node.create_publisher(tf_messages.TFMessage, topic, self._profile)
+
+    def add(self, topic: str, transforms: Sequence[Transform]) -> None:
+        """Send these with the next `flush`."""
+        self._waiting.setdefault(topic, []).extend(transforms)
+
+    def flush(self) -> None:
+        """Send all that waits, one message for each topic."""
+        for topic, transforms in self._waiting.items():
+            self._publishers[topic].publish(tf_messages.encode(transforms))
+        self._waiting.clear()
 
 
 class Transforms:
     """Publishes transforms from readings; silent where the type cannot be had (`tf_messages.available`)."""
 
-    def __init__(self, node: Node) -> None:
-        self._moving = self._static = None
-        if tf_messages.available():
-            self._moving = node.create_publisher(tf_messages.TFMessage, "/tf", qos.TRANSFORMS)
-            self._static = node.create_publisher(tf_messages.TFMessage, "/tf_static", qos.LATCHED)
+    def __init__(self, node: Node, options: TransformOptions | None = None) -> None:
+        self._options = options or TransformOptions()
+        self._is_on = tf_messages.available()
+        self._moving = _Channel(node, "tf", qos.TRANSFORMS)
+        self._static = _Channel(node, "tf_static", qos.LATCHED)
         self._angles: dict[str, tuple[float, float]] = {}
 
     def begin(self, robots: Sequence[RobotNames]) -> None:
-        """Latched frames of these robots, all in one message."""
+        """Latched frames of these robots, all in one message where the topic is common."""
         self._angles.clear()
-        if self._static is None:
+        if not self._is_on:
             return
-        transforms = [
-            Transform(0, names.frame("base_link"), names.frame(frame.name), frame.position, frame.quaternion)
-            for names in robots
-            for frame in fixed_frames()
-        ]
-        self._static.publish(tf_messages.encode(transforms))
+        self._moving.open({self._topic(names, self._moving) for names in robots})
+        if not self._options.publish_static:
+            return
+        self._static.open({self._topic(names, self._static) for names in robots})
+        for names in robots:
+            base = names.frame("base_link")
+            fixed = [
+                Transform(0, base, names.frame(frame.name), frame.position, frame.quaternion)
+                for frame in fixed_frames()
+            ]
+            self._static.add(self._topic(names, self._static), fixed)
+        self._static.flush()
 
-    def take(self, names: RobotNames, sensor: str, reading: Reading) -> None:
-        """Remember wheel angles; with each pose publish the robot's moving frames."""
+    def take(self, names: RobotNames, reading: Reading) -> None:
+        """Remember wheel angles; with each pose send the robot's moving frames at the end of the tick."""
         if isinstance(reading, MotorReading):
             self._angles[names.name] = reading.angles_rad
-        elif isinstance(reading, PoseReading) and self._moving is not None:
-            self._moving.publish(tf_messages.encode(self._frames(names, reading)))
+        elif isinstance(reading, PoseReading) and self._is_on:
+            self._moving.add(self._topic(names, self._moving), self._frames(names, reading))
+
+    def flush(self) -> None:
+        """The tick is over."""
+        self._moving.flush()
+
+    def _topic(self, names: RobotNames, channel: _Channel) -> str:
+        return names.topic(channel.word) if self._options.namespaced else f"/{channel.word}"
 
     def _frames(self, names: RobotNames, reading: PoseReading) -> list[Transform]:
         ns, base, odom = reading.stamp_ns, names.frame("base_link"), names.frame("odom")
-        frames = [
-            _planar(ns, MAP_FRAME, odom, origin_of(reading.truth, reading.odometry)),
-            _planar(ns, odom, base, reading.odometry, reading.tilt),
-        ]
-        for side, angle in zip(SIDES, self._angles.get(names.name, (0.0, 0.0)), strict=True):
-            turn = (0.0, math.sin(angle / 2), 0.0, math.cos(angle / 2))
-            frames.append(Transform(ns, base, names.frame(f"{side}_wheel_link"), wheel_position(side), turn))
+        frames = [_planar(ns, odom, base, reading.odometry, reading.tilt)]
+        if self._options.publish_map:
+            origin = origin_of(reading.truth, reading.odometry)
+            frames.insert(0, _planar(ns, names.frame(MAP_FRAME), odom, origin))
+        if self._options.publish_wheels:
+            for side, angle in zip(SIDES, self._angles.get(names.name, (0.0, 0.0)), strict=True):
+                turn = (0.0, math.sin(angle / 2), 0.0, math.cos(angle / 2))
+                frames.append(Transform(ns, base, names.frame(f"{side}_wheel_link"), wheel_position(side), turn))
         return frames
 
 

@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 import logging
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from nav_msgs.msg import OccupancyGrid
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
@@ -17,7 +20,8 @@ from thymio_sim_ros import resources
 from thymio_sim_ros.nodes import qos
 from thymio_sim_ros.nodes.headers import SECOND_NS, stamp
 from thymio_sim_ros.nodes.markers import playground_markers
-from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.names import MAP_FRAME, RobotNames
+from thymio_sim_ros.nodes.occupancy import occupancy
 from thymio_sim_ros.sim import playground as playgrounds
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
 from thymio_sim_ros.sim.scene import ObjectSnapshot
@@ -34,6 +38,41 @@ SLOW = 0.9
 
 
 @dataclass(frozen=True, slots=True)
+class WorldTopic:
+    """One topic of the world: how often it is sent, what it holds."""
+
+    type: type
+    often: str
+    about: str
+    profile: QoSProfile
+    frame: str = ""
+
+
+TOPICS: Mapping[str, WorldTopic] = {
+    "/clock": WorldTopic(Clock, "≤ 50", "simulated time; 1 Hz while paused", qos.CLOCK),
+    "~/state": WorldTopic(
+        String,
+        "1, change",
+        "JSON: playground, paused, factors, seed, ns, robots, things that can be moved",
+        qos.LATCHED,
+    ),
+    "~/playgrounds": WorldTopic(String, "once", "JSON: shipped playgrounds with titles and descriptions", qos.LATCHED),
+    "/markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.LATCHED, "map"),
+    "/markers/objects": WorldTopic(
+        MarkerArray, "≤ 20, change", "movable things and doors as they stand", qos.LATCHED, "map"
+    ),
+    "/map": WorldTopic(OccupancyGrid, "change", "only with `publish_map`: walls, 1 cm cells", qos.LATCHED, "map"),
+    "/diagnostics": WorldTopic(
+        DiagnosticArray,
+        "1",
+        "real-time factor wanted and achieved, late and dropped ticks, refused messages, robots",
+        qos.SENSOR,
+    ),
+}
+"""Every topic that the simulator publishes for the world as a whole, but for transforms."""
+
+
+@dataclass(frozen=True, slots=True)
 class WorldState:
     """What `~/state` tells: times in ns of simulated time, factors in simulated seconds per second."""
 
@@ -45,45 +84,65 @@ class WorldState:
     achieved: float
     seed: int
     now_ns: int
-    robots: tuple[RobotNames, ...]
+    robots: Mapping[str, RobotNames]
+    movables: tuple[str, ...] = ()
 
     def as_json(self) -> str:
         """The text of `~/state`."""
-        robots = [{"name": names.name, "frame": names.frame("base_link")} for names in self.robots]
+        robots = [
+            {"name": names.name, "frame": names.frame("base_link"), "robot": robot}
+            for robot, names in self.robots.items()
+        ]
         fields = {name: getattr(self, name) for name in self.__slots__ if name != "robots"}
         return json.dumps(fields | {"achieved": round(self.achieved, 3), "robots": robots})
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """Since the start or the last change of pace: ticks that came late, or never; messages that were refused."""
+
+    late_ticks: int
+    dropped_ticks: int
+    refused: int
 
 
 class WorldPorts:
     """Publishers of the simulator that belong to no robot."""
 
-    def __init__(self, node: Node, *, publish_clock: bool) -> None:
-        self._clock = node.create_publisher(Clock, "/clock", qos.CLOCK) if publish_clock else None
-        self._state = node.create_publisher(String, "~/state", qos.LATCHED)
-        self._markers = node.create_publisher(MarkerArray, "/markers", qos.LATCHED)
-        self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
-        self._playgrounds = node.create_publisher(String, "~/playgrounds", qos.LATCHED)
-        self._playgrounds.publish(String(data=json.dumps(shipped_playgrounds())))
-        self._objects = node.create_publisher(MarkerArray, "/markers/objects", qos.LATCHED)
+    def __init__(
+        self, node: Node, *, publish_clock: bool = True, publish_map: bool = False, map_frame: str = MAP_FRAME
+    ) -> None:
+        left_out = {"/clock": not publish_clock, "/map": not publish_map}
+        self._publishers = {
+            name: node.create_publisher(topic.type, name, topic.profile)
+            for name, topic in TOPICS.items()
+            if not left_out.get(name)
+        }
+        self._map_frame = map_frame
+        self._publishers["~/playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
         self._last_clock_ns = self._last_objects_ns = 0
         self._shown: tuple[Playground, tuple[ObjectSnapshot, ...]] | None = None
 
     def publish_clock(self, now_ns: int, *, last: bool) -> None:
         """Simulated time; limited to 50 Hz of wall time unless it is the `last` one for a while."""
         wall_ns = time.monotonic_ns()
-        if self._clock is None or not (last or wall_ns - self._last_clock_ns >= CLOCK_GAP_NS):
+        clock = self._publishers.get("/clock")
+        if clock is None or not (last or wall_ns - self._last_clock_ns >= CLOCK_GAP_NS):
             return
         self._last_clock_ns = wall_ns
-        self._clock.publish(Clock(clock=stamp(now_ns)))
+        clock.publish(Clock(clock=stamp(now_ns)))
 
     def publish_state(self, state: WorldState) -> None:
         """Latched state as JSON."""
-        self._state.publish(String(data=state.as_json()))
+        self._publishers["~/state"].publish(String(data=state.as_json()))
 
     def publish_scene(self, playground: Playground) -> None:
         """Latched markers of all in the playground that stays where it is."""
         fixed = [solid for solid in playground.solids if solid.is_fixed]
-        self._markers.publish(playground_markers((*playground.floors, *playground.paints, *fixed)))
+        markers = playground_markers((*playground.floors, *playground.paints, *fixed), self._map_frame)
+        self._publishers["/markers"].publish(markers)
+        if "/map" in self._publishers:
+            self._publishers["/map"].publish(occupancy(playground.floors, fixed, self._map_frame))
 
     def publish_objects(self, world: World, *, last: bool) -> None:
         """Latched markers of movable things and doors, when they have moved.
@@ -99,9 +158,9 @@ class WorldPorts:
         self._shown, self._last_objects_ns = shown, wall_ns
         solids = {solid.name: solid for solid in world.playground.solids if not solid.is_fixed}
         placed = [solids[thing.name].at(thing.pose) for thing in world.objects if not thing.is_fallen]
-        self._objects.publish(playground_markers(placed))
+        self._publishers["/markers/objects"].publish(playground_markers(placed, self._map_frame))
 
-    def publish_diagnostics(self, state: WorldState, dropped_ticks: int) -> None:
+    def publish_diagnostics(self, state: WorldState, pace: Pace) -> None:
         """Pace of the simulation (ros-interface.md section 5)."""
         slow = not state.paused and 0 < state.achieved < SLOW * state.real_time_factor
         status = DiagnosticStatus(
@@ -113,13 +172,15 @@ class WorldPorts:
                 KeyValue(key="real-time factor wanted", value=f"{state.real_time_factor:g}"),
                 KeyValue(key="real-time factor achieved", value=f"{state.achieved:.3f}"),
                 KeyValue(key="simulated seconds", value=f"{state.now_ns / SECOND_NS:.2f}"),
-                KeyValue(key="ticks dropped", value=str(dropped_ticks)),
+                KeyValue(key="ticks late", value=str(pace.late_ticks)),
+                KeyValue(key="ticks dropped", value=str(pace.dropped_ticks)),
+                KeyValue(key="messages refused", value=str(pace.refused)),
                 KeyValue(key="robots", value=str(len(state.robots))),
             ],
         )
         message = DiagnosticArray(status=[status])
         message.header.stamp = stamp(state.now_ns)
-        self._diagnostics.publish(message)
+        self._publishers["/diagnostics"].publish(message)
 
 
 def shipped_playgrounds() -> list[dict[str, object]]:

@@ -109,6 +109,11 @@ class World:
         """Where everything is that moves without wheels: movable things, then doors, in the playground's order."""
         return tuple(ObjectSnapshot(body.name, body.pose, body.is_fallen) for body in self._physics.objects)
 
+    @property
+    def movables(self) -> tuple[str, ...]:
+        """Names of the things that can be put somewhere, in the playground's order."""
+        return tuple(self._physics.movables)
+
     def post(self, name: str, command: Command) -> None:
         """Let a command to a robot or a movable thing take effect in the next step.
 

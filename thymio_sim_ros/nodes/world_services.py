@@ -1,0 +1,206 @@
+"""Control of time and world: services and topics of the simulator that belong to no robot (docs/ros.md).
+
+Robots come, go and are put somewhere by services of `rcl_interfaces`, since only those among the standard ones carry
+names and values and answer each with a reason. What is dragged in a viewer moves by a topic.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from geometry_msgs.msg import TransformStamped
+from rcl_interfaces.msg import ParameterType, ParameterValue, SetParametersResult
+from rcl_interfaces.srv import GetParameters, SetParameters
+from rclpy.node import Node
+from rclpy.parameter import parameter_value_to_python
+from std_srvs.srv import SetBool, Trigger
+
+from thymio_sim_ros.nodes import convert, qos
+from thymio_sim_ros.nodes.headers import SECOND_NS
+from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.robot_ports import WARN_EVERY_S
+from thymio_sim_ros.sim import fields
+from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
+from thymio_sim_ros.sim.fields import FieldError
+from thymio_sim_ros.sim.playground import RobotStart
+from thymio_sim_ros.sim.world import World
+
+__all__ = ["PLACE", "SERVICES", "Controlled", "WorldServices"]
+
+
+@dataclass(frozen=True, slots=True)
+class Service:
+    """One service: its type and what it does."""
+
+    type: type
+    about: str
+
+
+SERVICES: Mapping[str, Service] = {
+    "~/pause": Service(SetBool, "true: time stands still, false: it goes on"),
+    "~/step": Service(Trigger, "`step_ticks` ticks of 10 ms; refused unless paused"),
+    "~/reset": Service(Trigger, "world, time and noise as at the start; `/clock` goes back to 0"),
+    "~/spawn": Service(SetParameters, "add robots: name → [x, y, yaw] in m and rad, yaw may be left out"),
+    "~/remove": Service(SetParameters, "take robots away: names, values do not matter"),
+    "~/set_poses": Service(SetParameters, "put robots and movable things somewhere: name → [x, y, yaw]"),
+    "~/get_poses": Service(
+        GetParameters, "where robots, movable things and doors are: names → [x, y, yaw]; NOT_SET: nowhere"
+    ),
+}
+"""Every service of the simulator that belongs to no robot."""
+
+PLACE = "~/place"
+"""The topic that does what `~/set_poses` does, for what a viewer drags."""
+
+
+class Controlled(Protocol):
+    """What is controlled: the simulator."""
+
+    @property
+    def world(self) -> World:
+        """The world of now."""
+
+    @property
+    def names(self) -> Mapping[str, RobotNames]:
+        """The names in ROS of the robots, by those in the world."""
+
+    @property
+    def paused(self) -> bool:
+        """Whether time stands still."""
+
+    def pause(self, paused: bool) -> None:
+        """Let time stand still or go on."""
+
+    def step(self) -> None:
+        """Let the ticks of one step pass."""
+
+    def reset(self) -> None:
+        """World, time and noise as at the start."""
+
+    def follow(self) -> None:
+        """Robots have come or gone."""
+
+    def count_refusal(self) -> None:
+        """A message was refused."""
+
+
+class WorldServices:
+    """The services of a simulator, on its node."""
+
+    def __init__(self, node: Node, simulator: Controlled) -> None:
+        self._node, self._simulator = node, simulator
+        handlers: dict[str, Callable[[Any, Any], Any]] = {
+            "~/pause": self._pause,
+            "~/step": self._step,
+            "~/reset": self._reset,
+            "~/spawn": self._each(self._spawn),
+            "~/remove": self._each(self._remove),
+            "~/set_poses": self._each(self._set_pose),
+            "~/get_poses": self._get_poses,
+        }
+        self._services = [node.create_service(service.type, name, handlers[name]) for name, service in SERVICES.items()]
+        self._subscription = node.create_subscription(TransformStamped, PLACE, self._place, qos.COMMAND)
+
+    def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        self._simulator.pause(bool(request.data))
+        response.success, response.message = True, "paused" if self._simulator.paused else "running"
+        return response
+
+    def _step(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        if not self._simulator.paused:
+            response.success, response.message = False, "the world is running: pause it first"
+            return response
+        self._simulator.step()
+        response.success, response.message = True, f"now {self._simulator.world.now_ns / SECOND_NS:.3f} s"
+        return response
+
+    def _reset(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._simulator.reset()
+        response.success, response.message = True, "world, time and noise are as at the start"
+        return response
+
+    def _each(self, act: Callable[[str, ParameterValue], None]) -> Callable[[Any, Any], Any]:
+        """A service that does one thing for each name, or says why not."""
+
+        def answer(request: SetParameters.Request, response: SetParameters.Response) -> SetParameters.Response:
+            response.results = [self._tried(act, one.name, one.value) for one in request.parameters]
+            self._simulator.follow()
+            return response
+
+        return answer
+
+    def _tried(self, act: Callable[[str, ParameterValue], None], name: str, value: Any) -> SetParametersResult:
+        try:
+            act(name, value)
+        except (FieldError, ValueError) as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _spawn(self, name: str, value: ParameterValue) -> None:
+        x, y, yaw = _place_of(name, value)
+        start = fields.read(RobotStart, {"name": name, "x_m": x, "y_m": y, "yaw_rad": yaw}, "")
+        self._simulator.world.spawn(start)
+
+    def _remove(self, name: str, _value: ParameterValue) -> None:
+        world = self._simulator.world
+        if name not in world.robots:
+            raise ValueError(_unknown(name, tuple(world.robots)))
+        world.remove(name)
+
+    def _set_pose(self, name: str, value: ParameterValue) -> None:
+        self._move(name, *_place_of(name, value))
+
+    def _move(self, name: str, x: float, y: float, yaw: float) -> None:
+        world = self._simulator.world
+        if name in world.robots:
+            world.post(name, MoveRobot(x, y, yaw))
+        elif name in world.movables:
+            world.post(name, MoveObject(x, y, yaw))
+        else:
+            raise ValueError(_unknown(name, (*world.robots, *world.movables)))
+
+    def _get_poses(self, request: GetParameters.Request, response: GetParameters.Response) -> GetParameters.Response:
+        world = self._simulator.world
+        poses = {thing.name: thing.pose for thing in world.objects}
+        poses |= {name: robot.pose for name, robot in world.robots.items()}
+        for name in request.names:
+            value = ParameterValue()
+            if name in poses:
+                pose = poses[name]
+                value.type = ParameterType.PARAMETER_DOUBLE_ARRAY
+                value.double_array_value = [pose.x_m, pose.y_m, pose.yaw_rad]
+            response.values.append(value)
+        return response
+
+    def _place(self, message: TransformStamped) -> None:
+        try:
+            self._put(message)
+        except ValueError as error:
+            self._simulator.count_refusal()
+            self._node.get_logger().warning(f"{PLACE} refused: {error}", throttle_duration_sec=WARN_EVERY_S)
+
+    def _put(self, message: TransformStamped) -> None:
+        """`child_frame_id` is a thing, a robot, or a robot's frame."""
+        of_frame = {names.frame("base_link"): robot for robot, names in self._simulator.names.items()}
+        maps = {"", *(names.frame("map") for names in self._simulator.names.values())}
+        if message.header.frame_id not in maps:
+            raise ValueError(f"frame '{message.header.frame_id}' found, expected '{max(maps)}'")
+        name, transform = message.child_frame_id, message.transform
+        yaw = convert.yaw_of(transform.rotation)
+        self._move(of_frame.get(name, name), transform.translation.x, transform.translation.y, yaw)
+
+
+def _place_of(name: str, value: ParameterValue) -> tuple[float, float, float]:
+    found = parameter_value_to_python(value)
+    numbers = [] if found is None or isinstance(found, str | bytes | bool | int | float) else list(found)
+    if len(numbers) not in (2, 3) or not all(isinstance(number, int | float) for number in numbers):
+        shown = "nothing" if found is None else fields.describe(numbers or found)
+        raise ValueError(f"{name}: found {shown}, expected [x, y, yaw] in m and rad")
+    x, y, *yaw = map(float, numbers)
+    return x, y, yaw[0] if yaw else 0.0
+
+
+def _unknown(name: str, known: Sequence[str]) -> str:
+    return f"nothing here is called '{name}', expected {fields.nearest(name, known)}"
