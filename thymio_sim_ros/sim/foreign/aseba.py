@@ -30,8 +30,9 @@ LEAST_MASS_KG = 0.001
 DEFAULT_COLOR = "#808080"
 """Of things whose color is not declared: the format does not say which it is."""
 
-_SILENT = {"author", "thanks", "externalLink", "color", "area", "description", "world", "camera"}
+_SILENT = {"author", "thanks", "externalLink", "color", "area", "description", "world"}
 _NOT_EXPRESSED = {
+    "camera": "the view is chosen in the page",
     "feeder": "energy feeders are for e-pucks only",
     "process": "no program is started beside the simulation",
 }
@@ -83,9 +84,7 @@ class _Reader:
         for element in self._root.children:
             if element.tag not in readers and element.tag not in _SILENT:
                 self._note(element, _NOT_EXPRESSED.get(element.tag, "it is not known here"))
-        for element in self._elements("camera"):
-            self._note(element, "the view is chosen in the page")
-        self._out.notes = [text for _, text in sorted(self._remarks)]
+        self._out.notes = [text for _, text in sorted(self._remarks, key=lambda remark: remark[0])]
         return self._out
 
     def _elements(self, tag: str) -> Iterator[Element]:
