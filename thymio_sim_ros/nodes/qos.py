@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+from typing import Any
+
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
@@ -27,13 +30,16 @@ EVENTS = _reliable(100)
 """Aseba events: nothing lost in bursts."""
 
 
-def overridable(node: Node, topic: str) -> QoSOverridingOptions | None:
-    """The parameters `qos_overrides.<topic>.publisher.…`, declared only where the node was started with one of them.
+def overridable(node: Node, topic: str, profile: QoSProfile) -> dict[str, Any]:
+    """The profile of a publisher with the parameters `qos_overrides.<topic>.publisher.…`, as `create_publisher` wants it.
 
-    For every topic of a hundred robots they would be ten thousand parameters.
+    They are declared only where the node was started with one of them: for every topic of a hundred robots they would
+    be ten thousand.
     """
     # rclpy tells nobody what a node was started with but the node itself.
     started_with = node._parameter_overrides
     if any(name.startswith(f"qos_overrides.{topic}.publisher.") for name in started_with):
-        return QoSOverridingOptions.with_default_policies()
-    return None
+        # rclpy writes the overrides into the profile that it is given.
+        own = copy.deepcopy(profile)
+        return {"qos_profile": own, "qos_overriding_options": QoSOverridingOptions.with_default_policies()}
+    return {"qos_profile": profile}

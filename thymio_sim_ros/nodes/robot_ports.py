@@ -140,9 +140,7 @@ class RobotPorts:
 
     def _outlet(self, row: Row, every_ns: int) -> _Outlet:
         topic = self.names.topic(row.topic)
-        publisher = self._node.create_publisher(
-            row.type, topic, row.profile, qos_overriding_options=qos.overridable(self._node, topic)
-        )
+        publisher = self._node.create_publisher(row.type, topic, **qos.overridable(self._node, topic, row.profile))
         return _Outlet(row, publisher, every_ns, next_ns=every_ns)
 
     def _taker(self, one: RobotInput) -> Callable[[Any], None]:

@@ -1,0 +1,131 @@
+"""Robots come, go and are put somewhere while the simulator runs: by services with reasons, and by a topic."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
+from nav_msgs.msg import Odometry
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import GetParameters, SetParameters
+from std_msgs.msg import Header, String
+
+GREY = "#808080"
+ROOM = json.dumps(
+    {
+        "format": 1,
+        "title": "Room",
+        "shapes": [
+            {"kind": "rectangle", "name": "ground", "size_x_m": 2.0, "size_y_m": 2.0, "color": "#ffffff"},
+            {"kind": "box", "name": "crate", "x_m": 0.5, "y_m": 0, "size_x_m": 0.1, "size_y_m": 0.1, "height_m": 0.1,
+             "color": GREY, "mass_kg": 0.1},
+            {"kind": "cylinder", "name": "post", "x_m": 0, "y_m": 0.5, "radius_m": 0.03, "height_m": 0.1,
+             "color": GREY},
+        ],
+        "robots": [{"name": "thymio", "x_m": 0.0, "y_m": 0.0}],
+    }
+)  # fmt: skip
+
+
+def numbers(*values):
+    return ParameterValue(type=ParameterType.PARAMETER_DOUBLE_ARRAY, double_array_value=values)
+
+
+def ask(ros, service, **values):
+    """Reasons by name; an empty one is success."""
+    request = SetParameters.Request(parameters=[Parameter(name=name, value=value) for name, value in values.items()])
+    results = ros.call(SetParameters, f"/simulator/{service}", request).results
+    assert all(result.successful == (not result.reason) for result in results)
+    return {name: result.reason for name, result in zip(values, results, strict=True)}
+
+
+def poses(ros, *names):
+    values = ros.call(GetParameters, "/simulator/get_poses", GetParameters.Request(names=names)).values
+    return [list(value.double_array_value) for value in values]
+
+
+def test_a_robot_is_spawned_and_removed_while_the_world_is_paused(ros, simulation):
+    simulation(playground=ROOM)
+    states = ros.collect(String, "/simulator/state")
+    assert ask(ros, "spawn", anna=numbers(-0.5, 0.25, 1.5)) == {"anna": ""}
+    ros.collect(Odometry, "/anna/ground_truth/odom")
+    ros.until(lambda: [robot["robot"] for robot in json.loads(states[-1].data)["robots"]] == ["thymio", "anna"])
+    assert json.loads(states[-1].data)["robots"][1]["frame"] == "anna/base_link"
+    assert poses(ros, "anna") == [[-0.5, 0.25, 1.5]]
+    assert ask(ros, "remove", anna=ParameterValue()) == {"anna": ""}
+    ros.until(lambda: [robot["robot"] for robot in json.loads(states[-1].data)["robots"]] == ["thymio"])
+
+
+def test_a_robot_that_was_spawned_measures_and_obeys(ros, simulation):
+    sim = simulation(playground=ROOM)
+    ask(ros, "spawn", anna=numbers(-0.5, 0.25))
+    truth = ros.collect(Odometry, "/anna/ground_truth/odom")
+    sim.until(lambda: truth)
+    assert truth[-1].pose.pose.position.x == -0.5
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "reason"),
+    [
+        ("thymio", numbers(-0.5, 0.5), "the name 'thymio' is taken"),
+        ("crate", numbers(-0.5, 0.5), "the name 'crate' is taken"),
+        ("anna", numbers(0.0, 0.5), "'anna' cannot stand at 0.000, 0.500 m: 'post' is in its way"),
+        ("anna", numbers(1.0), "anna: found [1.0], expected [x, y, yaw] in m and rad"),
+        ("anna", ParameterValue(), "anna: found nothing, expected [x, y, yaw] in m and rad"),
+        ("an na", numbers(-0.5, 0.5), "name: found 'an na', expected a ROS name"),
+        ("anna", numbers(math.nan, 0.5), "x_m: found nan"),
+    ],
+)
+def test_a_robot_that_cannot_be_is_refused_with_a_reason(ros, simulation, name, value, reason):
+    sim = simulation(playground=ROOM)
+    assert ask(ros, "spawn", **{name: value})[name].startswith(reason)
+    assert list(sim.world.robots) == ["thymio"]
+
+
+def test_each_name_has_an_answer_of_its_own(ros, simulation):
+    sim = simulation(playground=ROOM)
+    reasons = ask(ros, "remove", thymo=ParameterValue(), thymio=ParameterValue())
+    assert reasons == {"thymo": "nothing here is called 'thymo', expected 'thymio' (one of thymio)", "thymio": ""}
+    assert not sim.world.robots
+    sim.step(0.1)
+
+
+def test_robots_and_things_are_put_somewhere(ros, simulation):
+    sim = simulation(playground=ROOM)
+    reasons = ask(ros, "set_poses", thymio=numbers(-0.5, 0.0, 1.0), crate=numbers(0.25, 0.25), post=numbers(0.0, 0.0))
+    assert (reasons["thymio"], reasons["crate"]) == ("", "")
+    assert reasons["post"] == "nothing here is called 'post', expected one of thymio, crate"
+    sim.step(0.01)
+    thymio, crate, post = poses(ros, "thymio", "crate", "post")
+    assert (thymio, crate, post) == ([-0.5, 0.0, 1.0], [0.25, 0.25, 0.0], [])
+    assert "'post' is in its way" in ask(ros, "set_poses", crate=numbers(0.0, 0.5))["crate"]
+
+
+def transform(child, x, y, yaw=0.0, frame="map"):
+    return TransformStamped(
+        header=Header(frame_id=frame),
+        child_frame_id=child,
+        transform=Transform(
+            translation=Vector3(x=x, y=y), rotation=Quaternion(z=math.sin(yaw / 2), w=math.cos(yaw / 2))
+        ),
+    )
+
+
+@pytest.mark.parametrize(("name", "child"), [("thymio", "thymio"), ("thymio", "base_link"), ("crate", "crate")])
+def test_what_a_viewer_drags_goes_there(ros, simulation, name, child):
+    sim = simulation(playground=ROOM)
+    ros.publisher(TransformStamped, "/simulator/place").publish(transform(child, -0.5, 0.25, 0.5))
+    sim.until(lambda: poses(ros, name) == [pytest.approx([-0.5, 0.25, 0.5])], seconds=0.1)
+
+
+@pytest.mark.parametrize(
+    "refused",
+    [transform("thymio", 0.0, 0.5), transform("nobody", 0.0, 0.0), transform("crate", 0.0, 0.0, frame="odom")],
+)
+def test_a_drag_to_nowhere_is_refused_and_counted(ros, simulation, refused):
+    sim = simulation(playground=ROOM)
+    ros.publisher(TransformStamped, "/simulator/place").publish(refused)
+    ros.until(lambda: sim.simulator._refused == 1)
+    assert poses(ros, "thymio") == [[0.0, 0.0, 0.0]]
