@@ -31,7 +31,7 @@ EVENTS = _reliable(100)
 
 
 def overridable(node: Node, topic: str, profile: QoSProfile) -> dict[str, Any]:
-    """The profile of a publisher with the parameters `qos_overrides.<topic>.publisher.…`, as `create_publisher` wants it.
+    """Arguments of `create_publisher`: its profile, and the parameters `qos_overrides.<topic>.publisher.…`.
 
     They are declared only where the node was started with one of them: for every topic of a hundred robots they would
     be ten thousand.
@@ -40,6 +40,6 @@ def overridable(node: Node, topic: str, profile: QoSProfile) -> dict[str, Any]:
     started_with = node._parameter_overrides
     if any(name.startswith(f"qos_overrides.{topic}.publisher.") for name in started_with):
         # rclpy writes the overrides into the profile that it is given.
-        own = copy.deepcopy(profile)
+        own = copy.copy(profile)
         return {"qos_profile": own, "qos_overriding_options": QoSOverridingOptions.with_default_policies()}
     return {"qos_profile": profile}
