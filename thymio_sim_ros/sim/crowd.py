@@ -154,7 +154,7 @@ class Crowd:
         sure_x, sure_y, sure_m = self._sure
         for index in np.flatnonzero(np.hypot(x - sure_x, y - sure_y) >= sure_m).tolist():
             sure_x[index], sure_y[index] = x[index], y[index]
-            sure_m[index] = self._robots[index].stand(footing, float(x[index]), float(y[index]))
+            sure_m[index] = self._robots[index].balance.stand(footing, float(x[index]), float(y[index]))
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
         """What the rays of all robots meet now (`Raycaster.cast`)."""

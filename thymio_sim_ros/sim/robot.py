@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
-from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.actuators.buttons import ButtonState
 from thymio_sim_ros.sim.actuators.hand import HandState
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.actuators.pen import PenState
 from thymio_sim_ros.sim.actuators.room import RoomState
-from thymio_sim_ros.sim.clock import TICK_NS, SimClock
-from thymio_sim_ros.sim.fall import Fall
-from thymio_sim_ros.sim.footing import Footing
+from thymio_sim_ros.sim.balance import Balance
+from thymio_sim_ros.sim.clock import SimClock
 from thymio_sim_ros.sim.geometry import Point, Pose, Tilt, Twist
 from thymio_sim_ros.sim.ground import NO_FLOOR, Ground, GroundSample
 from thymio_sim_ros.sim.noise import Noise
@@ -26,15 +24,12 @@ from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.scene import RobotSnapshot
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.sound import SPEAKER_SHARE, Sound, Sounding
+from thymio_sim_ros.sim.task import Task
 from thymio_sim_ros.sim.wheels import WheelArrays, Wheels
 
 __all__ = ["Robot", "Shared"]
 
 S = TypeVar("S")
-
-_LONGEST_WAY_M = thymio2.MAX_SPEED_M_S * TICK_NS * 1e-9
-"""Of a robot in a tick, unless it is pushed."""
-_MOST_SURE_TICKS = 100
 
 
 class Shared:
@@ -146,18 +141,6 @@ class _View:
         self._robot.place(pose)
 
 
-class Task:
-    """An actuator that acts on a robot in every tick in which it is busy."""
-
-    __slots__ = ("is_busy", "is_idle", "state", "update", "update_all", "view")
-
-    def __init__(self, actuator: Actuator, state: Any, view: _View) -> None:
-        assert actuator.update is not None
-        self.update, self.is_idle, self.state, self.view = actuator.update, actuator.is_idle, state, view
-        self.update_all = actuator.update_all
-        self.is_busy = self.is_idle is None or not self.is_idle(state)
-
-
 class Robot:
     """One robot. Invariant: `World.step` alone makes it act, move and measure, in that order."""
 
@@ -177,8 +160,8 @@ class Robot:
         self.shared_wheels: WheelArrays | None = None
         """The wheels of all robots, when they roll as one."""
         self._clock, self._physics = shared.clock, shared.physics
-        self._fall: Fall | None = None
-        self._sure_ticks = 0
+        self.balance = Balance(shared.clock, shared.physics, self.body)
+        """Whether it stands."""
         self.states: dict[type[Any], Any] = {}
         """The state of every actuator, by its type."""
         self._accepting: dict[type[Any], tuple[Actuator, Any]] = {}
@@ -225,12 +208,12 @@ class Robot:
     @property
     def tilt(self) -> Tilt:
         """How it leans: as the operator's hand holds it, or as it falls off an edge and lies there."""
-        return self._hand.tilt if self._fall is None else self._fall.tilt(self._clock.now_ns)
+        return self.balance.tilt or self._hand.tilt
 
     @property
     def is_falling(self) -> bool:
         """Whether it is in the air, on its way down from an edge."""
-        return self._fall is not None and self._fall.is_free(self._clock.now_ns)
+        return self.balance.is_falling
 
     @property
     def is_fallen(self) -> bool:
@@ -310,23 +293,7 @@ class Robot:
     def place(self, pose: Pose) -> None:
         """Put it somewhere, at rest; from where it has fallen too."""
         self._physics.place(self.body, pose)
-        self._fall, self._sure_ticks = None, 0
-
-    def look_down(self, footing: Footing) -> None:
-        """Fall, if there is no floor under its origin (any more)."""
-        if self._sure_ticks > 0 and not self.body.touching:
-            self._sure_ticks -= 1
-        elif self._fall is None:
-            sure_m = self.stand(footing, self.pose.x_m, self.pose.y_m)
-            self._sure_ticks = int(min(sure_m / _LONGEST_WAY_M, _MOST_SURE_TICKS))
-
-    def stand(self, footing: Footing, x_m: float, y_m: float) -> float:
-        """How far it may go from here, where it is, and surely find floor, in m; 0 when it falls."""
-        clearance_m = footing.clearance_m(x_m, y_m)
-        if clearance_m < 0.0 and self._fall is None:
-            self._fall = Fall(self._clock.now_ns + TICK_NS, self.body.course_rad)
-            self._physics.drop_robot(self.body)
-        return max(0.0, clearance_m)
+        self.balance.regain()
 
     def measure(self, due: Sequence[int]) -> list[tuple[str, str, Reading]]:
         """The readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""

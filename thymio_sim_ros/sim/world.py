@@ -232,7 +232,7 @@ class World:
         else:
             for robot in self._robots.values():
                 robot.roll(_TICK_S)
-                robot.look_down(self._footing)
+                robot.balance.look_down(self._footing)
         for movable in self._physics.movables.values():
             if movable.is_moving:
                 self._drop_over_edge(movable)
