@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import zipfile
 from collections.abc import Iterator
@@ -230,3 +231,16 @@ def test_a_playground_of_aseba_is_opened_with_remarks_and_a_broken_one_is_refuse
         "line 2: <world> w: found 'wide', expected a number"
     )
     assert page.evaluate("window.thymio.state().simulator.playground") == "my maze.playground"
+
+
+def test_a_thing_that_is_pushed_moves_on_the_page(suite, page, tmp_path):
+    can = {"kind": "cylinder", "name": "can", "x_m": 0.2, "y_m": 0, "radius_m": 0.03, "height_m": 0.1, "mass_kg": 0.05}
+    ground = {"kind": "rectangle", "size_x_m": 3, "size_y_m": 1, "color": "#ffffff"}
+    shapes = [ground, can | {"color": "#cc3333"}]
+    robots = [{"name": "thymio", "x_m": 0, "y_m": 0}]
+    playground, program = tmp_path / "push.json", tmp_path / "push.aesl"
+    playground.write_text(json.dumps({"format": 1, "title": "Push", "shapes": shapes, "robots": robots}))
+    program.write_text("motor.left.target = 200\nmotor.right.target = 200")
+    open_page(page, suite("--playground", str(playground), "--program", str(program)))
+    page.wait_for_function("() => window.thymio.state().objects.some((thing) => thing.pose.position.x > 0.3)")
+    assert page.evaluate("() => window.thymio.state().objects.map((thing) => thing.name)") == ["can"]
