@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import thymio_sim_ros
-from thymio_sim_ros import convert, resources
+from thymio_sim_ros import convert, foxglove_layout, resources
 from thymio_sim_ros.device.card import Card, CardError
 from thymio_sim_ros.device.events import FIRMWARE, POLICIES
 from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
@@ -35,6 +35,7 @@ example:
   thymio-sim runner --program my_robot.aesl --seconds 60     (no ROS, as fast as possible)
   thymio-sim runner --log run.jsonl; thymio-sim replay run.jsonl   (the same again, bit for bit)
   thymio-sim convert maze.playground -o maze.json            (from Aseba and others; no ROS)
+  thymio-sim foxglove-layout -o thymio.json                  (panels for Foxglove and Lichtblick)
 """
 
 USAGE_ERROR, DIFFERENT = 2, 1
@@ -50,6 +51,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     commands: dict[str, Callable[[Sequence[str]], int]] = {
         "runner": run_without_ros,
         "convert": convert.run,
+        "foxglove-layout": foxglove_layout.run,
         "replay": replay_run,
     }
     command = commands.get(arguments[0], start_suite) if arguments else start_suite
@@ -81,7 +83,8 @@ def start_suite(argv: Sequence[str]) -> int:
     )
     if options.log is not None and (options.log.is_dir() or not options.log.parent.is_dir()):
         raise UsageError(f"{options.log}: expected a file in a folder that exists")
-    _check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
+    playground, _ = _check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
+    robots = [robot.name for robot in playground.robots]
     if suite.web:
         _check_port(suite.port, "the page", "--port")
     if suite.foxglove:
@@ -95,7 +98,7 @@ def start_suite(argv: Sequence[str]) -> int:
     from thymio_sim_ros.nodes import all_nodes  # loads rcl
 
     try:
-        return all_nodes.run(suite, [], on_ready=lambda: print(_greeting(suite), flush=True))
+        return all_nodes.run(suite, [], on_ready=lambda: print(_greeting(suite, robots), flush=True))
     finally:
         leftovers.remove_new(before)
 
@@ -340,8 +343,9 @@ def _check_ros() -> None:
         )
 
 
-def _greeting(suite: Suite) -> str:
-    """The three lines a person needs."""
+def _greeting(suite: Suite, robots: Sequence[str]) -> str:
+    """The lines a person needs."""
     page = f"http://localhost:{suite.port}/" if suite.web else "none (started without it)"
     foxglove = f"ws://localhost:{suite.foxglove_port}" if suite.foxglove else "none (started without it)"
-    return f"Page      {page}\nFoxglove  {foxglove}\nStop      Ctrl-C"
+    layout = f"\nLayout    {foxglove_layout.hint(robots)}" if suite.foxglove else ""
+    return f"Page      {page}\nFoxglove  {foxglove}{layout}\nStop      Ctrl-C"

@@ -150,3 +150,13 @@ def test_one_robot_has_no_name_and_several_have_theirs():
 )
 def test_events_become_words_of_a_topic(event, word):
     assert topic_word(event) == word
+
+
+def test_rays_are_as_long_as_what_they_measure_and_tell_a_hit_by_color():
+    marker = encode("proximity/rays", PROXIMITY, SECOND)
+    assert marker.header.frame_id == "thymio_2/base_link"
+    pairs = list(zip(marker.points[::2], marker.points[1::2], strict=True))
+    lengths = [math.hypot(end.x - start.x, end.y - start.y) for start, end in pairs]
+    assert lengths == pytest.approx([0.14, 0.12, 0.005, 0.14, 0.14, 0.14, 0.08])
+    assert [color.r == 1.0 for color in marker.colors[1::2]] == [False, True, True, False, False, False, True]
+    assert len(marker.colors) == len(marker.points)

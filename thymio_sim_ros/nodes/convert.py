@@ -286,6 +286,13 @@ ROWS: dict[str, tuple[Row, ...]] = {
             "the five front sensors from right to left, m from the robot's middle; intensities are counts",
             "laser_link",
         ),
+        Row(
+            "proximity/rays",
+            Marker,
+            senses.rays,
+            "the seven rays as lines, as long as what they measure; red where something is met",
+            "base_link",
+        ),
     ),
     "buttons": (
         *(

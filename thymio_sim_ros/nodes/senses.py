@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 
+from geometry_msgs.msg import Point
 from sensor_msgs.msg import BatteryState, Imu, Temperature
-from std_msgs.msg import Bool, Empty, Float32, Int8, Int16
+from std_msgs.msg import Bool, ColorRGBA, Empty, Float32, Int8, Int16
+from visualization_msgs.msg import Marker
 
 from thymio_sim_ros.nodes.headers import stamped
 from thymio_sim_ros.nodes.names import RobotNames
-from thymio_sim_ros.sim import readings
+from thymio_sim_ros.sim import readings, thymio2
 
 ACCELERATION_VARIANCE = 0.07
 TEMPERATURE_VARIANCE = 0.01
@@ -17,6 +19,26 @@ TEMPERATURE_VARIANCE = 0.01
 
 ABSENT = -1.0
 """First element of the covariance of a quantity that an Imu does not measure (REP 145)."""
+
+
+RAY_WIDTH_M = 0.002
+_FREE, _HIT = (0.45, 0.75, 1.0, 0.6), (1.0, 0.3, 0.2, 1.0)
+"""Colors of rays that meet nothing and of those that do."""
+
+
+def rays(reading: readings.ProximityReading, names: RobotNames, _options: object) -> Marker:
+    """The seven rays of the proximity sensors as lines, as long as what they measure, for viewers."""
+    marker = Marker(ns="rays", action=Marker.ADD, type=Marker.LINE_LIST, frame_locked=True)
+    marker.scale.x = RAY_WIDTH_M
+    for (x_m, y_m, yaw_rad), range_m in zip(thymio2.PROXIMITY_POSES, reading.ranges_m, strict=True):
+        is_free = math.isinf(range_m)
+        length_m = thymio2.PROXIMITY_RANGE_M if is_free else range_m
+        end = (x_m + length_m * math.cos(yaw_rad), y_m + length_m * math.sin(yaw_rad))
+        for x, y in ((x_m, y_m), end):
+            marker.points.append(Point(x=x, y=y, z=thymio2.PROXIMITY_HEIGHT_M))
+            red, green, blue, alpha = _FREE if is_free else _HIT
+            marker.colors.append(ColorRGBA(r=red, g=green, b=blue, a=alpha))
+    return stamped(marker, reading.stamp_ns, names.frame("base_link"))
 
 
 def imu(reading: readings.AccelerometerReading, names: RobotNames, _options: object) -> Imu:
