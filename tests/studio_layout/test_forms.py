@@ -63,7 +63,7 @@ def test_both_files_hold_the_same_panels() -> None:
     old, new = json.loads(render("lichtblick")), json.loads(render("foxglove"))
     configs = old["configById"]
     old_panels = [panel for panel in leaves(old["layout"], configs) if not panel.startswith("Tab!")]
-    assert [configs[panel]["foxglovePanelTitle"] for panel in old_panels] == expected
+    assert [configs[panel]["lichtblickPanelTitle"] for panel in old_panels] == expected
     assert [panel["title"] for panel in panels(new["content"])] == expected
 
 

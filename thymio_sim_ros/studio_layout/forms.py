@@ -24,8 +24,8 @@ _RENAMED = {
 }
 """Types of panels that the present Foxglove app calls otherwise."""
 
-_TITLE = "foxglovePanelTitle"
-"""Where Lichtblick keeps the title of a panel."""
+_TITLES = ("lichtblickPanelTitle", "foxglovePanelTitle")
+"""Where Lichtblick keeps the title of a panel, and where Studio before it did."""
 
 
 def render(app: str, robot: str = "") -> str:
@@ -49,7 +49,7 @@ def _mosaic(node: Node, configs: dict[str, Any]) -> Any:
     """The area's node in the tree; what its panels are goes into `configs`."""
     if isinstance(node, Panel):
         panel = f"{node.kind}!{node.key}"
-        configs[panel] = dict(node.config) | ({_TITLE: node.title} if node.title else {})
+        configs[panel] = dict(node.config) | (dict.fromkeys(_TITLES, node.title) if node.title else {})
         return panel
     if isinstance(node, Tabs):
         panel = f"Tab!{node.key}"

@@ -51,7 +51,7 @@ class Names:
 def describe(robot: str = "") -> Node:
     """The whole layout; `robot` is its namespace, empty for the only robot of a playground."""
     names = Names(robot)
-    left = Split("column", ((68, _scene(names)), (32, _drive(names))))
+    left = Split("column", ((62, _scene(names)), (38, _drive(names))))
     tabs = Tabs(
         "details",
         (
@@ -73,12 +73,12 @@ def _scene(names: Names) -> Panel:
         "scene",
         "Playground",
         {
-            "followTf": "map",
-            "followMode": "follow-none",
+            "followTf": names.frame("base_link"),
+            "followMode": "follow-position",
             "cameraState": {
                 "perspective": True,
-                "distance": 1.6,
-                "phi": 40.0,
+                "distance": 1.0,
+                "phi": 45.0,
                 "thetaOffset": 0.0,
                 "target": [0.0, 0.0, 0.0],
                 "targetOffset": [0.0, 0.0, 0.0],
@@ -229,7 +229,7 @@ def _plot(key: str, title: str, series: Iterable[tuple[str, str]], *, low: float
             "minYValue": low,
             "maxYValue": high,
             "showLegend": True,
-            "legendDisplay": "left",
+            "legendDisplay": "floating",
             "showPlotValuesInLegend": True,
             "showXAxisLabels": True,
             "showYAxisLabels": True,
