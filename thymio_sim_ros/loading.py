@@ -53,14 +53,18 @@ def read_program(path: str, layout: str = THYMIO) -> ThymioProgram:
 
     Raises ProgramError for what the text says, ResourceError for a file that is not there or no text, OSError.
     """
+    return load_program(*read_text(path), layout)
+
+
+def read_text(path: str) -> tuple[str, str]:
+    """Text and name of what `path` stands for in `read_program`. ResourceError, OSError."""
     if path == NO_PROGRAM:
-        return load_program("", NO_PROGRAM, layout)
+        return "", NO_PROGRAM
     found = resources.find_program(path)
     try:
-        text = found.read_text(encoding="utf-8")
+        return found.read_text(encoding="utf-8"), found.name
     except UnicodeDecodeError as error:
         raise resources.ResourceError(f"{found}: byte {error.start} is not UTF-8 text") from error
-    return load_program(text, found.name, layout)
 
 
 def check_behaviour(name: str, layout: str = THYMIO) -> str:

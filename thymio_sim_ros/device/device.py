@@ -313,6 +313,10 @@ class AsebaDevice:
         """Address and size of every variable, those of the program included."""
         return self._addresses | self._program.program.addresses
 
+    def memory(self) -> list[int]:
+        """Words of all variables, one after the other in order of address."""
+        return list(self._vm.variables.words[: self._program.program.allocated])
+
     def get_variable(self, name: str) -> tuple[int, ...]:
         """Words of a variable; KeyError when there is none of that name."""
         address, size = self.variables()[name]

@@ -21,7 +21,16 @@ from thymio_sim_ros.device.layout import THYMIO, target
 from thymio_sim_ros.device.outline import outline
 from thymio_sim_ros.device.program import ThymioProgram, memory_use, parse, select
 
-__all__ = ["ENGLISH", "MOST_CHARACTERS", "Question", "check", "describe_program", "describe_target", "doubts"]
+__all__ = [
+    "ENGLISH",
+    "MOST_CHARACTERS",
+    "Question",
+    "check",
+    "describe_program",
+    "describe_target",
+    "doubts",
+    "refusal",
+]
 
 ENGLISH = "en"
 
@@ -47,7 +56,7 @@ def check(question: Question) -> dict[str, Any]:
     """Errors, warnings, names and use of the memories; `errors` is empty when the text compiles."""
     if len(question.source) > MOST_CHARACTERS:
         text = f"found {len(question.source)} characters, expected at most {MOST_CHARACTERS}"
-        return _refused(text)
+        return refusal(text)
     try:
         network = parse(question.source)
         nodes, _ = select(network, question.robots)
@@ -133,7 +142,8 @@ def is_hidden(name: str) -> bool:
     return name.startswith("_") or "._" in name
 
 
-def _refused(text: str) -> dict[str, Any]:
+def refusal(text: str) -> dict[str, Any]:
+    """The answer to a request that cannot be answered."""
     return _answer([_finding("request", text, None, None, 0, "")])
 
 

@@ -1,19 +1,21 @@
 """The Aseba runtime as a ROS node: feeds readings to devices, sends their commands, carries their events.
 
-It knows topics, not simulators: any robot that has them will do (ros-interface.md section 6). Devices keep
-simulated time by the node's clock. The program is a parameter; a text that does not compile is refused with
-its place, and the old program goes on. A robot without a program is switched on with its menu.
+It knows topics, not simulators: any robot that has them will do (ros-interface.md section 6, docs/aseba_ros.md).
+Devices keep simulated time by the node's clock. Programs are parameters; a text that does not compile is refused
+with its place, and the old program goes on. A robot without a program is switched on with its menu.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rcl_interfaces.msg import SetParametersResult
-from rclpy.clock import ClockChange, JumpThreshold, TimeJump
+from rclpy.clock import Clock, ClockChange, JumpThreshold, TimeJump
+from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.executors import Executor
@@ -24,50 +26,35 @@ from std_msgs.msg import String
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.behaviour_host import MENU
 from thymio_sim_ros.device.card import CardError
+from thymio_sim_ros.device.fleet import Member, Share
 from thymio_sim_ros.device.layout import THYMIO
-from thymio_sim_ros.device.options import DeviceOptions, OptionError
-from thymio_sim_ros.device.program import ProgramError, ThymioProgram, load_program
+from thymio_sim_ros.device.options import OptionError
+from thymio_sim_ros.device.program import ProgramError
 from thymio_sim_ros.device.settings import SettingsError
-from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, read_program, shipped_behaviours
-from thymio_sim_ros.nodes import params, qos
-from thymio_sim_ros.nodes.device_ports import DevicePorts
+from thymio_sim_ros.loading import check_behaviour, shipped_behaviours
+from thymio_sim_ros.nodes import aseba_params, params, qos, scripts
+from thymio_sim_ros.nodes.aseba_bus import Bus
+from thymio_sim_ros.nodes.aseba_params import RuntimeParams, WrongValueError
+from thymio_sim_ros.nodes.check_service import CheckService
+from thymio_sim_ros.nodes.device_ports import DevicePorts, Wishes
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, run_main
 from thymio_sim_ros.nodes.names import RobotNames
-from thymio_sim_ros.nodes.params import param
+
+__all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
 SIMULATOR_STATE = "/simulator/state"
+DIAGNOSTICS_S = 1.0
+
+PROGRAM_ERRORS = (ProgramError, resources.ResourceError, OSError)
 
 
-@dataclass(frozen=True)
-class RuntimeParams:
-    """Parameters of the Aseba runtime node."""
+@dataclass(frozen=True, slots=True)
+class _Accepted:
+    """Parameters that were checked: all values, those that change, and each robot's program."""
 
-    robots: list[str] = param(
-        [""], "Namespaces of the robots that run the program at first; '' is the only robot", fixed=True
-    )
-    follow_simulator: bool = param(
-        True, "Whether the robots are those of /simulator/state, once there is one", fixed=True
-    )
-    path: str = param("", "Program: a built-in behaviour's name or an .aesl file", name="script.path")
-    source: str = param("", "Program: text of an .aesl file or of one Aseba program", name="script.source")
-    name: str = param("", "Name shown for a program given as text", name="script.name")
-    behaviour: str = param(
-        "", "Built-in behaviour, such as menu, that the robot is switched on with; '' is the program, or the menu"
-    )
-    layout: str = param(
-        "thymio", "Order of variables and natives: thymio (firmware 14) or playground (the reference's)", fixed=True
-    )
-    events: str = param(
-        "firmware", "How events meet: firmware (they wait) or playground (they end a handler that runs)", fixed=True
-    )
-    card: str = param("", "Folder that stands for the memory card; '' is no card", fixed=True)
-    settings: str = param("", "Folder that keeps the robot's settings; '' forgets them", fixed=True)
-
-    @property
-    def options(self) -> DeviceOptions:
-        """What these say about the robots; OptionError for a choice that does not exist."""
-        folders = (Path(text).expanduser() if text else None for text in (self.card, self.settings))
-        return DeviceOptions(self.layout, self.events, *folders)
+    values: dict[str, Any]
+    changes: dict[str, Any]
+    shares: dict[str, Share | None]
 
 
 class AsebaRuntime:
@@ -76,48 +63,30 @@ class AsebaRuntime:
     def __init__(
         self, context: Context, defaults: RuntimeParams | None = None, *, use_sim_time: bool | None = None
     ) -> None:
-        overrides = [] if use_sim_time is None else [Parameter("use_sim_time", value=use_sim_time)]
-        self.node = Node("aseba_runtime", context=context, parameter_overrides=overrides)
-        self.params = params.declare(self.node, defaults or RuntimeParams())
-        try:
-            self._options = self.params.options
-            self._program = self._first_program()
-            self._behaviour = check_behaviour(self.params.behaviour, self.params.layout)
-        except (OptionError, ProgramError, resources.ResourceError, OSError) as error:
-            self.node.destroy_node()
-            raise StartError(str(error)) from error
-        self._accepted: ThymioProgram | None = None
-        self._behaviours = self.node.create_publisher(String, "~/behaviours", qos.LATCHED)
-        listed = [{"name": name, "description": text} for name, text in shipped_behaviours().items()]
-        self._behaviours.publish(String(data=json.dumps(listed)))
-        self.robots: list[DevicePorts] = []
-        try:
-            self._set_robots(self.params.robots)
-        except (CardError, SettingsError) as error:
-            self.node.destroy_node()
-            raise StartError(str(error)) from error
-        if self.params.follow_simulator:
-            self.node.create_subscription(String, SIMULATOR_STATE, self._on_simulator_state, qos.LATCHED)
-        self.node.add_on_set_parameters_callback(self._check_parameters)
-        self.node.add_post_set_parameters_callback(self._apply_parameters)
-        self._jumps = self.node.get_clock().create_jump_callback(
-            JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False),
-            post_callback=self._on_jump,
+        self.node = Node(
+            "aseba_runtime",
+            context=context,
+            parameter_overrides=[] if use_sim_time is None else [Parameter("use_sim_time", value=use_sim_time)],
+            allow_undeclared_parameters=True,
+            automatically_declare_parameters_from_overrides=True,
         )
-
-    def load(self, program: ThymioProgram) -> None:
-        """Run this program on every robot, from its start."""
-        self._program, self._behaviour = program, ""
-        self._begin()
+        self.robots: list[DevicePorts] = []
+        self._accepted: _Accepted | None = None
+        self._is_declaring = False
+        try:
+            self._start(defaults or RuntimeParams())
+        except (OptionError, WrongValueError, CardError, SettingsError, *PROGRAM_ERRORS) as error:
+            self.node.destroy_node()
+            raise StartError(str(error)) from error
 
     def turn(self, executor: Executor) -> None:
         """Handle messages; let handlers that used up their budget go on."""
-        busy = any(ports.is_busy for ports in self.robots)
+        busy = [ports for ports in self.robots if ports.is_busy]
         if not busy:
             executor.spin_once(timeout_sec=SPIN_SLICE_S)
         else:
             deliver(executor)
-            for ports in self.robots:
+            for ports in busy:
                 ports.run()
 
     def close(self) -> None:
@@ -127,49 +96,110 @@ class AsebaRuntime:
             ports.close()
         self.node.destroy_node()
 
-    def _begin(self) -> None:
-        """Let every robot begin with the program, or with the behaviour that it is to be switched on with."""
-        for ports in self.robots:
-            if self._program is None or self._behaviour:
-                ports.start(self._behaviour or MENU, self._program)
-            else:
-                ports.load(self._program)
+    # -- start
 
-    def _first_program(self) -> ThymioProgram | None:
-        if self.params.source:
-            return load_program(self.params.source, self.params.name or "program", self.params.layout)
-        if self.params.path or self.params.layout != THYMIO:  # the reference playground has no menu
-            return read_program(self.params.path or NO_PROGRAM, self.params.layout)
-        return None
+    def _start(self, defaults: RuntimeParams) -> None:
+        node = self.node
+        self._values = aseba_params.adopt_overrides(node)
+        self.params = params.declare(node, defaults)
+        self._values |= params.by_name(self.params)
+        for name, value in self._values.items():
+            aseba_params.check_value(name, value)
+        self._options = self.params.options
+        self._behaviour = check_behaviour(self.params.behaviour, self.params.layout)
+        self._bus = Bus(node, lambda: self.robots, self._on_told)
+        self._bus.reaches_all = self.params.emit_reaches == "network"
+        self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
+        self._behaviours = node.create_publisher(String, "~/behaviours", qos.LATCHED)
+        listed = [{"name": name, "description": text} for name, text in shipped_behaviours().items()]
+        self._behaviours.publish(String(data=json.dumps(listed)))
+        self._check = CheckService(
+            node, layout=self.params.layout, robots=lambda: [ports.names.name for ports in self.robots]
+        )
+        self._set_robots(self.params.robots)
+        if self.params.follow_simulator:
+            node.create_subscription(String, SIMULATOR_STATE, self._on_simulator_state, qos.LATCHED)
+        node.add_pre_set_parameters_callback(aseba_params.exclusive)
+        node.add_on_set_parameters_callback(self._check_parameters)
+        node.add_post_set_parameters_callback(self._apply_parameters)
+        self._jumps = node.get_clock().create_jump_callback(
+            JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False),
+            post_callback=self._on_jump,
+        )
+        self._wall = Clock(clock_type=ClockType.STEADY_TIME)
+        node.create_timer(DIAGNOSTICS_S, self._publish_diagnostics, clock=self._wall)
+        self._looks = node.create_timer(1.0 / self.params.watch_rate, self._look, clock=self._wall)
+
+    # -- robots
 
     def _set_robots(self, names: Sequence[str]) -> None:
-        """One device for each of these namespaces, numbered in their order; all begin anew."""
+        """One device for each of these namespaces; those that are there already go on, numbers stay."""
+        here = {ports.names.name: ports for ports in self.robots}
+        for name, ports in here.items():
+            if name not in names:
+                ports.close()
+        kept = {name: ports for name, ports in here.items() if name in names}
+        self.robots = list(kept.values())
+        new = [name for name in names if name not in kept]
+        for name in new:
+            self.robots.append(self._new_robot(name, self._free_number(names.index(name)), alone=len(names) == 1))
+        self.robots.sort(key=lambda ports: names.index(ports.names.name))
+        self._share_out(new)
+
+    def _free_number(self, place: int) -> int:
+        taken = {ports.number for ports in self.robots}
+        wanted = self.params.first_id + place
+        return wanted if wanted not in taken else max(taken) + 1
+
+    def _new_robot(self, name: str, number: int, *, alone: bool) -> DevicePorts:
+        if name:
+            self._is_declaring = True
+            self._values |= aseba_params.declare_robot(self.node, name)
+            self._is_declaring = False
+        return DevicePorts(
+            self.node,
+            RobotNames(name),
+            number=number,
+            around=self._bus,
+            options=self._options.for_robot(name, alone=alone),
+            wishes=self._wishes(name),
+            has_driver=self.params.robot_topics == "driver",
+        )
+
+    def _share_out(self, new: Sequence[str]) -> None:
+        """New robots begin; others only if the file is shared out differently now."""
+        shares = scripts.shares(self._values, self._members(), self.params.layout)
         for ports in self.robots:
-            ports.close()
-        alone = len(names) == 1
-        self.robots = [
-            DevicePorts(
-                self.node,
-                RobotNames(name),
-                node_id=number,
-                bus=self._pass_on,
-                options=self._options.for_robot(name, alone=alone),
-            )
-            for number, name in enumerate(names, start=1)
-        ]
-        self._begin()
+            share = shares[ports.names.name]
+            if ports.names.name in new or _program(share) != _program(ports.share):
+                self._begin(ports, share)
+
+    def _begin(self, ports: DevicePorts, share: Share | None) -> None:
+        """Let a robot begin with its program, or with the behaviour that it is to be switched on with."""
+        for note in share.notes if share is not None else ():
+            self.node.get_logger().warning(f"{ports.names.name or 'robot'}: {note}")
+        if share is None and self.params.layout != THYMIO:  # the reference playground has no menu
+            share = Share(None)
+        if share is None or self._behaviour:
+            ports.start(self._behaviour or MENU, share)
+        else:
+            ports.load(share.program, share.notes)
+
+    def _members(self) -> list[Member]:
+        return [Member(ports.names.name, ports.number) for ports in self.robots]
 
     def _on_simulator_state(self, message: String) -> None:
-        """Another playground may have other robots."""
-        names = [robot["name"] for robot in json.loads(message.data)["robots"]]
+        """Another playground may have other robots; they come and go while it runs."""
+        try:
+            names = [str(robot["name"]) for robot in json.loads(message.data)["robots"]]
+        except (ValueError, KeyError, TypeError) as error:
+            self._warn(f"{SIMULATOR_STATE} refused: {error!r}")
+            return
         if names != [ports.names.name for ports in self.robots]:
-            self._set_robots(names)
-
-    def _pass_on(self, sender: DevicePorts, event: str, args: Sequence[int]) -> None:
-        """Robots of one runtime hear each other directly, as on an Aseba network."""
-        for ports in self.robots:
-            if ports is not sender and ports.device.hears(sender.device):
-                ports.hear(event, args, source=sender.device.node_id)
+            try:
+                self._set_robots(names)
+            except (CardError, SettingsError, *PROGRAM_ERRORS) as error:
+                self.node.get_logger().error(f"robots {', '.join(names)}: {error}")
 
     def _on_jump(self, jump: TimeJump) -> None:
         """Time went back: the simulator was reset, and so are the robots' machines."""
@@ -177,29 +207,100 @@ class AsebaRuntime:
             for ports in self.robots:
                 ports.restart()
 
+    # -- what is told
+
+    def _look(self) -> None:
+        for ports in self.robots:
+            ports.look()
+
+    def _on_told(self, ports: DevicePorts) -> None:
+        self._publish_statuses([ports.status.message])
+
+    def _publish_diagnostics(self) -> None:
+        self._publish_statuses([ports.status.message for ports in self.robots])
+
+    def _publish_statuses(self, statuses: Iterable[DiagnosticStatus]) -> None:
+        if self._diagnostics.get_subscription_count():
+            message = DiagnosticArray(status=list(statuses))
+            message.header.stamp = self.node.get_clock().now().to_msg()
+            self._diagnostics.publish(message)
+
+    def _warn(self, text: str) -> None:
+        self.node.get_logger().warning(text, throttle_duration_sec=5.0)
+
+    # -- parameters
+
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
-        changed = params.changes(parameters)
+        if self._is_declaring:
+            return SetParametersResult(successful=True)
+        changes = params.changes(parameters)
+        values = self._values | changes
         try:
-            if "script.source" in changed:
-                name = changed.get("script.name", self.params.name)
-                self._accepted = load_program(changed["script.source"], name or "program", self.params.layout)
-            elif "script.path" in changed:
-                self._accepted = read_program(changed["script.path"] or NO_PROGRAM, self.params.layout)
-            check_behaviour(changed.get("behaviour", ""), self.params.layout)
-        except (ProgramError, resources.ResourceError, OSError) as error:
+            for name, value in changes.items():
+                if not (self.node.has_parameter(name) or aseba_params.is_free(name)):
+                    raise WrongValueError(f"there is no parameter {name}")
+                aseba_params.check_value(name, value)
+            if reason := params.refusal(self.params, parameters):
+                raise WrongValueError(reason)
+            check_behaviour(changes.get("behaviour", ""), self.params.layout)
+            shares = self._checked_shares(values, changes)
+        except (WrongValueError, *PROGRAM_ERRORS) as error:
             self._accepted = None
             return SetParametersResult(successful=False, reason=str(error))
+        self._accepted = _Accepted(values, changes, shares)
         return SetParametersResult(successful=True)
 
+    def _checked_shares(self, values: dict[str, Any], changes: dict[str, Any]) -> dict[str, Share | None]:
+        """Each robot's program by the new values, if a script changes; those of absent robots must compile too."""
+        if not any(".script." in f".{name}" for name in changes):
+            return {}
+        absent = set(scripts.named_robots(changes)) - {ports.names.name for ports in self.robots}
+        for name in sorted(absent):
+            scripts.shares(values, [Member(name, self.params.first_id)], self.params.layout)
+        return scripts.shares(values, self._members(), self.params.layout)
+
     def _apply_parameters(self, parameters: list[Parameter]) -> None:
-        changed = params.changes(parameters)
-        if "script.name" in changed:
-            self.params = replace(self.params, name=changed["script.name"])
         accepted, self._accepted = self._accepted, None
-        if accepted is not None or "behaviour" in changed:
-            self._program = accepted or self._program
-            self._behaviour = changed.get("behaviour", "")
-            self._begin()
+        if accepted is None:
+            return
+        old, self._values = self._values, accepted.values
+        changes = accepted.changes
+        self.params = params.updated(self.params, parameters)
+        self._bus.reaches_all = self.params.emit_reaches == "network"
+        if "watch_rate" in changes:
+            self.node.destroy_timer(self._looks)
+            self._looks = self.node.create_timer(1.0 / self.params.watch_rate, self._look, clock=self._wall)
+        if "behaviour" in changes:
+            self._behaviour = self.params.behaviour
+        for ports in self.robots:
+            ports.want(self._wishes(ports.names.name))
+            self._apply_script(ports, old, accepted)
+
+    def _apply_script(self, ports: DevicePorts, old: dict[str, Any], accepted: _Accepted) -> None:
+        name = ports.names.name
+        share = accepted.shares.get(name, ports.share)
+        is_touched = scripts.touched(old, accepted.values, accepted.changes, name)
+        if is_touched or _program(share) != _program(ports.share):
+            if "behaviour" not in accepted.changes:
+                self._behaviour = ""
+            self._begin(ports, share or Share(None))
+        elif "behaviour" in accepted.changes:
+            self._begin(ports, share)
+
+    def _wishes(self, robot: str) -> Wishes:
+        """What is wanted of one robot: breakpoints of its own in place of those for all, watches of its own besides."""
+        values = self._values
+        own = f"robots.{robot}."
+        return Wishes(
+            breakpoints=tuple(values.get(f"{own}breakpoints") or values.get("breakpoints") or ()),
+            watch=(*(values.get("watch") or ()), *(values.get(f"{own}watch") or ())),
+            local_events=tuple(values.get("local_events") or ()),
+            language=str(values.get("language", "en")),
+        )
+
+
+def _program(share: Share | None) -> object:
+    return None if share is None else share.program
 
 
 def main(args: Sequence[str] | None = None) -> int:

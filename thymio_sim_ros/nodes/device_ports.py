@@ -1,83 +1,121 @@
 """One robot's Aseba device joined to its topics: readings in, commands out, events both ways, run control.
 
-Topics: ros-interface.md section 6. The integers of a sensor come on `raw/<sensor>`; commands leave on the
-topics that any robot listens to.
+Topics: ros-interface.md section 6. The integers of a sensor come on `raw/<sensor>`, or are made of the topics of the
+ROS driver; commands leave on the topics that any robot listens to.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol
 
-from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from geometry_msgs.msg import Twist
 from rclpy.node import Node
 from std_msgs.msg import Empty, Int16MultiArray
 from std_srvs.srv import Trigger
 
-from thymio_sim_ros.device.behaviour_host import BehaviourHost, is_internal
+from thymio_sim_ros.device.behaviour_host import BehaviourHost
 from thymio_sim_ros.device.bindings import sensor_names
 from thymio_sim_ros.device.device import AsebaDevice
+from thymio_sim_ros.device.fleet import Share
+from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
-from thymio_sim_ros.device.program import ThymioProgram
-from thymio_sim_ros.nodes import command_topics, convert, plugin_topics, qos
-from thymio_sim_ros.nodes.names import RobotNames, topic_word
+from thymio_sim_ros.device.program import ThymioProgram, load_program
+from thymio_sim_ros.device.status import OFF
+from thymio_sim_ros.nodes import command_topics, driver_senses, plugin_topics, qos
+from thymio_sim_ros.nodes.event_ports import EventPorts
+from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.robot_ports import WARN_EVERY_S
+from thymio_sim_ros.nodes.status_ports import Loaded, StatusPorts, place
+from thymio_sim_ros.nodes.variable_ports import VariablePorts
 from thymio_sim_ros.sim.commands import Command
+
+__all__ = ["DevicePorts", "Surroundings", "Wishes"]
 
 RUN_BUDGET = 5000
 """Instructions per turn; a handler that needs more goes on in the next (a robot does 65535 between polls)."""
 
-INT16 = range(-32768, 32768)
+ALL = "*"
+"""In place of the names of local events: all there are."""
 
 
-class Bus(Protocol):
-    """Where a robot's events go besides its topics."""
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """What a user wants to see of a robot: lines to stop at, variables and local events with topics, a language."""
 
-    def __call__(self, sender: DevicePorts, event: str, args: Sequence[int], /) -> None:
-        """Tell the other robots."""
+    breakpoints: tuple[int, ...] = ()
+    watch: tuple[str, ...] = ()
+    local_events: tuple[str, ...] = ()
+    language: str = "en"
+
+
+class Surroundings(Protocol):
+    """What a robot needs of the others."""
+
+    def settle(self, ports: DevicePorts, /) -> None:
+        """Something happened to this robot: let it take turns, and those that it wakes."""
+
+    def pass_on(self, sender: DevicePorts, event: str, args: Sequence[int], /) -> None:
+        """A robot emitted an event: tell the others."""
+
+    def emit(self, ports: DevicePorts, event: str, args: Sequence[int], /) -> None:
+        """Somebody in ROS emitted an event on this robot's topics."""
+
+    def told(self, ports: DevicePorts, /) -> None:
+        """The status of this robot is another."""
 
 
 class DevicePorts:
     """An `AsebaDevice` with the topics and services of its robot."""
 
     def __init__(
-        self, node: Node, names: RobotNames, *, node_id: int, bus: Bus, options: DeviceOptions = DEFAULTS
+        self,
+        node: Node,
+        names: RobotNames,
+        *,
+        number: int,
+        around: Surroundings,
+        options: DeviceOptions = DEFAULTS,
+        wishes: Wishes | None = None,
+        has_driver: bool = False,
     ) -> None:
         self.names = names
-        self.device = AsebaDevice(node_id=node_id, options=options)
+        self.number = number
+        self.device = AsebaDevice(node_id=number, options=options)
+        self.share: Share | None = None
         self._host = BehaviourHost(self.device)
         self._node = node
-        self._bus = bus
-        self._program = self._host.program
-        self._status: DiagnosticStatus | None = None
+        self._around = around
+        self._wishes = wishes or Wishes()
+        self._program = self._own = self._host.program
         self._is_closed = False
-        self._event_ports: list[tuple[Any, Any]] = []
-        self._event_publishers: dict[str, Any] = {}
-        topic = names.topic
+        self._has_driver = has_driver
         self._outputs = {
-            row.topic: (row.encode, node.create_publisher(row.type, topic(row.topic), row.profile))
+            row.topic: (row.encode, node.create_publisher(row.type, names.topic(row.topic), row.profile))
             for row in (*command_topics.ROWS, *plugin_topics.rows())
-            if row.encode is not None
+            if row.encode is not None and not (has_driver and row.topic == "motor/target")
         }
-        self._status_publisher = node.create_publisher(DiagnosticStatus, topic("aseba/status"), qos.LATCHED)
-        self._any_event = node.create_publisher(Int16MultiArray, topic("aseba/events"), qos.EVENTS)
-        self._subscriptions = [
-            node.create_subscription(Int16MultiArray, topic(f"raw/{sensor}"), self._feeder(sensor), qos.SENSOR)
-            for sensor in sensor_names()
-        ]
+        if has_driver:
+            publisher = node.create_publisher(Twist, names.topic("cmd_vel"), qos.COMMAND)
+            self._outputs["motor/target"] = (driver_senses.twist_of, publisher)
+        self.status = StatusPorts(node, names, number=number)
+        self._events = EventPorts(node, names, lambda event, args: around.emit(self, event, args), self.warn)
+        self._variables = VariablePorts(node, names, self.device, self.run, language=self._wishes.language)
+        self._subscriptions = self._sense()
         self._subscriptions.append(
-            node.create_subscription(Int16MultiArray, topic("aseba/emit"), self._on_any_emit, qos.EVENTS)
+            node.create_subscription(Empty, names.topic("shutdown"), self._on_shutdown, qos.EVENTS)
         )
-        self._subscriptions.append(node.create_subscription(Empty, topic("shutdown"), self._on_shutdown, qos.EVENTS))
         controls = {
             "run": self.device.resume,
             "pause": self.device.pause,
             "step": self.device.step,
+            "step_line": self.device.step_line,
             "stop": self.device.stop,
             "reset": self.device.reset,
         }
         self._services = [
-            node.create_service(Trigger, topic(f"aseba/{word}"), self._controller(act))
+            node.create_service(Trigger, names.topic(f"aseba/{word}"), self._controller(word, act))
             for word, act in controls.items()
         ]
 
@@ -88,49 +126,76 @@ class DevicePorts:
 
     @property
     def program(self) -> ThymioProgram:
-        """What the machine runs."""
-        return self._host.program
+        """What the robot runs."""
+        return self._program
 
-    def load(self, program: ThymioProgram) -> None:
-        """Load the program and run its beginning."""
-        self._host.load(program)
+    def load(self, program: ThymioProgram | None, notes: Sequence[str] = ()) -> None:
+        """Load a program, or nothing, and run its beginning; `notes` are for people."""
+        self.share = Share(program, tuple(notes))
+        self._own = program or load_program("", "none", self.device.layout)
+        self._host.load(self._own)
+        self._begin()
         self.run()
 
-    def start(self, behaviour: str, own: ThymioProgram | None) -> None:
+    def start(self, behaviour: str, share: Share | None) -> None:
         """Switch the robot on with a built-in behaviour; a program of one's own waits in its menu."""
+        self.share = share
+        own = share.program if share is not None else None
+        self._own = own or load_program("", "none", self.device.layout)
         self._host.start(behaviour, own)
+        self._begin()
         self.run()
 
     def restart(self) -> None:
         """Time went back: the robot begins anew."""
         self._host.restart()
+        self._begin()
         self.run()
 
-    def hear(self, event: str, args: Sequence[int], *, source: int) -> None:
-        """A global event arrives from the bus or a topic; unknown ones are not for this robot."""
-        if event in dict(self._program.events):
-            self.device.receive_event(event, args, source=source)
+    def want(self, wishes: Wishes) -> None:
+        """Show other things of the program that goes on."""
+        old, self._wishes = self._wishes, wishes
+        if wishes != old:
+            self._begin(with_events=wishes.local_events != old.local_events)
             self.run()
 
+    def hear(self, event: str, args: Sequence[int], *, source: int) -> bool:
+        """A global event waits for the robot's next turn; False if its program does not declare it."""
+        if not self.device.declares(event):
+            return False
+        self.device.receive_event(event, args, source=source)
+        return True
+
     def run(self) -> None:
-        """Run what is pending, then send what came of it; nothing once it is closed, as messages may still come."""
+        """Something happened: take turns; nothing once it is closed, as messages may still come."""
+        if not self._is_closed:
+            self._around.settle(self)
+
+    def turn(self) -> None:
+        """Run what is pending up to the budget, then send what came of it."""
         if self._is_closed:
             return
         now_ns = self._node.get_clock().now().nanoseconds
         self.device.advance(now_ns)
         self.device.run(RUN_BUDGET)
         events = self._host.take_events(now_ns)
-        if self._host.program is not self._program:
-            self._program = self._host.program
-            self._open_events(self._program)
         for command in self.device.take_commands():
             self._send(command)
+        for name in self.device.take_local_events():
+            self._events.publish(name, ())
         for event in events:
-            self._publish_event(event.name, event.args)
-            self._bus(self, event.name, event.args)
+            self._events.publish(event.name, event.args)
+            self._around.pass_on(self, event.name, event.args)
+        if self._host.program is not self._program:
+            self._begin()
         for notice in self._host.take_notices():
             self._node.get_logger().warning(f"{self.names.name or 'robot'}: {notice}")
-        self._publish_status()
+        if self.status.tell(self.device.status):
+            self._around.told(self)
+
+    def look(self) -> None:
+        """Publish variables that changed."""
+        self._variables.look()
 
     def close(self) -> None:
         """The robot does not go on without its program: wheels stop; its topics and services go."""
@@ -138,35 +203,71 @@ class DevicePorts:
         self.device.stop()
         for command in self.device.take_commands():
             self._send(command)
-        self._close_events()
+        for ports in (self._events, self._variables, self.status):
+            ports.close()
         for service in self._services:
             self._node.destroy_service(service)
         for subscription in self._subscriptions:
             self._node.destroy_subscription(subscription)
-        publishers = [publisher for _, publisher in self._outputs.values()]
-        for publisher in (*publishers, self._status_publisher, self._any_event):
+        for _, publisher in self._outputs.values():
             self._node.destroy_publisher(publisher)
 
-    def _feeder(self, sensor: str) -> Callable[[Int16MultiArray], None]:
-        def callback(message: Int16MultiArray) -> None:
-            try:
-                self.device.feed(sensor, message.data)
-            except ValueError as error:
-                self._warn(f"raw/{sensor} refused: {error}")
-                return
-            self.run()
+    def warn(self, text: str) -> None:
+        """Tell a user, not too often."""
+        self._node.get_logger().warning(text, throttle_duration_sec=WARN_EVERY_S)
 
-        return callback
+    def _begin(self, *, with_events: bool = True) -> None:
+        """The program is another or begins anew, or other things of it are wanted."""
+        wishes, program = self._wishes, self._host.program
+        is_own = program is self._own
+        local = {event.name for event in target(self.device.layout).local_events}
+        local_events = local if ALL in wishes.local_events else local & set(wishes.local_events)
+        if with_events:
+            self.device.watch_events(local_events)
+            self._events.open(program, sorted(local_events))
+        self._program = program
+        self._variables.language = wishes.language
+        self._variables.begin(wishes.watch)
+        points = self.device.set_breakpoints(wishes.breakpoints if is_own else ())
+        notes = self.share.notes if is_own and self.share is not None else ()
+        self.status.begin(Loaded(program, self._events.words, notes, points), wishes.language)
+
+    def _sense(self) -> list[Any]:
+        if self._has_driver:
+            return driver_senses.subscribe(self._node, self.names, self._feed)
+        return [
+            self._node.create_subscription(
+                Int16MultiArray, self.names.topic(f"raw/{sensor}"), self._feeder(sensor), qos.SENSOR
+            )
+            for sensor in sensor_names()
+        ]
+
+    def _feeder(self, sensor: str) -> Callable[[Int16MultiArray], None]:
+        return lambda message: self._feed(sensor, message.data)
+
+    def _feed(self, sensor: str, words: Sequence[int]) -> None:
+        try:
+            self.device.feed(sensor, words)
+        except ValueError as error:
+            self.warn(f"raw/{sensor} refused: {error}")
+            return
+        self.run()
 
     def _on_shutdown(self, _message: Empty) -> None:
         self.device.switch_off()
         self.run()
 
-    def _controller(self, act: Callable[[], None]) -> Callable[[Trigger.Request, Trigger.Response], Trigger.Response]:
+    def _controller(
+        self, word: str, act: Callable[[], None]
+    ) -> Callable[[Trigger.Request, Trigger.Response], Trigger.Response]:
         def callback(_request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
             act()
             self.run()
-            response.success, response.message = True, self.device.status.state
+            status = self.device.status
+            response.success = status.state != OFF
+            response.message = (
+                place(status) if response.success else f"{word}: the robot is off, aseba/run switches it on"
+            )
             return response
 
         return callback
@@ -176,81 +277,3 @@ class DevicePorts:
         if topic is not None:
             encode, publisher = self._outputs[topic]
             publisher.publish(encode(command))
-
-    def _close_events(self) -> None:
-        for publisher, subscription in self._event_ports:
-            self._node.destroy_publisher(publisher)
-            self._node.destroy_subscription(subscription)
-        self._event_ports.clear()
-        self._event_publishers.clear()
-
-    def _open_events(self, program: ThymioProgram) -> None:
-        self._close_events()
-        events = [event for event, _ in program.events if not is_internal(event)]
-        words = [topic_word(event) for event in events]
-        for event, word in zip(events, words, strict=True):
-            if words.count(word) > 1:
-                self._warn(f"event {event} shares the topic name {word} with another: use aseba/events and aseba/emit")
-                continue
-            topic = self.names.topic
-            publisher = self._node.create_publisher(Int16MultiArray, topic(f"aseba/events/{word}"), qos.EVENTS)
-            subscription = self._node.create_subscription(
-                Int16MultiArray, topic(f"aseba/emit/{word}"), self._emitter(event), qos.EVENTS
-            )
-            self._event_ports.append((publisher, subscription))
-            self._event_publishers[event] = publisher
-
-    def _emitter(self, event: str) -> Callable[[Int16MultiArray], None]:
-        return lambda message: self._emit(event, list(message.data))
-
-    def _on_any_emit(self, message: Int16MultiArray) -> None:
-        if len(message.layout.dim) != 1:
-            self._warn("aseba/emit refused: layout.dim[0].label must be the name of the event")
-            return
-        self._emit(message.layout.dim[0].label, list(message.data))
-
-    def _emit(self, event: str, args: list[int]) -> None:
-        """An event from ROS reaches every robot that declares it; too much data is refused."""
-        size = dict(self._program.events).get(event)
-        if size is None or is_internal(event):
-            self._warn(f"event {event} refused: the program declares {self._declared()}")
-        elif len(args) > size:
-            self._warn(f"event {event} refused: {len(args)} values found, expected at most {size}")
-        else:
-            filled = args + [0] * (size - len(args))
-            self.hear(event, filled, source=0)
-
-    def _declared(self) -> str:
-        events = [event for event, _ in self._program.events if not is_internal(event)]
-        return ", ".join(events) or "no events"
-
-    def _publish_event(self, event: str, args: Sequence[int]) -> None:
-        data = list(args)
-        self._any_event.publish(Int16MultiArray(layout=convert.layout([(event, len(data))]), data=data))
-        publisher = self._event_publishers.get(event)
-        if publisher is not None:
-            publisher.publish(Int16MultiArray(data=data))
-
-    def _publish_status(self) -> None:
-        status = self.device.status
-        fault = status.state == "fault"
-        message = DiagnosticStatus(
-            level=DiagnosticStatus.ERROR if fault else DiagnosticStatus.OK,
-            name=f"aseba: {self.names.name or 'robot'}",
-            hardware_id=f"node {self.device.node_id}",
-            message=status.fault or status.state,
-            values=[
-                KeyValue(key="state", value=status.state),
-                KeyValue(key="program", value=self._program.name),
-                KeyValue(key="event", value=status.event if fault else ""),
-                KeyValue(key="line", value=str(status.line) if fault and status.line else ""),
-            ],
-        )
-        if message != self._status:
-            if fault:
-                self._node.get_logger().error(f"{message.name}: line {status.line}: {status.fault}")
-            self._status = message
-            self._status_publisher.publish(message)
-
-    def _warn(self, text: str) -> None:
-        self._node.get_logger().warning(text, throttle_duration_sec=WARN_EVERY_S)

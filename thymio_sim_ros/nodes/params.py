@@ -37,12 +37,15 @@ def param(
     fixed: bool = False,
     choices: Sequence[str] = (),
     size: int | None = None,
+    array: Parameter.Type | None = None,
 ) -> Any:
     """A field of a parameter dataclass; `name` where it has dots, `fixed`: read-only once the node runs.
 
-    `low` and `high` limit a number, or each of an array; `choices`: all texts it may be; `size`: an array's length.
+    `low` and `high` limit a number, or each of an array; `choices`: all texts it may be; `size`: an array's length;
+    `array`: the type of an array that may be empty.
     """
     metadata = {"text": text, "low": low, "high": high, "fixed": fixed, "choices": tuple(choices), "size": size}
+    metadata |= {"array": array}
     if name:
         metadata["name"] = name
     if isinstance(default, list):
@@ -143,6 +146,10 @@ def declare(node: Node, defaults: T) -> T:
     """
     values = defaults
     for one in declared(defaults):
+        if one.metadata["array"] is not None:
+            found = declare_array(node, one.name, one.metadata["array"], one.metadata["text"], one.default)
+            values = _with(values, one.path, found)
+            continue
         try:
             parameter = node.declare_parameter(one.name, one.default, one.descriptor)
         except (InvalidParameterTypeException, InvalidParameterValueException) as error:
@@ -170,6 +177,28 @@ def updated(values: T, parameters: Iterable[Parameter]) -> T:
         if parameter.name in paths and parameter.value is not None:
             values = _with(values, paths[parameter.name], _plain(parameter.value))
     return values
+
+
+def declare_array(node: Node, name: str, kind: Parameter.Type, text: str, default: Sequence[Any] = ()) -> list[Any]:
+    """Declare a list that may be empty; the value in force.
+
+    An empty list from a command line has the type of no element, so the type is checked by who uses the value.
+    """
+    node.declare_parameter(name, None, ParameterDescriptor(description=text, dynamic_typing=True))
+    found = node.get_parameter(name).value
+    value = list(default if found is None else found)
+    node.set_parameters([Parameter(name, kind, value)] if not value else [Parameter(name, value=value)])
+    return value
+
+
+def by_name(values: Any) -> dict[str, Any]:
+    """The values of a dataclass by the names of their parameters."""
+    return {one.name: one.default for one in declared(values)}
+
+
+def described(text: str) -> ParameterDescriptor:
+    """The descriptor of a parameter that has nothing but a meaning."""
+    return ParameterDescriptor(description=text)
 
 
 def changes(parameters: Iterable[Parameter]) -> dict[str, Any]:

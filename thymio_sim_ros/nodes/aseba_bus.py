@@ -1,0 +1,111 @@
+"""How the robots of a runtime share the machine and the air: turns, and events from one to the others.
+
+An event waits for its hearer's turn, so that robots that answer each other cannot starve the rest: after some rounds
+what is left waits for the node's next turn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from rclpy.node import Node
+
+from thymio_sim_ros.device.behaviour_host import is_internal
+from thymio_sim_ros.nodes.aseba_network import AsebaNetwork, Telegram
+from thymio_sim_ros.nodes.device_ports import DevicePorts
+
+__all__ = ["Bus"]
+
+MOST_ROUNDS = 10
+"""Times that robots may answer each other's events at once (as in the runner)."""
+
+COMPUTER = 0
+"""Number of the sender of what comes from ROS."""
+
+
+class Bus:
+    """The Aseba network of one runtime. `reaches_all`: what ROS emits on one robot's topics is for all."""
+
+    def __init__(
+        self, node: Node, robots: Callable[[], Sequence[DevicePorts]], told: Callable[[DevicePorts], None]
+    ) -> None:
+        self.reaches_all = True
+        self._robots = robots
+        self._told = told
+        self._woken: dict[DevicePorts, None] = {}
+        self._is_settling = False
+        self._network = AsebaNetwork(node, self._hear_others)
+
+    def settle(self, ports: DevicePorts) -> None:
+        """Let a robot take its turn, then those that it wakes, for some rounds."""
+        self._woken[ports] = None
+        if self._is_settling:
+            return
+        self._is_settling = True
+        try:
+            for _ in range(MOST_ROUNDS):
+                woken, self._woken = self._woken, {}
+                for robot in woken:
+                    robot.turn()
+                if not self._woken:
+                    return
+            self._woken.clear()  # their events wait in their devices
+        finally:
+            self._is_settling = False
+
+    def pass_on(self, sender: DevicePorts, event: str, args: Sequence[int]) -> None:
+        """Robots of one runtime hear each other directly, others by the network's topic; nobody hears himself."""
+        source = sender.device.node_id
+        for ports in self._robots():
+            if ports is not sender and ports.device.hears(sender.device):
+                self._let_hear(ports, event, args, source)
+        self._network.send(Telegram(event, source, sender.device.body.network, tuple(args)))
+
+    def emit(self, ports: DevicePorts, event: str, args: Sequence[int]) -> None:
+        """An event from ROS reaches every robot that declares it, or only this one; too much data is refused."""
+        robots = (
+            [robot for robot in self._robots() if robot.device.hears(ports.device)] if self.reaches_all else [ports]
+        )
+        sizes = {robot: _size(robot, event) for robot in robots}
+        fits = {robot: size for robot, size in sizes.items() if size is not None and len(args) <= size}
+        too_small = [size for size in sizes.values() if size is not None and len(args) > size]
+        if is_internal(event):
+            ports.warn(f"event {event} refused: it stays inside the robot")
+        elif too_small:
+            ports.warn(f"event {event} refused: {len(args)} values found, expected at most {min(too_small)}")
+        elif not fits and not (self.reaches_all and self._network.has_others):
+            ports.warn(f"event {event} refused: the program declares {_declared(ports)}")
+        else:
+            for robot, size in fits.items():
+                robot.hear(event, [*args, *[0] * (size - len(args))], source=COMPUTER)
+            for robot in fits:
+                self.settle(robot)
+            if self.reaches_all:
+                self._network.send(Telegram(event, COMPUTER, ports.device.body.network, tuple(args)))
+
+    def told(self, ports: DevicePorts) -> None:
+        """The status of a robot is another."""
+        self._told(ports)
+
+    def _hear_others(self, telegram: Telegram) -> None:
+        for ports in self._robots():
+            size = _size(ports, telegram.event)
+            if size is None or ports.device.body.network != telegram.radio:
+                continue
+            args = telegram.args[:size] + (0,) * (size - len(telegram.args))
+            self._let_hear(ports, telegram.event, args, telegram.source)
+        if self._woken:
+            self.settle(next(iter(self._woken)))
+
+    def _let_hear(self, ports: DevicePorts, event: str, args: Sequence[int], source: int) -> None:
+        if not is_internal(event) and ports.hear(event, args, source=source):
+            self._woken[ports] = None
+
+
+def _size(ports: DevicePorts, event: str) -> int | None:
+    return dict(ports.program.events).get(event)
+
+
+def _declared(ports: DevicePorts) -> str:
+    events = [event for event, _ in ports.program.events if not is_internal(event)]
+    return ", ".join(events) or "no events"
