@@ -44,8 +44,8 @@ def param(
     `low` and `high` limit a number, or each of an array; `choices`: all texts it may be; `size`: an array's length;
     `array`: the type of an array that may be empty.
     """
-    metadata = {"text": text, "low": low, "high": high, "fixed": fixed, "choices": tuple(choices), "size": size}
-    metadata |= {"array": array}
+    metadata: dict[str, Any] = {"text": text, "low": low, "high": high, "fixed": fixed, "array": array, "size": size}
+    metadata["choices"] = tuple(choices)
     if name:
         metadata["name"] = name
     if isinstance(default, list):
