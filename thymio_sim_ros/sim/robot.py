@@ -191,7 +191,7 @@ class Robot:
     @property
     def wheels(self) -> Wheels:
         """Its wheels."""
-        if self.shared_wheels is not None:
+        if self.shared_wheels is not None and not self.shared_wheels.is_told:
             self.shared_wheels.tell()
         return self._wheels
 

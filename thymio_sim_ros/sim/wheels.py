@@ -89,7 +89,8 @@ class WheelArrays:
 
     def __init__(self, wheels: Sequence[Wheels]) -> None:
         self._wheels = tuple(wheels)
-        self._is_told = True
+        self.is_told = True
+        """Whether the wheels are the truth just now."""
         self.take()
 
     @property
@@ -111,9 +112,9 @@ class WheelArrays:
 
     def tell(self) -> None:
         """Write to the wheels what they are now."""
-        if self._is_told:
+        if self.is_told:
             return
-        self._is_told = True
+        self.is_told = True
         columns = (self._commanded, self._ground, self._speeds, self._angles)
         pairs = zip(*(zip(*values.tolist(), strict=True) for values in columns), strict=True)
         for wheels, values, place in zip(self._wheels, pairs, zip(*self._odometry.tolist(), strict=True), strict=True):
@@ -122,9 +123,9 @@ class WheelArrays:
 
     def take(self) -> None:
         """Read what the wheels are, if they may have been changed."""
-        if not self._is_told:
+        if not self.is_told:
             return
-        self._is_told = False
+        self.is_told = False
         self._commanded = _rows([wheels.commanded for wheels in self._wheels], 2)
         self._ground = _rows([wheels.ground for wheels in self._wheels], 2)
         self._speeds = _rows([wheels.speeds_m_s for wheels in self._wheels], 2)

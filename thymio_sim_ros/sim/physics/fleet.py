@@ -66,7 +66,9 @@ class Fleet:
         self._slots = np.zeros(0, dtype=np.intp)
         self._read = batch.Buffer()
         self._written = batch.Buffer()
-        self._is_told = self._is_released = True
+        self._is_released = True
+        self.is_told = True
+        """Whether the bodies know what the last tick has made of them."""
         for body in self._bodies:
             body.fleet = self
 
@@ -92,9 +94,9 @@ class Fleet:
 
     def tell(self) -> None:
         """Write to the bodies what the last tick has made of them."""
-        if self._is_told:
+        if self.is_told:
             return
-        self._is_told = True
+        self.is_told = True
         columns = (self._state[:, :3], self._speed, self._spin, self._is_free)
         values = zip(self._bodies, *(column.tolist() for column in columns), strict=True)
         for body, (x_m, y_m, angle), speed, spin, is_free in values:
@@ -173,7 +175,7 @@ class Fleet:
     def end_tick(self) -> None:
         """As `RobotBody.end_tick`."""
         self._angle = self._state[:, _ANGLE].copy()
-        self._is_told = False
+        self.is_told = False
         loads = self._all[self._load_slots]
         for index in np.flatnonzero((loads != self._load_state).any(axis=1)).tolist():
             self._loads[index].settle(*loads[index].tolist())
