@@ -123,6 +123,24 @@ def test_the_nearest_mark_wins_keyword_by_keyword(pytester: pytest.Pytester, run
     run().assert_outcomes(passed=1)
 
 
+def test_parameters_of_a_test_may_say_what_the_mark_says(pytester: pytest.Pytester, run: Run) -> None:
+    pytester.makepyfile(
+        """
+        import pytest
+
+        POSES = []
+
+        @pytest.mark.thymio(playground="obstacle", program="explorer", seed=9)
+        @pytest.mark.parametrize("seed", [1, 1, 2])
+        def test_it(thymio, seed):
+            thymio.run(5)
+            POSES.append(thymio.pose)
+            assert [pose == POSES[0] for pose in POSES] == [True, True, False][:len(POSES)]
+        """
+    )
+    run().assert_outcomes(passed=3)
+
+
 def test_files_are_looked_for_beside_the_test(pytester: pytest.Pytester, run: Run) -> None:
     folder = pytester.mkpydir("exercise")
     (folder / "turn.aesl").write_text("var turned = 5\n")

@@ -61,7 +61,7 @@ def test_every_topic_of_the_table_is_in_the_graph(ros, simulation, runtime):
 def test_the_node_of_the_readme_drives_the_robot(ros, tmp_path):
     from nav_msgs.msg import Odometry
 
-    (source,) = code("python")
+    source, _ = code("python")
     assert len([line for line in source.splitlines() if line.strip()]) == 15
     suite = Process(tmp_path, "thymio_sim_ros.cli", "--headless", "--playground", "obstacle", "--program", "none")
     wanderer = tmp_path / "wanderer.py"
@@ -78,6 +78,15 @@ def test_the_node_of_the_readme_drives_the_robot(ros, tmp_path):
                 node.kill()
     finally:
         suite.end()
+
+
+def test_the_test_of_the_readme_passes(pytester, monkeypatch):
+    node, test = code("python")
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))
+    pytester.makepyfile(wanderer=node, test_wanderer=test)
+    assert len([line for line in test.splitlines() if line.strip()]) <= 10
+    result = pytester.runpytest_subprocess("-p", "thymio_sim_ros.pytest_plugin", "test_wanderer.py", timeout=120)
+    result.assert_outcomes(passed=1)
 
 
 def test_the_commands_of_the_readme_exist():

@@ -35,14 +35,15 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def _wanted(request: pytest.FixtureRequest) -> dict[str, Any]:
-    """What the marks of a test say; the nearest wins."""
+    """What the marks of a test say; the nearest wins, and parameters of the test that have such a name win over all."""
     wanted: dict[str, Any] = {}
     for mark in reversed(list(request.node.iter_markers(MARK))):
         unknown = [*mark.args, *(name for name in mark.kwargs if name not in KEYWORDS)]
         if unknown:
             pytest.fail(f"mark {MARK}: found {unknown[0]!r}, expected keywords {', '.join(KEYWORDS)}", pytrace=False)
         wanted |= mark.kwargs
-    return wanted
+    parameters = request.node.callspec.params if hasattr(request.node, "callspec") else {}
+    return wanted | {name: value for name, value in parameters.items() if name in KEYWORDS}
 
 
 @pytest.fixture

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 from thymio_sim_ros.device.status import FAULT
 from thymio_sim_ros.testing.thymio import Thymio
+from thymio_sim_ros.testing.waiting import counted
 
 __all__ = ["robot_lines"]
 
@@ -44,5 +45,5 @@ def _program(thymio: Thymio) -> list[str]:
     last = thymio.events[-_LAST_EVENTS:]
     if last:
         said = ", ".join(f"{event.name} {list(event.args)} at {event.at_s:.2f} s" for event in last)
-        lines.append(f"  emitted {len(thymio.events)} events, last {said}")
+        lines.append(f"  emitted {counted(len(thymio.events), 'event')}, last {said}")
     return lines

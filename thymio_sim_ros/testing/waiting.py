@@ -1,4 +1,4 @@
-"""How a test's condition is told to a person who reads that it did not come true."""
+"""How a test's condition, and numbers, are told to a person who reads that it did not come true."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import textwrap
 from collections.abc import Callable
 from typing import Any
 
-__all__ = ["told"]
+__all__ = ["counted", "told"]
 
 _LONGEST = 160
 
@@ -22,6 +22,11 @@ def told(condition: Callable[[], Any]) -> str:
         return str(getattr(condition, "__qualname__", code.co_name)).rpartition(".")[2]
     line = code.co_firstlineno
     return textwrap.shorten(_lambda(condition, line) or f"the lambda of line {line}", _LONGEST)
+
+
+def counted(number: int, noun: str) -> str:
+    """So many of them, in words."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def _lambda(condition: Callable[[], Any], line: int) -> str:

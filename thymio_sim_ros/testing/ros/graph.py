@@ -149,10 +149,15 @@ class Ros:
         __tracebackhide__ = True
         if sim_time is not None:
             return self._simulated().until(condition, sim_time, what=what)
+        return self.spin_until(condition, timeout, lambda: f"not within {timeout:g} s: {what or told(condition)}")
+
+    def spin_until(self, condition: Callable[[], Any], timeout: float, head: Callable[[], str]) -> Any:
+        """Spin until the condition is true, at most so many seconds of real time; the failure begins with `head()`."""
+        __tracebackhide__ = True
         deadline = time.monotonic() + timeout
         while not (value := condition()):
             if time.monotonic() > deadline:
-                self.fail(f"not within {timeout:g} s: {what or told(condition)}")
+                self.fail(head())
             self.spin()
         return value
 

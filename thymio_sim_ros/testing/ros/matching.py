@@ -8,7 +8,12 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
 
+from thymio_sim_ros.testing.waiting import counted
+
 __all__ = ["as_published", "is_settled", "topic_lines"]
+
+_EVERYWHERE = ("/clock", "/parameter_events", "/rosout")
+"""Topics of every node, which tell nothing."""
 
 
 def is_settled(nodes: Iterable[Node]) -> bool:
@@ -57,17 +62,17 @@ def topic_lines(node: Node, ours: Sequence[str]) -> list[str]:
     for topic, kinds in node.get_topic_names_and_types():
         publishers = node.get_publishers_info_by_topic(topic)
         subscribers = node.get_subscriptions_info_by_topic(topic)
-        if all(_name(info) in ours for info in (*publishers, *subscribers)):
+        if topic in _EVERYWHERE or all(_name(info) in ours for info in (*publishers, *subscribers)):
             others += 1
             continue
-        sides = f"{len(publishers)} publishers, {len(subscribers)} subscribers"
+        sides = f"{counted(len(publishers), 'publisher')}, {counted(len(subscribers), 'subscriber')}"
         lonely = "" if publishers and subscribers else " (nobody " + ("listens)" if publishers else "publishes)")
         unfit = [
             (one, other) for one in publishers for other in subscribers if not _fit(one.qos_profile, other.qos_profile)
         ]
         quality = f" ({_name(unfit[0][0])} and {_name(unfit[0][1])} do not fit in QoS)" if unfit else ""
         lines.append(f"{topic} {' '.join(kinds)}: {sides}{lonely}{quality}")
-    return [*lines, f"and {others} topics that only the test and the simulation use"] if others else lines
+    return [*lines, f"and {others} other topics"] if others else lines
 
 
 def _name(info: Any) -> str:

@@ -7,6 +7,8 @@ import textwrap
 from collections.abc import Callable, Sequence
 from typing import Any, overload
 
+from thymio_sim_ros.testing.waiting import counted
+
 __all__ = ["Recorder"]
 
 _LONGEST = 200
@@ -75,7 +77,7 @@ class Recorder(Sequence[Any]):
             return f"{self.topic}: nothing arrived"
         last = textwrap.shorten(_PACKAGE.sub("", str(self._messages[-1])), _LONGEST, placeholder=" …")
         when = f" {self._last}" if self._last else ""
-        return f"{self.topic}: {len(self)} messages, last{when}: {last}"
+        return f"{self.topic}: {counted(len(self), 'message')}, last{when}: {last}"
 
     def __len__(self) -> int:
         return len(self._messages)

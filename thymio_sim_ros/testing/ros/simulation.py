@@ -134,7 +134,9 @@ class Simulation:
             if value := condition():
                 return value
             self.tick()
-        return self.ros.until(condition, ANSWER_S, what=f"{what or told(condition)} in {seconds:g} simulated s")
+        return self.ros.spin_until(
+            condition, ANSWER_S, lambda: f"not within {seconds:g} simulated s: {what or told(condition)}"
+        )
 
     def lines(self) -> list[str]:
         """How simulated time and the robots are, for a person."""
