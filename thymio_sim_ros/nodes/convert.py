@@ -6,7 +6,7 @@ Names, units, frames and QoS are those of ros-interface.md sections 4, 6.3 and 9
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -97,6 +97,8 @@ class Row:
     every_ns: int = 0
     always: bool = False
     on_change: bool = False
+    is_event: bool = False
+    """Whether `encode` gives nothing for most readings."""
 
 
 def quaternion(yaw_rad: float, tilt: Tilt = LEVEL) -> Quaternion:
@@ -345,7 +347,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
         ),
     ),
     "tap": (Row("tap", Empty, senses.tap, "a shock was felt"),),
-    "sound": (Row("sound", Float32, senses.sound, "loudness 0…1 above `sound_threshold`"),),
+    "sound": (Row("sound", Float32, senses.sound, "loudness 0…1 above `sound_threshold`", is_event=True),),
     "remote": (Row("remote", Int8, senses.remote, "command 0…127 of a key of an RC5 remote control"),),
     "comm": (Row("comm/received", Int16, senses.received, "value of an infrared frame"),),
     "pen": (
@@ -395,6 +397,26 @@ def rows_of(sensor: Sensor) -> tuple[Row, ...]:
     is_seen = sensor.aseba.variables or sensor.aseba.event
     raw = (Row(f"raw/{sensor.name}", Int16MultiArray, _words, about),) if is_seen else ()
     return ROWS.get(sensor.name, ()) + raw
+
+
+RARE: Mapping[str, str] = {
+    "collision": "change",
+    "comm": "event",
+    "leds": "change",
+    "loudspeaker": "change",
+    "pen": "change",
+    "remote": "event",
+    "sound_finished": "event",
+    "tap": "event",
+}
+"""When sensors give readings that look for something now and then."""
+
+
+def often(sensor: Sensor, row: Row) -> str:
+    """How often a row of a sensor is sent: in Hz, on a change, or when something happens."""
+    if row.is_event or row.on_change or sensor.name in RARE:
+        return "event" if row.is_event else RARE.get(sensor.name, "change")
+    return f"{SECOND_NS / max(sensor.period_ns, row.every_ns):.3g}"
 
 
 class CommandError(ValueError):

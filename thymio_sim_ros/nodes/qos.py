@@ -30,6 +30,23 @@ EVENTS = _reliable(100)
 """Aseba events: nothing lost in bursts."""
 
 
+KINDS: dict[str, tuple[QoSProfile, str]] = {
+    "sensor": (SENSOR, "sensors and state; volatile"),
+    "latched": (LATCHED, "a late joiner gets the last message; transient local"),
+    "transforms": (TRANSFORMS, "as tf2 has it; volatile"),
+    "clock": (CLOCK, "the newest counts; volatile"),
+    "command": (COMMAND, "the newest wins; volatile"),
+    "lights": (LEDS, "volatile"),
+    "event": (EVENTS, "nothing lost in bursts; volatile"),
+}
+"""Every profile by the name that the reference gives it, and what it is for; all are reliable, keep last."""
+
+
+def kind_of(profile: QoSProfile) -> str:
+    """The name of one of our profiles; some that differ in purpose alone share the first name."""
+    return next(kind for kind, (known, _) in KINDS.items() if known is profile)
+
+
 def overridable(node: Node, topic: str, profile: QoSProfile) -> dict[str, Any]:
     """Arguments of `create_publisher`: its profile, and the parameters `qos_overrides.<topic>.publisher.…`.
 

@@ -26,13 +26,14 @@ from thymio_sim_ros.sim.placement import PlacementError
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.sensors import all_sensors
 
-__all__ = ["DESCRIPTION", "SERVICES", "WARN_EVERY_S", "PortOptions", "RobotPorts"]
+__all__ = ["DESCRIBED", "DESCRIPTION", "SERVICES", "WARN_EVERY_S", "PortOptions", "RobotPorts"]
 
 Post = Callable[[Command], None]
 
 WARN_EVERY_S = 5.0
 
 DESCRIPTION = "robot_description"
+DESCRIBED = (String, "the robot as URDF, made of primitives, with turning wheels")
 
 SERVICES: Mapping[str, tuple[type, str]] = {
     "is_ready": (EmptyService, "answers when the robot is in the world"),
@@ -90,7 +91,7 @@ class RobotPorts:
         }
         self._description: Any = None
         if DESCRIPTION not in options.left_out:
-            self._description = node.create_publisher(String, names.topic(DESCRIPTION), qos.LATCHED)
+            self._description = node.create_publisher(DESCRIBED[0], names.topic(DESCRIPTION), qos.LATCHED)
             self._description.publish(String(data=urdf(names)))
         self._subscriptions = [
             node.create_subscription(one.type, names.topic(one.topic), self._taker(one), one.profile)

@@ -75,7 +75,7 @@ class SimulatorParams:
 
     playground: str = param("line", "Playground: a shipped name, a file, or the JSON text itself")
     seed: int = param(
-        0, "Seed of all noise; the same seed gives the same run. A new one begins anew", low=0, high=2**53
+        0, "Seed of all noise; the same seed gives the same run. A new one begins anew", low=0, high=2**31 - 1
     )
     noise: bool = param(True, "Whether wheels and sensors are noisy as on the robot", fixed=True)
     motor_model: str = param(

@@ -27,7 +27,7 @@ from thymio_sim_ros.sim.fields import FieldError
 from thymio_sim_ros.sim.playground import RobotStart
 from thymio_sim_ros.sim.world import World
 
-__all__ = ["PLACE", "SERVICES", "Controlled", "WorldServices"]
+__all__ = ["PLACE", "PLACED", "SERVICES", "Controlled", "WorldServices"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +53,8 @@ SERVICES: Mapping[str, Service] = {
 
 PLACE = "~/place"
 """The topic that does what `~/set_poses` does, for what a viewer drags."""
+
+PLACED = "put a robot or a movable thing there: its name, or a robot's frame, is `child_frame_id`"
 
 
 class Controlled(Protocol):

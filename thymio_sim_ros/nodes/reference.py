@@ -1,0 +1,216 @@
+"""docs/ros.md from the declarations that the nodes use: `python -m thymio_sim_ros.nodes.reference > docs/ros.md`.
+
+Plug-ins of other packages are left out: the page is about what is shipped.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from thymio_sim_ros import registry
+from thymio_sim_ros.nodes import convert, params, qos, robot_ports, tf_messages, world_ports, world_services
+from thymio_sim_ros.nodes.aseba_node import RuntimeParams
+from thymio_sim_ros.nodes.description import fixed_frames, wheel_position
+from thymio_sim_ros.nodes.migration import migration
+from thymio_sim_ros.nodes.names import SIDES
+from thymio_sim_ros.nodes.reference_text import AFTER, BEFORE, QUALITY
+from thymio_sim_ros.nodes.robot_inputs import RobotInput, robot_inputs
+from thymio_sim_ros.nodes.simulator_params import SimulatorParams
+from thymio_sim_ros.sim import sensors
+from thymio_sim_ros.sim.sensors import Sensor, all_sensors
+
+__all__ = ["own_sensors", "table", "text"]
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class _Line:
+    """One topic in a table; neighbours that differ in the last word of their name alone become one."""
+
+    topic: str
+    type: str
+    often: str
+    frame: str
+    profile: str
+    about: str
+
+    @property
+    def place(self) -> str:
+        """What comes before the last word."""
+        return self.topic.rpartition("/")[0]
+
+    @property
+    def sort(self) -> tuple[str, ...]:
+        """What neighbours share."""
+        word = self.topic.rpartition("/")[2]
+        frame = self.frame.replace(f"_{word}_", "_…_")
+        return (self.place, self.type, self.often, frame, self.profile, self.about)
+
+
+def text() -> str:
+    """The whole page."""
+    parts = [
+        BEFORE,
+        "## What a robot publishes\n",
+        _topics(_published()),
+        "## What a robot listens to\n",
+        _topics(_line_of_input(one) for one in robot_inputs()),
+        "## Topics of the world\n",
+        _topics(_of_world()),
+        "## Services\n",
+        table(("service", "type", "does"), _services()),
+        "## Quality of service\n",
+        QUALITY,
+        table(("kind", "depth", "for"), ((kind, str(one.depth), about) for kind, (one, about) in qos.KINDS.items())),
+        "## Frames\n",
+        _frames(),
+        "## Parameters of the simulator\n",
+        table(("parameter", "default", "values", "at run time", ""), _parameters(SimulatorParams())),
+        "## Parameters of the Aseba runtime\n",
+        "What they and its topics do: [aseba_ros.md](aseba_ros.md).\n",
+        table(("parameter", "default", "values", "at run time", ""), _parameters(RuntimeParams())),
+        AFTER,
+        migration(own_sensors()),
+    ]
+    return "\n".join(parts)
+
+
+def own_sensors() -> tuple[Sensor, ...]:
+    """Those that are shipped."""
+    ours = registry.own_names(sensors)
+    return tuple(sensor for sensor in all_sensors() if sensor.name in ours)
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table of Markdown, and an empty line."""
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def _published() -> Iterator[_Line]:
+    for sensor in own_sensors():
+        for row in convert.rows_of(sensor):
+            often = convert.often(sensor, row)
+            profile = qos.kind_of(row.profile)
+            yield _Line(row.topic, _type(row.type), often, row.frame, profile, row.about)
+    kind, about = robot_ports.DESCRIBED
+    yield _Line(robot_ports.DESCRIPTION, _type(kind), "once", "", "latched", about)
+
+
+def _line_of_input(one: RobotInput) -> _Line:
+    return _Line(one.topic, _type(one.type), "", "", qos.kind_of(one.profile), one.about)
+
+
+def _of_world() -> Iterator[_Line]:
+    for topic, one in world_ports.TOPICS.items():
+        name = topic.replace("~", "/simulator")
+        yield _Line(name, _type(one.type), one.often, one.frame, qos.kind_of(one.profile), one.about)
+    moving = "`map -> odom -> base_link` and the wheels; `map -> odom` makes up for the odometry's drift"
+    yield _Line("/tf", tf_messages.TF_TYPE_NAME, "20", "", "transforms", moving)
+    yield _Line("/tf_static", tf_messages.TF_TYPE_NAME, "once", "", "latched", "the frames below that are fixed")
+    name = world_services.PLACE.replace("~", "/simulator")
+    yield _Line(name, "geometry_msgs/msg/TransformStamped", "in", "map", "command", world_services.PLACED)
+
+
+def _topics(lines: Iterable[_Line]) -> str:
+    """Topics by their place, in the order in which places first appear."""
+    listed = list(lines)
+    places = {line.place: None for line in listed}
+    ordered = [line for place in places for line in listed if line.place == place]
+    has_rates, has_frames = any(line.often for line in listed), any(line.frame for line in listed)
+    rows = []
+    for group in _runs(ordered, lambda line: line.sort):
+        first = group[0]
+        words = [line.topic.rpartition("/")[2] for line in group]
+        word = words[0] if len(words) == 1 else f"{{{','.join(words)}}}"
+        frame = first.frame if len(words) == 1 else first.frame.replace(f"_{words[0]}_", "_…_")
+        name = f"{first.place}/{word}" if first.place or first.topic.startswith("/") else word
+        cells = [f"`{name}`", f"`{first.type}`", first.often, f"`{frame}`" if frame else "", first.profile, first.about]
+        wanted = (True, True, has_rates, has_frames, True, True)
+        rows.append([cell for cell, is_wanted in zip(cells, wanted, strict=True) if is_wanted])
+    heads = [
+        head for head, is_wanted in zip(("topic", "type", "Hz", "frame", "QoS", ""), wanted, strict=True) if is_wanted
+    ]
+    return table(heads, rows)
+
+
+def _runs(items: Iterable[T], key: Callable[[T], Any]) -> Iterator[list[T]]:
+    for _, group in itertools.groupby(items, key=key):
+        yield list(group)
+
+
+def _services() -> Iterator[tuple[str, str, str]]:
+    for name, (kind, about) in robot_ports.SERVICES.items():
+        yield f"`{name}`", f"`{_type(kind)}`", about
+    for name, service in world_services.SERVICES.items():
+        yield f"`{name.replace('~', '/simulator')}`", f"`{_type(service.type)}`", service.about
+
+
+def _frames() -> str:
+    rows = [("`odom`", "`map`", "origin of the odometry in the world", ""), ("`base_link`", "`odom`", "odometry", "")]
+    rows += [(f"`{side}_wheel_link`", "`base_link`", _vector(wheel_position(side)), "turns about y") for side in SIDES]
+    for frame in fixed_frames():
+        degrees = ", ".join(f"{math.degrees(angle):.4g}" for angle in frame.rotation)
+        turn = "" if not any(frame.rotation) else f"roll, pitch, yaw {degrees}°"
+        rows.append((f"`{frame.name}`", "`base_link`", _vector(frame.position), turn))
+    return table(("frame", "in", "place, m", ""), rows)
+
+
+def _vector(values: Iterable[float]) -> str:
+    return ", ".join(f"{value:.4g}" for value in values)
+
+
+def _parameters(values: object) -> Iterator[tuple[str, str, str, str, str]]:
+    """Each parameter; those of groups that differ in the middle of their names alone share a line."""
+    groups: dict[tuple[str, str], list[params.Declared]] = {}
+    for one in params.declared(values):
+        groups.setdefault((_outer(one.name), one.metadata["text"]), []).append(one)
+    for group in groups.values():
+        first = group[0]
+        name = first.name if len(group) == 1 else f"{first.name.split('.')[0]}.<sensor>.{first.name.rpartition('.')[2]}"
+        yield (
+            f"`{name}`",
+            _value(first.default),
+            _limits(first),
+            "" if first.metadata["fixed"] else "yes",
+            _cell(first.metadata["text"]),
+        )
+
+
+def _outer(name: str) -> str:
+    """`a.b.c` without its middle."""
+    words = name.split(".")
+    return f"{words[0]}.{words[-1]}"
+
+
+def _value(value: object) -> str:
+    return f"`{str(value).lower() if isinstance(value, bool) else repr(value) if isinstance(value, str) else value}`"
+
+
+def _limits(one: params.Declared) -> str:
+    descriptor = one.descriptor
+    for bounds in descriptor.floating_point_range:
+        return f"{bounds.from_value:g}…{bounds.to_value:g}"
+    for bounds in descriptor.integer_range:
+        return f"{bounds.from_value}…{bounds.to_value}"
+    return _cell(descriptor.additional_constraints)
+
+
+def _cell(content: str) -> str:
+    return content.replace("|", "\\|")
+
+
+def _type(kind: type) -> str:
+    """`std_msgs/msg/Bool` of its class."""
+    package, form, *_ = kind.__module__.split(".")
+    return f"{package}/{form}/{kind.__name__}"
+
+
+if __name__ == "__main__":
+    sys.stdout.write(text())

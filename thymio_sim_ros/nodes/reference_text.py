@@ -1,0 +1,78 @@
+"""What docs/ros.md says besides its tables."""
+
+from __future__ import annotations
+
+__all__ = ["AFTER", "BEFORE", "QUALITY"]
+
+BEFORE = """\
+# The ROS 2 interface
+
+This page is written from the declarations that the nodes use: `python -m thymio_sim_ros.nodes.reference > docs/ros.md`.
+
+Only standard message types. Units are SI, frames follow REP 103 and 105, ranges REP 117. Names of a robot's topics and
+services are relative to its namespace: a robot alone has none (`/odom`, frame `base_link`), of several each has its
+name (`/anna/odom`, frame `anna/base_link`). One node, `/simulator`, serves all robots. Sensors' topics cost nothing
+until somebody subscribes, but for odometry, transforms, clock and what is sent on a change.
+
+Numbers that are not finite and arrays of a wrong size are refused with a warning, at most one every five seconds for
+each topic, and counted in `/diagnostics`. Speeds, intensities and loudness beyond their limits are limited.
+
+## Existing code for the Thymio driver
+
+Names, types, frames and constants are those of `thymio_driver`: a node written for it runs unchanged.
+
+```sh
+ros2 launch thymio_sim_ros thymio.launch.py driver_compat:=true program:=none
+```
+
+`driver_compat` sets `out_of_range` to `driver`: a range is -1 where nothing is seen, as the driver has it, instead of
++inf. Code that adds or averages ranges needs this, code that compares them (`r < 0.08`) needs the default. Left out are
+the topics whose types only the driver's own package `thymio_msgs` has: `led`, `led/gesture`, `sound/play`,
+`sound/play/system` and `comm/rx` have twins of standard types (`led/…`, `led/gesture/…`, `sound/tone`, `sound/system`,
+`comm/received` with `raw/comm`). Left out are also the parameters that calibrate a real robot's motors (`axis_length`,
+`motor.…`).
+
+## Control of time and world
+
+```sh
+ros2 service call /simulator/pause std_srvs/srv/SetBool "{data: true}"
+ros2 param set /simulator step_ticks 100
+ros2 service call /simulator/step std_srvs/srv/Trigger
+ros2 service call /simulator/reset std_srvs/srv/Trigger
+ros2 param set /simulator real_time_factor 5.0
+ros2 param set /simulator seed 7
+ros2 param set /simulator playground maze
+```
+
+A playground is a shipped name, a file or the JSON text itself; one that is wrong is refused with file, key, what was
+found and what was expected, and the old world goes on. A new seed or playground begins at time 0, as `reset` does:
+`/clock` goes back, and nodes drop what they remember.
+
+Robots come, go and are put somewhere by services that answer each name with a reason:
+
+```sh
+ros2 service call /simulator/spawn rcl_interfaces/srv/SetParameters \\
+    "{parameters: [{name: anna, value: {type: 8, double_array_value: [0.2, 0.1, 1.57]}}]}"
+ros2 service call /simulator/set_poses rcl_interfaces/srv/SetParameters \\
+    "{parameters: [{name: anna, value: {type: 8, double_array_value: [0.0, 0.0, 0.0]}}]}"
+ros2 service call /simulator/get_poses rcl_interfaces/srv/GetParameters "{names: [anna]}"
+ros2 service call /simulator/remove rcl_interfaces/srv/SetParameters "{parameters: [{name: anna}]}"
+```
+
+Names are those of the playground (`robot` in `/simulator/state`), also of movable things. A viewer that drags publishes
+`/simulator/place`, with the name, or a robot's frame, in `child_frame_id`; or a robot's `initialpose`, as the tools of
+RViz and Foxglove do. All of it works through the Foxglove bridge too. What is moved while time stands still is there
+after the next step.
+"""
+
+QUALITY = """\
+All are reliable and keep the last messages. With `qos_overrides.<topic>.publisher.reliability:=best_effort` a sensor's
+topic is best effort, as wireless class rooms want it; `history`, `depth` and `durability` likewise.
+"""
+
+AFTER = """\
+## From Aseba to ROS
+
+Where a program's variables, events and functions are on topics; `raw/…` carries the integers that the program sees.
+The topics of events between programs and nodes: [aseba_ros.md](aseba_ros.md).
+"""
