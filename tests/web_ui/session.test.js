@@ -131,7 +131,7 @@ test("a service call is answered with what the service says", async () => {
       response,
     ),
   );
-  assert.deepEqual(await answer, { ok: true, message: "done" });
+  assert.deepEqual(await answer, { ok: true, message: "done", value: { success: true, message: "done" } });
 });
 
 test("a service call that fails says why", async () => {

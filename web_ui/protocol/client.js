@@ -51,6 +51,11 @@ export class Client {
     });
   }
 
+  /** `wants` has another opinion now. */
+  refresh() {
+    this.session?.refresh();
+  }
+
   /** @param {string} topic @param {string} schemaName @param {Record<string, any>} value */
   publish(topic, schemaName, value) {
     this.session?.publish(topic, schemaName, value);

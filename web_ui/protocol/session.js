@@ -25,23 +25,22 @@ import { parseSchema } from "./ros2msg.js";
  */
 
 /** @typedef {{ ok: boolean, value: any, message: string }} ParameterAnswer */
-/** @typedef {{ ok: boolean, message: string }} ServiceAnswer */
+/**
+ * `value` is the whole answer; `ok` and `message` are its own where it has such fields, else true and "".
+ *
+ * @typedef {{ ok: boolean, message: string, value?: any }} ServiceAnswer
+ */
 
 /** The names under which the same wire format is offered; the order is ours, the server chooses. */
 export const SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
 
 export const STATUS_ERROR = 2;
 
-/** Definitions of what the page publishes; a server that knows the topic advertises the same. */
-const OWN_SCHEMAS = /** @type {Record<string, string>} */ ({
-  "std_msgs/msg/Bool": "bool data",
-  "std_msgs/msg/Empty": "",
-  "std_msgs/msg/Float32": "float32 data",
-  "std_msgs/msg/Int8": "int8 data",
-  "std_msgs/msg/ColorRGBA": "float32 r\nfloat32 g\nfloat32 b\nfloat32 a",
-  "std_msgs/msg/Float32MultiArray": [
+/** @param {string} element  primitive type */
+function multiArray(element) {
+  return [
     "MultiArrayLayout layout",
-    "float32[] data",
+    `${element}[] data`,
     "=".repeat(80),
     "MSG: std_msgs/MultiArrayLayout",
     "MultiArrayDimension[] dim",
@@ -51,7 +50,18 @@ const OWN_SCHEMAS = /** @type {Record<string, string>} */ ({
     "string label",
     "uint32 size",
     "uint32 stride",
-  ].join("\n"),
+  ].join("\n");
+}
+
+/** Definitions of what the page publishes; a server that knows the topic advertises the same. */
+const OWN_SCHEMAS = /** @type {Record<string, string>} */ ({
+  "std_msgs/msg/Bool": "bool data",
+  "std_msgs/msg/Empty": "",
+  "std_msgs/msg/Float32": "float32 data",
+  "std_msgs/msg/Int8": "int8 data",
+  "std_msgs/msg/ColorRGBA": "float32 r\nfloat32 g\nfloat32 b\nfloat32 a",
+  "std_msgs/msg/Float32MultiArray": multiArray("float32"),
+  "std_msgs/msg/Int16MultiArray": multiArray("int16"),
   "geometry_msgs/msg/Twist": [
     "Vector3 linear",
     "Vector3 angular",
@@ -120,7 +130,7 @@ export class Session {
   }
 
   /**
-   * Call a service whose answer has `success` and `message`.
+   * Call a service of any type.
    *
    * @param {string} name
    * @param {Record<string, any>} request
@@ -182,16 +192,31 @@ export class Session {
       if (call === undefined) return;
       this.calls.delete(frame.callId);
       const { schemaName, schema } = call.service.response;
-      const answer = decode(parseSchema(schemaName, schema), frame.payload);
-      call.settle({ ok: answer.success ?? true, message: answer.message ?? "" });
+      const value = decode(parseSchema(schemaName, schema), frame.payload);
+      call.settle({ ok: value.success ?? true, message: value.message ?? "", value });
     }
   }
 
   /** @param {Channel[]} channels */
   advertise(channels) {
+    for (const channel of channels) this.channels.set(channel.id, channel);
+    this.#subscribe(channels);
+    this.#emitChannels();
+  }
+
+  /** `wants` has another opinion now: subscribe to what it newly wants, let go of what it does not. */
+  refresh() {
+    const unwanted = [...this.subscriptions].filter(([, { channel }]) => !this.wants(channel.topic)).map(([id]) => id);
+    for (const id of unwanted) this.subscriptions.delete(id);
+    if (unwanted.length > 0) this.#sendJson({ op: "unsubscribe", subscriptionIds: unwanted });
+    const held = new Set([...this.subscriptions.values()].map(({ channel }) => channel.id));
+    this.#subscribe([...this.channels.values()].filter(({ id }) => !held.has(id)));
+  }
+
+  /** Subscribe to those of these channels that are wanted. @param {Channel[]} channels */
+  #subscribe(channels) {
     const subscriptions = [];
     for (const channel of channels) {
-      this.channels.set(channel.id, channel);
       if (channel.encoding !== "cdr" || !this.wants(channel.topic)) continue;
       const definition = this.#definitionOf(channel);
       if (definition === null) continue;
@@ -200,7 +225,6 @@ export class Session {
       subscriptions.push({ id, channelId: channel.id });
     }
     if (subscriptions.length > 0) this.#sendJson({ op: "subscribe", subscriptions });
-    this.#emitChannels();
   }
 
   /** @param {number[]} ids */

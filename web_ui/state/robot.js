@@ -13,6 +13,7 @@ import { BUTTONS } from "./names.js";
  * @property {string} message
  * @property {number} level      0 good, 1 warning, 2 error
  * @property {string} line
+ * @property {Readonly<Record<string, string>>} values  all that the runtime tells (docs/aseba_ros.md)
  */
 /**
  * @typedef {object} Robot
@@ -120,5 +121,6 @@ export function readStatus(status) {
     message: status.message,
     level: status.level,
     line: values.line ?? "",
+    values,
   };
 }

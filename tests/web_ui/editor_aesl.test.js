@@ -1,0 +1,103 @@
+import assert from "node:assert/strict";
+import { readdirSync, readFileSync } from "node:fs";
+import { test } from "node:test";
+
+import { AeslError, newAesl, readAesl, withCode, withEntry } from "../../web_ui/editor/aesl.js";
+
+const BEHAVIOURS = new URL("../../thymio_sim_ros/device/behaviours/", import.meta.url);
+const FILES = readdirSync(BEHAVIOURS)
+  .filter((name) => name.endsWith(".aesl"))
+  .map((name) => /** @type {const} */ ([name, readFileSync(new URL(name, BEHAVIOURS), "utf8")]));
+
+const ODD = [
+  "<!DOCTYPE aesl-source>",
+  "<network><!-- mine -->",
+  '<event name="ping" size="1"/>',
+  "<constant name='A&amp;B' value='-5' />",
+  '<node nodeId="7" name="anna">if a &lt; 1 and b > 2 then<![CDATA[ c = 1 < 2 ]]><toolsPlugins><X>code?</X></toolsPlugins>',
+  "end&#x1F600;</node>",
+  '<node name="thymio-II" />',
+  "</network><!-- end -->",
+].join("\r\n");
+
+test("the code of a node is its text and CDATA, without that of its children", () => {
+  const [anna, empty] = readAesl(ODD).nodes;
+  assert.equal(anna.code, "if a < 1 and b > 2 then c = 1 < 2 \nend😀");
+  assert.deepEqual([anna.name, anna.id], ["anna", "7"]);
+  assert.equal(empty.code, "");
+});
+
+test("events and constants are read with their numbers", () => {
+  const { events, constants } = readAesl(ODD);
+  assert.deepEqual(events.map(({ name, value }) => [name, value]), [["ping", 1]]);
+  assert.deepEqual(constants.map(({ name, value }) => [name, value]), [["A&B", -5]]);
+});
+
+test("the same code leaves every byte in place", () => {
+  for (const [, text] of [...FILES, ["odd", ODD]]) {
+    readAesl(text).nodes.forEach(({ code }, index) => assert.equal(withCode(text, index, code), text));
+  }
+});
+
+test("only what differs is replaced", () => {
+  const [anna] = readAesl(ODD).nodes;
+  assert.equal(withCode(ODD, 0, anna.code.replace("a <", "speed <")), ODD.replace("a &lt;", "speed &lt;"));
+  assert.equal(withCode(ODD, 0, anna.code.replace("c = 1", "c = 2\n")), ODD.replace("c = 1", "c = 2\r\n"));
+  assert.equal(withCode(ODD, 0, anna.code.replace("😀", "")), ODD.replace("&#x1F600;", ""));
+});
+
+test("any code comes back as it was put in, and the rest of the file stays", () => {
+  const codes = ["", "a = 1", "a < b & c > d ]]>\n\t# ä😀\n", "end😁", "x".repeat(40)];
+  for (const [, text] of [...FILES, ["odd", ODD]]) {
+    readAesl(text).nodes.forEach((_node, index) => {
+      for (const first of codes) {
+        for (const second of codes) {
+          const changed = withCode(withCode(text, index, first), index, second);
+          const read = readAesl(changed);
+          assert.equal(read.nodes[index].code, second);
+          const names = readAesl(text).events.map(({ name }) => name);
+          assert.deepEqual(read.events.map(({ name }) => name), names);
+        }
+      }
+    });
+  }
+});
+
+test("the data of plug-ins and what stands behind the network outlive an edit", () => {
+  const changed = withCode(ODD, 0, "");
+  assert.match(changed, /<toolsPlugins><X>code\?<\/X><\/toolsPlugins>/);
+  assert.match(changed, /<!-- mine -->[\s\S]*<!-- end -->$/);
+});
+
+test("events and constants are added behind the others, changed in place, and removed with their line", () => {
+  const added = withEntry(ODD, "event", "pong", 2);
+  assert.deepEqual(readAesl(added).events.map(({ name, value }) => [name, value]), [["ping", 1], ["pong", 2]]);
+  assert.equal(withEntry(added, "event", "pong", null), ODD);
+  assert.equal(withEntry(ODD, "constant", "A&B", 300), ODD.replace("'-5'", "'300'"));
+  assert.equal(withEntry(ODD, "constant", "missing", null), ODD);
+});
+
+test("a new file is one that can be read, with the code in it", () => {
+  const text = withEntry(withEntry(newAesl("a < 1"), "constant", "SPEED", 100), "event", "go", 0);
+  const { nodes, events, constants } = readAesl(text);
+  assert.deepEqual([nodes[0].code, events[0].name, constants[0].value], ["a < 1", "go", 100]);
+});
+
+for (const [what, text, line, column, words] of /** @type {[string, string, number, number, RegExp][]} */ ([
+  ["another root", "<html></html>", 1, 1, /found <html>, expected <network>/],
+  ["an end that is missing", "<network>\n<node>", 2, 7, /expected <\/node>/],
+  ["a wrong end", "<network>\n <node></network>", 2, 8, /found <\/network>, expected <\/node>/],
+  ["a bare <", "<network>\n<node>a < b</node></network>", 2, 9, /&lt;/],
+  ["a bare &", "<network>\n<node>a & b</node></network>", 2, 9, /&amp;/],
+  ["no number", '<network>\n<constant name="a" value="x"/></network>', 2, 27, /found 'x'/],
+  ["too great a constant", '<network><constant name="a" value="40000"/></network>', 1, 36, /32767/],
+  ["an event without size", '<network><event name="a"/></network>', 1, 10, /has no size/],
+  ["nothing", "", 1, 1, /expected <network>/],
+])) {
+  test(`a file with ${what} is refused at its place`, () => {
+    assert.throws(
+      () => readAesl(text),
+      (error) => error instanceof AeslError && words.test(error.message) && error.line === line && error.column === column,
+    );
+  });
+}

@@ -1,0 +1,192 @@
+// An .aesl file as text with places: what is edited is cut out and put in, the rest stays byte for byte
+// (aseba-language.md section 13).
+
+import { AeslError, attributesOf, decoded, encoded, scan } from "./xml.js";
+
+export { AeslError } from "./xml.js";
+
+/** @typedef {import("./xml.js").Unit} Unit */
+/** @typedef {{ from: number, to: number }} Span */
+/** @typedef {Span & { name: string, value: number, valueFrom: number, valueTo: number }} Entry */
+/**
+ * @typedef {object} Node
+ * @property {string} name
+ * @property {string} id
+ * @property {Span} tag         of its opening tag
+ * @property {boolean} empty    written as <node …/>
+ * @property {Unit[]} units     of the code, with where each stands in the file
+ * @property {string} code
+ */
+/** @typedef {{ text: string, root: Span & { inner: number }, events: Entry[], constants: Entry[], nodes: Node[] }} Aesl */
+
+export const LEAST = -32768;
+export const GREATEST = 32767;
+/** Words of an event at most (docs/aseba_ros.md, `limits.event_values`). */
+export const LARGEST_EVENT = 258;
+
+/**
+ * A new file with this code for one Thymio.
+ *
+ * @param {string} [code]
+ */
+export function newAesl(code = "") {
+  return [
+    "<!DOCTYPE aesl-source>",
+    "<network>",
+    "<!--list of global events-->",
+    "<!--list of constants-->",
+    "<!--show keywords state-->",
+    '<keywords flag="true"/>',
+    "<!--node thymio-II-->",
+    `<node nodeId="1" name="thymio-II">${encoded(code, false)}</node>`,
+    "</network>",
+    "",
+  ].join("\n");
+}
+
+/** Whether a text is meant as .aesl rather than as bare Aseba. @param {string} text */
+export function looksLikeAesl(text) {
+  return /^\uFEFF?\s*</.test(text);
+}
+
+/**
+ * Read a file; AeslError tells the place of what is wrong.
+ *
+ * @param {string} text
+ * @returns {Aesl}
+ */
+export function readAesl(text) {
+  /** @type {Aesl} */
+  const aesl = { text, root: { from: 0, to: 0, inner: 0 }, events: [], constants: [], nodes: [] };
+  let depth = 0;
+  let rootSeen = false;
+  /** @type {Node | null} */ let node = null;
+  for (const part of scan(text)) {
+    if (part.kind === "open") {
+      if (depth === 0) {
+        if (rootSeen) throw new AeslError(text, part.from, `found a second root <${part.name}>, expected one`);
+        rootSeen = true;
+        if (part.name !== "network")
+          throw new AeslError(text, part.from, `found <${part.name}>, expected <network>`);
+        aesl.root = { from: part.from, to: text.length, inner: part.to };
+      } else if (depth === 1 && part.name === "node") {
+        const { name, nodeId } = attributesOf(text, part);
+        node = {
+          name: name?.value ?? "",
+          id: nodeId?.value ?? "",
+          tag: { from: part.from, to: part.to },
+          empty: part.closed,
+          units: [],
+          code: "",
+        };
+        aesl.nodes.push(node);
+      } else if (depth === 1 && part.name === "event") {
+        aesl.events.push(entry(text, part, "size", 0, GREATEST));
+      } else if (depth === 1 && part.name === "constant") {
+        aesl.constants.push(entry(text, part, "value", LEAST, GREATEST));
+      }
+      if (!part.closed) depth += 1;
+    } else if (part.kind === "close") {
+      depth -= 1;
+      if (depth === 0) aesl.root.to = part.from;
+    } else if ((part.kind === "text" || part.kind === "cdata") && node !== null && depth === 2) {
+      node.units.push(...decoded(text, part));
+    }
+    if (depth < 2 && !(part.kind === "open" && part.name === "node")) node = null;
+  }
+  if (!rootSeen) throw new AeslError(text, text.length, "found the end, expected <network>");
+  for (const each of aesl.nodes) each.code = each.units.map(({ character }) => character).join("");
+  return aesl;
+}
+
+/**
+ * The file with other code in one of its nodes: only what differs is replaced.
+ *
+ * @param {string} text
+ * @param {number} index  of the node
+ * @param {string} code
+ */
+export function withCode(text, index, code) {
+  const { nodes } = readAesl(text);
+  const { units, code: old, tag, empty } = nodes[index];
+  if (code === old) return text;
+  const newline = /\r\n/.test(text) ? "\r\n" : "\n";
+  if (units.length === 0) {
+    const inside = encoded(code, false, newline);
+    if (!empty) return text.slice(0, tag.to) + inside + text.slice(tag.to);
+    const open = text.slice(tag.from, tag.to).replace(/\s*\/>$/, ">");
+    return `${text.slice(0, tag.from)}${open}${inside}</node>${text.slice(tag.to)}`;
+  }
+  let start = 0;
+  while (start < old.length && start < code.length && old[start] === code[start]) start += 1;
+  let end = 0;
+  while (end < old.length - start && end < code.length - start && old.at(-1 - end) === code.at(-1 - end)) end += 1;
+  while (start > 0 && start < units.length && units[start].from === units[start].to) start -= 1;
+  while (end > 0 && units[old.length - end].from === units[old.length - end].to) end -= 1;
+  const middle = code.slice(start, code.length - end);
+  const gone = units.slice(start, old.length - end);
+  const anchor = gone[0] ?? units[start - 1] ?? units[0];
+  let result = "";
+  let at = 0;
+  /** @param {number} from @param {number} to @param {string} by */
+  const replace = (from, to, by) => {
+    result += text.slice(at, from) + by;
+    at = to;
+  };
+  const put = encoded(middle, anchor.cdata, newline);
+  if (gone.length === 0) {
+    const place = start > 0 ? units[start - 1].to : units[0].from;
+    replace(place, place, put);
+  }
+  gone.forEach(({ from, to }, position) => replace(from, to, position === 0 ? put : ""));
+  return result + text.slice(at);
+}
+
+/**
+ * The file with an event or constant added (behind the others), changed, or with null removed.
+ *
+ * @param {string} text
+ * @param {"event" | "constant"} kind
+ * @param {string} name
+ * @param {number | null} value  size of an event, value of a constant
+ */
+export function withEntry(text, kind, name, value) {
+  const aesl = readAesl(text);
+  const entries = kind === "event" ? aesl.events : aesl.constants;
+  const old = entries.find((each) => each.name === name);
+  if (old !== undefined) {
+    if (value !== null) return text.slice(0, old.valueFrom) + String(value) + text.slice(old.valueTo);
+    const line = /\r?\n[ \t]*$/.exec(text.slice(0, old.from));
+    return text.slice(0, old.from - (line?.[0].length ?? 0)) + text.slice(old.to);
+  }
+  if (value === null) return text;
+  const attribute = kind === "event" ? "size" : "value";
+  const element = `<${kind} ${attribute}="${value}" name="${encoded(name, false).replaceAll('"', "&quot;")}"/>`;
+  const comment = `<!--list of ${kind === "event" ? "global events" : "constants"}-->`;
+  const listed = text.indexOf(comment);
+  const last = entries.at(-1)?.to ?? (listed < 0 ? aesl.root.inner : listed + comment.length);
+  const newline = /\r\n/.test(text) ? "\r\n" : "\n";
+  return `${text.slice(0, last)}${newline}${element}${text.slice(last)}`;
+}
+
+/**
+ * @param {string} text
+ * @param {import("./xml.js").Part} part
+ * @param {string} attribute
+ * @param {number} least
+ * @param {number} greatest
+ * @returns {Entry}
+ */
+function entry(text, part, attribute, least, greatest) {
+  const attributes = attributesOf(text, part);
+  const { name, [attribute]: number } = attributes;
+  for (const [wanted, found] of Object.entries({ name, [attribute]: number })) {
+    if (found === undefined) throw new AeslError(text, part.from, `<${part.name}> has no ${wanted}`);
+  }
+  const value = Number(number.value);
+  if (!/^[+-]?\d+$/.test(number.value.trim()) || value < least || value > greatest) {
+    const expected = `expected a whole number from ${least} to ${greatest}`;
+    throw new AeslError(text, number.from, `<${part.name}> ${attribute}: found '${number.value}', ${expected}`);
+  }
+  return { from: part.from, to: part.to, name: name.value, value, valueFrom: number.from, valueTo: number.to };
+}

@@ -1,0 +1,87 @@
+// What CodeMirror knows of Aseba: colours, indentation, folding, comments.
+
+import {
+  continuedIndent,
+  foldNodeProp,
+  HighlightStyle,
+  indentNodeProp,
+  LanguageSupport,
+  LRLanguage,
+  syntaxHighlighting,
+} from "@codemirror/language";
+import { styleTags, tags } from "@lezer/highlight";
+
+import { parser } from "./parser.js";
+
+/** @typedef {import("@lezer/common").SyntaxNode} SyntaxNode */
+/** @typedef {import("@codemirror/state").EditorState} EditorState */
+
+/** A level is one tab, as `aseba fmt` writes it. */
+export const INDENT = "\t";
+
+const WORDS = "if then elseif else end when do while for in step return call callsub emit _emit";
+
+/** Lines between the first of a node and its end, `end` itself left out. @param {SyntaxNode} node @param {EditorState} state */
+function body(node, state) {
+  const from = state.doc.lineAt(node.from).to;
+  const last = node.lastChild;
+  const to = last?.name === "end" ? state.doc.lineAt(last.from).from - 1 : node.to;
+  return to > from ? { from, to } : null;
+}
+
+const BLOCK = continuedIndent({ except: /^\s*(end|else|elseif)\b(?!\.)/ });
+const SECTION = continuedIndent({ except: /^\s*(onevent|sub)\b(?!\.)/ });
+
+export const asebaLanguage = LRLanguage.define({
+  name: "aseba",
+  parser: parser.configure({
+    props: [
+      styleTags({
+        [WORDS]: tags.controlKeyword,
+        "onevent sub var const": tags.definitionKeyword,
+        "and or not abs": tags.operatorKeyword,
+        Number: tags.number,
+        "Variable/VariableName/Identifier": tags.variableName,
+        "VariableDefinitionName/Identifier": tags.definition(tags.variableName),
+        "ConstantDefinitionName/Identifier": tags.definition(tags.constant(tags.variableName)),
+        "FunctionName/Identifier": tags.function(tags.variableName),
+        "SubroutineName/Identifier": tags.function(tags.variableName),
+        "EventName/Identifier": tags.className,
+        "ArithmeticOp CompareOp AssignOp/... CompoundOp StepOp": tags.operator,
+        LineComment: tags.lineComment,
+        BlockComment: tags.blockComment,
+        "( )": tags.paren,
+        "[ ]": tags.squareBracket,
+      }),
+      indentNodeProp.add({
+        "IfStatement WhenStatement WhileStatement ForStatement ElseClause ElseifClause": BLOCK,
+        "Handler Subroutine": SECTION,
+        Program: () => 0,
+      }),
+      foldNodeProp.add({ "IfStatement WhenStatement WhileStatement ForStatement Handler Subroutine": body }),
+      foldNodeProp.add({ BlockComment: ({ from, to }) => ({ from: from + 2, to: to - 2 }) }),
+    ],
+  }),
+  languageData: {
+    commentTokens: { line: "#", block: { open: "#*", close: "*#" } },
+    indentOnInput: /^\s*(end|else|elseif|onevent|sub)$/,
+    wordChars: "._",
+    closeBrackets: { brackets: ["(", "["] },
+  },
+});
+
+/** Each at least 4.5:1 on white, and on the colour of the current line. */
+const COLOURS = HighlightStyle.define([
+  { tag: [tags.controlKeyword, tags.definitionKeyword, tags.operatorKeyword], color: "#7a1fa2", fontWeight: "600" },
+  { tag: tags.number, color: "#9a3800" },
+  { tag: tags.variableName, color: "#17263a" },
+  { tag: tags.constant(tags.variableName), color: "#9a3800" },
+  { tag: tags.function(tags.variableName), color: "#0b57a8" },
+  { tag: tags.className, color: "#0a6b4f" },
+  { tag: tags.operator, color: "#44525f" },
+  { tag: tags.comment, color: "#5b6672", fontStyle: "italic" },
+]);
+
+export function aseba() {
+  return new LanguageSupport(asebaLanguage, [syntaxHighlighting(COLOURS)]);
+}
