@@ -8,8 +8,9 @@ with its place, and the old program goes on. A robot without a program is switch
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -45,6 +46,7 @@ __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 SIMULATOR_STATE = "/simulator/state"
 DIAGNOSTICS_S = 1.0
 
+NO_OVERRIDES: Mapping[str, Any] = MappingProxyType({})
 PROGRAM_ERRORS = (ProgramError, resources.ResourceError, OSError)
 
 
@@ -61,12 +63,19 @@ class AsebaRuntime:
     """The runtime node: one device per robot, all on one Aseba bus."""
 
     def __init__(
-        self, context: Context, defaults: RuntimeParams | None = None, *, use_sim_time: bool | None = None
+        self,
+        context: Context,
+        defaults: RuntimeParams | None = None,
+        *,
+        use_sim_time: bool | None = None,
+        overrides: Mapping[str, Any] = NO_OVERRIDES,
     ) -> None:
+        """`overrides`: values of parameters by name, as from a command line."""
+        given = dict(overrides) | ({} if use_sim_time is None else {"use_sim_time": use_sim_time})
         self.node = Node(
             "aseba_runtime",
             context=context,
-            parameter_overrides=[] if use_sim_time is None else [Parameter("use_sim_time", value=use_sim_time)],
+            parameter_overrides=[Parameter(name, value=value) for name, value in given.items()],
             allow_undeclared_parameters=True,
             automatically_declare_parameters_from_overrides=True,
         )

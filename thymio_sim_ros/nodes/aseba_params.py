@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Sequence, Sized
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -39,6 +39,7 @@ ROBOT_ARRAYS = {
     "breakpoints": (INTEGERS, "Lines to stop at on this robot, in place of those for all"),
     "watch": (STRINGS, "Variables of this robot with a topic of their own, besides those for all"),
 }
+ARRAYS = {"local_events": STRINGS} | {word: kind for word, (kind, _) in ROBOT_ARRAYS.items()}
 _FREE = re.compile(
     r"(?:robots\.(?P<robot>[A-Za-z_][A-Za-z0-9_/]*)\.)?"
     r"(?:script\.constants\.(?P<constant>.+)|(?P<plain>script\.path|script\.source|script\.name|breakpoints|watch))"
@@ -161,12 +162,9 @@ def exclusive(parameters: Sequence[Parameter]) -> list[Parameter]:
     given = {parameter.name for parameter in parameters}
     result = []
     for parameter in parameters:
-        word = parameter.name.rpartition(".")[2]
-        if isinstance(parameter.value, (list, tuple)) and not parameter.value and word in ROBOT_ARRAYS:
-            parameter = Parameter(parameter.name, ROBOT_ARRAYS[word][0], [])
-        elif word == "local_events" and isinstance(parameter.value, (list, tuple)) and not parameter.value:
-            parameter = Parameter(parameter.name, STRINGS, [])
-        result.append(parameter)
+        kind = ARRAYS.get(parameter.name.rpartition(".")[2])
+        is_empty = not isinstance(parameter.value, str) and isinstance(parameter.value, Sized) and not parameter.value
+        result.append(Parameter(parameter.name, kind, []) if kind is not None and is_empty else parameter)
         for one, other in (("script.path", "script.source"), ("script.source", "script.path")):
             sibling = parameter.name.removesuffix(one) + other
             if parameter.name.endswith(one) and parameter.value and sibling not in given:
@@ -190,5 +188,6 @@ def _check_lines(name: str, value: Any) -> None:
 
 
 def _check_strings(name: str, value: Any) -> None:
-    if any(not isinstance(item, str) for item in (value or ())):
-        raise WrongValueError(f"{name}: {value!r} found, expected a list of names")
+    names = list(value or ())
+    if any(not isinstance(item, str) for item in names):
+        raise WrongValueError(f"{name}: {names} found, expected a list of names")

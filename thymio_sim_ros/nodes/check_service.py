@@ -79,7 +79,7 @@ def _values(parameters: Sequence[ParameterMsg]) -> dict[str, Any]:
         parameter = Parameter.from_parameter_msg(message)
         if parameter.name not in _TYPES:
             raise _RequestError(f"parameter '{parameter.name}' found, expected one of {', '.join(_TYPES)}")
-        is_empty_list = isinstance(parameter.value, (list, tuple)) and not len(parameter.value)
+        is_empty_list = parameter.value is not None and parameter.type_.name.endswith("ARRAY") and not parameter.value
         expected = _TYPES[parameter.name]
         if parameter.type_ not in expected and not (is_empty_list and Parameter.Type.STRING_ARRAY in expected):
             raise _RequestError(f"{parameter.name}: {parameter.type_.name} found, expected {expected[0].name}")
