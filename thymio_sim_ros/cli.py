@@ -9,7 +9,6 @@ import argparse
 import importlib.util
 import json
 import os
-import socket
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -17,6 +16,7 @@ from pathlib import Path
 
 import thymio_sim_ros
 from thymio_sim_ros import convert, foxglove_layout, resources
+from thymio_sim_ros.bridge.thread import listen
 from thymio_sim_ros.device.card import Card, CardError
 from thymio_sim_ros.device.events import FIRMWARE, POLICIES
 from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
@@ -86,9 +86,9 @@ def start_suite(argv: Sequence[str]) -> int:
     playground, _ = _check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
     robots = [robot.name for robot in playground.robots]
     if suite.web:
-        _check_port(suite.port, "the page", "--port")
+        _check_port(ADDRESS, suite.port, "the page", "--port")
     if suite.foxglove:
-        _check_port(suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
+        _check_port("localhost", suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
     _check_ros()
     # A class room's robots stay apart, unless somebody has chosen otherwise (ros-packaging.md section 4).
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
@@ -324,15 +324,12 @@ def _check_files(playground: str, program: str, behaviour: str, layout: str) -> 
         raise UsageError(str(error)) from error
 
 
-def _check_port(port: int, whose: str, option: str) -> None:
-    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((ADDRESS, port))
-        except OSError as error:
-            raise UsageError(
-                f"port {port} of {whose} cannot be used: {error.strerror}; choose another with {option}"
-            ) from error
+def _check_port(address: str, port: int, whose: str, option: str) -> None:
+    try:
+        for listener in listen(address, port):
+            listener.close()
+    except OSError as error:
+        raise UsageError(f"port {port} of {whose}: {error.strerror}; choose another with {option}") from error
 
 
 def _check_ros() -> None:

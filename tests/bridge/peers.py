@@ -116,8 +116,8 @@ async def bridge(settings: ServerSettings | None = None) -> AsyncIterator[Bridge
     sink = Sink()
     board = Switchboard(ServerInfo("test", tuple(Capability), ("cdr", "json")))
     server = BridgeServer(board, sink, settings)
-    listener = listen("127.0.0.1", 0)
-    await server.start(listener)
+    (listener,) = listen("127.0.0.1", 0)
+    await server.start([listener])
     server.apply([ev.AddChannels((CHANNEL,))])
     try:
         yield Bridge(server, sink, listener.getsockname()[1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ssl
 from collections.abc import Callable
 from types import TracebackType
 from typing import TypeVar
@@ -18,8 +19,9 @@ T = TypeVar("T")
 class Studio:
     """Knows what the server has advertised; `until` is the test's way of waiting (it spins the executor)."""
 
-    def __init__(self, port: int, until: Callable[..., object]) -> None:
-        self._connecting = connect(f"ws://127.0.0.1:{port}", subprotocols=SUBPROTOCOLS, max_queue=None)  # type: ignore[arg-type]  # plain strings
+    def __init__(self, port: int, until: Callable[..., object], *, tls: ssl.SSLContext | None = None) -> None:
+        url = f"ws://127.0.0.1:{port}" if tls is None else f"wss://localhost:{port}"
+        self._connecting = connect(url, subprotocols=SUBPROTOCOLS, max_queue=None, ssl=tls)  # type: ignore[arg-type]  # plain strings
         self._until = until
         self.channels: dict[str, ms.Channel] = {}
         self.services: dict[str, ms.Service] = {}

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import socket
 import threading
+from pathlib import Path
+from typing import Any
 
 import pytest
 from websockets.exceptions import ConnectionClosed
@@ -32,6 +35,9 @@ class Sink:
             self.subscribed.set()
 
 
+HAS_IPV6 = socket.has_ipv6 and Path("/proc/net/if_inet6").exists()
+
+
 def start(port: int = 0) -> tuple[ServerThread, Sink]:
     sink = Sink()
     return ServerThread(ServerInfo("test", ()), sink, port=port), sink
@@ -46,13 +52,54 @@ def test_the_port_is_bound_when_the_constructor_returns_and_free_after_close() -
     again.close()
 
 
+@pytest.mark.skipif(not HAS_IPV6, reason="no IPv6 here")
+def test_localhost_is_both_loopbacks_on_one_port() -> None:
+    listeners = listen("localhost", 0)
+    port = listeners[0].getsockname()[1]
+    assert [listener.getsockname()[:2] for listener in listeners] == [("127.0.0.1", port), ("::1", port)]
+    for listener in listeners:
+        listener.close()
+
+
+@pytest.mark.skipif(not HAS_IPV6, reason="no IPv6 here")
+def test_a_port_taken_on_one_loopback_is_refused_and_the_other_given_back() -> None:
+    with socket.create_server(("::1", 0), family=socket.AF_INET6) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(OSError, match=rf"cannot listen on \[::1\]:{port}: address already in use"):
+            listen("localhost", port)
+    for listener in listen("localhost", port):
+        listener.close()
+
+
+def test_without_ipv6_the_other_loopback_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Socket(socket.socket):
+        def bind(self, address: Any) -> None:
+            if self.family == socket.AF_INET6:
+                raise OSError(errno.EADDRNOTAVAIL, "cannot assign")
+            super().bind(address)
+
+    monkeypatch.setattr(socket, "socket", Socket)
+    (listener,) = listen("localhost", 0)
+    listener.close()
+
+
+@pytest.mark.skipif(not HAS_IPV6, reason="no IPv6 here")
+def test_a_client_may_come_by_ipv6() -> None:
+    server, _ = start()
+    with connect(f"ws://[::1]:{server.port}", subprotocols=SUBPROTOCOLS) as client:  # type: ignore[arg-type]  # plain strings
+        assert isinstance(wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.ServerInfo)
+        assert server.client_count == 1
+    server.close()
+
+
 def test_an_address_that_is_not_ours_is_refused_by_name() -> None:
     with pytest.raises(OSError, match=r"cannot listen on 192\.0\.2\.1:8765"):
         listen("192.0.2.1", 8765)
 
 
 def test_answers_are_not_held_back_by_nagles_algorithm() -> None:
-    with listen("127.0.0.1", 0) as listener:
+    (listener,) = listen("127.0.0.1", 0)
+    with listener:
         assert listener.proto == socket.IPPROTO_TCP  # what asyncio asks for before it sets TCP_NODELAY
 
 

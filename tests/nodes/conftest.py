@@ -12,7 +12,8 @@ collect_ignore_glob = [] if importlib.util.find_spec("rclpy") else ["test_*.py"]
 @pytest.fixture
 def bridge(ros):
     """Make a Foxglove bridge on a free port."""
-    from thymio_sim_ros.nodes.foxglove_node import FoxgloveBridge, FoxgloveParams
+    from thymio_sim_ros.nodes.foxglove_node import FoxgloveBridge
+    from thymio_sim_ros.nodes.foxglove_options import FoxgloveParams
 
     def make(use_sim_time=False, **parameters):
         defaults = FoxgloveParams(port=0, **parameters)

@@ -38,6 +38,10 @@ def test_subscriptions_suit_all_publishers(publishers, expected):
     assert reception(publishers, min_depth=10, max_depth=25) == expected
 
 
+def test_a_subscription_may_be_best_effort_whatever_is_published():
+    assert not reception([endpoint()], min_depth=10, max_depth=25, best_effort=True).is_reliable
+
+
 def test_the_profile_says_the_same_to_rclpy():
     profile = Reception(is_reliable=True, kept=1, depth=7).profile
     assert (profile.reliability, profile.durability, profile.depth) == (

@@ -139,7 +139,7 @@ def test_a_file_of_a_package_is_given():
     ("uri", "text"),
     [
         ("file:///etc/passwd", "expected package://"),
-        ("package://robot/secret.txt", "files of type .txt are not given"),
+        ("package://robot/secret.txt", "is not given: asset_uri_allowlist"),
         ("package://robot/../outside.stl", "leaves its package"),
         ("package://robot/%2e%2e/outside.stl", "leaves its package"),
         ("package://../outside.stl", "leaves its package"),
@@ -154,6 +154,13 @@ def test_a_file_of_a_package_is_given():
 def test_nothing_else_is_given(uri, text):
     with pytest.raises(AssetError, match=text):
         load_asset(uri)
+
+
+@pytest.mark.usefixtures("package")
+def test_what_is_given_can_be_chosen():
+    assert load_asset("package://robot/secret.txt", (r"package://robot/.*\.txt",)) == b"secret"
+    with pytest.raises(AssetError, match="asset_uri_allowlist"):
+        load_asset("package://robot/meshes/body%20part.STL", (r"package://robot/.*\.txt",))
 
 
 @pytest.mark.usefixtures("package")

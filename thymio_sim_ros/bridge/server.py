@@ -67,7 +67,7 @@ class ServerSettings:
 
 
 class BridgeServer:
-    """A Foxglove server on one listening socket. All methods belong to the event loop's thread."""
+    """A Foxglove server on its listening sockets. All methods belong to the event loop's thread."""
 
     def __init__(self, board: Switchboard, sink: EventSink, settings: ServerSettings | None = None) -> None:
         self._board = board
@@ -77,37 +77,38 @@ class BridgeServer:
         self._outlets: dict[int, Outlet] = {}
         self._client_ids = itertools.count(1)
         self._flushing: asyncio.TimerHandle | None = None
-        self._server: Server | None = None
+        self._servers: list[Server] = []
 
-    async def start(self, listener: socket) -> None:
-        """Serve on a bound socket, which becomes the server's own."""
+    async def start(self, listeners: Iterable[socket]) -> None:
+        """Serve on bound sockets, which become the server's own."""
         settings = self._settings
         # Refused handshakes are answered with their reason; websockets would log each with a traceback.
         log = logging.getLogger(f"{__name__}.websockets")
         log.setLevel(logging.CRITICAL)
-        self._server = await serve(
-            self._serve_client,
-            sock=listener,
-            ssl=settings.tls,
-            select_subprotocol=_select_subprotocol,
-            process_request=self._check_origin,
-            compression=None,
-            server_header=None,
-            max_size=settings.max_message_size,
-            ping_interval=settings.ping_interval_s,
-            ping_timeout=settings.ping_timeout_s,
-            close_timeout=_CLOSE_S,
-            logger=log,
-        )
+        for listener in listeners:
+            server = await serve(
+                self._serve_client,
+                sock=listener,
+                ssl=settings.tls,
+                select_subprotocol=_select_subprotocol,
+                process_request=self._check_origin,
+                compression=None,
+                server_header=None,
+                max_size=settings.max_message_size,
+                ping_interval=settings.ping_interval_s,
+                ping_timeout=settings.ping_timeout_s,
+                close_timeout=_CLOSE_S,
+                logger=log,
+            )
+            self._servers.append(server)
 
     async def close(self) -> None:
         """Say goodbye to all clients; those that do not listen are cut off after `_CLOSE_S`."""
         if self._flushing is not None:
             self._flushing.cancel()
-        if self._server is None:
-            return
-        self._server.close()
-        closed = asyncio.ensure_future(self._server.wait_closed())
+        for server in self._servers:
+            server.close()
+        closed = asyncio.gather(*(server.wait_closed() for server in self._servers))
         await asyncio.wait([closed], timeout=_CLOSE_S)
         for outlet in self._outlets.values():
             outlet.abort()

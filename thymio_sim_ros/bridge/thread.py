@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import socket
 import threading
 from collections import deque
+from collections.abc import Sequence
 
 from thymio_sim_ros.bridge.channels import Switchboard
 from thymio_sim_ros.bridge.events import Command, Data
@@ -18,8 +20,47 @@ _MAX_WAITING = 10_000
 """Commands that may wait for the loop before further data is dropped."""
 
 
-def listen(address: str, port: int) -> socket.socket:
-    """A listening socket; port 0: any free one. Raises OSError that names address and port."""
+_LOOPBACK = ("127.0.0.1", "::1")
+"""What `localhost` means: a browser may try either first."""
+
+_NOT_HERE = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
+"""What a machine without IPv6 says; the other loopback is enough then."""
+
+_TRIES = 20
+"""Free ports tried before giving up, where one must be free on two addresses."""
+
+
+def listen(address: str, port: int) -> list[socket.socket]:
+    """Listening sockets, all on one port; port 0: any free one. `localhost` is the loopback of IPv4 and of IPv6.
+
+    Raises OSError that names address and port.
+    """
+    for is_last in (number == _TRIES for number in range(1, _TRIES + 1)):
+        try:
+            return _listen(_LOOPBACK if address == "localhost" else (address,), port)
+        except OSError as error:
+            if port or is_last or error.errno != errno.EADDRINUSE:
+                raise
+    raise AssertionError("the last try returns or raises")
+
+
+def _listen(addresses: Sequence[str], port: int) -> list[socket.socket]:
+    listeners: list[socket.socket] = []
+    for address in addresses:
+        try:
+            listener = _listen_on(address, port)
+        except OSError as error:
+            if listeners and error.errno in _NOT_HERE:
+                continue
+            for listener in listeners:
+                listener.close()
+            raise
+        listeners.append(listener)
+        port = listener.getsockname()[1]
+    return listeners
+
+
+def _listen_on(address: str, port: int) -> socket.socket:
     try:
         info = socket.getaddrinfo(address or None, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
         family, kind, protocol, _, endpoint = info[0]
@@ -38,7 +79,8 @@ def listen(address: str, port: int) -> socket.socket:
 
 
 def _named(error: OSError, address: str, port: int) -> OSError:
-    return OSError(error.errno, f"cannot listen on {address}:{port}: {(error.strerror or str(error)).lower()}")
+    where = f"[{address}]" if ":" in address else address
+    return OSError(error.errno, f"cannot listen on {where}:{port}: {(error.strerror or str(error)).lower()}")
 
 
 class ServerThread:
@@ -49,11 +91,11 @@ class ServerThread:
         info: ServerInfo,
         sink: EventSink,
         *,
-        address: str = "127.0.0.1",
+        address: str = "localhost",
         port: int = 8765,
         settings: ServerSettings | None = None,
     ) -> None:
-        self._listener = listen(address, port)
+        self._listeners = listen(address, port)
         self._server = BridgeServer(Switchboard(info), sink, settings)
         self._waiting: deque[Command] = deque()
         self._wake_is_due = False
@@ -63,8 +105,13 @@ class ServerThread:
         self._is_closed = False
         self.address: str
         self.port: int
-        self.address, self.port = self._listener.getsockname()[:2]
+        self.address, self.port = self._listeners[0].getsockname()[:2]
         self._thread.start()
+
+    @property
+    def client_count(self) -> int:
+        """Connected clients; from any thread."""
+        return self._server.client_count
 
     def post(self, command: Command) -> None:
         """Hand a command to the loop; order is kept. Any one thread at a time."""
@@ -98,6 +145,6 @@ class ServerThread:
             self._loop.close()
 
     async def _serve(self) -> None:
-        await self._server.start(self._listener)
+        await self._server.start(self._listeners)
         await self._stop.wait()
         await self._server.close()

@@ -2,33 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from urllib.parse import unquote
 
+from thymio_sim_ros.nodes.foxglove_graph import allow_list
 from thymio_sim_ros.nodes.schemas import share_folders
 
-__all__ = ["AssetError", "load_asset"]
+__all__ = ["ASSETS", "AssetError", "load_asset"]
 
 _SCHEME = "package://"
-_EXTENSIONS = frozenset(
-    (
-        ".dae",
-        ".fbx",
-        ".glb",
-        ".gltf",
-        ".jpeg",
-        ".jpg",
-        ".mtl",
-        ".obj",
-        ".png",
-        ".stl",
-        ".tif",
-        ".tiff",
-        ".urdf",
-        ".webp",
-        ".xacro",
-    )
-)
+ASSETS = r"(?i)package://[^?#]+\.(dae|fbx|glb|gltf|jpeg|jpg|mtl|obj|png|stl|tif|tiff|urdf|webp|xacro)"
+"""What viewers need: the files that are given unless the user says otherwise (foxglove.md section 5)."""
+
 _MAX_SIZE = 64 << 20
 
 
@@ -36,15 +22,19 @@ class AssetError(Exception):
     """Why a file is not given; the text is for the client."""
 
 
-def load_asset(uri: str) -> bytes:
-    """Content of the file; raises AssetError. The file must lie in its package's share folder, links resolved."""
+def load_asset(uri: str, allowed: Iterable[str] = (ASSETS,)) -> bytes:
+    """Content of the file; raises AssetError. It must lie in its package's share folder, links resolved.
+
+    `allowed`: regular expressions for the URI without its escapes.
+    """
     if not uri.startswith(_SCHEME):
         raise AssetError(f"expected {_SCHEME}…, found {uri!r:.80}")
-    package, _, path = unquote(uri.removeprefix(_SCHEME)).partition("/")
+    plain = unquote(uri)
+    package, _, path = plain.removeprefix(_SCHEME).partition("/")
     if not package.isidentifier() or ".." in Path(path).parts or "\0" in path:
         raise AssetError(f"{uri!r:.80} leaves its package")
-    if Path(path).suffix.lower() not in _EXTENSIONS:
-        raise AssetError(f"files of type {Path(path).suffix or 'none'} are not given")
+    if not allow_list(allowed)(plain):
+        raise AssetError(f"{uri!r:.80} is not given: asset_uri_allowlist does not allow it")
     for share in share_folders():
         folder = (share / package).resolve()
         file = (folder / path).resolve()

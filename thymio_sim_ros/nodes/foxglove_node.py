@@ -7,12 +7,11 @@ each have a module; what they have in common is that the graph is polled and mes
 
 from __future__ import annotations
 
-import ssl
 import time
 import traceback
 import uuid
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from rclpy.clock import Clock, JumpThreshold, TimeJump
@@ -22,8 +21,9 @@ from rclpy.duration import Duration
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from std_msgs.msg import UInt32
 
-from thymio_sim_ros.bridge import Capability, ServerInfo, ServerSettings, ServerThread
+from thymio_sim_ros.bridge import ServerInfo, ServerSettings, ServerThread
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge.messages import AssetResponse
 from thymio_sim_ros.bridge.vocabulary import CDR, JSON
@@ -31,57 +31,21 @@ from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes.foxglove_assets import AssetError, load_asset
 from thymio_sim_ros.nodes.foxglove_calls import Calls
 from thymio_sim_ros.nodes.foxglove_graph import allow_list, connection_graph, is_parameter_service, visible
+from thymio_sim_ros.nodes.foxglove_options import FoxgloveParams, announced, check, tls_context, warn_of_unknown
 from thymio_sim_ros.nodes.foxglove_parameters import Parameters
 from thymio_sim_ros.nodes.foxglove_publishers import ClientPublishers
 from thymio_sim_ros.nodes.foxglove_services import Services
 from thymio_sim_ros.nodes.foxglove_topics import Topics
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, run_main
 from thymio_sim_ros.nodes.mailbox import Mailbox
-from thymio_sim_ros.nodes.params import param
+from thymio_sim_ros.nodes.qos import LATCHED
 
-__all__ = ["FoxgloveBridge", "FoxgloveParams", "main"]
+__all__ = ["FoxgloveBridge", "main"]
 
 _DISCOVER_S = 0.25
 _REFRESH_S = 1.0
 _HURRY_S = 0.02
 """Period of polling while something waits for discovery: a call, a message of a new publisher."""
-
-
-@dataclass(frozen=True)
-class FoxgloveParams:
-    """Parameters of the bridge; names as the vendor's bridge has them where it has them."""
-
-    port: int = param(8765, "TCP port; 0 takes a free one", low=0, high=65535, fixed=True)
-    address: str = param("127.0.0.1", "Address to listen on; 0.0.0.0 for the whole network", fixed=True)
-    tls: bool = param(False, "Serve wss:// with certfile and keyfile", fixed=True)
-    certfile: str = param("", "PEM file with the certificate chain", fixed=True)
-    keyfile: str = param("", "PEM file with the private key", fixed=True)
-    allowed_origins: tuple[str, ...] = param(
-        ("",),
-        "Web pages that may connect beside this machine's and the Foxglove app's, as https://host:port; *: all",
-        fixed=True,
-    )
-    topic_whitelist: tuple[str, ...] = param((".*",), "Regular expressions of topics to offer", fixed=True)
-    service_whitelist: tuple[str, ...] = param((".*",), "Regular expressions of services to offer", fixed=True)
-    param_whitelist: tuple[str, ...] = param(
-        (".*",), "Regular expressions of parameters (/node.name) to offer", fixed=True
-    )
-    client_topic_whitelist: tuple[str, ...] = param(
-        (".*",), "Regular expressions of topics on which clients may publish", fixed=True
-    )
-    include_hidden: bool = param(False, "Offer hidden topics and services too", fixed=True)
-    min_qos_depth: int = param(10, "Least history of a subscription", low=1, high=1000, fixed=True)
-    max_qos_depth: int = param(25, "Greatest history of a subscription", low=1, high=1000, fixed=True)
-    send_buffer_limit: int = param(
-        1 << 20,
-        "Bytes that may wait for a slow client before only newest messages are sent",
-        low=1 << 12,
-        high=1 << 30,
-        fixed=True,
-    )
-    max_message_size: int = param(
-        4 << 20, "Longest frame accepted from a client, bytes", low=1 << 10, high=1 << 30, fixed=True
-    )
 
 
 class FoxgloveBridge:
@@ -109,6 +73,8 @@ class FoxgloveBridge:
                 address=values.address if address is None else address,
             )
             self.params = params.declare(self.node, values)
+            check(self.params)
+            warn_of_unknown(self.node)
             self._uses_sim_time = bool(self.node.get_parameter("use_sim_time").value)
             self._mailbox: Mailbox[ev.Event] = Mailbox(self.node, self._on_event)
             self._server = self._open_server()
@@ -143,10 +109,10 @@ class FoxgloveBridge:
 
     def _open_server(self) -> ServerThread:
         values = self.params
-        capabilities = [item for item in Capability if item is not Capability.TIME or self._uses_sim_time]
+        capabilities = announced(values, uses_sim_time=self._uses_sim_time)
         try:
             return ServerThread(
-                ServerInfo("thymio_sim_ros", tuple(capabilities), (CDR, JSON), session_id=_new_id()),
+                ServerInfo("thymio_sim_ros", capabilities, (CDR, JSON), session_id=_new_id()),
                 self._mailbox,
                 address=values.address,
                 port=values.port,
@@ -154,7 +120,7 @@ class FoxgloveBridge:
                     allowed_origins=tuple(filter(None, values.allowed_origins)),
                     buffer_limit=values.send_buffer_limit,
                     max_message_size=values.max_message_size,
-                    tls=_tls(values),
+                    tls=tls_context(values),
                 ),
             )
         except OSError as error:
@@ -170,12 +136,21 @@ class FoxgloveBridge:
         self._hurry.cancel()
         self._calls = Calls(self.node, wake=self._hurry.reset)
         self._topics = Topics(
-            self.node, post, self._now_ns, min_depth=values.min_qos_depth, max_depth=values.max_qos_depth
+            self.node,
+            post,
+            self._now_ns,
+            min_depth=values.min_qos_depth,
+            max_depth=values.max_qos_depth,
+            is_best_effort=allow_list(values.best_effort_qos_topic_whitelist),
         )
         self._services = Services(self.node, self._calls, post)
         self._parameters = Parameters(self.node, self._calls, post, is_allowed=allow_list(values.param_whitelist))
         self._publishers = ClientPublishers(
             self.node, post, is_allowed=allow_list(values.client_topic_whitelist), wake=self._hurry.reset
+        )
+        self._told_count = -1
+        self._count = (
+            self.node.create_publisher(UInt32, "~/client_count", LATCHED) if values.publish_client_count else None
         )
         self._seen: tuple[Any, Any] = ({}, {})
         self._shown: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
@@ -221,6 +196,9 @@ class FoxgloveBridge:
 
     def _refresh(self) -> None:
         self._topics.refresh()
+        if self._count is not None and self._told_count != self._server.client_count:
+            self._told_count = self._server.client_count
+            self._count.publish(UInt32(data=self._told_count))
         if self._wants_graph:
             self._tell_graph()
 
@@ -246,7 +224,7 @@ class FoxgloveBridge:
 
     def _give_asset(self, event: ev.AssetWanted) -> None:
         try:
-            answer = AssetResponse(event.request_id, load_asset(event.uri))
+            answer = AssetResponse(event.request_id, load_asset(event.uri, self.params.asset_uri_allowlist))
         except AssetError as error:
             answer = AssetResponse(event.request_id, b"", str(error))
         self._server.post(ev.Tell(event.client, answer))
@@ -267,17 +245,6 @@ _HANDLERS: dict[type, Callable[[FoxgloveBridge, Any], None]] = {
 
 def _new_id() -> str:
     return str(uuid.uuid4())
-
-
-def _tls(values: FoxgloveParams) -> ssl.SSLContext | None:
-    if not values.tls:
-        return None
-    tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-    try:
-        tls.load_cert_chain(values.certfile, values.keyfile or None)
-    except OSError as error:
-        raise StartError(f"the certificate {values.certfile!r} cannot be used: {error.strerror or error}") from error
-    return tls
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -25,8 +25,10 @@ class Reception:
         return _profile(self.depth, is_reliable=self.is_reliable, is_latched=self.kept > 0)
 
 
-def reception(publishers: Sequence[TopicEndpointInfo], *, min_depth: int, max_depth: int) -> Reception:
-    """As `ros2 topic echo`: reliable if all publishers are, transient local if all are.
+def reception(
+    publishers: Sequence[TopicEndpointInfo], *, min_depth: int, max_depth: int, best_effort: bool = False
+) -> Reception:
+    """As `ros2 topic echo`: reliable if all publishers are (never with `best_effort`), transient local if all are.
 
     Fast DDS reports depth 0: count each publisher for one at least. Without publishers: what matches any.
     """
@@ -34,7 +36,9 @@ def reception(publishers: Sequence[TopicEndpointInfo], *, min_depth: int, max_de
     asked = sum(max(1, profile.depth) for profile in profiles)
     is_latched = bool(profiles) and all(item.durability == DurabilityPolicy.TRANSIENT_LOCAL for item in profiles)
     return Reception(
-        is_reliable=bool(profiles) and all(item.reliability == ReliabilityPolicy.RELIABLE for item in profiles),
+        is_reliable=not best_effort
+        and bool(profiles)
+        and all(item.reliability == ReliabilityPolicy.RELIABLE for item in profiles),
         kept=min(asked, max_depth) if is_latched else 0,
         depth=min(max(asked, min_depth), max_depth),
     )

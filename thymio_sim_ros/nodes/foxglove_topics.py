@@ -41,11 +41,13 @@ class Topics:
         *,
         min_depth: int = 10,
         max_depth: int = 25,
+        is_best_effort: Callable[[str], bool] = lambda topic: False,
     ) -> None:
         self._node = node
         self._post = post
         self._now_ns = now_ns
         self._depths = {"min_depth": min_depth, "max_depth": max_depth}
+        self._is_best_effort = is_best_effort
         self._ids = itertools.count(1)
         self._by_name: dict[str, _Topic] = {}
         self._by_id: dict[int, _Topic] = {}
@@ -115,7 +117,9 @@ class Topics:
         self._post(RemoveChannels(tuple(topic.channel.id for topic in topics)))
 
     def _reception(self, topic: _Topic) -> Reception:
-        return reception(self._node.get_publishers_info_by_topic(topic.channel.topic), **self._depths)
+        name = topic.channel.topic
+        publishers = self._node.get_publishers_info_by_topic(name)
+        return reception(publishers, **self._depths, best_effort=self._is_best_effort(name))
 
     def _subscribe(self, topic: _Topic, fitting: Reception) -> None:
         channel_id, now_ns, post = topic.channel.id, self._now_ns, self._post

@@ -21,7 +21,7 @@ ABSENT = -1.0
 """First element of the covariance of a quantity that an Imu does not measure (REP 145)."""
 
 
-RAY_WIDTH_M = 0.002
+RAY_WIDTH_M = 0.003
 _FREE, _HIT = (0.45, 0.75, 1.0, 0.6), (1.0, 0.3, 0.2, 1.0)
 """Colors of rays that meet nothing and of those that do."""
 

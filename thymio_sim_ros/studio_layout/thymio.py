@@ -178,7 +178,7 @@ def _lights(names: Names) -> Node:
             )
         )
     )
-    state = _raw("lights", "Lights", f"{names.topic('led/state')}")
+    state = _raw("lights", "Lights (levels)", f"{names.topic('led/state')}.data")
     return Split("column", (*((14.0, line) for line in lines), (44.0, state)))
 
 
@@ -229,14 +229,14 @@ def _plot(key: str, title: str, series: Iterable[tuple[str, str]], *, low: float
             "minYValue": low,
             "maxYValue": high,
             "showLegend": True,
-            "legendDisplay": "floating",
+            "legendDisplay": "left",
             "showPlotValuesInLegend": True,
             "showXAxisLabels": True,
             "showYAxisLabels": True,
             "isSynced": True,
             "xAxisVal": "timestamp",
             "followingViewWidth": _WINDOW_S,
-            "sidebarDimension": 200,
+            "sidebarDimension": 180,
         },
     )
 

@@ -1,0 +1,107 @@
+"""Parameters of the bridge itself: what they change, and what is refused before it starts."""
+
+from __future__ import annotations
+
+import shutil
+import ssl
+import subprocess
+
+import pytest
+from rclpy.context import Context
+from rclpy.impl.rcutils_logger import RcutilsLogger
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import Bool, UInt32
+
+from tests.bridge.studio import Studio
+from thymio_sim_ros.bridge import Capability
+from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.nodes.foxglove_node import FoxgloveBridge
+from thymio_sim_ros.nodes.foxglove_options import FoxgloveParams, announced
+from thymio_sim_ros.nodes.life import StartError
+
+
+@pytest.fixture
+def certificate(tmp_path):
+    """A self-signed certificate for localhost and its key."""
+    openssl = shutil.which("openssl")
+    if openssl is None:
+        pytest.skip("no openssl here")
+    cert, key = tmp_path / "cert.pem", tmp_path / "key.pem"
+    command = [openssl, "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes"]
+    names = ["-subj", "/CN=localhost", "-addext", "subjectAltName=DNS:localhost", "-days", "2"]
+    subprocess.run([*command, *names, "-keyout", key, "-out", cert], check=True, capture_output=True)
+    return str(cert), str(key)
+
+
+def test_a_client_comes_by_tls(ros, bridge, certificate):
+    cert, key = certificate
+    life = bridge(tls=True, certfile=cert, keyfile=key)
+    assert f"wss://localhost:{life.port}" in life.greeting
+    ros.node.create_publisher(Bool, "/flag", 1)
+    with Studio(life.port, ros.until, tls=ssl.create_default_context(cafile=cert)) as studio:
+        assert studio.channel("/flag").schema_name == "std_msgs/msg/Bool"
+
+
+@pytest.mark.parametrize(
+    ("parameters", "text"),
+    [
+        ({"tls": True}, "tls needs a certificate: set certfile and keyfile"),
+        ({"tls": True, "certfile": "/no/such.pem"}, "the certificate '/no/such.pem' cannot be used: No such file"),
+        ({"topic_whitelist": ("/a", "*")}, r"parameter topic_whitelist: '\*' is no regular expression: nothing to rep"),
+        ({"asset_uri_allowlist": ("(",)}, r"parameter asset_uri_allowlist: '\(' is no regular expression"),
+        ({"capabilities": ("fly",)}, "parameter capabilities: 'fly' found, expected some of clientPublish, "),
+    ],
+)
+def test_what_cannot_be_used_is_refused_by_name(ros, parameters, text):
+    with pytest.raises(StartError, match=text):
+        FoxgloveBridge(context=ros.context, defaults=FoxgloveParams(port=0, **parameters))
+    assert "foxglove_bridge" not in ros.node.get_node_names()
+
+
+def test_a_file_that_is_no_certificate_is_refused(ros, tmp_path):
+    (tmp_path / "cert.pem").write_text("no certificate")
+    values = FoxgloveParams(port=0, tls=True, certfile=str(tmp_path / "cert.pem"))
+    with pytest.raises(StartError, match=r"the certificate '.*cert\.pem' cannot be used: "):
+        FoxgloveBridge(context=ros.context, defaults=values)
+
+
+def test_time_is_announced_exactly_with_simulated_time():
+    everything = tuple(Capability)
+    assert announced(FoxgloveParams(), uses_sim_time=True) == everything
+    assert set(everything) - set(announced(FoxgloveParams(), uses_sim_time=False)) == {Capability.TIME}
+    only = FoxgloveParams(capabilities=("services", "time"))
+    assert announced(only, uses_sim_time=False) == (Capability.SERVICES,)
+
+
+def test_what_is_not_announced_is_refused(ros, bridge):
+    with Studio(bridge(capabilities=("services",)).port, ros.until) as studio:
+        assert studio.next(ms.ServerInfo).capabilities == (Capability.SERVICES,)
+        studio.advertise(1, "/cmd_vel", "geometry_msgs/msg/Twist")
+        assert studio.next(ms.Status).message == "this server does not offer clientPublish"
+
+
+def test_the_number_of_clients_is_published_where_it_is_wanted(ros, bridge):
+    counts = []
+    profile = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    ros.node.create_subscription(UInt32, "/foxglove_bridge/client_count", lambda m: counts.append(m.data), profile)
+    port = bridge(publish_client_count=True).port
+    ros.until(lambda: counts == [0])
+    with Studio(port, ros.until):
+        ros.until(lambda: counts[-1] == 1)
+    ros.until(lambda: counts[-1] == 0)
+
+
+def test_a_fetch_is_judged_by_the_users_list(ros, bridge):
+    with Studio(bridge(asset_uri_allowlist=(r"package://only/.*",)).port, ros.until) as studio:
+        studio.send(ms.FetchAsset("package://std_msgs/a.stl", 3))
+        assert "asset_uri_allowlist does not allow it" in studio.next(ms.AssetResponse).error
+
+
+def test_parameters_that_the_bridge_does_not_have_are_told(monkeypatch):
+    told = []
+    monkeypatch.setattr(RcutilsLogger, "warning", lambda self, text, **_: told.append(text))
+    context = Context()
+    context.init(args=["--ros-args", "-p", "num_threads:=2", "-p", "use_sim_time:=false", "-p", "port:=0"])
+    FoxgloveBridge(context=context).close()
+    context.shutdown()
+    assert told == ["parameter num_threads is not one of this bridge and does nothing; see docs/foxglove.md"]
