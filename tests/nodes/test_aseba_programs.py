@@ -1,4 +1,4 @@
-"""Programs of the runtime: for all and for one robot, constants, files with several programs, robots that come and go."""
+"""Programs of the runtime: for all robots and for one, constants, shared files, robots that come and go."""
 
 from __future__ import annotations
 
