@@ -12,7 +12,8 @@ import pytest
 
 from tests.sim.builders import FLOOR, box, make, run, shipped
 from thymio_sim_ros.sim import playground
-from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot, PlayTone, PressButton
+from thymio_sim_ros.sim.actuators import all_actuators
+from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot, PlayTone, PressButton, SetPen
 from thymio_sim_ros.sim.playground import Playground, RobotStart
 from thymio_sim_ros.sim.sensors import NEVER_NS
 from thymio_sim_ros.sim.world import StepResult, World
@@ -134,6 +135,28 @@ def test_a_sensor_that_is_woken_measures_on_its_robot_alone() -> None:
     found = [row[:2] for row in world.step().readings]
     expected = [(robot["name"], "ground") for robot in robots]
     assert found == [*expected[:3], ("robot_2", "loudspeaker"), *expected[3:]]
+
+
+@pytest.mark.parametrize("crowd", [ONE_BY_ONE, AT_ONCE])
+def test_an_actuator_at_rest_is_left_alone_until_its_next_command(monkeypatch: pytest.MonkeyPatch, crowd: int) -> None:
+    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+    calls: list[Any] = []
+
+    def update(state: Any, _view: Any, _dt_s: float) -> None:
+        calls.append(state)
+
+    actuators = [
+        dataclasses.replace(actuator, update=update) if actuator.name == "pen" else actuator
+        for actuator in all_actuators()
+    ]
+    monkeypatch.setattr("thymio_sim_ros.sim.world.all_actuators", lambda: actuators)
+    world = World(make([FLOOR]))
+    for command, expected in ((None, 0), (SetPen(down=True), 10), (SetPen(down=False), 1)):
+        if command is not None:
+            world.post("thymio", command)
+        calls.clear()
+        run(world, 0.1)
+        assert len(calls) == expected
 
 
 def test_only_the_chosen_sensors_measure_and_as_often_as_told() -> None:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import random
 
+import numpy as np
 import pytest
 
-from thymio_sim_ros.sim.wheels import Wheels
+from tests.sim.builders import pose_close
+from thymio_sim_ros.sim.wheels import WheelArrays, Wheels
 
 
 def rolled(left_m_s: float, right_m_s: float, *, slip: float = 1.0) -> Wheels:
@@ -50,3 +53,28 @@ def test_odometry_follows_arcs() -> None:
         wheels.roll((way[0] / 10, way[1] / 10), 0.01)
     odometry = wheels.odometry
     assert (odometry.x_m, odometry.y_m, odometry.yaw_rad) == pytest.approx((0.2, 0.2, math.pi / 2), abs=1e-6)
+
+
+def test_many_wheels_turn_as_each_would_alone() -> None:
+    dice = random.Random(1)
+    alone, together = [Wheels() for _ in range(4)], [Wheels() for _ in range(4)]
+    arrays = WheelArrays(together)
+    for tick in range(50):
+        pairs = [(dice.uniform(-0.3, 0.3), dice.uniform(-0.3, 0.3)) for _ in alone]
+        slips = [(dice.uniform(0.9, 1.1), dice.uniform(0.9, 1.1)) for _ in alone]
+        taken = [dice.choice((0.0, 0.01)) for _ in alone]
+        for wheels, pair, slip, less in zip(alone, pairs, slips, taken, strict=True):
+            wheels.drive(pair, slip, 0.166)
+            wheels.roll((wheels.ground[0] - less, wheels.ground[1]), 0.01)
+        arrays.drive(np.array(pairs).T, np.array(slips).T, 0.166)
+        arrays.roll(arrays.ground - np.array([taken, [0.0] * 4]), 0.01)
+        if tick == 20:
+            arrays.tell()
+            together[1].reset_odometry()
+            alone[1].reset_odometry()
+    arrays.tell()
+    for one, other in zip(alone, together, strict=True):
+        assert other.speeds_m_s == pytest.approx(one.speeds_m_s, abs=1e-12)
+        assert other.angles_rad == pytest.approx(one.angles_rad, abs=1e-12)
+        assert pose_close(other.odometry, one.odometry, 1e-12)
+        assert (other.commanded, other.ground) == (one.commanded, one.ground)
