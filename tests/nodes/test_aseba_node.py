@@ -13,9 +13,9 @@ from rclpy.parameter import Parameter
 from std_msgs.msg import Bool, Empty, Float32MultiArray, Int16MultiArray, MultiArrayDimension, MultiArrayLayout, String
 from std_srvs.srv import Trigger
 
-from tests.tracks import distance_to, track_points
 from thymio_sim_ros.nodes.aseba_node import AsebaRuntime, RuntimeParams
 from thymio_sim_ros.nodes.life import StartError
+from thymio_sim_ros.testing import followed_line
 
 AESL = """<!DOCTYPE aesl-source>
 <network>
@@ -177,25 +177,7 @@ def test_a_reset_of_the_simulator_restarts_the_program(ros, simulation, runtime)
 def test_the_line_program_follows_the_line_for_a_lap(ros, simulation, runtime):
     sim = simulation(playground="line")
     runtime(path="line_follower")
-    world = sim.world
-    robot = next(iter(world.robots.values()))
-    points = track_points("line")
-    center_x = sum(x for x, _ in points) / len(points)
-    center_y = sum(y for _, y in points) / len(points)
-    turned = 0.0
-    last = math.atan2(robot.pose.y_m - center_y, robot.pose.x_m - center_x)
-    farthest = 0.0
-
-    def lap_done():
-        nonlocal turned, last, farthest
-        angle = math.atan2(robot.pose.y_m - center_y, robot.pose.x_m - center_x)
-        turned += math.remainder(angle - last, math.tau)
-        last = angle
-        farthest = max(farthest, distance_to(points, robot.pose.place((0.072, 0.0))))
-        return abs(turned) > math.tau
-
-    sim.until(lap_done, seconds=120.0)
-    assert farthest < 0.04
+    sim.until(followed_line(sim.thymio, within=0.04), seconds=120.0)
 
 
 def test_cmd_vel_takes_over_and_gives_back(ros, simulation, runtime):

@@ -188,12 +188,12 @@ class Peer:
 
 
 def _until(condition: Callable[[], bool], *peers: Peer) -> None:
-    """Spin the peers until the condition holds; a deadline of 10 s in slices, discovery may be slow."""
-    deadline = peers[0].node.get_clock().now().nanoseconds + 10 * 10**9
+    """Spin the peers until the condition holds; a deadline of 60 s in slices: discovery may be slow, a process too."""
+    deadline = peers[0].node.get_clock().now().nanoseconds + 60 * 10**9
     while not condition():
         for peer in peers:
             peer.executor.spin_once(timeout_sec=0.02)
-        assert peers[0].node.get_clock().now().nanoseconds < deadline, "nothing within 10 s"
+        assert peers[0].node.get_clock().now().nanoseconds < deadline, "nothing within 60 s"
 
 
 @contextmanager

@@ -27,6 +27,10 @@ def test_ways_on_a_closed_line_are_the_shorter_ones() -> None:
     assert Line([(0.0, 0.0), (4.0, 0.0)], closed=False).way(3.9, 0.1) == pytest.approx(-3.8)
 
 
+def test_in_a_corner_the_distance_is_the_smallest_one() -> None:
+    assert SQUARE.locate((1.02, 0.015), 0.99) == pytest.approx((0.02, 1.015))
+
+
 def test_at_a_crossing_the_way_goes_straight_on() -> None:
     before, crossing = math.sqrt(2) - 0.1, math.sqrt(2)
     assert EIGHT.locate((0.0, 0.001), before)[1] == pytest.approx(crossing, abs=0.01)

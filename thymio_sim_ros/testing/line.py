@@ -25,7 +25,9 @@ EVERY = 5
 """Ticks from one look at the robot to the next: at full speed 1 cm."""
 
 _AS_NEAR_M = 0.01
-"""Where pieces of a track cross, those that are as near as this are told apart by what was driven before."""
+_LEAP_M = 0.1
+"""Where pieces of a track cross, those that are as near as this are told apart by what was driven before: a robot does
+not leap so far."""
 
 
 class Line:
@@ -57,10 +59,10 @@ class Line:
         """Distance in m from a point, and how far along the line that is, near where it was last."""
         found = [(math.dist(point, on), along) for on, along in self._nearest(point)]
         nearest = min(found)
-        if last_m is None:
+        if last_m is None or abs(self.way(last_m, nearest[1])) < _LEAP_M:
             return nearest
-        near = [place for place in found if place[0] <= nearest[0] + _AS_NEAR_M]
-        return min(near, key=lambda place: abs(self.way(last_m, place[1])))
+        near = [along for distance, along in found if distance <= nearest[0] + _AS_NEAR_M]
+        return nearest[0], min(near, key=lambda along: abs(self.way(last_m, along)))
 
     def way(self, from_m: float, to_m: float) -> float:
         """The way from a place on the line to another, the shorter one where it is closed."""
