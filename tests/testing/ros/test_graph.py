@@ -35,6 +35,8 @@ class Echo(Node):
     def hear(self, message):
         if message.data == "bang":
             raise ValueError("I fell over")
+        while message.data == "loop":
+            pass
         if message.data == "bye":
             rclpy.shutdown(context=self.context)
             return
@@ -183,8 +185,9 @@ def test_simulated_time_passes_while_waiting(ros, simulation, spin_until, ros_no
     assert ros_node is ros.node
 
 
-def test_an_interrupted_test_leaves_nothing_behind(ros_domain):
-    """As pytest-timeout does it: a signal's handler raises in the middle of waiting."""
+@pytest.mark.parametrize("word", ["nothing", "loop"])
+def test_an_interrupted_test_leaves_nothing_behind(ros_domain, word):
+    """As pytest-timeout does it: a signal's handler raises while the test waits, or while a callback never ends."""
 
     def stop(_number, _frame):
         raise TimeoutError
@@ -194,6 +197,7 @@ def test_an_interrupted_test_leaves_nothing_behind(ros_domain):
     try:
         ros = Ros(ros_domain)
         ros.start(Echo)
+        ros.publisher(String, "heard").publish(String(data=word))
         signal.setitimer(signal.ITIMER_REAL, 0.05)
         with pytest.raises(TimeoutError):
             ros.until(lambda: False)

@@ -1,0 +1,46 @@
+"""What a test names: names, paths beside the test, texts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.resources import ResourceError
+from thymio_sim_ros.testing.sources import beside, is_name, playground_of, program_of
+
+
+def test_a_file_in_the_folder_is_found_and_anything_else_stays(tmp_path: Path) -> None:
+    (tmp_path / "mine.aesl").write_text("var a")
+    assert beside("mine.aesl", tmp_path) == str(tmp_path / "mine.aesl")
+    assert beside(Path("mine.aesl"), tmp_path) == str(tmp_path / "mine.aesl")
+    assert beside("line", tmp_path) == "line"
+    assert beside("mine.aesl", None) == "mine.aesl"
+    long_text = '{"title": "' + "x" * 5000 + '"}'
+    assert beside(long_text, tmp_path) == long_text
+
+
+def test_a_program_is_a_name_a_path_or_a_text(tmp_path: Path) -> None:
+    path = tmp_path / "my robot.aesl"
+    path.write_text("var a")
+    assert is_name("explorer")
+    assert is_name(str(path))
+    assert not is_name("var a")
+    assert not is_name("")
+    assert program_of("explorer").name == "explorer.aesl"
+    assert program_of("my robot.aesl", tmp_path).name == "my robot.aesl"
+    assert program_of("var a = 1").source == "var a = 1"
+    loaded = program_of("var a")
+    assert program_of(loaded) is loaded
+
+
+def test_a_path_that_is_no_file_is_no_text() -> None:
+    with pytest.raises(ResourceError, match="no program 'var a'"):
+        program_of(Path("var a"))
+
+
+def test_a_playground_may_be_loaded_already() -> None:
+    _, loaded = load_playground("line")
+    assert playground_of(loaded) is loaded
+    assert playground_of("line") == loaded
