@@ -148,7 +148,14 @@ def test_a_vanished_channel_ends_its_subscriptions() -> None:
     subscribe(board, A, 1, 10)
     assert board.apply(ev.RemoveChannels((10,))) == [Letter((A,), ms.Unadvertise((10,)))]
     assert board.routes(10) == ()
-    assert refusals(board.receive(A, ms.Unsubscribe((1,))).letters) == [(A, "no subscription 1")]
+
+
+def test_ending_a_subscription_that_went_with_its_channel_is_no_fault() -> None:
+    board = switchboard(A)
+    subscribe(board, A, 1, 10)
+    board.apply(ev.RemoveChannels((10,)))
+    outcome = board.receive(A, ms.Unsubscribe((1, 2)))
+    assert refusals(outcome.letters) == [(A, "no subscription 2")]
 
 
 # --- latched channels ---
@@ -386,10 +393,27 @@ def test_a_new_session_is_announced_with_its_id_and_the_whole_graph() -> None:
     board.receive(A, ms.SubscribeConnectionGraph())
     board.apply(ev.SetGraph(GRAPH))
     letters = board.apply(ev.NewSession("second"))
-    assert [letter.clients for letter in letters] == [(A, B), (A,)]
+    assert [letter.clients for letter in letters] == [(A, B), (A, B), (A,)]
     assert isinstance(letters[0].message, ms.ServerInfo)
     assert letters[0].message.session_id == "second"
-    assert letters[1].message == ms.ConnectionGraphUpdate((ms.PublishedTopic("/t", ("/n",)),))
+    assert letters[1].message == ms.Advertise(())
+    assert letters[2].message == ms.ConnectionGraphUpdate((ms.PublishedTopic("/t", ("/n",)),))
+
+
+def test_when_time_goes_back_latched_messages_are_told_again() -> None:
+    board = switchboard(A, B)
+    subscribe(board, A, 1, 10)
+    subscribe(board, B, 2, 11)
+    board.apply(ev.SetTime(50))
+    for channel_id in (10, 11):
+        board.apply(ev.KeepLast(channel_id, 1))
+        board.keep(ev.Data(channel_id, 40, b"latched"))
+    board.apply(ev.KeepLast(11, 0))
+    assert board.apply(ev.SetTime(60)) == [Letter((A, B), ms.Time(60))]
+    assert board.apply(ev.SetTime(7)) == [
+        Letter((A, B), ms.Time(7)),
+        Letter((A,), ms.MessageData(1, 7, b"latched")),
+    ]
 
 
 @pytest.mark.parametrize(

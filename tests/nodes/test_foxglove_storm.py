@@ -1,11 +1,16 @@
-"""A client that sends rubbish harms nobody else."""
+"""Clients that send rubbish, and clients that come and go: they harm nobody else and leave nothing behind."""
 
 from __future__ import annotations
 
+import gc
 import random
+from collections import Counter
 
 from geometry_msgs.msg import Twist, Vector3
+from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message, serialize_message
+from rclpy.subscription import Subscription
+from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
 from tests.bridge.studio import Studio, set_and_answer
@@ -48,3 +53,43 @@ def test_a_storm_of_changed_bytes_harms_nobody_else(ros, bridge, peer):
         other.advertise(1, "/cmd_vel", "geometry_msgs/Twist")
         other.send(ms.ClientMessageData(1, serialize_message(Twist(linear=Vector3(x=0.25)))))
         other.next(ms.MessageData, lambda data: deserialize_message(data.payload, Twist).linear.x == 0.25)
+
+
+def test_500_clients_that_come_and_go_leave_nothing_of_ros_behind(ros, bridge):
+    publisher = ros.node.create_publisher(String, "/chat", 10)
+    port = bridge().port
+
+    def visit(number):
+        with Studio(port, ros.until) as studio:
+            studio.subscribe(number, "/chat")
+            studio.advertise(number, "/back", "std_msgs/msg/String")
+            if number % 50 == 0:
+                ros.until(lambda: publisher.get_subscription_count() and ros.node.count_publishers("/back"))
+
+    def settle():
+        ros.until(lambda: publisher.get_subscription_count() == 0 and ros.node.count_publishers("/back") == 0)
+        gc.collect()
+        return Counter(type(thing) for thing in gc.get_objects() if isinstance(thing, (Publisher, Subscription)))
+
+    visit(0)
+    before = settle()
+    for number in range(500):
+        visit(number)
+    assert settle() == before
+
+
+def test_a_client_that_vanishes_while_its_call_is_answered_harms_nobody(ros, bridge):
+    calls = []
+
+    def slow(request, response):
+        calls.append(request)
+        return flip(request, response)
+
+    ros.node.create_service(SetBool, "/flip", slow)
+    port = bridge().port
+    with Studio(port, ros.until) as other:
+        with Studio(port, ros.until) as leaving:
+            leaving.send(ms.ServiceRequest(leaving.service("/flip").id, 1, JSON, b'{"data": true}'))
+        ros.until(lambda: calls)
+        other.send(ms.ServiceRequest(other.service("/flip").id, 2, JSON, b'{"data": false}'))
+        assert other.next(ms.ServiceResponse).call_id == 2

@@ -85,18 +85,6 @@ def test_a_latched_publisher_that_comes_after_the_client_is_heard(ros, studio):
     assert deserialize_message(studio.next(ms.MessageData).payload, String).data == "late"
 
 
-def test_clients_that_come_and_go_leave_no_subscription_behind(ros, bridge):
-    publisher = ros.node.create_publisher(String, "/chat", 10)
-    port = bridge().port
-    for number in range(20):
-        with Studio(port, ros.until) as studio:
-            studio.subscribe(number, "/chat")
-            studio.advertise(number, "/back", "std_msgs/msg/String")
-            ros.until(lambda: ros.node.count_publishers("/back"))
-    ros.until(lambda: publisher.get_subscription_count() == 0)
-    ros.until(lambda: ros.node.count_publishers("/back") == 0)
-
-
 def test_a_vanished_topic_is_taken_away(ros, studio):
     publisher = ros.node.create_publisher(String, "/chat", 10)
     studio.channel("/chat")

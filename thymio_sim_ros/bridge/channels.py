@@ -20,6 +20,9 @@ from thymio_sim_ros.bridge.vocabulary import Capability, StatusLevel
 MAX_CLIENT_CHANNELS = 256
 """Channels that one client may open: each may cost a publisher."""
 
+MAX_ENDED = 1000
+"""Subscriptions of vanished channels that are remembered for each client."""
+
 MAX_REFUSALS = 8
 """Refusals told for one frame: a frame full of nonsense must not cost the others their time."""
 
@@ -144,10 +147,10 @@ class Switchboard:
         subscriptions = dict(state.subscriptions)
         for subscription_id in message.subscription_ids:
             channel_id = subscriptions.pop(subscription_id, None)
-            if channel_id is None:
-                outcome.refuse(client, f"no subscription {subscription_id}", StatusLevel.WARNING)
-            else:
+            if channel_id is not None:
                 self._unroute(client, channel_id, outcome)
+            elif subscription_id not in state.ended:  # else it went with its channel, as some clients say once more
+                outcome.refuse(client, f"no subscription {subscription_id}", StatusLevel.WARNING)
         self._clients[client] = replace(state, subscriptions=subscriptions)
 
     def _open(self, client: int, message: ms.ClientAdvertise, outcome: Outcome) -> None:
@@ -238,7 +241,8 @@ class Switchboard:
             for client, subscription_id in self._routes.pop(channel_id, ()):
                 state = self._clients[client]
                 left = {key: value for key, value in state.subscriptions.items() if key != subscription_id}
-                self._clients[client] = replace(state, subscriptions=left)
+                ended = (*state.ended[-MAX_ENDED:], subscription_id)
+                self._clients[client] = replace(state, subscriptions=left, ended=ended)
         self._tell_all(ms.Unadvertise(command.channel_ids), letters)
 
     def _keep_last(self, command: ev.KeepLast, letters: list[Letter]) -> None:
@@ -281,12 +285,17 @@ class Switchboard:
                 letters.append(Letter((client,), update))
 
     def _set_time(self, command: ev.SetTime, letters: list[Letter]) -> None:
+        is_back = command.time_ns < self._time_ns
         self._time_ns = command.time_ns
         self._tell_all(ms.Time(command.time_ns), letters)
+        if is_back:  # clients have dropped what lay in the future, latched messages too
+            self._tell_kept(letters)
 
     def _new_session(self, command: ev.NewSession, letters: list[Letter]) -> None:
         self._info = replace(self._info, session_id=command.session_id)
         self._tell_all(self._info, letters)
+        # Nothing new, but a reason to look at the types again, which Lichtblick forgets and needs to publish.
+        self._tell_all(ms.Advertise(()), letters)
         for client, state in list(self._clients.items()):
             if state.graph is not None:  # the client forgot it: the next update is complete again
                 self._clients[client] = replace(state, graph=ConnectionGraph())
@@ -301,6 +310,15 @@ class Switchboard:
     def _tell_all(self, message: ms.ServerMessage, letters: list[Letter]) -> None:
         if self._clients:
             letters.append(Letter(tuple(self._clients), message))
+
+    def _tell_kept(self, letters: list[Letter]) -> None:
+        """Give latched messages to everybody who is subscribed, once more."""
+        for channel_id, kept in self._kept.items():
+            letters += (
+                Letter((client,), ms.MessageData(subscription_id, self._time_ns, data.payload))
+                for client, subscription_id in self.routes(channel_id)
+                for data in kept
+            )
 
     def _values(self, names: Iterable[str], request_id: str | None) -> ms.ParameterValues:
         known = (self._parameters[name] for name in names if name in self._parameters)

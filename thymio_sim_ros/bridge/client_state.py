@@ -15,6 +15,8 @@ class ClientState:
 
     subscriptions: Mapping[int, int] = field(default_factory=dict)
     """Subscription id → channel id."""
+    ended: tuple[int, ...] = ()
+    """Subscription ids that ended because their channels vanished, the latest last."""
     channels: Mapping[int, ClientChannel] = field(default_factory=dict)
     parameters: frozenset[str] = frozenset()
     graph: ConnectionGraph | None = None
