@@ -402,6 +402,7 @@ def rows_of(sensor: Sensor) -> tuple[Row, ...]:
 RARE: Mapping[str, str] = {
     "collision": "change",
     "comm": "event",
+    "current": "change",
     "leds": "change",
     "loudspeaker": "change",
     "pen": "change",

@@ -24,7 +24,7 @@ from thymio_sim_ros.nodes.simulator_params import SimulatorParams
 from thymio_sim_ros.sim import sensors
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 
-__all__ = ["own_sensors", "table", "text"]
+__all__ = ["own_sensors", "table", "text", "type_name"]
 
 T = TypeVar("T")
 
@@ -98,19 +98,19 @@ def _published() -> Iterator[_Line]:
         for row in convert.rows_of(sensor):
             often = convert.often(sensor, row)
             profile = qos.kind_of(row.profile)
-            yield _Line(row.topic, _type(row.type), often, row.frame, profile, row.about)
+            yield _Line(row.topic, type_name(row.type), often, row.frame, profile, row.about)
     kind, about = robot_ports.DESCRIBED
-    yield _Line(robot_ports.DESCRIPTION, _type(kind), "once", "", "latched", about)
+    yield _Line(robot_ports.DESCRIPTION, type_name(kind), "once", "", "latched", about)
 
 
 def _line_of_input(one: RobotInput) -> _Line:
-    return _Line(one.topic, _type(one.type), "", "", qos.kind_of(one.profile), one.about)
+    return _Line(one.topic, type_name(one.type), "", "", qos.kind_of(one.profile), one.about)
 
 
 def _of_world() -> Iterator[_Line]:
     for topic, one in world_ports.TOPICS.items():
         name = topic.replace("~", "/simulator")
-        yield _Line(name, _type(one.type), one.often, one.frame, qos.kind_of(one.profile), one.about)
+        yield _Line(name, type_name(one.type), one.often, one.frame, qos.kind_of(one.profile), one.about)
     moving = "`map -> odom -> base_link` and the wheels; `map -> odom` makes up for the odometry's drift"
     yield _Line("/tf", tf_messages.TF_TYPE_NAME, "20", "", "transforms", moving)
     yield _Line("/tf_static", tf_messages.TF_TYPE_NAME, "once", "", "latched", "the frames below that are fixed")
@@ -147,9 +147,9 @@ def _runs(items: Iterable[T], key: Callable[[T], Any]) -> Iterator[list[T]]:
 
 def _services() -> Iterator[tuple[str, str, str]]:
     for name, (kind, about) in robot_ports.SERVICES.items():
-        yield f"`{name}`", f"`{_type(kind)}`", about
+        yield f"`{name}`", f"`{type_name(kind)}`", about
     for name, service in world_services.SERVICES.items():
-        yield f"`{name.replace('~', '/simulator')}`", f"`{_type(service.type)}`", service.about
+        yield f"`{name.replace('~', '/simulator')}`", f"`{type_name(service.type)}`", service.about
 
 
 def _frames() -> str:
@@ -206,7 +206,7 @@ def _cell(content: str) -> str:
     return content.replace("|", "\\|")
 
 
-def _type(kind: type) -> str:
+def type_name(kind: type) -> str:
     """`std_msgs/msg/Bool` of its class."""
     package, form, *_ = kind.__module__.split(".")
     return f"{package}/{form}/{kind.__name__}"

@@ -1,0 +1,245 @@
+"""CPU time of the simulator node while robots drive in circles: a process of its own, subscribers in another.
+
+Run: PYTHONPATH=. python benchmarks/ros_load.py [--seconds S] [--only WORD] [--profile FILE] [--json FILE].
+Percentages are CPU seconds of the node's process for each second of wall time, of one core; the factor is what
+`/diagnostics` tells as achieved. The machine may be busy with other things: the CPU time hardly changes by that.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import cProfile
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Twist, Vector3
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+from thymio_sim_ros.nodes import convert, qos, reference
+from thymio_sim_ros.nodes.life import drive, make_executor
+from thymio_sim_ros.nodes.simulator_node import Simulator
+
+DOMAIN = int(os.environ.get("ROS_DOMAIN_ID", "80"))
+GAP_M = 0.4
+SPEED_M_S, TURN_RAD_S = 0.05, 1.0
+START_S, WARM_UP_S = 120.0, 3.0
+NODE = "import sys; from thymio_sim_ros.nodes.simulator_node import main; sys.exit(main())"
+PROFILED = "import sys; from benchmarks.ros_load import profiled; profiled(sys.argv[1], sys.argv[2:])"
+LISTENER = "import sys; from benchmarks.ros_load import listen; listen(sys.argv[1:])"
+
+
+@dataclass(frozen=True)
+class Scene:
+    """How many robots, how often all that is regular is sent (0: as the robot), who listens, and what is allowed."""
+
+    name: str
+    robots: int
+    rate_hz: float
+    is_heard: bool
+    most_percent: float | None = None
+
+
+SCENES = (
+    Scene("1 robot, 10 Hz, all topics", 1, 10.0, True, 1.5),
+    Scene("20 robots, 10 Hz, nobody listens", 20, 10.0, False, 6.0),
+    Scene("20 robots, 10 Hz, all topics", 20, 10.0, True, 10.0),
+    Scene("20 robots, 50 Hz, all topics", 20, 50.0, True, 40.0),
+    Scene("100 robots, 10 Hz, nobody listens", 100, 10.0, False, 30.0),
+    Scene("1 robot, as it is, nobody listens", 1, 0.0, False),
+    Scene("1 robot, as it is, all topics", 1, 0.0, True),
+    Scene("20 robots, as they are, nobody listens", 20, 0.0, False),
+    Scene("100 robots, as they are, nobody listens", 100, 0.0, False),
+)
+
+
+def playground(robots: int) -> str:
+    """Robots on a square floor, so far apart that none sees another."""
+    side = 1
+    while side * side < robots:
+        side += 1
+    size = side * GAP_M + 1.0
+    places = [((index % side) * GAP_M, (index // side) * GAP_M) for index in range(robots)]
+    middle = (side - 1) * GAP_M / 2
+    floor = {"kind": "rectangle", "name": "ground", "size_x_m": size, "size_y_m": size, "color": "#ffffff"}
+    starts = [{"name": f"r{i}", "x_m": x - middle, "y_m": y - middle} for i, (x, y) in enumerate(places)]
+    return json.dumps({"format": 1, "title": "Load", "shapes": [floor], "robots": starts})
+
+
+def topics(robots: int) -> Iterator[tuple[type, str]]:
+    """Every topic that these robots publish."""
+    spaces = [""] if robots == 1 else [f"/r{index}" for index in range(robots)]
+    for space in spaces:
+        for sensor in reference.own_sensors():
+            for row in convert.rows_of(sensor):
+                yield row.type, f"{space}/{row.topic}"
+
+
+def listen(arguments: list[str]) -> None:
+    """Subscribe to all topics of so many robots, and take what comes."""
+    context = Context()
+    rclpy.init(args=[], context=context)
+    node = Node("listener", context=context, enable_rosout=False, start_parameter_services=False)
+    for kind, topic in topics(int(arguments[0])):
+        node.create_subscription(kind, topic, lambda _data: None, qos.SENSOR, raw=True)
+    executor = make_executor(context)
+    executor.add_node(node)
+    with contextlib.suppress(KeyboardInterrupt):
+        while context.ok():
+            executor.spin_once(timeout_sec=0.1)
+
+
+def profiled(path: str, arguments: list[str]) -> None:
+    """The simulator in the main thread, its profile written at SIGINT."""
+    context = Context()
+    rclpy.init(args=arguments, context=context, signal_handler_options=SignalHandlerOptions.NO)
+    ended: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, _frame: ended.append(number))
+    simulator, profile = Simulator(context), cProfile.Profile(time.thread_time)
+    profile.runcall(drive, simulator, context, lambda: bool(ended))
+    profile.dump_stats(path)
+    simulator.close()
+
+
+@contextmanager
+def process(*arguments: str) -> Iterator[int]:
+    """A process while it is wanted; its id."""
+    child = subprocess.Popen([sys.executable, "-c", *arguments], stdout=subprocess.DEVNULL, process_group=0)
+    try:
+        yield child.pid
+    finally:
+        child.send_signal(signal.SIGINT)
+        try:
+            child.wait(10.0)
+        except subprocess.TimeoutExpired:
+            child.kill()
+            child.wait()
+
+
+def cpu_s(pid: int) -> float:
+    """CPU seconds that a process has used."""
+    fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+class Driver:
+    """The node that lets the robots drive and reads what the simulator says about itself."""
+
+    def __init__(self, robots: int) -> None:
+        self.context = Context()
+        rclpy.init(args=[], context=self.context)
+        self.node = Node("driver", context=self.context, enable_rosout=False, start_parameter_services=False)
+        self.executor = make_executor(self.context)
+        self.executor.add_node(self.node)
+        self.factors: list[float] = []
+        self.node.create_subscription(DiagnosticArray, "/diagnostics", self._take, qos.SENSOR)
+        spaces = [""] if robots == 1 else [f"/r{index}" for index in range(robots)]
+        self.publishers = [self.node.create_publisher(Twist, f"{space}/cmd_vel", 1) for space in spaces]
+
+    def _take(self, message: DiagnosticArray) -> None:
+        for status in message.status:
+            values = {pair.key: pair.value for pair in status.values}
+            if "real-time factor achieved" in values:
+                self.factors.append(float(values["real-time factor achieved"]))
+
+    def spin(self, seconds: float) -> None:
+        """Take what comes for a while."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.executor.spin_once(timeout_sec=0.1)
+
+    def go(self) -> None:
+        """Wait until all robots listen, then let them drive."""
+        end = time.monotonic() + START_S
+        while not all(publisher.get_subscription_count() for publisher in self.publishers):
+            if time.monotonic() > end:
+                raise TimeoutError("the simulator does not listen")
+            self.spin(0.1)
+        for publisher in self.publishers:
+            publisher.publish(Twist(linear=Vector3(x=SPEED_M_S), angular=Vector3(z=TURN_RAD_S)))
+
+    def until_heard(self, names: list[str]) -> None:
+        """Wait until somebody subscribes to all of these."""
+        end = time.monotonic() + START_S
+        while not all(map(self.node.count_subscribers, names)):
+            if time.monotonic() > end:
+                raise TimeoutError("nobody listens")
+            self.spin(0.5)
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self.executor.shutdown()
+        self.node.destroy_node()
+        self.context.try_shutdown()
+
+
+def measure(scene: Scene, seconds: float, profile: str | None) -> dict[str, object]:
+    """One scene's figures."""
+    with tempfile.TemporaryDirectory() as folder:
+        world = Path(folder) / "load.json"
+        world.write_text(playground(scene.robots), encoding="utf-8")
+        values = [f"playground:={world}"]
+        if scene.rate_hz:
+            values += [f"sensor_rate:={scene.rate_hz}", f"odom_max_rate:={scene.rate_hz}"]
+        arguments = ["--ros-args", *(part for value in values for part in ("-p", value))]
+        start = [PROFILED, profile] if profile else [NODE]
+        with process(*start, *arguments) as pid:
+            driver = Driver(scene.robots)
+            driver.go()
+            if scene.is_heard:
+                with process(LISTENER, str(scene.robots)):
+                    driver.until_heard([topic for _, topic in topics(scene.robots)])
+                    figures = _watch(driver, pid, seconds)
+            else:
+                figures = _watch(driver, pid, seconds)
+            driver.close()
+    return {"scene": scene.name, **figures, "most_percent": scene.most_percent}
+
+
+def _watch(driver: Driver, pid: int, seconds: float) -> dict[str, object]:
+    driver.spin(WARM_UP_S)
+    driver.factors.clear()
+    begin, before = time.monotonic(), cpu_s(pid)
+    driver.spin(seconds)
+    used, passed = cpu_s(pid) - before, time.monotonic() - begin
+    factor = sum(driver.factors) / len(driver.factors) if driver.factors else 0.0
+    return {"cpu_percent": round(100 * used / passed, 2), "factor": round(factor, 3)}
+
+
+def main() -> None:
+    """Print a table, and all figures as JSON."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--only", default="", help="scenes with this in their names")
+    parser.add_argument("--profile", help="file for a profile of the node (the CPU time then tells nothing)")
+    parser.add_argument("--json", type=Path)
+    chosen = parser.parse_args()
+    os.environ.update(ROS_DOMAIN_ID=str(DOMAIN), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
+    found = []
+    print("| scene | CPU % | at most | factor |\n|---|---:|---:|---:|")
+    for scene in SCENES:
+        if chosen.only in scene.name:
+            one = measure(scene, chosen.seconds, chosen.profile)
+            found.append(one)
+            most = "" if scene.most_percent is None else f"{scene.most_percent:g}"
+            print(f"| {scene.name} | {one['cpu_percent']} | {most} | {one['factor']} |", flush=True)
+    print(json.dumps(found))
+    if chosen.json is not None:
+        chosen.json.write_text(json.dumps(found, indent=2), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
