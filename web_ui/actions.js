@@ -89,6 +89,12 @@ export class Actions {
     if (!answer.ok) this.store.dispatch({ type: "notice", level: "error", text: answer.message });
   }
 
+  /** Switch the robots on with a built-in behaviour. @param {string} name */
+  async setBehaviour(name) {
+    const answer = await this.client.setParameters([{ name: PARAMETERS.behaviour, value: name }]);
+    if (!answer.ok) this.store.dispatch({ type: "notice", level: "error", text: answer.message });
+  }
+
   /** @param {string} name @param {string} text */
   async loadProgram(name, text) {
     this.store.dispatch({ type: "upload", what: "program", name, text });

@@ -5,8 +5,10 @@ import { watchDrops } from "./drop.js";
 import { chooseLanguage, translator } from "./i18n/index.js";
 import { watchKeyboard } from "./keyboard.js";
 import { PANELS } from "./panels/index.js";
+import { MUTED_KEY } from "./panels/sound.js";
 import { Client } from "./protocol/client.js";
 import { SceneView } from "./scene/index.js";
+import { Speaker } from "./sound/speaker.js";
 import { snapshot } from "./state/index.js";
 import { PARAMETERS, splitTopic } from "./state/names.js";
 import { Store } from "./state/store.js";
@@ -42,6 +44,11 @@ async function main() {
     parameters: [PARAMETERS.playground, PARAMETERS.factor],
   });
   const actions = new Actions({ client, store, t: (key, values) => t(key, values) });
+  const speaker = new Speaker({
+    createContext: "AudioContext" in window ? () => new AudioContext() : null,
+    muted: localStorage.getItem(MUTED_KEY) === "true",
+    changed: () => scene.invalidate(),
+  });
   const canvas = /** @type {HTMLCanvasElement} */ (element("#view"));
   const trouble = element("#trouble");
 
@@ -79,7 +86,7 @@ async function main() {
     trouble.hidden = scene.renderer !== null;
     document.querySelectorAll(".banner").forEach((banner) => banner.remove());
     for (const panel of panels) panel.element.remove();
-    const context = { t, language, setLanguage, actions, store, scene, address, announce };
+    const context = { t, language, setLanguage, actions, store, scene, speaker, address, announce };
     panels = PANELS.map((create) => create(context));
     for (const panel of panels) element(`[data-slot="${panel.slot}"]`).append(panel.element);
     scene.invalidate();
@@ -93,6 +100,8 @@ async function main() {
 
   build();
   store.subscribe(() => scene.invalidate());
+  store.subscribe(() => speaker.update(store.state));
+  for (const gesture of ["pointerup", "keydown"]) window.addEventListener(gesture, () => speaker.unlock());
   watchKeyboard(canvas, scene, (button, pressed) => actions.press(store.state.selected, button, pressed));
   watchDrops(element("#drop"), (file) => actions.loadFile(file));
   window.addEventListener("keydown", ({ key }) => {

@@ -8,6 +8,7 @@ import { playgroundPanel } from "./playground.js";
 import { programPanel } from "./program.js";
 import { robotsPanel } from "./robots.js";
 import { sensorsPanel } from "./sensors.js";
+import { soundPanel } from "./sound.js";
 import { stopPanel } from "./stop.js";
 import { surroundingsPanel } from "./surroundings.js";
 import { timePanel } from "./time.js";
@@ -23,6 +24,7 @@ import { viewsPanel } from "./views.js";
  * @property {import("../actions.js").Actions} actions
  * @property {import("../state/store.js").Store} store
  * @property {import("../scene/index.js").SceneView} scene
+ * @property {import("../sound/speaker.js").Speaker} speaker
  * @property {string} address   of the simulator, for people
  * @property {(text: string) => void} announce   to the live region
  */
@@ -37,6 +39,7 @@ import { viewsPanel } from "./views.js";
 export const PANELS = [
   connectionPanel,
   languagePanel,
+  soundPanel,
   stopPanel,
   noticesPanel,
   viewsPanel,

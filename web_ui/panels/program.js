@@ -2,6 +2,7 @@
 // refuses is shown in its own text, at its place, while the old program goes on.
 
 import { programOf } from "../state/index.js";
+import { behaviourChoice } from "./behaviours.js";
 import { card } from "./card.js";
 import { fileButton, h, icon, ICONS, setAttribute, setText } from "./dom.js";
 import { sourceView } from "./source.js";
@@ -14,7 +15,9 @@ const VERBS = /** @type {const} */ ([
 ]);
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
-export function programPanel({ t, actions, store, announce }) {
+export function programPanel(context) {
+  const { t, actions, store, announce } = context;
+  const behaviour = behaviourChoice(context);
   const name = h("strong", { class: "name" });
   const lamp = h("span", { class: "state" });
   const message = h("p", { class: "message", hidden: true });
@@ -47,6 +50,7 @@ export function programPanel({ t, actions, store, announce }) {
       h("small", {}, t("program.dropHint")),
     ),
     upload,
+    behaviour.element,
   );
   /** @type {import("../state/index.js").Upload | null} */ let shown = null;
   let told = "";
@@ -88,6 +92,7 @@ export function programPanel({ t, actions, store, announce }) {
     slot: "side",
     element,
     render(state) {
+      behaviour.render(state);
       const program = programOf(state);
       const known = program !== null && KNOWN_STATES.includes(program.state);
       const word = program === null ? "" : t(known ? `state.${program.state}` : "state.unknown");

@@ -17,6 +17,7 @@ import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
  * @property {Fault | null} fault
  */
 /** @typedef {"program" | "playground"} What */
+/** @typedef {{ name: string, description: string }} Behaviour */
 /** @typedef {{ title: string, description: string }} Titles */
 /** @typedef {Titles & { name: string, translations: Readonly<Record<string, Titles>> }} PlaygroundInfo  by language */
 /**
@@ -41,6 +42,7 @@ import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
  * @property {Readonly<Record<string, any>>} parameters
  * @property {Simulator | null} simulator
  * @property {PlaygroundInfo[]} playgrounds
+ * @property {Behaviour[]} behaviours  built-in programs
  * @property {ReadonlyMap<string, Marker>} markers  what stays where it is
  * @property {ReadonlyMap<string, Marker>} objects  movable things and doors
  * @property {Readonly<Record<string, Robot>>} robots
@@ -83,6 +85,7 @@ export const INITIAL = {
   parameters: {},
   simulator: null,
   playgrounds: [],
+  behaviours: [],
   markers: new Map(),
   objects: new Map(),
   robots: {},
@@ -200,6 +203,7 @@ const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any) => Sta
     };
     return withChannels({ ...state, simulator }, state);
   },
+  "/aseba_runtime/behaviours": (state, value) => ({ ...state, behaviours: JSON.parse(value.data) }),
   "/simulator/playgrounds": (state, value) => ({
     ...state,
     playgrounds: JSON.parse(value.data).map(
@@ -254,7 +258,7 @@ export function programOf(state) {
 
 /** @param {Robot | undefined} robot */
 function visible(robot) {
-  return robot === undefined ? null : { ...robot, trail: robot.trail.size };
+  return robot === undefined ? null : { ...robot, trail: robot.trail.size, samples: robot.samples?.length ?? 0 };
 }
 
 /**

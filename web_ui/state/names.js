@@ -6,7 +6,13 @@ export const PROXIMITY = ["left", "center_left", "center", "center_right", "righ
 export const GROUND = ["left", "right"];
 export const BUTTONS = ["forward", "left", "center", "right", "backward"];
 
-export const GLOBAL_TOPICS = ["/markers", "/markers/objects", "/simulator/state", "/simulator/playgrounds"];
+export const GLOBAL_TOPICS = [
+  "/markers",
+  "/markers/objects",
+  "/simulator/state",
+  "/simulator/playgrounds",
+  "/aseba_runtime/behaviours",
+];
 
 /** Topics of one robot, relative to its namespace. */
 export const ROBOT_TOPICS = [
@@ -18,6 +24,9 @@ export const ROBOT_TOPICS = [
   "raw/motor",
   "aseba/status",
   "pen/trail",
+  "sound/state",
+  "sound/state/wave",
+  "sound/state/samples",
   ...PROXIMITY.map((name) => `proximity/${name}`),
   ...GROUND.map((name) => `ground/${name}`),
   ...BUTTONS.map((name) => `buttons/${name}`),
@@ -27,6 +36,7 @@ export const PARAMETERS = /** @type {const} */ ({
   playground: "/simulator.playground",
   factor: "/simulator.real_time_factor",
   source: "/aseba_runtime.script.source",
+  behaviour: "/aseba_runtime.behaviour",
   programName: "/aseba_runtime.script.name",
 });
 

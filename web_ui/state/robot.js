@@ -26,6 +26,9 @@ import { BUTTONS } from "./names.js";
  * @property {Record<string, number>} ground                     Range: ±Infinity
  * @property {Record<string, number[]>} raw                      Thymio integers by sensor
  * @property {Record<string, boolean>} buttons
+ * @property {readonly number[]} sound                           Hz, s, volume 0…1 of what sounds
+ * @property {ArrayLike<number> | null} wave                     period of its tones
+ * @property {ArrayLike<number> | null} samples                  of its last sound that is no tone
  * @property {ReadonlyMap<string, Marker>} trail                 what its pen has drawn
  */
 
@@ -40,6 +43,9 @@ export const NEW_ROBOT = {
   ground: {},
   raw: {},
   buttons: Object.fromEntries(BUTTONS.map((name) => [name, false])),
+  sound: [0, 0, 0],
+  wave: null,
+  samples: null,
   trail: new Map(),
 };
 
@@ -56,6 +62,9 @@ const READERS = /** @type {Record<string, (robot: Robot, value: any, leaf: strin
   ground: (robot, value, leaf) => ({ ...robot, ground: { ...robot.ground, [leaf]: value.range } }),
   buttons: (robot, value, leaf) => ({ ...robot, buttons: { ...robot.buttons, [leaf]: value.data } }),
   "pen/trail": (robot, value) => ({ ...robot, trail: applyMarkers(robot.trail, value.markers) }),
+  "sound/state": (robot, value) => ({ ...robot, sound: value.data }),
+  "sound/state/wave": (robot, value) => ({ ...robot, wave: value.data }),
+  "sound/state/samples": (robot, value) => ({ ...robot, samples: value.data }),
   raw: (robot, value, leaf) => ({ ...robot, raw: { ...robot.raw, [leaf]: value.data } }),
 });
 
