@@ -3,38 +3,17 @@
 from __future__ import annotations
 
 import json
-import shutil
 import zipfile
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from thymio_sim_ros import resources
-
 playwright = pytest.importorskip("playwright.sync_api")
-pytest.importorskip("rclpy")
 
-from tests.processes import Process, free_port, wait_for_port
 from tests.sim.images import BLACK, WHITE, png
+from tests.web_ui.page_support import MARKS, open_page, wait_until_settled
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-DEADLINE_MS = 60_000
-FLAGS = [
-    "--no-sandbox",
-    "--enable-unsafe-swiftshader",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-first-run",
-]
-
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.process,
-    pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine"),
-    pytest.mark.skipif(resources.page() is None, reason="the page is not built: make web"),
-]
+pytestmark = MARKS
 
 PROGRAM = """\
 var lit = 0
@@ -46,53 +25,6 @@ if button.center == 1 then
     motor.right.target = 150 * lit
 end
 """
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[playwright.Browser]:
-    with playwright.sync_playwright() as api:
-        browser = api.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield browser
-        browser.close()
-
-
-@pytest.fixture
-def suite(ros_domain, tmp_path):
-    """Start the suite with these arguments; gives the page's address."""
-    started: list[Process] = []
-
-    def start(*arguments: str) -> str:
-        port = free_port()
-        command = ["--port", str(port), "--foxglove-port", str(free_port()), *arguments]
-        started.append(Process(tmp_path, "thymio_sim_ros.cli", *command))
-        return f"http://127.0.0.1:{port}/"
-
-    yield start
-    for process in started:
-        process.end()
-
-
-@pytest.fixture
-def page(browser) -> Iterator[playwright.Page]:
-    """A page that fails the test when a script on it fails or it asks another host."""
-    page = browser.new_page(viewport={"width": 800, "height": 600}, bypass_csp=True)  # wait_for_function evaluates
-    page.set_default_timeout(DEADLINE_MS)
-    problems: list[str] = []
-    page.on("pageerror", lambda error: problems.append(f"script: {error}"))
-    page.on("request", lambda request: problems.append(request.url) if not request.url.startswith(LOCAL) else None)
-    yield page
-    page.close()
-    assert not problems
-
-
-LOCAL = ("http://127.0.0.1:", "ws://127.0.0.1:", "data:", "blob:")
-
-
-def open_page(page, address):
-    """Load the page, as soon as the suite answers, and wait for the robot."""
-    wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
-    page.goto(address)
-    page.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
 
 
 def robot(page):
@@ -181,15 +113,7 @@ def test_the_pen_leaves_a_trail(suite, page):
 
 def press(page, part):
     """A real pointer on a part of the model, once the view has settled; held until the page has heard of it."""
-    page.wait_for_function("() => window.thymio.state().markers > 0")
-    page.wait_for_function(
-        "(part) => { const now = window.thymio.partPosition(part); const last = window.lastPosition;"
-        " window.lastPosition = now;"
-        " return now && last && Math.hypot(now.x - last.x, now.y - last.y) < 0.01; }",
-        arg=part,
-        polling=300,
-    )
-    position = page.evaluate("(part) => window.thymio.partPosition(part)", part)
+    position = wait_until_settled(page, part)
     page.mouse.move(position["x"], position["y"])
     page.mouse.down()
     page.wait_for_function("() => window.thymio.state().robot.buttons.center === true")

@@ -52,8 +52,9 @@ export function behaviourChoice({ t, actions }) {
       const running = programOf(state)?.name ?? "";
       const known = behaviours.find(({ name }) => running === name || running === `${name}.aesl`);
       if (document.activeElement !== select || known !== undefined) select.value = known?.name ?? "";
-      const colour = COLOURS[known?.name ?? ""] ?? "transparent";
-      setAttribute(swatch, "style", `--colour: ${colour}`);
+      const colour = COLOURS[known?.name ?? ""];
+      setAttribute(swatch, "data-known", String(colour !== undefined));
+      setAttribute(swatch, "style", `--colour: ${colour ?? "transparent"}`);
       const text = known === undefined ? "" : t(`behaviour.${known.name}.about`);
       const told = text.startsWith("behaviour.") ? (known?.description ?? "") : text;
       if (description.textContent !== told) description.textContent = told;

@@ -1,0 +1,68 @@
+"""What robots say is heard in the browser after a first touch, and their built-in behaviours can be chosen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.web_ui.page_support import MARKS, open_page
+
+pytestmark = MARKS
+
+FAKE = (Path(__file__).parent / "audio.js").read_text().replace("export class", "class")
+LISTEN = (
+    FAKE
+    + """
+window.heard = [];
+window.AudioContext = class extends FakeAudio { constructor() { super(); window.heard.push(this); } };
+"""
+)
+SINGING = "call sound.freq(440, 0)\nonevent button.center\n  call sound.freq(550, -1)\n"
+SOUNDING = "() => (window.heard[0]?.sounding ?? []).length"
+
+
+def test_a_tone_is_heard_after_the_first_touch_and_until_it_is_muted(suite, page, tmp_path):
+    program = tmp_path / "singing.aesl"
+    program.write_text(SINGING)
+    page.add_init_script(LISTEN)
+    open_page(page, suite("--program", str(program)))
+    page.wait_for_function("() => window.thymio.state().robot.sound[0] === 440")
+    button = page.locator("button.sound")
+    assert button.get_attribute("data-phase") == "waiting"
+    assert page.evaluate("() => window.heard.length") == 0
+    page.locator("h1").click()
+    page.wait_for_function(f"({SOUNDING})() === 1")
+    source = "window.heard[0].sounding[0]"
+    assert (
+        page.evaluate(f"() => {source}.playbackRate.value * {source}.buffer.sampleRate / {source}.buffer.length") == 440
+    )
+    button.click()
+    page.wait_for_function(f"({SOUNDING})() === 0")
+    button.click()
+    page.wait_for_function(f"({SOUNDING})() === 1")
+    page.locator("[data-button=center]").hover()
+    page.mouse.down()
+    page.wait_for_function(f"({SOUNDING})() === 0")
+    page.mouse.up()
+
+
+def test_a_pause_holds_the_sound(suite, page, tmp_path):
+    program = tmp_path / "singing.aesl"
+    program.write_text(SINGING)
+    page.add_init_script(LISTEN)
+    open_page(page, suite("--program", str(program)))
+    page.locator("h1").click()
+    page.wait_for_function(f"({SOUNDING})() === 1")
+    page.locator(".time button.primary").click()
+    page.wait_for_function("() => window.heard[0].state === 'suspended'")
+    page.locator(".time button.primary").click()
+    page.wait_for_function("() => window.heard[0].state === 'running'")
+
+
+def test_a_built_in_behaviour_is_chosen_and_shows_its_colour(suite, page):
+    open_page(page, suite("--playground", "base"))
+    page.select_option("#behaviour-choice", "friendly")
+    page.wait_for_function("() => window.thymio.state().program.name.startsWith('friendly')")
+    page.wait_for_function("() => document.querySelector('#behaviour-choice').value === 'friendly'")
+    assert "#12c22f" in (page.locator(".swatch").get_attribute("style") or "")
+    # Green, as on the robot.
+    page.wait_for_function("() => { const [r, g, b] = window.thymio.state().robot.leds.top; return g > r && g > b; }")
