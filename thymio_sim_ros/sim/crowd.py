@@ -89,6 +89,7 @@ class Crowd:
         self._caster = Raycaster(shared.physics.fixed, shared.physics.loose())
         self._robots = tuple(robots)
         self._names = tuple(robot.name for robot in self._robots)
+        self._states: dict[type[Any], list[Any]] = {}
         self._order = {robot: index for index, robot in enumerate(self._robots)}
         self._banks: list[NormalBank | UniformBank] = []
         self._groups: dict[int, _Group] = {}
@@ -134,7 +135,10 @@ class Crowd:
 
     def states(self, kind: type[S]) -> list[S]:
         """The state of one actuator of every robot."""
-        return [robot.state(kind) for robot in self._robots]
+        found = self._states.get(kind)
+        if found is None:
+            found = self._states[kind] = [robot.state(kind) for robot in self._robots]
+        return found
 
     def act(self, dt_s: float) -> None:
         """Run the actuators for one tick."""

@@ -56,6 +56,8 @@ class Fleet:
         """Speed over ground at each wheel, mean of the last tick, m/s."""
         self.changed: set[RobotBody] = set(self._bodies)
         """To be filled with those for whom a contact begins or ends."""
+        self._begun: set[RobotBody] = set()
+        """Who may have a contact that is new."""
         self._index = {body: index for index, body in enumerate(self._bodies)}
         self._touching, self._is_free = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         self._angle = self._speed = self._spin = self._heading = np.zeros(count)
@@ -117,11 +119,11 @@ class Fleet:
         self.covered = self.driven.copy()
         touching = np.flatnonzero(self._touching)
         self.covered[:, touching] = 0.0
-        for index in touching.tolist():
-            contacts = self._bodies[index].touching
-            for key, contact in contacts.items():
+        for body in self._begun:
+            for key, contact in body.touching.items():
                 if contact.is_new:
-                    contacts[key] = replace(contact, is_new=False)
+                    body.touching[key] = replace(contact, is_new=False)
+        self._begun.clear()
 
     def push(self) -> None:
         """As `RobotBody.push`."""
@@ -186,6 +188,7 @@ class Fleet:
         return [self._bodies[index] for index in np.flatnonzero(self._touching).tolist()]
 
     def _look_at_contacts(self) -> None:
+        self._begun.update(self.changed)
         for body in self.changed:
             self._touching[self._index[body]] = bool(body.touching)
         self.changed.clear()
