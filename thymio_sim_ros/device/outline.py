@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 from aseba_vm import CompileError, aesl
@@ -21,14 +22,15 @@ class Symbol:
     column: int
 
 
-def outline(node: aesl.Node) -> dict[str, list[Symbol]]:
+@lru_cache(maxsize=32)
+def outline(node: aesl.Node) -> Mapping[str, tuple[Symbol, ...]]:
     """Keyword (`var`, `sub`, `onevent`) → what it declares, in order, as far as the text can be read."""
     found: dict[str, list[Symbol]] = {"var": [], "sub": [], "onevent": []}
     for keyword, name in pairwise(_tokens(node.code)):
         if keyword.kind in found and name.kind == "identifier":
             row, column = node.place(name.pos.offset)
             found[keyword.kind].append(Symbol(name.text, row + 1, column + 1))
-    return found
+    return {keyword: tuple(symbols) for keyword, symbols in found.items()}
 
 
 def _tokens(code: str) -> Sequence[Token]:
