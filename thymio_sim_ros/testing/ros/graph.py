@@ -121,6 +121,12 @@ class Ros:
         self._executor.remove_node(node)
         node.destroy_node()
 
+    def end(self, life: Any) -> None:
+        """Close a `Life` before the test ends."""
+        self._lives.remove(life)
+        self._executor.remove_node(life.node)
+        life.close()
+
     # --- time ---
 
     def deliver(self) -> None:

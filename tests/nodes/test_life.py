@@ -1,0 +1,120 @@
+"""Nodes come and go while the others run; who comes late sees what is latched; time may jump back."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from nav_msgs.msg import Odometry
+from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import Float32MultiArray, Int16MultiArray, String
+from std_srvs.srv import Trigger
+from visualization_msgs.msg import MarkerArray
+
+from thymio_sim_ros.nodes import qos, tf_messages
+from thymio_sim_ros.nodes.world_services import SERVICES
+
+COUNTS = "var n = 0\nonevent prox\nn = n + 1\ncall leds.top(n, 0, 0)\nmotor.left.target = 200\nmotor.right.target = 200"
+
+
+def top(state):
+    return round(32 * state[-1].data[0]) if state else 0
+
+
+def test_a_simulator_that_is_started_again_finds_the_program_running(ros, simulation, runtime):
+    first = simulation(playground="borderless")
+    runtime(COUNTS)
+    first.until(lambda: first.world.robots["thymio"].pose.x_m > 0.05)
+    ros.end(first.simulator)
+    second = simulation(playground="borderless")
+    assert second.world.now_ns == 0
+    second.until(lambda: second.world.robots["thymio"].pose.x_m > 0.05)
+
+
+def test_a_program_starts_again_with_its_node(ros, simulation, runtime):
+    sim = simulation(playground="borderless")
+    state = ros.collect(Float32MultiArray, "/led/state")
+    node = runtime(COUNTS)
+    sim.until(lambda: top(state) > 5)
+    ros.end(node)
+    runtime(COUNTS)
+    sim.until(lambda: top(state) == 1, seconds=2.0)
+    sim.until(lambda: top(state) > 2)
+
+
+@pytest.mark.parametrize(
+    ("kind", "topic"),
+    [
+        (String, "/robot_description"),
+        (String, "/simulator/state"),
+        (String, "/simulator/playgrounds"),
+        (MarkerArray, "/markers"),
+        (MarkerArray, "/markers/objects"),
+        (Float32MultiArray, "/led/state"),
+    ],
+)
+def test_who_comes_late_sees_what_is_latched(ros, simulation, kind, topic):
+    sim = simulation()
+    sim.step(0.5)
+    messages = ros.collect(kind, topic)
+    ros.until(lambda: messages)
+
+
+def test_who_comes_late_sees_the_fixed_frames(ros, simulation):
+    sim = simulation()
+    sim.step(0.5)
+    received = []
+    ros.node.create_subscription(tf_messages.TFMessage, "/tf_static", received.append, qos.LATCHED, raw=True)
+    ros.until(lambda: received)
+    children = {frame.child for frame in tf_messages.decode(bytes(received[-1]))}
+    assert {"base_footprint", "laser_link", "proximity_center_link", "ground_left_link"} <= children
+
+
+def test_who_comes_while_time_stands_still_gets_the_clock(ros, simulation):
+    sim = simulation()
+    sim.step(0.5)
+    clocks = ros.collect(Clock, "/clock")
+    sim.simulator._beat(0)
+    ros.until(lambda: clocks)
+    assert clocks[-1].clock.nanosec == 500_000_000
+
+
+def test_after_a_reset_latched_topics_come_before_the_clock_and_the_clock_before_readings(ros, simulation):
+    sim = simulation()
+    sim.step(0.5)
+    order = []
+    for kind, topic in (
+        (String, "/simulator/state"),
+        (MarkerArray, "/markers"),
+        (Clock, "/clock"),
+        (Int16MultiArray, "/raw/motor"),
+        (Odometry, "/odom"),
+    ):
+        ros.node.create_subscription(kind, topic, lambda _message, topic=topic: order.append(topic), 10)
+    ros.settle()
+    assert ros.call(Trigger, "/simulator/reset").success
+    ros.until(lambda: {"/simulator/state", "/markers", "/clock"} <= set(order))
+    assert not {"/raw/motor", "/odom"} & set(order)
+    sim.until(lambda: {"/raw/motor", "/odom"} <= set(order))
+
+
+def test_a_new_playground_goes_back_in_time_and_keeps_the_program(ros, simulation, runtime):
+    sim = simulation(playground="borderless")
+    state = ros.collect(Float32MultiArray, "/led/state")
+    states = ros.collect(String, "/simulator/state")
+    runtime(COUNTS)
+    sim.until(lambda: top(state) > 5)
+    request = SetParameters.Request(parameters=[Parameter("playground", value="base").to_parameter_msg()])
+    assert ros.call(SetParameters, "/simulator/set_parameters", request).results[0].successful
+    ros.until(lambda: json.loads(states[-1].data)["playground"] == "base")
+    sim.until(lambda: 0 < top(state) < 3, seconds=3.0)
+
+
+def test_nothing_of_a_simulator_is_left_in_the_graph(ros, simulation):
+    sim = simulation()
+    ros.end(sim.simulator)
+    ros.until(lambda: not any(name.startswith("/proximity") for name, _ in ros.node.get_topic_names_and_types()))
+    ours = {name.replace("~", "/simulator") for name in SERVICES} | {"/is_ready", "/reset_odometry"}
+    ros.until(lambda: not ours & {name for name, _ in ros.node.get_service_names_and_types()})
