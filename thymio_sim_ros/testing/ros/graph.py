@@ -195,8 +195,9 @@ class Ros:
         if qos is None:
             self.until(lambda: self.node.count_publishers(name), what=f"a publisher of {name}")
             qos = matching.as_published(self.node, name, DEPTH, latched=latched)
-        self.node.create_subscription(kind, name, recorder.take, qos)
+        subscription = self.node.create_subscription(kind, name, recorder.take, qos)
         self._recorders.append(recorder)
+        self.until(lambda: matching.has_met(self.node, subscription), what=f"the publishers of {name}")
         self.settle()
         return recorder
 

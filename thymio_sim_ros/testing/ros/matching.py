@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence, Set
 from typing import Any
 
 from rclpy.node import Node
@@ -10,29 +10,40 @@ from rclpy.qos import DurabilityPolicy, QoSCompatibility, QoSProfile, Reliabilit
 
 from thymio_sim_ros.testing.waiting import counted
 
-__all__ = ["as_published", "is_settled", "topic_lines"]
+__all__ = ["as_published", "has_met", "is_settled", "topic_lines"]
 
 _EVERYWHERE = ("/clock", "/parameter_events", "/rosout")
 """Topics of every node, which tell nothing."""
 
 
-def is_settled(nodes: Iterable[Node]) -> bool:
-    """Whether every publisher and subscription of these nodes has found those of the graph that fit it."""
-    return all(_is_met(node) for node in nodes)
+def is_settled(nodes: Sequence[Node]) -> bool:
+    """Whether the publishers and subscriptions of these nodes have found those of the others that fit them.
+
+    A simulator has thousands that nobody uses: only topics with both sides among these nodes are looked at.
+    """
+    published = {publisher.topic_name for node in nodes for publisher in node.publishers}
+    wanted = {subscription.topic_name for node in nodes for subscription in node.subscriptions}
+    used = (published & wanted).difference(_EVERYWHERE[1:])
+    return all(_is_met(node, used) for node in nodes)
 
 
-def _is_met(node: Node) -> bool:
-    for publisher in node.publishers:
-        infos = node.get_subscriptions_info_by_topic(publisher.topic_name)
-        fits = sum(_fit(publisher.qos_profile, info.qos_profile) for info in infos)
-        if publisher.get_subscription_count() < fits:
-            return False
-    for subscription in node.subscriptions:
-        infos = node.get_publishers_info_by_topic(subscription.topic_name)
-        fits = sum(_fit(info.qos_profile, subscription.qos_profile) for info in infos)
-        if subscription.get_publisher_count() < fits:
-            return False
-    return True
+def _is_met(node: Node, topics: Set[str]) -> bool:
+    return all(_has_met_all(node, one) for one in node.publishers if one.topic_name in topics) and all(
+        has_met(node, one) for one in node.subscriptions if one.topic_name in topics
+    )
+
+
+def _has_met_all(node: Node, publisher: Any) -> bool:
+    infos = node.get_subscriptions_info_by_topic(publisher.topic_name)
+    fits = sum(_fit(publisher.qos_profile, info.qos_profile) for info in infos)
+    return bool(publisher.get_subscription_count() >= fits)
+
+
+def has_met(node: Node, subscription: Any) -> bool:
+    """Whether a subscription has found all publishers that fit it, those of other processes too."""
+    infos = node.get_publishers_info_by_topic(subscription.topic_name)
+    fits = sum(_fit(info.qos_profile, subscription.qos_profile) for info in infos)
+    return bool(subscription.get_publisher_count() >= fits)
 
 
 def _fit(published: QoSProfile, wanted: QoSProfile) -> bool:
