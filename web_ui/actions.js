@@ -5,6 +5,8 @@ import { PARAMETERS, robotTopic } from "./state/names.js";
 /** @typedef {import("./protocol/client.js").Client} Client */
 /** @typedef {import("./state/store.js").Store} Store */
 
+/** Of rcl_interfaces/msg/ParameterType. */
+const DOUBLE_ARRAY = 8;
 /** A file larger than this is no program. */
 export const LARGEST_PROGRAM = 1_000_000;
 /** A playground may hold pictures; as text it must fit into one message of the bridge. */
@@ -87,6 +89,22 @@ export class Actions {
   async setFactor(factor) {
     const answer = await this.client.setParameters([{ name: PARAMETERS.factor, value: factor, type: "float64" }]);
     if (!answer.ok) this.store.dispatch({ type: "notice", level: "error", text: answer.message });
+  }
+
+  /**
+   * Put a robot or a movable thing somewhere; whether the simulator did.
+   *
+   * @param {string} name   in the world
+   * @param {{ x: number, y: number, yaw: number }} pose  metres, radians
+   */
+  async place(name, { x, y, yaw }) {
+    const value = { type: DOUBLE_ARRAY, double_array_value: [x, y, yaw] };
+    const answer = await this.client.call("/simulator/set_poses", { parameters: [{ name, value }] });
+    const result = answer.value?.results?.[0] ?? { successful: answer.ok, reason: answer.message };
+    if (!result.successful) {
+      this.store.dispatch({ type: "notice", level: "error", text: this.t("move.refused", { reason: result.reason }) });
+    }
+    return result.successful;
   }
 
   /** Switch the robots on with a built-in behaviour. @param {string} name */

@@ -21,17 +21,41 @@ const VIEW_KEYS = /** @type {Record<string, import("./scene/camera.js").ViewName
   f: "follow",
 });
 
+/** In move mode: steps along x and y of the world, and quarters of an hour of turning. */
+const MOVES = /** @type {Record<string, [number, number, number]>} */ ({
+  ArrowUp: [0, 1, 0],
+  ArrowDown: [0, -1, 0],
+  ArrowLeft: [-1, 0, 0],
+  ArrowRight: [1, 0, 0],
+  "<": [0, 0, 1],
+  ",": [0, 0, 1],
+  ">": [0, 0, -1],
+  ".": [0, 0, -1],
+});
+const FAR = 5; // steps with Shift
+
 /**
  * @param {HTMLElement} element  which must have the focus
  * @param {SceneView} scene
+ * @param {import("./move/mover.js").Mover} mover
  * @param {(button: string, pressed: boolean) => void} press
  */
-export function watchKeyboard(element, scene, press) {
+export function watchKeyboard(element, scene, mover, press) {
   /** @type {Set<string>} */ const held = new Set();
   element.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { key, shiftKey, repeat } = event;
-    if (shiftKey && key in TURNS) scene.camera.turn(...TURNS[key]);
+    if (key === "m") mover.setMode(!mover.mode);
+    else if (mover.mode && key in MOVES) {
+      const [x, y, turn] = MOVES[key];
+      const steps = shiftKey && turn === 0 ? FAR : 1;
+      mover.nudge(x * steps, y * steps, turn);
+    } else if (mover.mode && key === "Enter") void mover.drop();
+    else if (mover.mode && key === "n") mover.next();
+    else if (mover.mode && key === "Escape") {
+      mover.setMode(false);
+      event.stopPropagation(); // and nothing is stopped
+    } else if (shiftKey && key in TURNS) scene.camera.turn(...TURNS[key]);
     else if (key in BUTTON_KEYS) {
       if (!repeat) {
         held.add(key);

@@ -5,6 +5,7 @@ import { watchDrops } from "./drop.js";
 import { chooseLanguage, translator } from "./i18n/index.js";
 import { watchKeyboard } from "./keyboard.js";
 import { PANELS } from "./panels/index.js";
+import { Mover } from "./move/mover.js";
 import { MUTED_KEY } from "./panels/sound.js";
 import { Client } from "./protocol/client.js";
 import { SceneView } from "./scene/index.js";
@@ -44,6 +45,12 @@ async function main() {
     parameters: [PARAMETERS.playground, PARAMETERS.factor],
   });
   const actions = new Actions({ client, store, t: (key, values) => t(key, values) });
+  const live = element("#live");
+  /** @param {string} text */
+  const announce = (text) => {
+    live.textContent = text;
+  };
+
   const speaker = new Speaker({
     createContext: "AudioContext" in window ? () => new AudioContext() : null,
     muted: localStorage.getItem(MUTED_KEY) === "true",
@@ -52,6 +59,12 @@ async function main() {
   const canvas = /** @type {HTMLCanvasElement} */ (element("#view"));
   const trouble = element("#trouble");
 
+  const mover = new Mover({
+    state: () => store.state,
+    place: (name, pose) => actions.place(name, pose),
+    changed: () => scene.invalidate(),
+    tell: (key, values) => announce(t(key, values)),
+  });
   const scene = new SceneView({
     canvas,
     labels: element("#labels"),
@@ -61,18 +74,13 @@ async function main() {
       store.dispatch({ type: "select", robot });
       actions.press(robot, button, pressed);
     },
+    mover,
     robotTitle: (name) => name || t("app.robot"),
     contextLost: (lost) => {
       trouble.textContent = lost ? t("app.contextLost") : "";
       trouble.hidden = !lost;
     },
   });
-
-  const live = element("#live");
-  /** @param {string} text */
-  const announce = (text) => {
-    live.textContent = text;
-  };
 
   const build = () => {
     t = translator(language);
@@ -84,9 +92,9 @@ async function main() {
     canvas.setAttribute("aria-label", t("view.canvas"));
     if (scene.renderer === null) trouble.textContent = t("app.noWebgl");
     trouble.hidden = scene.renderer !== null;
-    document.querySelectorAll(".banner").forEach((banner) => banner.remove());
+    document.querySelectorAll(".banner, .hint").forEach((banner) => banner.remove());
     for (const panel of panels) panel.element.remove();
-    const context = { t, language, setLanguage, actions, store, scene, speaker, address, announce };
+    const context = { t, language, setLanguage, actions, store, scene, mover, speaker, address, announce };
     panels = PANELS.map((create) => create(context));
     for (const panel of panels) element(`[data-slot="${panel.slot}"]`).append(panel.element);
     scene.invalidate();
@@ -102,7 +110,7 @@ async function main() {
   store.subscribe(() => scene.invalidate());
   store.subscribe(() => speaker.update(store.state));
   for (const gesture of ["pointerup", "keydown"]) window.addEventListener(gesture, () => speaker.unlock());
-  watchKeyboard(canvas, scene, (button, pressed) => actions.press(store.state.selected, button, pressed));
+  watchKeyboard(canvas, scene, mover, (button, pressed) => actions.press(store.state.selected, button, pressed));
   watchDrops(element("#drop"), (file) => actions.loadFile(file));
   window.addEventListener("keydown", ({ key }) => {
     if (key === "Escape") actions.stop();
@@ -114,6 +122,9 @@ async function main() {
     value: Object.freeze({
       state: () => snapshot(store.state),
       frames: () => scene.frames,
+      screenPosition: (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ z) =>
+        scene.screenPosition(x, y, z),
+      held: () => mover.held,
       /** @param {string} part @param {string} [robot] */
       partPosition: (part, robot) => scene.partPosition(part, robot),
       get connected() {

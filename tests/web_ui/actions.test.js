@@ -7,13 +7,13 @@ import { Store } from "../../web_ui/state/store.js";
 /** @typedef {import("../../web_ui/state/index.js").Message} Message */
 
 /** Actions over a client that notes what it is asked, and answers as told. */
-function prepared({ ok = true, message = "" } = {}) {
+function prepared({ ok = true, message = "", value = /** @type {any} */ (undefined) } = {}) {
   /** @type {any[]} */ const asked = [];
   const client = {
     publish: (/** @type {any[]} */ ...given) => asked.push(["publish", ...given]),
     call: async (/** @type {any[]} */ ...given) => {
       asked.push(["call", ...given]);
-      return { ok, message };
+      return { ok, message, value };
     },
     setParameters: async (/** @type {any} */ given) => {
       asked.push(["set", given]);
@@ -128,4 +128,26 @@ test("files of other kinds, and too large ones, are not sent", async () => {
     store.state.notices.map(({ text }) => text),
     ["file.unknown", "file.tooLarge"],
   );
+});
+
+test("a robot is put somewhere by a service, and its refusal is a notice", async () => {
+  for (const successful of [true, false]) {
+    const { actions, asked, store } = prepared({ value: { results: [{ successful, reason: "a wall" }] } });
+    assert.equal(await actions.place("thymio", { x: 1, y: 2, yaw: 3 }), successful);
+    const parameters = [{ name: "thymio", value: { type: 8, double_array_value: [1, 2, 3] } }];
+    assert.deepEqual(asked, [["call", "/simulator/set_poses", { parameters }]]);
+    assert.equal(store.state.notices.length, successful ? 0 : 1);
+  }
+});
+
+test("a simulator that cannot move things says so", async () => {
+  const { actions, store } = prepared({ ok: false, message: "not available" });
+  assert.equal(await actions.place("thymio", { x: 0, y: 0, yaw: 0 }), false);
+  assert.equal(store.state.notices.length, 1);
+});
+
+test("a behaviour is a parameter of the runtime", async () => {
+  const { actions, asked } = prepared();
+  await actions.setBehaviour("menu");
+  assert.deepEqual(asked, [["set", [{ name: "/aseba_runtime.behaviour", value: "menu" }]]]);
 });

@@ -101,6 +101,17 @@ test("a runtime of its own goes before the one that all share", () => {
   assert.equal(programOf(own)?.state, "fault");
 });
 
+test("robots have names in the world, and things that can be moved are told", () => {
+  const robots = [{ name: "", frame: "base_link", robot: "thymio" }];
+  const { simulator } = after([message("/simulator/state", json({ robots, movables: ["can"] }))]);
+  assert.deepEqual([simulator?.worldNames, simulator?.movables], [{ "": "thymio" }, ["can"]]);
+});
+
+test("built-in behaviours are told as JSON", () => {
+  const { behaviours } = after([message("/aseba_runtime/behaviours", json([{ name: "menu", description: "d" }]))]);
+  assert.deepEqual(behaviours, [{ name: "menu", description: "d" }]);
+});
+
 test("the simulator and its playgrounds are told as JSON", () => {
   const { simulator, playgrounds } = after([
     message(
@@ -109,7 +120,7 @@ test("the simulator and its playgrounds are told as JSON", () => {
     ),
     message("/simulator/playgrounds", json([{ name: "line", title: "Line", description: "d" }, { name: "base" }])),
   ]);
-  assert.deepEqual(simulator, { playground: "line", title: "Line", notes: [], paused: true, factor: 2, achieved: 1.5, robots: null });
+  assert.deepEqual(simulator, { playground: "line", title: "Line", notes: [], paused: true, factor: 2, achieved: 1.5, robots: null, worldNames: {}, movables: [] });
   assert.deepEqual(playgrounds[1], { name: "base", title: "base", description: "", translations: {} });
 });
 

@@ -24,6 +24,7 @@ import { viewsPanel } from "./views.js";
  * @property {import("../actions.js").Actions} actions
  * @property {import("../state/store.js").Store} store
  * @property {import("../scene/index.js").SceneView} scene
+ * @property {import("../move/mover.js").Mover} mover
  * @property {import("../sound/speaker.js").Speaker} speaker
  * @property {string} address   of the simulator, for people
  * @property {(text: string) => void} announce   to the live region

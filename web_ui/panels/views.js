@@ -4,7 +4,7 @@ import { VIEWS } from "../scene/camera.js";
 import { h, icon, ICONS, setAttribute } from "./dom.js";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
-export function viewsPanel({ t, scene }) {
+export function viewsPanel({ t, scene, mover, announce }) {
   const buttons = VIEWS.map((view) => ({
     view,
     button: h(
@@ -23,17 +23,37 @@ export function viewsPanel({ t, scene }) {
     },
     icon(ICONS.beams),
   );
+  const move = h(
+    "button",
+    {
+      type: "button",
+      title: t("move"),
+      "aria-label": t("move"),
+      onclick: () => {
+        mover.setMode(!mover.mode);
+        if (!mover.mode) return;
+        scene.canvas.focus(); // where its keys are
+        announce(t("move.help"));
+      },
+    },
+    icon(ICONS.move),
+  );
+  const hint = h("p", { class: "hint", hidden: true }, t("move.help"));
+  document.querySelector(".stage")?.append(hint);
   const element = h(
     "div",
     { class: "views", role: "toolbar", "aria-label": t("view") },
     ...buttons.map(({ button }) => button),
     beams,
+    move,
   );
   return {
     slot: "stage",
     element,
     render() {
       for (const { view, button } of buttons) setAttribute(button, "aria-pressed", String(scene.camera.view === view));
+      setAttribute(move, "aria-pressed", String(mover.mode));
+      hint.hidden = !mover.mode;
       setAttribute(beams, "aria-pressed", String(scene.showSensors));
     },
   };

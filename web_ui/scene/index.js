@@ -2,7 +2,9 @@
 
 import * as THREE from "three";
 
+import { watchDrags } from "../move/drag.js";
 import { Camera } from "./camera.js";
+import { Ghost } from "./ghost.js";
 import { PlaygroundModel } from "./playground.js";
 import { watchPointer } from "./pointer.js";
 import { Quality } from "./quality.js";
@@ -23,15 +25,18 @@ export class SceneView {
    * @param {() => State} options.state
    * @param {(nowMs: number) => void} options.beforeDraw   the panels' turn in the same frame
    * @param {(target: Target, pressed: boolean) => void} options.press
+   * @param {import("../move/mover.js").Mover} options.mover   what a hand carries
    * @param {(name: string) => string} options.robotTitle
    * @param {(lost: boolean) => void} options.contextLost
    */
-  constructor({ canvas, labels, state, beforeDraw, press, robotTitle, contextLost }) {
+  constructor({ canvas, labels, state, beforeDraw, press, mover, robotTitle, contextLost }) {
     this.canvas = canvas;
     this.labels = labels;
     this.state = state;
     this.beforeDraw = beforeDraw;
     this.robotTitle = robotTitle;
+    this.mover = mover;
+    this.ghost = new Ghost();
     this.frames = 0;
     this.requested = false;
     this.showSensors = true;
@@ -46,7 +51,7 @@ export class SceneView {
     const fill = new THREE.DirectionalLight(0xffffff, 0.5); // so that faces turned away from the sun are not dull
     fill.position.set(1, 1.4, 0.35);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0xccd5de, 1.75), sun, fill);
-    this.scene.add(this.playground.group, this.objects.group);
+    this.scene.add(this.playground.group, this.objects.group, this.ghost.group);
     this.camera = new Camera(canvas, () => this.invalidate());
     this.renderer = createRenderer(canvas);
     const software = this.renderer !== null && SOFTWARE.test(graphicsName(this.renderer));
@@ -56,6 +61,7 @@ export class SceneView {
       contextLost(false);
       this.invalidate();
     });
+    watchDrags({ element: canvas, rayOf: (event) => this.#rayOf(event), mover });
     watchPointer({
       element: canvas,
       camera: this.camera.camera,
@@ -103,6 +109,20 @@ export class SceneView {
     return place == null ? null : this.#toWindow(place);
   }
 
+  /** The line of sight through a pointer. @param {PointerEvent} event */
+  #rayOf({ clientX, clientY }) {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const place = new THREE.Vector2(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2);
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(place, this.camera.camera);
+    return caster.ray;
+  }
+
+  /** Where a point of the world is in CSS pixels of the window. @param {number} x @param {number} y @param {number} z */
+  screenPosition(x, y, z) {
+    return this.#toWindow(new THREE.Vector3(x, y, z));
+  }
+
   /** @param {number} nowMs */
   #frame(nowMs) {
     this.requested = false;
@@ -110,6 +130,8 @@ export class SceneView {
     this.beforeDraw(nowMs);
     if (this.playground.update(state.markers)) this.camera.frame(this.playground.corners());
     this.objects.update(state.objects);
+    this.mover.refresh();
+    this.ghost.update(this.mover.held, this.mover.mode);
     const moving = this.#updateRobots(state, nowMs);
     const pose = this.#selectedPose();
     if (pose !== null) this.camera.follow(pose);

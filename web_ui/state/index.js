@@ -29,6 +29,8 @@ import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
  * @property {number} factor     wanted
  * @property {number} achieved
  * @property {string[] | null} robots  names; null where it does not say
+ * @property {Readonly<Record<string, string>>} worldNames  of the robots, by those in topics
+ * @property {string[]} movables  names of things that can be moved
  */
 /** @typedef {{ id: number, level: "info" | "warning" | "error", text: string }} Notice */
 /**
@@ -200,6 +202,10 @@ const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any) => Sta
       factor: told.real_time_factor ?? 1,
       achieved: told.achieved ?? 0,
       robots: told.robots?.map((/** @type {any} */ { name }) => name) ?? null,
+      worldNames: Object.fromEntries(
+        (told.robots ?? []).map((/** @type {any} */ { name, robot = name }) => [name, robot]),
+      ),
+      movables: told.movables ?? [],
     };
     return withChannels({ ...state, simulator }, state);
   },

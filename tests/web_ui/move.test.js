@@ -1,0 +1,149 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { Mover } from "../../web_ui/move/mover.js";
+import { blocker, hit, movables, obstacles, overlap, reach } from "../../web_ui/move/things.js";
+import { INITIAL } from "../../web_ui/state/index.js";
+import { NEW_ROBOT } from "../../web_ui/state/robot.js";
+
+/** @typedef {import("../../web_ui/state/index.js").State} State */
+
+/** @param {number} x @param {number} y */
+function robotAt(x, y) {
+  const pose = { x, y, z: 0, yaw: 0, roll: 0, pitch: 0 };
+  return { ...NEW_ROBOT, latest: { pose, stampNs: 0, arrivedMs: 0 } };
+}
+
+/** @param {string} name @param {number} x @param {number} type @param {number} size */
+function solid(name, x, type, size) {
+  const pose = { position: { x, y: 0, z: size / 2 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
+  return /** @type {any} */ ({ ns: `solid/${name}`, id: 1, type, pose, scale: { x: size, y: size, z: size }, points: [] });
+}
+
+/** A robot at the origin, a can 30 cm before it, a wall at 1 m. */
+function world() {
+  const simulator = /** @type {any} */ ({ worldNames: { "": "thymio" }, movables: ["can"] });
+  return /** @type {State} */ ({
+    ...INITIAL,
+    simulator,
+    robots: { "": robotAt(0, 0) },
+    markers: new Map([["w", solid("wall", 1, 1, 0.1)]]),
+    objects: new Map([["c", solid("can", 0.3, 3, 0.06)], ["d", solid("door", -1, 1, 0.1)]]),
+  });
+}
+
+/** Straight down. @param {number} x @param {number} y */
+const down = (x, y) => ({ origin: { x, y, z: 1 }, direction: { x: 0, y: 0, z: -1 } });
+
+/** A mover over this world, with what it asked and told. */
+function prepared({ accepted = true } = {}) {
+  /** @type {any[]} */ const asked = [];
+  /** @type {any[]} */ const told = [];
+  const state = world();
+  const mover = new Mover({
+    state: () => state,
+    place: async (...given) => {
+      asked.push(given);
+      return accepted;
+    },
+    changed: () => {},
+    tell: (...given) => told.push(given),
+  });
+  return { mover, asked, told };
+}
+
+test("robots and movable things can be taken, walls and doors cannot", () => {
+  assert.deepEqual(movables(world()).map(({ name }) => name), ["thymio", "can"]);
+  assert.deepEqual(obstacles(world(), "can").map(({ name }) => name), ["thymio", "wall", "door"]);
+});
+
+test("squares that only touch do not overlap", () => {
+  const square = (/** @type {number} */ x) => /** @type {[number, number][]} */ ([[x, 0], [x + 1, 0], [x + 1, 1], [x, 1]]); // prettier-ignore
+  assert.equal(overlap(square(0), square(0.9)), true);
+  assert.equal(overlap(square(0), square(1)), false);
+});
+
+test("a robot has a place beside a wall, but not in it", () => {
+  const [robot] = movables(world());
+  const others = obstacles(world(), robot.name);
+  assert.equal(blocker(robot, { x: 0.6, y: 0, yaw: 0 }, others), null);
+  assert.equal(blocker(robot, { x: 0.9, y: 0, yaw: 0 }, others)?.name, "wall");
+  assert.equal(blocker(robot, { x: 0.2, y: 0, yaw: 0 }, others)?.name, "can");
+});
+
+test("a prism's footprint is its top", () => {
+  const corners = [
+    [0, 0],
+    [1, 0],
+    [0, 1],
+  ].map(([x, y]) => ({ x, y, z: 0.1 }));
+  const prism = { ...solid("prism", 0, 11, 0.2), points: [...corners, { x: 9, y: 9, z: -0.1 }, ...corners.slice(1)] };
+  const [thing] = obstacles({ ...world(), robots: {}, objects: new Map(), markers: new Map([["p", prism]]) }, "");
+  assert.equal(thing.outline.length, 1);
+  assert.equal(reach(thing), 1);
+});
+
+test("a pointer takes the thing that its line of sight meets first", () => {
+  const things = movables(world());
+  assert.equal(hit(down(0.02, 0), things)?.thing.name, "thymio");
+  assert.equal(hit(down(0.3, 0.01), things)?.thing.name, "can");
+  assert.equal(hit(down(0.6, 0), things), null);
+  const slanting = { origin: { x: 0.3 - 1, y: 0, z: 1.05 }, direction: { x: 1, y: 0, z: -1 } };
+  assert.equal(hit(slanting, things)?.thing.name, "can"); // through its top edge, not where it stands
+  assert.equal(hit({ ...slanting, direction: { x: 1, y: 0, z: 0 } }, things), null);
+});
+
+test("what is dragged keeps the place of the finger on it, and is asked for when put down", async () => {
+  const { mover, asked } = prepared();
+  assert.equal(mover.grab(down(0.05, 0.01), false), false);
+  assert.equal(mover.grab(down(0.05, 0.01), true), true);
+  mover.drag(down(0.55, -0.19));
+  const pose = mover.held?.pose;
+  assert.ok(pose && Math.abs(pose.x - 0.5) < 1e-9 && Math.abs(pose.y + 0.2) < 1e-9);
+  await mover.drop();
+  assert.equal(asked[0][0], "thymio");
+  assert.equal(mover.held, null);
+});
+
+test("a ghost knows what stands in its place", () => {
+  const { mover } = prepared();
+  mover.grab(down(0.3, 0), true);
+  mover.drag(down(1, 0));
+  assert.equal(mover.held?.blocker, "wall");
+  mover.drag(down(0.6, 0));
+  assert.equal(mover.held?.blocker, null);
+});
+
+test("the ring turns what is held in move mode", () => {
+  const { mover } = prepared();
+  mover.setMode(true);
+  assert.equal(mover.held?.thing.name, "thymio");
+  const radius = reach(/** @type {any} */ (mover.held).thing) + 0.025;
+  assert.equal(mover.grab(down(radius, 0), true), true);
+  mover.drag(down(0, radius));
+  assert.ok(mover.held !== null && Math.abs(mover.held.pose.yaw - Math.PI / 2) < 1e-9 && mover.held.pose.x === 0);
+});
+
+test("keys move, turn, take the next thing and put it down", async () => {
+  const { mover, asked, told } = prepared();
+  mover.setMode(true);
+  mover.next();
+  mover.nudge(1, 2, 1);
+  assert.deepEqual(told.at(-1), ["move.at", { x: "31", y: "2", yaw: 15 }]);
+  mover.nudge(70, -2);
+  assert.deepEqual(told.at(-1), ["move.taken", { x: "101", y: "0", yaw: 15, by: "wall" }]);
+  await mover.drop();
+  assert.equal(asked[0][0], "can");
+  assert.equal(mover.held?.pose.x, 0.3); // still in hand, where it stands
+  mover.setMode(false);
+  assert.equal(mover.held, null);
+});
+
+test("an empty world leaves the hand empty", async () => {
+  const mover = new Mover({ state: () => INITIAL, place: async () => true, changed: () => {}, tell: () => {} });
+  mover.setMode(true);
+  mover.next();
+  mover.nudge(1, 0);
+  await mover.drop();
+  assert.equal(mover.held, null);
+});

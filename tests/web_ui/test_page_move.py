@@ -1,0 +1,75 @@
+"""Robots and things are moved by hand on the page: by pointer, by ring, by keys; a place that is taken is refused."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tests.web_ui.page_support import MARKS, open_page, wait_until_settled
+
+pytestmark = MARKS
+
+CAN = {"kind": "cylinder", "name": "can", "x_m": 0.4, "y_m": 0, "radius_m": 0.03, "height_m": 0.1, "mass_kg": 0.05}
+GROUND = {"kind": "rectangle", "size_x_m": 1.6, "size_y_m": 1, "color": "#ffffff"}
+BOX = {"kind": "box", "name": "box", "x_m": -0.4, "y_m": 0.2, "size_x_m": 0.2, "size_y_m": 0.2, "height_m": 0.1}
+POSE = "() => window.thymio.state().robot.latest.pose"
+
+
+@pytest.fixture
+def still_world(tmp_path) -> str:
+    """A playground with a robot that rests, a can that can be moved, and a box that cannot."""
+    shapes = [GROUND, CAN | {"color": "#cc3333"}, BOX | {"color": "#3333cc"}]
+    robots = [{"name": "thymio", "x_m": 0, "y_m": 0}]
+    path = tmp_path / "still.json"
+    path.write_text(json.dumps({"format": 1, "title": "Still", "shapes": shapes, "robots": robots}))
+    return str(path)
+
+
+def open_still(page, suite, playground):
+    open_page(page, suite("--playground", playground, "--program", "none"))
+    page.wait_for_function("() => window.thymio.state().services.includes('/simulator/set_poses')")
+    wait_until_settled(page, "robot")
+
+
+def drag(page, begin, end):
+    """Carry what is at one place of the ground (x, y, z) to another."""
+    places = [page.evaluate("([x, y, z]) => window.thymio.screenPosition(x, y, z)", place) for place in (begin, end)]
+    page.mouse.move(places[0]["x"], places[0]["y"])
+    page.mouse.down()
+    page.mouse.move(places[1]["x"], places[1]["y"], steps=4)
+
+
+def test_a_robot_and_a_can_are_dragged_and_a_taken_place_is_refused(suite, page, still_world):
+    open_still(page, suite, still_world)
+    page.keyboard.down("Shift")
+    drag(page, (0.02, 0, 0.05), (0.02, -0.25, 0.05))
+    assert page.evaluate("() => window.thymio.held().blocker") is None
+    page.mouse.up()
+    page.wait_for_function(f"({POSE})().y < -0.2")
+    drag(page, (0.4, 0, 0.1), (0.2, 0.2, 0.1))
+    page.mouse.up()
+    page.wait_for_function("() => window.thymio.state().objects[0].pose.position.y > 0.15")
+    drag(page, (0.02, -0.25, 0.05), (-0.38, 0.2, 0.05))
+    assert page.evaluate("() => window.thymio.held().blocker") == "box"
+    page.mouse.up()
+    page.locator(".notice.error").wait_for()
+    assert "box" in page.locator(".notice.error").inner_text()
+    assert page.evaluate(POSE)["y"] == pytest.approx(-0.25, abs=0.02)
+
+
+def test_the_move_mode_turns_by_the_ring_and_moves_by_keys(suite, page, still_world):
+    open_still(page, suite, still_world)
+    page.locator("#view").focus()
+    page.keyboard.press("m")
+    page.wait_for_function("() => window.thymio.held() !== null")
+    drag(page, (0.105, 0, 0), (0, 0.105, 0))
+    page.mouse.up()
+    page.wait_for_function(f"Math.abs(({POSE})().yaw - Math.PI / 2) < 0.1")
+    page.wait_for_function("() => Math.abs(window.thymio.held().pose.yaw - Math.PI / 2) < 0.1")
+    for key in ("Shift+ArrowRight", "Shift+ArrowRight", "Enter"):
+        page.keyboard.press(key)
+    page.wait_for_function(f"Math.abs(({POSE})().x - 0.1) < 0.01")
+    page.keyboard.press("Escape")
+    page.wait_for_function("() => window.thymio.held() === null")
+    assert page.evaluate("() => window.thymio.state().robot.buttons.center") is False

@@ -1,0 +1,50 @@
+// Pointers that carry things: in move mode, or with Shift. They come before the buttons and the camera.
+
+/** @typedef {import("./mover.js").Mover} Mover */
+
+/**
+ * @param {object} options
+ * @param {HTMLElement} options.element
+ * @param {(event: PointerEvent) => import("./mover.js").Ray | null} options.rayOf
+ * @param {Mover} options.mover
+ */
+export function watchDrags({ element, rayOf, mover }) {
+  /** @type {number | null} */ let pointer = null;
+  /** @param {PointerEvent} event */
+  const isOurs = (event) => {
+    if (event.pointerId !== pointer) return false;
+    event.stopImmediatePropagation();
+    return true;
+  };
+  element.addEventListener(
+    "pointerdown",
+    (event) => {
+      const ray = pointer === null && event.button === 0 ? rayOf(event) : null;
+      if (ray === null || !mover.grab(ray, mover.mode || event.shiftKey)) return;
+      pointer = event.pointerId;
+      element.setPointerCapture(pointer);
+      event.stopImmediatePropagation();
+    },
+    { capture: true },
+  );
+  element.addEventListener(
+    "pointermove",
+    (event) => {
+      const ray = isOurs(event) ? rayOf(event) : null;
+      if (ray !== null) mover.drag(ray);
+    },
+    { capture: true },
+  );
+  for (const name of /** @type {const} */ (["pointerup", "pointercancel"])) {
+    element.addEventListener(
+      name,
+      (event) => {
+        if (!isOurs(event)) return;
+        pointer = null;
+        if (name === "pointerup") void mover.drop();
+        else mover.cancel();
+      },
+      { capture: true },
+    );
+  }
+}

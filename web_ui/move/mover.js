@@ -1,0 +1,158 @@
+// The hand that takes a robot or a movable thing, carries its ghost about, and puts it down. No document, no scene.
+
+import { atHeight, blocker, hit, movables, obstacles, reach } from "./things.js";
+
+/** @typedef {import("./things.js").Thing} Thing */
+/** @typedef {import("./things.js").Pose} Pose */
+/** @typedef {Parameters<typeof hit>[0]} Ray */
+/** @typedef {import("../state/index.js").State} State */
+/** @typedef {{ thing: Thing, pose: Pose, blocker: string | null }} Held   blocker: what stands where the ghost is */
+
+/** The ring about what is held, by which it is turned: so far beyond its outline, and so wide to be hit. */
+export const RING = { beyond: 0.025, width: 0.03 };
+const STEP_M = 0.01;
+const STEP_RAD = Math.PI / 12;
+
+export class Mover {
+  /**
+   * @param {object} options
+   * @param {() => State} options.state
+   * @param {(name: string, pose: Pose) => Promise<boolean>} options.place  asks the simulator; whether it did
+   * @param {() => void} options.changed
+   * @param {(key: string, values: Record<string, string | number>) => void} options.tell
+   */
+  constructor({ state, place, changed, tell }) {
+    this.state = state;
+    this.place = place;
+    this.changed = changed;
+    this.tell = tell;
+    /** Whether a pointer on a thing moves it without Shift. */
+    this.mode = false;
+    /** @type {Held | null} */ this.held = null;
+    /** @type {{ turning: boolean, z: number, dx: number, dy: number } | null} the pointer's part in it */
+    this.grip = null;
+  }
+
+  /** @param {boolean} on */
+  setMode(on) {
+    this.mode = on;
+    this.cancel();
+    if (on) this.#hold(this.#choice(0));
+    this.changed();
+  }
+
+  /** A pointer goes down; whether it took something. @param {Ray} ray @param {boolean} wanted  by mode or Shift */
+  grab(ray, wanted) {
+    if (!wanted) return false;
+    const floor = atHeight(ray, 0);
+    if (this.mode && this.held !== null && floor !== null) {
+      const { thing, pose } = this.held;
+      const away = Math.hypot(floor.x - pose.x, floor.y - pose.y) - reach(thing) - RING.beyond;
+      if (Math.abs(away) < RING.width / 2) {
+        const dx = pose.yaw - Math.atan2(floor.y - pose.y, floor.x - pose.x);
+        this.grip = { turning: true, z: 0, dx, dy: 0 };
+        return true;
+      }
+    }
+    const found = hit(ray, movables(this.state()));
+    if (found === null) return false;
+    this.#hold(found.thing);
+    const { pose } = found.thing;
+    this.grip = { turning: false, z: found.z, dx: pose.x - found.x, dy: pose.y - found.y };
+    return true;
+  }
+
+  /** The pointer is elsewhere. @param {Ray} ray */
+  drag(ray) {
+    if (this.held === null || this.grip === null) return;
+    const { turning, z, dx, dy } = this.grip;
+    const place = atHeight(ray, z);
+    if (place === null) return;
+    const { pose } = this.held;
+    if (turning) this.#carry({ ...pose, yaw: Math.atan2(place.y - pose.y, place.x - pose.x) + dx });
+    else this.#carry({ ...pose, x: place.x + dx, y: place.y + dy });
+  }
+
+  /** Steps by keys: along x, along y, and turning counter-clockwise. @param {number} x @param {number} y @param {number} [turn] */
+  nudge(x, y, turn = 0) {
+    if (this.held === null) return;
+    const { pose } = this.held;
+    this.#carry({ x: pose.x + x * STEP_M, y: pose.y + y * STEP_M, yaw: pose.yaw + turn * STEP_RAD });
+    const { x: nowX, y: nowY, yaw } = this.held.pose;
+    const values = { x: (nowX * 100).toFixed(0), y: (nowY * 100).toFixed(0), yaw: degrees(yaw) };
+    if (this.held.blocker === null) this.tell("move.at", values);
+    else this.tell("move.taken", { ...values, by: this.held.blocker });
+  }
+
+  /** Take the next thing in hand. */
+  next() {
+    this.#hold(this.#choice(1));
+    if (this.held !== null) this.tell("move.holds", { name: this.held.thing.name || "thymio" });
+  }
+
+  /** Put it down where the ghost is: the simulator decides. */
+  async drop() {
+    const { held } = this;
+    this.grip = null;
+    if (held === null) return;
+    const { thing, pose } = held;
+    await this.place(thing.name, pose);
+    if (this.held !== held) return;
+    // In its mode the thing stays in hand, where it stands now.
+    this.held = null;
+    if (this.mode) this.#follow(thing.name);
+    this.changed();
+  }
+
+  /** Let go; nothing has moved. */
+  cancel() {
+    this.held = null;
+    this.grip = null;
+    this.changed();
+  }
+
+  /** The state has changed: a ghost that nobody drags goes with its thing. */
+  refresh() {
+    if (this.held === null || !this.mode || this.grip !== null) return;
+    const { thing, pose } = this.held;
+    const { x, y, yaw } = thing.pose;
+    if (pose.x === x && pose.y === y && pose.yaw === yaw) this.#follow(thing.name);
+  }
+
+  /** @param {string} name */
+  #follow(name) {
+    const thing = movables(this.state()).find((one) => one.name === name);
+    if (thing === undefined) this.held = null;
+    else this.held = { thing, pose: thing.pose, blocker: null };
+  }
+
+  /** @param {number} ahead  in the list of all, after what is held or the selected robot */
+  #choice(ahead) {
+    const things = movables(this.state());
+    const name = this.held?.thing.name;
+    const now = things.findIndex((one) =>
+      name === undefined ? one.robot === this.state().selected : one.name === name,
+    );
+    return things[(Math.max(0, now) + ahead) % Math.max(1, things.length)];
+  }
+
+  /** @param {Thing | undefined} thing */
+  #hold(thing) {
+    this.held = thing === undefined ? null : { thing, pose: thing.pose, blocker: null };
+    this.changed();
+  }
+
+  /** @param {Pose} pose */
+  #carry(pose) {
+    if (this.held === null) return;
+    const { thing } = this.held;
+    const found = blocker(thing, pose, obstacles(this.state(), thing.name));
+    this.held = { thing, pose, blocker: found === null ? null : found.name };
+    this.changed();
+  }
+}
+
+/** @param {number} radians */
+function degrees(radians) {
+  return Math.round((radians * 180) / Math.PI) % 360;
+}
