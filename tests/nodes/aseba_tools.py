@@ -58,8 +58,8 @@ class Status:
         return {item.key: item.value for item in self.messages[-1].values}[key]
 
     def data(self, key):
-        return json.loads(self[key])
+        return json.loads(self[key]) if self.messages else None
 
     @property
     def place(self):
-        return self["state"], self["event"], self["line"]
+        return (self["state"], self["event"], self["line"])

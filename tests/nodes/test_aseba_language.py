@@ -10,7 +10,9 @@ from rclpy.parameter import Parameter
 from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import String
 
-from tests.nodes.aseba_tools import get_variables, set_parameters
+from tests.nodes.aseba_tools import Status, get_variables, set_parameters
+from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.vocabulary import JSON
 from thymio_sim_ros.device.language import MOST_CHARACTERS
 from thymio_sim_ros.nodes import json_messages
 
@@ -91,6 +93,29 @@ def test_a_request_may_come_as_the_json_of_a_bridge(ros, runtime):
     assert told["errors"][0]["line"] == 1
     again = deserialize_message(serialize_message(asked), SetParametersAtomically.Request)
     assert again == asked
+
+
+def test_an_editor_behind_the_bridge_checks_loads_and_steps(ros, studio, runtime):
+    runtime("var me = 1")
+    text = json.dumps({"parameters": [{"name": "source", "value": {"type": 4, "string_value": "var 3"}}]})
+    check_service = studio.service("/aseba_runtime/check")
+    studio.send(ms.ServiceRequest(check_service.id, 1, JSON, text.encode()))
+    reason = json.loads(studio.next(ms.ServiceResponse).payload)["result"]["reason"]
+    assert json.loads(reason)["errors"][0]["line"] == 1
+    wish = (
+        ms.Parameter("/aseba_runtime.script.source", "var me = K\nme = 3"),
+        ms.Parameter("/aseba_runtime.script.constants.K", 2),
+        ms.Parameter("/aseba_runtime.breakpoints", (2,)),
+    )
+    studio.send(ms.SetParameters((wish[1], wish[2], wish[0]), "wish"))
+    ros.until(lambda: get_variables(ros, "me") == [[2]])
+    step = studio.service("/aseba/step_line")
+    studio.send(ms.ServiceRequest(step.id, 2, JSON, b"{}"))
+    assert json.loads(studio.next(ms.ServiceResponse).payload) == {"success": True, "message": "paused"}
+    assert get_variables(ros, "me") == [[3]]
+    studio.send(ms.SetParameters((ms.Parameter("/aseba_runtime.breakpoints", ()),), "none"))
+    status = Status(ros)
+    ros.until(lambda: status.data("breakpoints") == [])
 
 
 def test_the_target_comes_with_the_program_and_changes_with_it(ros, runtime):

@@ -14,6 +14,7 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import Int16MultiArray
 
 from tests.processes import Process, free_port
+from thymio_sim_ros.nodes import convert
 
 pytestmark = pytest.mark.process
 
@@ -103,6 +104,27 @@ def test_nodes_in_processes_of_their_own_talk(ros, process):
     ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
     ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, START_S, what="a moving robot")
     ros.until(lambda: targets, START_S, what="wheel targets of the program")
+
+
+PING = (
+    '<network><event name="ping" size="1"/><event name="pong" size="1"/><node name="thymio-II">'
+    "onevent ping emit pong event.args[0] + 1</node></network>"
+)
+
+
+def test_robots_of_runtimes_in_different_processes_hear_each_other_once(ros, process, runtime):
+    runtime(PING.replace("onevent ping emit pong", "var got = 0\nonevent pong got ="), robots=["anna"])
+    arguments = ["-p", "robots:=[bert]", "-p", "first_id:=2", "-p", f"script.source:={PING}"]
+    process("thymio_sim_ros.nodes.aseba_node", "--ros-args", "-p", "use_sim_time:=false", *arguments)
+    ros.until(lambda: ros.node.count_subscribers("/aseba/network") == 2, START_S, what="the other runtime")
+    pongs = ros.collect(Int16MultiArray, "/bert/aseba/events/pong")
+    air = ros.collect(Int16MultiArray, "/aseba/network")
+    ping = Int16MultiArray(layout=convert.layout([("ping", 1)]), data=[41])
+    publisher = ros.publisher(Int16MultiArray, "/anna/aseba/emit")
+    publisher.publish(ping)
+    ros.until(lambda: pongs and len(air) == 2, START_S, what="the answer of the other process")
+    assert [list(pong.data) for pong in pongs] == [[42]]
+    assert [message.layout.dim[0].label for message in air] == ["ping", "pong"]
 
 
 @pytest.mark.parametrize(
