@@ -9,6 +9,11 @@ import pytest
 collect_ignore_glob = [] if importlib.util.find_spec("rclpy") else ["test_*.py"]
 
 
+@pytest.fixture(autouse=True)
+def _alone(ros_domain):
+    """Tests with contexts or processes of their own, too, are in a domain where nobody else speaks."""
+
+
 @pytest.fixture
 def bridge(ros):
     """Make a Foxglove bridge on a free port."""
