@@ -151,7 +151,9 @@ def test_local_events_are_published_where_they_are_wanted(ros, runtime):
 
 def second(ros, robot, number=7, source=HEAR):
     params = RuntimeParams(robots=[robot], follow_simulator=False, source=source, first_id=number)
-    return ros.live(AsebaRuntime(ros.context, params, overrides={"use_sim_time": True}))
+    life = ros.live(AsebaRuntime(ros.context, params, overrides={"use_sim_time": True}))
+    ros.settle()
+    return life
 
 
 def test_robots_of_different_runtimes_hear_each_other_once(ros, runtime):
