@@ -19,6 +19,7 @@ const VIEW_KEYS = /** @type {Record<string, import("./scene/camera.js").ViewName
   Home: "home",
   t: "top",
   f: "follow",
+  e: "eye",
 });
 
 /** In move mode: steps along x and y of the world, and quarters of an hour of turning. */
@@ -61,8 +62,8 @@ export function watchKeyboard(element, scene, mover, press) {
         held.add(key);
         press(BUTTON_KEYS[key], true);
       }
-    } else if (key === "+" || key === "=") scene.camera.zoom(1);
-    else if (key === "-") scene.camera.zoom(-1);
+    } else if (key === "+" || key === "=") scene.zoom(1);
+    else if (key === "-") scene.zoom(-1);
     else if (key in VIEW_KEYS) scene.look(VIEW_KEYS[key]);
     else return;
     event.preventDefault();

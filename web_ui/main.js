@@ -58,6 +58,12 @@ async function main() {
   });
   const canvas = /** @type {HTMLCanvasElement} */ (element("#view"));
   const trouble = element("#trouble");
+  /** @type {"lost" | "gone" | null} what is wrong with the 3D picture */ let graphics = null;
+  const showTrouble = () => {
+    trouble.hidden = graphics === null;
+    trouble.dataset.kind = graphics ?? "";
+    trouble.textContent = graphics === null ? "" : t(graphics === "lost" ? "app.contextLost" : "app.noWebgl");
+  };
 
   const mover = new Mover({
     state: () => store.state,
@@ -67,6 +73,7 @@ async function main() {
   });
   const scene = new SceneView({
     canvas,
+    flatCanvas: /** @type {HTMLCanvasElement} */ (element("#flat")),
     labels: element("#labels"),
     state: () => store.state,
     beforeDraw: () => panels.forEach((panel) => panel.render?.(store.state)),
@@ -76,9 +83,9 @@ async function main() {
     },
     mover,
     robotTitle: (name) => name || t("app.robot"),
-    contextLost: (lost) => {
-      trouble.textContent = lost ? t("app.contextLost") : "";
-      trouble.hidden = !lost;
+    contextLost: (found) => {
+      graphics = found;
+      showTrouble();
     },
   });
 
@@ -90,8 +97,8 @@ async function main() {
     element("#drop").textContent = t("app.drop");
     element("aside").setAttribute("aria-label", t("app.panels"));
     canvas.setAttribute("aria-label", t("view.canvas"));
-    if (scene.renderer === null) trouble.textContent = t("app.noWebgl");
-    trouble.hidden = scene.renderer !== null;
+    if (scene.renderer === null) graphics = "gone";
+    showTrouble();
     document.querySelectorAll(".banner, .hint").forEach((banner) => banner.remove());
     for (const panel of panels) panel.element.remove();
     const context = { t, language, setLanguage, actions, store, scene, mover, speaker, address, announce };

@@ -1,6 +1,7 @@
 // The panels, in the order in which they stand on the page. To add one: a file, and a line here.
 
 import { connectionPanel } from "./connection.js";
+import { displayPanel } from "./display.js";
 import { dpadPanel } from "./dpad.js";
 import { languagePanel } from "./language.js";
 import { noticesPanel } from "./notices.js";
@@ -50,5 +51,6 @@ export const PANELS = [
   playgroundPanel,
   sensorsPanel,
   surroundingsPanel,
+  displayPanel,
   timePanel,
 ];

@@ -4,7 +4,7 @@ import { VIEWS } from "../scene/camera.js";
 import { h, icon, ICONS, setAttribute } from "./dom.js";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
-export function viewsPanel({ t, scene, mover, announce }) {
+export function viewsPanel({ t, scene, store, mover, announce }) {
   const buttons = VIEWS.map((view) => ({
     view,
     button: h(
@@ -38,6 +38,21 @@ export function viewsPanel({ t, scene, mover, announce }) {
     },
     icon(ICONS.move),
   );
+  const picture = h(
+    "button",
+    { type: "button", class: "picture", title: t("view.picture"), "aria-label": t("view.picture"), onclick: save },
+    icon(ICONS.camera),
+  );
+  async function save() {
+    const png = await scene.picture();
+    if (png === null) return announce(t("view.noPicture"));
+    const address = URL.createObjectURL(png);
+    const { simulator, timeNs } = store.state;
+    const name = `${simulator?.playground || "thymio"}-${(timeNs / 1e9).toFixed(1)}s.png`.replace(/[^\w.-]+/g, "_");
+    h("a", { href: address, download: name }).click();
+    URL.revokeObjectURL(address);
+    announce(t("view.pictureSaved", { name }));
+  }
   const hint = h("p", { class: "hint", hidden: true }, t("move.help"));
   document.querySelector(".stage")?.append(hint);
   const element = h(
@@ -46,6 +61,7 @@ export function viewsPanel({ t, scene, mover, announce }) {
     ...buttons.map(({ button }) => button),
     beams,
     move,
+    picture,
   );
   return {
     slot: "stage",

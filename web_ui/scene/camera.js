@@ -1,13 +1,15 @@
-// The camera: orbit, pan and zoom by mouse, touch and keys; three ways to look; z is up.
+// The camera: orbit, pan and zoom by mouse, touch and keys; four ways to look; z is up.
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
-/** @typedef {"home" | "top" | "follow"} ViewName */
+/** @typedef {"home" | "top" | "follow" | "eye"} ViewName */
 
-export const VIEWS = /** @type {readonly ViewName[]} */ (["home", "top", "follow"]);
+export const VIEWS = /** @type {readonly ViewName[]} */ (["home", "top", "follow", "eye"]);
 
 const FOLLOW = { back: 0.42, up: 0.3 };
+/** The robot's own view: from its nose, over the front sensors. */
+const EYE = { ahead: 0.083, up: 0.045 };
 const TURN_STEP = Math.PI / 24;
 const ZOOM_STEP = 1.15;
 const MARGIN = 1.05;
@@ -37,14 +39,19 @@ export class Camera {
   resize(width, height) {
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    if (!this.touched && this.view !== "follow") this.look(this.view);
+    if (!this.touched && !this.goesAlong) this.look(this.view);
+  }
+
+  /** Whether the view goes along with a robot. */
+  get goesAlong() {
+    return this.view === "follow" || this.view === "eye";
   }
 
   /** A new world to fit in. @param {THREE.Vector3[]} corners */
   frame(corners) {
     if (corners.length === 0) return;
     this.corners = corners;
-    if (this.view !== "follow") this.look(this.view);
+    if (!this.goesAlong) this.look(this.view);
   }
 
   /**
@@ -56,6 +63,12 @@ export class Camera {
   look(view, robot = null) {
     this.view = view;
     this.touched = false;
+    this.controls.enabled = view !== "eye";
+    if (view === "eye") {
+      this.follow(robot ?? { x: 0, y: 0, yaw: 0 });
+      this.changed();
+      return;
+    }
     if (view === "follow") {
       const { x, y, yaw } = robot ?? { x: 0, y: 0, yaw: 0 };
       this.target.set(x, y, 0.03);
@@ -72,11 +85,18 @@ export class Camera {
   }
 
   /**
-   * Keep up with the robot in the view "follow"; the person may still orbit.
+   * Keep up with the robot: in the view "follow" the person may still orbit, in "eye" it looks where the robot does.
    *
-   * @param {{ x: number, y: number }} robot
+   * @param {{ x: number, y: number, yaw: number }} robot
    */
-  follow({ x, y }) {
+  follow({ x, y, yaw }) {
+    if (this.view === "eye") {
+      const [ahead, left] = [Math.cos(yaw), Math.sin(yaw)];
+      this.camera.position.set(x + EYE.ahead * ahead, y + EYE.ahead * left, EYE.up);
+      this.camera.lookAt(x + 2 * ahead, y + 2 * left, EYE.up);
+      this.camera.updateMatrixWorld();
+      return;
+    }
     if (this.view !== "follow") return;
     const moved = new THREE.Vector3(x - this.target.x, y - this.target.y, 0);
     if (moved.lengthSq() === 0) return;
@@ -88,6 +108,7 @@ export class Camera {
 
   /** Turn about the target. @param {number} sideways steps @param {number} upwards steps */
   turn(sideways, upwards) {
+    if (this.view === "eye") return;
     const offset = this.camera.position.clone().sub(this.controls.target);
     const sphere = new THREE.Spherical().setFromVector3(
       offset.clone().applyAxisAngle(new THREE.Vector3(1, 0, 0), -Math.PI / 2),
@@ -100,6 +121,7 @@ export class Camera {
 
   /** @param {number} steps  positive: nearer */
   zoom(steps) {
+    if (this.view === "eye") return;
     const offset = this.camera.position.clone().sub(this.controls.target);
     const length = offset.length() * ZOOM_STEP ** -steps;
     this.#moveTo(offset.setLength(Math.min(this.controls.maxDistance, Math.max(this.controls.minDistance, length))));

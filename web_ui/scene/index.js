@@ -4,7 +4,10 @@ import * as THREE from "three";
 
 import { watchDrags } from "../move/drag.js";
 import { Camera } from "./camera.js";
+import { robotColour } from "../state/colours.js";
+import { FlatView } from "./flat.js";
 import { Ghost } from "./ghost.js";
+import { Numbers, numbersOf } from "./numbers.js";
 import { PlaygroundModel } from "./playground.js";
 import { watchPointer } from "./pointer.js";
 import { Quality } from "./quality.js";
@@ -15,21 +18,24 @@ import { RobotModel } from "./robot.js";
 /** @typedef {import("./pointer.js").Target} Target */
 
 const SKY = 0xdfecf6;
+/** A lost picture that has not come back by then is drawn in 2D. */
+const LOST_FOR_GOOD_MS = 4000;
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 
 export class SceneView {
   /**
    * @param {object} options
    * @param {HTMLCanvasElement} options.canvas
+   * @param {HTMLCanvasElement} options.flatCanvas  over it, for two dimensions
    * @param {HTMLElement} options.labels       layer for the robots' names
    * @param {() => State} options.state
    * @param {(nowMs: number) => void} options.beforeDraw   the panels' turn in the same frame
    * @param {(target: Target, pressed: boolean) => void} options.press
    * @param {import("../move/mover.js").Mover} options.mover   what a hand carries
    * @param {(name: string) => string} options.robotTitle
-   * @param {(lost: boolean) => void} options.contextLost
+   * @param {(trouble: "lost" | "gone" | null) => void} options.contextLost   gone: for good, drawn in 2D
    */
-  constructor({ canvas, labels, state, beforeDraw, press, mover, robotTitle, contextLost }) {
+  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, mover, robotTitle, contextLost }) {
     this.canvas = canvas;
     this.labels = labels;
     this.state = state;
@@ -40,6 +46,11 @@ export class SceneView {
     this.frames = 0;
     this.requested = false;
     this.showSensors = true;
+    this.showNumbers = false;
+    this.numbers = new Numbers(labels);
+    this.flat = new FlatView(flatCanvas);
+    this.wantsFlat = false;
+    this.isLost = false;
     /** @type {Target | null} */ this.hovered = null;
     /** @type {Map<string, { model: RobotModel, trail: PlaygroundModel, label: HTMLElement }>} */ this.robots = new Map();
     this.scene = new THREE.Scene();
@@ -56,15 +67,25 @@ export class SceneView {
     this.renderer = createRenderer(canvas);
     const software = this.renderer !== null && SOFTWARE.test(graphicsName(this.renderer));
     this.quality = new Quality(software ? 1 : 0);
-    canvas.addEventListener("webglcontextlost", () => contextLost(true));
+    let patience = 0;
+    canvas.addEventListener("webglcontextlost", () => {
+      contextLost("lost");
+      patience = window.setTimeout(() => {
+        this.isLost = true;
+        contextLost("gone");
+        this.invalidate();
+      }, LOST_FOR_GOOD_MS);
+    });
     canvas.addEventListener("webglcontextrestored", () => {
-      contextLost(false);
+      window.clearTimeout(patience);
+      this.isLost = false;
+      contextLost(null);
       this.invalidate();
     });
     watchDrags({ element: canvas, rayOf: (event) => this.#rayOf(event), mover });
     watchPointer({
       element: canvas,
-      camera: this.camera.camera,
+      camera: () => this.eye,
       targets: () =>
         [...this.robots.values()].flatMap(({ model }) => (model.group.visible ? model.buttons.targets : [])),
       press,
@@ -91,6 +112,53 @@ export class SceneView {
     this.camera.look(view, this.#selectedPose());
   }
 
+  /** Whether this browser can draw in 3D now. */
+  get has3d() {
+    return this.renderer !== null && !this.isLost;
+  }
+
+  /** Whether the view is drawn from above in 2D: for want of 3D, or by choice. */
+  get isFlat() {
+    return this.wantsFlat || !this.has3d;
+  }
+
+  /** The camera that is looked through. */
+  get eye() {
+    return this.isFlat ? this.flat.camera : this.camera.camera;
+  }
+
+  /** @param {boolean} flat */
+  setFlat(flat) {
+    this.wantsFlat = flat;
+    this.invalidate();
+  }
+
+  /** @param {boolean} shown */
+  setNumbers(shown) {
+    this.showNumbers = shown;
+    this.invalidate();
+  }
+
+  /** @param {string} choice  one of `QUALITIES` */
+  setQuality(choice) {
+    this.quality.choose(choice);
+    this.#resize();
+  }
+
+  /** Nearer or farther. @param {number} steps */
+  zoom(steps) {
+    if (this.isFlat) this.flat.zoom = Math.min(8, Math.max(0.5, this.flat.zoom * 1.15 ** steps));
+    else this.camera.zoom(steps);
+    this.invalidate();
+  }
+
+  /** The view as PNG; null where the browser cannot. @returns {Promise<Blob | null>} */
+  picture() {
+    this.#draw(performance.now()); // a 3D picture is only there until the browser has shown it
+    const shown = this.isFlat ? this.flat.canvas : this.canvas;
+    return new Promise((settle) => shown.toBlob(settle, "image/png"));
+  }
+
   /** @param {boolean} shown */
   setSensors(shown) {
     this.showSensors = shown;
@@ -114,7 +182,7 @@ export class SceneView {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const place = new THREE.Vector2(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2);
     const caster = new THREE.Raycaster();
-    caster.setFromCamera(place, this.camera.camera);
+    caster.setFromCamera(place, this.eye);
     return caster.ray;
   }
 
@@ -135,11 +203,31 @@ export class SceneView {
     const moving = this.#updateRobots(state, nowMs);
     const pose = this.#selectedPose();
     if (pose !== null) this.camera.follow(pose);
-    this.renderer?.render(this.scene, this.camera.camera);
+    this.#draw(nowMs);
     this.frames += 1;
     this.#placeLabels();
     if (moving) this.invalidate();
     if (this.quality.note(nowMs, moving)) this.#resize();
+  }
+
+  /** @param {number} nowMs */
+  #draw(nowMs) {
+    this.flat.canvas.hidden = !this.isFlat;
+    if (!this.isFlat) {
+      this.renderer?.render(this.scene, this.camera.camera);
+      return;
+    }
+    const state = this.state();
+    this.flat.aim(this.camera.corners, this.camera.goesAlong ? this.#selectedPose() : null);
+    this.scene.updateMatrixWorld(); // what the renderer would do, for pointers
+    const names = Object.keys(state.robots);
+    this.flat.draw(state, {
+      nowMs,
+      sensors: this.showSensors,
+      held: this.mover.held,
+      colour: (name) => robotColour(names, name),
+      changed: () => this.invalidate(),
+    });
   }
 
   /** @param {State} state @param {number} nowMs */
@@ -153,6 +241,7 @@ export class SceneView {
       this.robots.delete(name);
     }
     let moving = false;
+    const names = Object.keys(state.robots);
     for (const [name, robot] of Object.entries(state.robots)) {
       let entry = this.robots.get(name);
       if (entry === undefined) {
@@ -166,7 +255,9 @@ export class SceneView {
       const hovered = this.hovered?.robot === name ? this.hovered.button : null;
       moving = entry.model.update(robot, hovered, nowMs) || moving;
       for (const { group } of entry.model.sensing) group.visible = this.showSensors;
-      entry.label.textContent = this.robotTitle(name);
+      const title = `${robot.sound[0] > 0 || robot.sound[1] > 0 ? "♪ " : ""}${this.robotTitle(name)}`;
+      if (entry.label.textContent !== title) entry.label.textContent = title;
+      if (names.length > 1) entry.label.style.setProperty("--colour", robotColour(names, name));
     }
     return moving;
   }
@@ -177,6 +268,12 @@ export class SceneView {
       label.hidden = place === null;
       if (place !== null) label.style.transform = `translate(${place.x}px, ${place.y}px) translate(-50%, -100%)`;
     }
+    const { robots, selected } = this.state();
+    const group = this.robots.get(selected)?.model.group;
+    const numbers = this.showNumbers && group?.visible ? numbersOf(robots[selected]) : [];
+    this.numbers.show(numbers, ({ x, y, z }) =>
+      group === undefined ? null : this.#project(group.localToWorld(new THREE.Vector3(x, y, z))),
+    );
   }
 
   #selectedPose() {
@@ -190,8 +287,8 @@ export class SceneView {
 
   /** World → CSS pixels of the canvas. @param {THREE.Vector3} place */
   #project(place) {
-    const { x, y, z } = place.project(this.camera.camera);
-    if (z > 1) return null;
+    const { x, y, z } = place.project(this.eye);
+    if (z > 1 || z < -1) return null;
     return { x: ((x + 1) / 2) * this.canvas.clientWidth, y: ((1 - y) / 2) * this.canvas.clientHeight };
   }
 

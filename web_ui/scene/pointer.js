@@ -8,7 +8,7 @@ import * as THREE from "three";
 /**
  * @param {object} options
  * @param {HTMLElement} options.element
- * @param {THREE.Camera} options.camera
+ * @param {() => THREE.Camera} options.camera
  * @param {() => THREE.Object3D[]} options.targets
  * @param {(target: Target, pressed: boolean) => void} options.press
  * @param {(target: Target | null) => void} options.hover
@@ -21,7 +21,7 @@ export function watchPointer({ element, camera, targets, press, hover }) {
   const targetAt = (event) => {
     const { left, top, width, height } = element.getBoundingClientRect();
     const place = new THREE.Vector2(((event.clientX - left) / width) * 2 - 1, 1 - ((event.clientY - top) / height) * 2);
-    caster.setFromCamera(place, camera);
+    caster.setFromCamera(place, camera());
     const [hit] = caster.intersectObjects(targets(), false);
     return hit === undefined ? null : { robot: hit.object.userData.robot, button: hit.object.userData.button };
   };

@@ -11,6 +11,9 @@ export const LEVELS = /** @type {readonly Level[]} */ ([
   { pixelRatio: 0.5 },
 ]);
 
+/** What a person may choose: by itself, or a level and no other. */
+export const QUALITIES = /** @type {Readonly<Record<string, number | null>>} */ ({ auto: null, fine: 0, medium: 1, simple: 3 });
+
 const SLOWEST_FPS = 15;
 const WINDOW = 24;
 /** A longer gap means that nothing had to be drawn. */
@@ -19,11 +22,22 @@ const IDLE_MS = 1500;
 export class Quality {
   /** @param {number} level index in `LEVELS` to begin with */
   constructor(level) {
+    this.first = level;
     this.level = level;
+    this.choice = "auto";
     /** @type {number[]} */ this.intervals = [];
     /** @type {number | null} */ this.lastMs = null;
     /** The first window is the page's own start, and no measure. */
     this.settled = false;
+  }
+
+  /** @param {string} choice  one of `QUALITIES` */
+  choose(choice) {
+    const level = QUALITIES[choice];
+    if (level === undefined) return;
+    this.choice = choice;
+    this.level = level ?? this.first;
+    this.intervals = [];
   }
 
   /** The level's settings. */
@@ -47,6 +61,7 @@ export class Quality {
       this.settled = true;
       return false;
     }
+    if (this.choice !== "auto") return false;
     if (mean <= 1000 / SLOWEST_FPS || this.level === LEVELS.length - 1) return false;
     this.level += 1;
     return true;

@@ -1,0 +1,83 @@
+"""Pictures as files, the view from above without WebGL, numbers at the beams, the robot's eye, two robots."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.web_ui.page_support import MARKS, open_page, wait_until_settled
+
+pytestmark = MARKS
+
+NO_WEBGL = """
+const real = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+  return kind.startsWith("webgl") ? null : real.call(this, kind, ...rest);
+};
+"""
+LOSE = "() => document.querySelector('#view').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()"
+FLAT_COLORS = """() => {
+  const canvas = document.querySelector('#flat');
+  if (canvas.hidden) return 0;
+  const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  return new Set(new Uint32Array(data.buffer)).size;
+}"""
+PNG = b"\x89PNG\r\n\x1a\n"
+RESTING = ("--playground", "base", "--program", "none")
+
+
+def test_without_webgl_the_world_is_drawn_from_above_and_its_buttons_work(suite, page):
+    page.add_init_script(NO_WEBGL)
+    open_page(page, suite(*RESTING))
+    page.wait_for_function(f"({FLAT_COLORS})() > 4")
+    assert "2D" in page.locator("#trouble").inner_text()
+    page.locator("#view").focus()
+    page.keyboard.press("f")
+    place = wait_until_settled(page, "button.center")
+    page.mouse.move(place["x"], place["y"])
+    page.mouse.down()
+    page.wait_for_function("() => window.thymio.state().robot.buttons.center")
+    page.mouse.up()
+    with page.expect_download() as download:
+        page.locator("button.picture").click()
+    assert Path(download.value.path()).read_bytes().startswith(PNG)
+
+
+def test_a_picture_that_is_lost_for_good_is_drawn_from_above(suite, page):
+    open_page(page, suite(*RESTING))
+    wait_until_settled(page, "robot")
+    page.evaluate(LOSE)
+    page.locator("#trouble").wait_for()
+    page.wait_for_function(f"({FLAT_COLORS})() > 4")
+
+
+def test_the_view_is_saved_as_a_picture_and_the_robot_sees_with_its_own_eye(suite, page):
+    open_page(page, suite(*RESTING))
+    wait_until_settled(page, "robot")
+    sizes = []
+    for key in ("Home", "e"):
+        page.locator("#view").focus()
+        page.keyboard.press(key)
+        with page.expect_download() as download:
+            page.locator("button.picture").click()
+        content = Path(download.value.path()).read_bytes()
+        assert content.startswith(PNG)
+        assert download.value.suggested_filename.startswith("base-")
+        sizes.append(content)
+    assert sizes[0] != sizes[1]
+    assert page.evaluate("() => window.thymio.partPosition('robot')") is None  # it does not see itself
+
+
+def test_two_robots_have_colours_and_numbers_are_at_the_beams_of_the_selected_one(suite, page):
+    open_page(page, suite("--playground", "two_robots", "--program", "none"))
+    page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
+    page.wait_for_function("() => document.querySelectorAll('.robot-label').length === 2")
+    colours = page.evaluate(
+        "() => [...document.querySelectorAll('.robot-label, .robots button')]"
+        ".map((one) => getComputedStyle(one).borderInlineStartColor)"
+    )
+    assert len(set(colours[:2])) == 2
+    assert set(colours[:2]) == set(colours[2:])
+    page.locator("#numbers").check()
+    page.wait_for_function("() => document.querySelectorAll('.ray-number:not([hidden])').length === 9")
+    page.locator("[data-robot=red]").click()
+    page.wait_for_function("() => window.thymio.state().selected === 'red'")

@@ -1,0 +1,214 @@
+// The view from above in two dimensions, for browsers without WebGL, for a picture that was lost for good, and for slow
+// machines. Its camera is one of the 3D view's kind, so that pointers, labels and ghosts work the same.
+
+import * as THREE from "three";
+
+import { MARKER } from "../state/markers.js";
+import { placed, ROBOT_OUTLINE } from "../move/things.js";
+import { poseAt } from "./motion.js";
+import { BUTTON_PLACES, LIGHTS, PROXIMITY_PLACES } from "./parts.js";
+import { MAX_RANGE_M } from "./rays.js";
+
+/** @typedef {import("../state/index.js").State} State */
+/** @typedef {import("../state/markers.js").Marker} Marker */
+/** @typedef {import("../state/robot.js").Robot} Robot */
+
+const MARGIN = 1.06;
+const FOLLOW_M = 0.9; // height of the picture while it follows a robot
+const ABOVE_M = 5;
+const HALF_BEAM = 0.15; // rad
+
+export class FlatView {
+  /** @param {HTMLCanvasElement} canvas  that lies over the 3D one */
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.context = canvas.getContext("2d");
+    this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.01, 2 * ABOVE_M);
+    this.camera.position.set(0, 0, ABOVE_M);
+    this.zoom = 1;
+    /** @type {Map<Marker, ImageBitmap | null>} pictures on the ground; null while they are decoded */
+    this.pictures = new Map();
+  }
+
+  /**
+   * Let the whole world, or the surroundings of a robot, fill the picture.
+   *
+   * @param {THREE.Vector3[]} corners
+   * @param {{ x: number, y: number } | null} followed
+   */
+  aim(corners, followed) {
+    const { clientWidth, clientHeight } = this.canvas;
+    const aspect = clientWidth / Math.max(1, clientHeight);
+    const box = new THREE.Box3().setFromPoints(corners.length > 0 ? corners : [new THREE.Vector3()]);
+    const size = box.getSize(new THREE.Vector3());
+    const middle = box.getCenter(new THREE.Vector3());
+    const height = followed !== null ? FOLLOW_M : MARGIN * Math.max(size.y, size.x / aspect, 0.2);
+    const { x, y } = followed ?? middle;
+    const half = height / 2 / this.zoom;
+    Object.assign(this.camera, { left: -half * aspect, right: half * aspect, top: half, bottom: -half });
+    this.camera.position.set(x, y, ABOVE_M);
+    this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
+  }
+
+  /**
+   * @param {State} state
+   * @param {object} options
+   * @param {number} options.nowMs
+   * @param {boolean} options.sensors
+   * @param {import("../move/mover.js").Held | null} options.held
+   * @param {(name: string) => string} options.colour
+   * @param {() => void} options.changed   called when a picture has arrived
+   */
+  draw(state, { nowMs, sensors, held, colour, changed }) {
+    const { context, canvas, camera } = this;
+    if (context === null) return;
+    canvas.width = canvas.clientWidth;
+    canvas.height = canvas.clientHeight;
+    context.fillStyle = "#dfecf6";
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    const scale = canvas.height / (camera.top - camera.bottom);
+    const { x, y } = camera.position;
+    // Metres, y up.
+    context.setTransform(scale, 0, 0, -scale, canvas.width / 2 - x * scale, canvas.height / 2 + y * scale);
+    const lowFirst = [...state.markers.values(), ...state.objects.values()].sort((a, b) => top(a) - top(b));
+    for (const marker of lowFirst) this.#marker(context, marker, changed);
+    for (const robot of Object.values(state.robots)) {
+      for (const stroke of robot.trail.values()) this.#marker(context, stroke, changed);
+    }
+    for (const [name, robot] of Object.entries(state.robots)) {
+      if (robot.latest === null) continue;
+      const { pose } = poseAt(robot.previous, robot.latest, nowMs);
+      context.save();
+      context.translate(pose.x, pose.y);
+      context.rotate(pose.yaw);
+      drawRobot(context, robot, sensors, colour(name));
+      context.restore();
+    }
+    if (held !== null) {
+      context.fillStyle = held.blocker === null ? "rgb(23 105 209 / 50%)" : "rgb(209 26 26 / 60%)";
+      for (const polygon of placed(held.thing.outline, held.pose)) fill(context, polygon);
+    }
+    context.setTransform(1, 0, 0, 1, 0, 0);
+  }
+
+  /** @param {CanvasRenderingContext2D} context @param {Marker} marker @param {() => void} changed */
+  #marker(context, marker, changed) {
+    const { type, pose, scale, color, points, colors } = marker;
+    const { w, x, y, z } = pose.orientation;
+    context.save();
+    context.translate(pose.position.x, pose.position.y);
+    context.rotate(Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)));
+    context.fillStyle = context.strokeStyle = css(color);
+    const picture = marker.texture?.data.length ? this.#picture(marker, changed) : null;
+    if (picture !== null) {
+      context.scale(1, -1);
+      context.drawImage(picture, -scale.x / 2, -scale.y / 2, scale.x, scale.y);
+    } else if (type === MARKER.CUBE) context.fillRect(-scale.x / 2, -scale.y / 2, scale.x, scale.y);
+    else if (type === MARKER.CYLINDER || type === MARKER.SPHERE) disc(context, 0, 0, scale.x / 2);
+    else if (type === MARKER.LINE_STRIP) {
+      context.lineWidth = scale.x;
+      context.lineCap = context.lineJoin = "round";
+      context.beginPath();
+      for (const point of points) context.lineTo(point.x, point.y);
+      context.stroke();
+    } else if (type === MARKER.TRIANGLE_LIST) {
+      context.beginPath();
+      for (let at = 0; at + 2 < points.length; at += 3) {
+        if (colors.length > 0) {
+          context.fill();
+          context.beginPath();
+          context.fillStyle = css(colors[at]);
+        }
+        const [a, b, c] = points.slice(at, at + 3);
+        context.moveTo(a.x * scale.x, a.y * scale.y);
+        context.lineTo(b.x * scale.x, b.y * scale.y);
+        context.lineTo(c.x * scale.x, c.y * scale.y);
+        context.closePath();
+      }
+      context.fill();
+    }
+    context.restore();
+  }
+
+  /** @param {Marker} marker @param {() => void} changed */
+  #picture(marker, changed) {
+    const known = this.pictures.get(marker);
+    if (known !== undefined) return known;
+    this.pictures.set(marker, null);
+    const png = new Blob([Uint8Array.from(marker.texture?.data ?? [])], { type: "image/png" });
+    createImageBitmap(png).then(
+      (bitmap) => {
+        this.pictures.set(marker, bitmap);
+        changed();
+      },
+      () => {}, // it stays the mosaic of its triangles
+    );
+    return null;
+  }
+}
+
+/** @param {Marker} marker */
+function top({ pose, scale, type }) {
+  return pose.position.z + (type === MARKER.TRIANGLE_LIST ? 0 : scale.z / 2);
+}
+
+/** @param {CanvasRenderingContext2D} context @param {Robot} robot @param {boolean} sensors @param {string} colour */
+function drawRobot(context, robot, sensors, colour) {
+  if (sensors) {
+    for (const [name, { x, y, yaw }] of Object.entries(PROXIMITY_PLACES)) {
+      const range = robot.proximity[name];
+      if (range === undefined) continue;
+      const seen = Number.isFinite(range) || range === -Infinity;
+      const length = seen ? Math.max(range, 0.004) : MAX_RANGE_M;
+      context.fillStyle = seen ? "rgb(224 45 27 / 55%)" : "rgb(59 130 208 / 18%)";
+      context.beginPath();
+      context.moveTo(x, y);
+      context.arc(x, y, length, yaw - HALF_BEAM, yaw + HALF_BEAM);
+      context.fill();
+    }
+  }
+  const [outline] = ROBOT_OUTLINE;
+  const lit = robot.leds.top ?? [0, 0, 0];
+  const most = Math.max(...lit);
+  const [r, g, b] = lit.map((level) => 247 + (most > 0 ? most * (255 * (level / most) - 247) : 0));
+  context.fillStyle = `rgb(${r} ${g} ${b})`;
+  context.strokeStyle = colour;
+  context.lineWidth = 0.004;
+  fill(context, outline);
+  context.stroke();
+  context.fillStyle = "#343b44";
+  for (const side of [1, -1]) context.fillRect(-0.022, side * 0.047 - 0.0075, 0.044, 0.015);
+  for (const [name, { x, y }] of Object.entries(BUTTON_PLACES)) {
+    context.fillStyle = robot.buttons[name] ? "#0b2f66" : "#66758a";
+    disc(context, x, y, 0.005);
+  }
+  for (const { group, index, place, colour: full, normal } of LIGHTS) {
+    const level = robot.leds[group]?.[index] ?? 0;
+    if (level === 0) continue;
+    context.fillStyle = `#${full.toString(16).padStart(6, "0")}`;
+    context.globalAlpha = 0.3 + 0.7 * level;
+    disc(context, place.x - 0.006 * normal.x, place.y - 0.006 * normal.y, 0.0035);
+    context.globalAlpha = 1;
+  }
+}
+
+/** @param {CanvasRenderingContext2D} context @param {readonly (readonly [number, number])[]} polygon */
+function fill(context, polygon) {
+  context.beginPath();
+  for (const [x, y] of polygon) context.lineTo(x, y);
+  context.closePath();
+  context.fill();
+}
+
+/** @param {CanvasRenderingContext2D} context @param {number} x @param {number} y @param {number} radius */
+function disc(context, x, y, radius) {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.fill();
+}
+
+/** @param {import("../state/markers.js").Colour} colour */
+function css({ r, g, b, a }) {
+  return `rgb(${r * 255} ${g * 255} ${b * 255} / ${a})`;
+}
