@@ -32,7 +32,7 @@ EXECUTABLES = {
         {"simulator", "aseba_runtime", "foxglove_bridge"},
     ),
 }
-SHARED = ["package.xml", "launch/thymio.launch.py", "playgrounds/line.json"]
+SHARED = ["package.xml", "launch/thymio.launch.py", "playgrounds/line.json", "rviz/thymio.rviz"]
 DEADLINE_S = 30.0
 
 

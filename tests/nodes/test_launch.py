@@ -7,12 +7,16 @@ import importlib
 import runpy
 import sys
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import pytest
 
 pytest.importorskip("rclpy")
+
+from thymio_sim_ros.device.events import POLICIES
+from thymio_sim_ros.device.layout import LAYOUTS
+from thymio_sim_ros.nodes import params, simulator_params
 
 LAUNCH = Path(__file__).parents[2] / "thymio_sim_ros" / "launch" / "thymio.launch.py"
 # Executable → the module whose parameter dataclass it declares.
@@ -23,13 +27,16 @@ MODULES = {
     "web_ui": "web_node",
 }
 NAMES = {
-    "launch": ["LaunchDescription"],
-    "launch.actions": ["DeclareLaunchArgument"],
+    "launch": ["LaunchContext", "LaunchDescription"],
+    "launch.actions": ["DeclareLaunchArgument", "Shutdown"],
     "launch.conditions": ["IfCondition"],
-    "launch.substitutions": ["LaunchConfiguration", "PythonExpression"],
+    "launch.events": [],
+    "launch.events.process": ["ProcessExited"],
+    "launch.substitutions": ["LaunchConfiguration", "PathJoinSubstitution", "PythonExpression"],
     "launch_ros": [],
     "launch_ros.actions": ["Node"],
     "launch_ros.parameter_descriptions": ["ParameterValue"],
+    "launch_ros.substitutions": ["FindPackageShare"],
 }
 
 
@@ -55,6 +62,12 @@ def _actions(description: Call, kind: str) -> list[Call]:
     return [action for action in description.args[0] if type(action).__name__ == kind]
 
 
+def _ours(description: Call) -> list[dict[str, Any]]:
+    """How each of our own nodes is started."""
+    nodes = [action.kwargs for action in _actions(description, "Node")]
+    return [node for node in nodes if node["package"] == "thymio_sim_ros"]
+
+
 def _declared(module: str) -> dict[str, type]:
     """Parameter name → type of its default, of every parameter dataclass that a module defines."""
     namespace = vars(importlib.import_module(f"thymio_sim_ros.nodes.{module}")).values()
@@ -68,16 +81,15 @@ def _declared(module: str) -> dict[str, type]:
 
 
 def test_every_executable_is_started_as_the_node_of_its_name(description: Call) -> None:
-    nodes = [action.kwargs for action in _actions(description, "Node")]
+    nodes = _ours(description)
     assert [node["executable"] for node in nodes] == [node["name"] for node in nodes] == list(MODULES)
-    assert {node["package"] for node in nodes} == {"thymio_sim_ros"}
 
 
 def test_every_parameter_that_is_passed_is_declared_with_its_type(description: Call) -> None:
     passed = {
-        (node.kwargs["name"], name): value.kwargs["value_type"]
-        for node in _actions(description, "Node")
-        for name, value in node.kwargs["parameters"][0].items()
+        (node["name"], name): value.kwargs["value_type"]
+        for node in _ours(description)
+        for name, value in node["parameters"][0].items()
         if name != "use_sim_time"
     }
     declared = {(node, name): kind for node, module in MODULES.items() for name, kind in _declared(module).items()}
@@ -85,11 +97,7 @@ def test_every_parameter_that_is_passed_is_declared_with_its_type(description: C
 
 
 def test_all_but_the_simulator_follow_simulated_time(description: Call) -> None:
-    follow = {
-        node.kwargs["name"]
-        for node in _actions(description, "Node")
-        if node.kwargs["parameters"][0].get("use_sim_time")
-    }
+    follow = {node["name"] for node in _ours(description) if node["parameters"][0].get("use_sim_time")}
     assert follow == MODULES.keys() - {"simulator"}
 
 
@@ -98,3 +106,30 @@ def test_every_argument_has_a_text_and_is_used(description: Call) -> None:
     assert all(argument.kwargs["description"] for argument in arguments)
     source = LAUNCH.read_text()
     assert [name for (name,) in (argument.args for argument in arguments) if f'value["{name}"]' not in source] == []
+
+
+def test_an_argument_that_is_one_of_few_words_lists_those_of_its_parameter(description: Call) -> None:
+    listed = {item.args[0]: item.kwargs["choices"] for item in _actions(description, "DeclareLaunchArgument")}
+    parameters = {item.name: item for item in params.declared(simulator_params.SimulatorParams())}
+    assert listed["motor_model"] == list(parameters["motor_model"].metadata["choices"])
+    assert listed["layout"] == list(LAYOUTS)
+    assert listed["events"] == list(POLICIES)
+    assert listed["playground"] is None
+
+
+def test_rviz_is_started_with_the_shipped_configuration_if_wanted(description: Call) -> None:
+    (rviz,) = [node for node in _actions(description, "Node") if node.kwargs["package"] == "rviz2"]
+    option, path = rviz.kwargs["arguments"]
+    share, *names = path.args[0]
+    assert (option, share.args, names) == ("-d", ("thymio_sim_ros",), ["rviz", "thymio.rviz"])
+    assert rviz.kwargs["condition"].args[0].args == ("rviz",)
+
+
+@pytest.mark.parametrize(("code", "is_end"), [(0, False), (1, False), (-11, False), (2, True)])
+def test_a_node_that_refuses_what_it_was_given_ends_all_others(description: Call, code: int, is_end: bool) -> None:
+    for node in _ours(description):
+        assert bool(node["on_exit"](SimpleNamespace(returncode=code, process_name="simulator-1"), None)) == is_end
+
+
+def test_a_node_that_died_is_started_again_if_wanted(description: Call) -> None:
+    assert {node["respawn"].args for node in _ours(description)} == {("respawn",)}

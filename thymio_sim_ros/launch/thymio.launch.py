@@ -5,12 +5,19 @@ ros2 launch thymio_sim_ros thymio.launch.py playground:=line program:=line_follo
 
 from __future__ import annotations
 
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
+from launch import LaunchContext, LaunchDescription
+from launch.actions import DeclareLaunchArgument, Shutdown
 from launch.conditions import IfCondition
-from launch.substitutions import LaunchConfiguration, PythonExpression
+from launch.events.process import ProcessExited
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution, PythonExpression
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
+from launch_ros.substitutions import FindPackageShare
+
+REFUSED = 2
+"""Exit code of a node that was given something wrong; it has said what."""
+
+RESPAWN_DELAY_S = 1.0
 
 ARGUMENTS = {
     "playground": ("line", "playground: a shipped name or a file"),
@@ -18,9 +25,9 @@ ARGUMENTS = {
     "behaviour": ("", "what the robot is switched on with, such as menu; '' is the program"),
     "card": ("", "folder that stands for the robot's memory card; '' is no card"),
     "settings": ("", "folder that keeps the robot's settings; '' forgets them"),
-    "layout": ("thymio", "order of variables and natives: thymio or playground"),
-    "events": ("firmware", "how events meet: firmware or playground"),
-    "motor_model": ("ideal", "how motors follow: ideal or firmware"),
+    "layout": ("thymio", "order of variables and natives"),
+    "events": ("firmware", "how events meet"),
+    "motor_model": ("ideal", "how motors follow"),
     "seed": ("0", "seed of all noise"),
     "log": ("", "file of a run log for thymio-sim replay; '' is none"),
     "real_time_factor": ("1.0", "simulated seconds per second; 0: as fast as possible"),
@@ -29,11 +36,18 @@ ARGUMENTS = {
     "port": ("8080", "TCP port of the page"),
     "foxglove_port": ("8765", "TCP port of the Foxglove bridge"),
     "web": ("true", "serve the page"),
+    "rviz": ("false", "start RViz with our configuration (needs the package rviz2)"),
+    "respawn": ("false", "start a node again that died"),
+}
+CHOICES = {
+    "layout": ["thymio", "playground"],
+    "events": ["firmware", "playground"],
+    "motor_model": ["ideal", "firmware"],
 }
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Four nodes on one clock; all but the simulator follow simulated time."""
+    """Four nodes on one clock, and RViz if wanted; all but the simulator follow simulated time."""
     value = {name: LaunchConfiguration(name) for name in ARGUMENTS}
     range_convention = PythonExpression(
         ["'driver' if '", value["driver_compat"], "'.lower() in ('true', '1') else 'rep117'"]
@@ -65,19 +79,41 @@ def generate_launch_description() -> LaunchDescription:
     return LaunchDescription(
         [
             *(
-                DeclareLaunchArgument(name, default_value=default, description=text)
+                DeclareLaunchArgument(name, default_value=default, description=text, choices=CHOICES.get(name))
                 for name, (default, text) in ARGUMENTS.items()
             ),
-            _node("simulator", simulator),
-            _node("aseba_runtime", runtime),
-            _node("foxglove_bridge", bridge),
-            _node("web_ui", page, condition=IfCondition(value["web"])),
+            _node("simulator", simulator, value["respawn"]),
+            _node("aseba_runtime", runtime, value["respawn"]),
+            _node("foxglove_bridge", bridge, value["respawn"]),
+            _node("web_ui", page, value["respawn"], condition=IfCondition(value["web"])),
+            Node(
+                package="rviz2",
+                executable="rviz2",
+                arguments=["-d", PathJoinSubstitution([FindPackageShare("thymio_sim_ros"), "rviz", "thymio.rviz"])],
+                parameters=[{"use_sim_time": True}],
+                condition=IfCondition(value["rviz"]),
+            ),
         ]
     )
 
 
-def _node(name: str, parameters: dict[str, object], **options: object) -> Node:
+def _node(name: str, parameters: dict[str, object], respawn: LaunchConfiguration, **options: object) -> Node:
     """One of our executables; its node has the same name."""
     return Node(
-        package="thymio_sim_ros", executable=name, name=name, parameters=[parameters], output="screen", **options
+        package="thymio_sim_ros",
+        executable=name,
+        name=name,
+        parameters=[parameters],
+        output="screen",
+        respawn=respawn,
+        respawn_delay=RESPAWN_DELAY_S,
+        on_exit=_end_all_if_refused,
+        **options,
     )
+
+
+def _end_all_if_refused(event: ProcessExited, _context: LaunchContext) -> list[Shutdown] | None:
+    """A wrong playground, program or port ends the suite, which would be useless without that node."""
+    if event.returncode != REFUSED:
+        return None
+    return [Shutdown(reason=f"{event.process_name} refused what it was given")]

@@ -18,13 +18,13 @@ from thymio_sim_ros.nodes.aseba_node import RuntimeParams
 from thymio_sim_ros.nodes.description import fixed_frames, wheel_position
 from thymio_sim_ros.nodes.migration import migration
 from thymio_sim_ros.nodes.names import SIDES
-from thymio_sim_ros.nodes.reference_text import AFTER, BEFORE, QUALITY
+from thymio_sim_ros.nodes.reference_text import AFTER, BEFORE, QUALITY, RVIZ
 from thymio_sim_ros.nodes.robot_inputs import RobotInput, robot_inputs
 from thymio_sim_ros.nodes.simulator_params import SimulatorParams
 from thymio_sim_ros.sim import sensors
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 
-__all__ = ["own_sensors", "table", "text", "type_name"]
+__all__ = ["own_sensors", "published", "table", "text", "type_name"]
 
 T = TypeVar("T")
 
@@ -70,6 +70,7 @@ def text() -> str:
         table(("kind", "depth", "for"), ((kind, str(one.depth), about) for kind, (one, about) in qos.KINDS.items())),
         "## Frames\n",
         _frames(),
+        RVIZ,
         "## Parameters of the simulator\n",
         table(("parameter", "default", "values", "at run time", ""), _parameters(SimulatorParams())),
         "## Parameters of the Aseba runtime\n",
@@ -79,6 +80,11 @@ def text() -> str:
         migration(own_sensors()),
     ]
     return "\n".join(parts)
+
+
+def published() -> dict[str, tuple[str, str]]:
+    """Every topic of the simulator, relative to the robot's namespace or absolute: its type and its kind of QoS."""
+    return {line.topic: (line.type, line.profile) for line in (*_published(), *_of_world())}
 
 
 def own_sensors() -> tuple[Sensor, ...]:

@@ -65,6 +65,21 @@ RViz and Foxglove do. All of it works through the Foxglove bridge too. What is m
 after the next step.
 """
 
+RVIZ = """\
+## RViz
+
+`ros2 launch thymio_sim_ros thymio.launch.py rviz:=true` also starts RViz with our configuration: robot, playground,
+movable things, proximity, odometry; frames, rays, the true path, pen and map wait to be ticked. The tool «2D Pose
+Estimate» puts the robot somewhere. For the robot `anna` of several:
+
+```sh
+ros2 run rviz2 rviz2 -d $(ros2 pkg prefix --share thymio_sim_ros)/rviz/thymio.rviz \\
+    --ros-args -p use_sim_time:=true -r __ns:=/anna
+```
+
+RViz comes with a ROS installation, not with the wheels.
+"""
+
 QUALITY = """\
 All are reliable and keep the last messages. With `qos_overrides.<topic>.publisher.reliability:=best_effort` a sensor's
 topic is best effort, as wireless class rooms want it; `history`, `depth` and `durability` likewise.
