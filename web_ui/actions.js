@@ -15,6 +15,11 @@ export const LARGEST_PLAYGROUND = 3_000_000;
 /** What the ending of a file's name says about it. */
 const KINDS = { program: /\.(aesl|aseba|txt)$/i, playground: /\.(json|playground|xml|zip)$/i };
 
+/** @param {{ name: string }} file */
+export function isProgram({ name }) {
+  return KINDS.program.test(name);
+}
+
 export class Actions {
   /**
    * @param {object} options
@@ -136,7 +141,7 @@ export class Actions {
 
   /** A file chosen or dropped: its ending says what it is. @param {File} file */
   async loadFile(file) {
-    if (KINDS.program.test(file.name)) {
+    if (isProgram(file)) {
       if (file.size > LARGEST_PROGRAM) return this.refuse("file.tooLarge", file);
       await this.loadProgram(file.name, await file.text());
     } else if (KINDS.playground.test(file.name)) {

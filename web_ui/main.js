@@ -1,7 +1,8 @@
 // The page's start: connects protocol, state, scene and panels, and lets each do its own work.
 
-import { Actions } from "./actions.js";
+import { Actions, isProgram } from "./actions.js";
 import { watchDrops } from "./drop.js";
+import { EditorHost } from "./editor_host.js";
 import { chooseLanguage, translator } from "./i18n/index.js";
 import { watchKeyboard } from "./keyboard.js";
 import { PANELS } from "./panels/index.js";
@@ -38,10 +39,18 @@ async function main() {
   let t = translator(language);
   /** @type {import("./panels/index.js").Panel[]} */ let panels = [];
 
+  const editor = new EditorHost({
+    slot: element('[data-slot="editor"]'),
+    client: () => client,
+    changed: () => scene.invalidate(),
+  });
   const client = new Client({
     address,
-    emit: (event) => store.dispatch(event.type === "message" ? { ...event, nowMs: performance.now() } : event),
-    wants: (topic) => splitTopic(topic) !== null,
+    emit: (event) => {
+      store.dispatch(event.type === "message" ? { ...event, nowMs: performance.now() } : event);
+      editor.receive(event, store.state.selected);
+    },
+    wants: (topic) => splitTopic(topic) !== null || editor.wants(topic),
     parameters: [PARAMETERS.playground, PARAMETERS.factor],
   });
   const actions = new Actions({ client, store, t: (key, values) => t(key, values) });
@@ -101,9 +110,10 @@ async function main() {
     showTrouble();
     document.querySelectorAll(".banner, .hint").forEach((banner) => banner.remove());
     for (const panel of panels) panel.element.remove();
-    const context = { t, language, setLanguage, actions, store, scene, mover, speaker, address, announce };
+    const context = { t, language, setLanguage, actions, store, scene, mover, speaker, editor, address, announce };
     panels = PANELS.map((create) => create(context));
     for (const panel of panels) element(`[data-slot="${panel.slot}"]`).append(panel.element);
+    editor.dress(context);
     scene.invalidate();
   };
   /** @param {string} chosen */
@@ -115,10 +125,14 @@ async function main() {
 
   build();
   store.subscribe(() => scene.invalidate());
+  store.subscribe(() => editor.redraw());
   store.subscribe(() => speaker.update(store.state));
   for (const gesture of ["pointerup", "keydown"]) window.addEventListener(gesture, () => speaker.unlock());
   watchKeyboard(canvas, scene, mover, (button, pressed) => actions.press(store.state.selected, button, pressed));
-  watchDrops(element("#drop"), (file) => actions.loadFile(file));
+  watchDrops(element("#drop"), (file) => {
+    if (editor.isOpen && isProgram(file)) editor.editor?.open(file);
+    else actions.loadFile(file);
+  });
   window.addEventListener("keydown", ({ key }) => {
     if (key === "Escape") actions.stop();
   });

@@ -146,6 +146,7 @@ def test_a_loaded_program_is_described_with_the_topics_of_its_events():
     told = describe_program(load_program(text, "maze.aesl"), {"ping": "ping"})
     assert (told["name"], told["node"], told["first_line"]) == ("maze.aesl", "thymio-II", 4)
     assert told["source"].startswith("var counter")
+    assert told["file"] == text
     assert told["events"] == [{"name": "ping", "size": 1, "topic": "ping"}]
     assert told["variables"][0]["line"] == 4
 

@@ -126,6 +126,7 @@ def describe_program(program: ThymioProgram, topics: Mapping[str, str]) -> dict[
         "node": program.node.name,
         "first_line": program.lines[0],
         "source": program.source,
+        "file": program.text,
         "events": [{"name": name, "size": size, "topic": topics.get(name)} for name, size in program.events],
         "constants": [{"name": name, "value": value} for name, value in program.constants],
         **_names(program.node, program.program),

@@ -30,7 +30,7 @@ class ProgramError(Exception):
 class ThymioProgram:
     """A compiled program with the definitions it shares with others; `lines` are those of its rows in its file.
 
-    `node` is the part of the file that it comes from; that of bare text has no name.
+    `node` is the part of the file that it comes from; that of bare text has no name. `text` is the whole file.
     """
 
     name: str
@@ -41,6 +41,7 @@ class ThymioProgram:
     lines: tuple[int, ...]
     layout: str = THYMIO
     node: aesl.Node = field(default=aesl.Node(""), compare=False)
+    text: str = field(default="", compare=False)
 
     def line_of(self, pc: int) -> int | None:
         """Line in the file, from 1, of an address of the bytecode."""
@@ -82,7 +83,8 @@ def load_file(
         nodes, others = select(network, robots)
     except AeslError as error:
         raise ProgramError(name, error.line, error.column, str(error)) from error
-    return ThymioFile(tuple(_compile(name, node, network, layout, is_one=len(nodes) == 1) for node in nodes), others)
+    is_one = len(nodes) == 1
+    return ThymioFile(tuple(_compile(name, text, node, network, layout, is_one=is_one) for node in nodes), others)
 
 
 def parse(text: str, constants: Mapping[str, int] = NO_CONSTANTS) -> aesl.Network:
@@ -119,7 +121,9 @@ def called(node: aesl.Node) -> str:
     return f"node '{node.name}' {node.node_id}" if node.node_id else f"node '{node.name}'"
 
 
-def _compile(name: str, node: aesl.Node, network: aesl.Network, layout: str, *, is_one: bool) -> ThymioProgram:
+def _compile(
+    name: str, text: str, node: aesl.Node, network: aesl.Network, layout: str, *, is_one: bool
+) -> ThymioProgram:
     try:
         program = compile(node.code, target(layout), events=network.events, constants=network.constants)
     except CompileError as error:
@@ -128,9 +132,8 @@ def _compile(name: str, node: aesl.Node, network: aesl.Network, layout: str, *, 
             raise ProgramError(name, None, None, message) from error
         row, col = node.place(error.pos.offset)
         raise ProgramError(name, row + 1, col + 1, message) from error
-    return ThymioProgram(
-        name, node.code, program, network.events, network.constants, _lines(node), layout, replace(node, plugins=())
-    )
+    lines, shown = _lines(node), replace(node, plugins=())
+    return ThymioProgram(name, node.code, program, network.events, network.constants, lines, layout, shown, text)
 
 
 def _lines(node: aesl.Node) -> tuple[int, ...]:

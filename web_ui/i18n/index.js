@@ -14,11 +14,11 @@ export function chooseLanguage(wanted) {
   return wanted.map((tag) => tag.slice(0, 2).toLowerCase()).find((tag) => tag in LANGUAGES) ?? "en";
 }
 
-/** @param {string} language @returns {Translate} */
-export function translator(language) {
-  const table = LANGUAGES[language] ?? en;
+/** @param {string} language @param {Record<string, Record<string, string>>} [tables] @returns {Translate} */
+export function translator(language, tables = LANGUAGES) {
+  const table = tables[language] ?? tables.en;
   return (key, values = {}) => {
-    const text = table[key] ?? /** @type {Record<string, string>} */ (en)[key] ?? key;
+    const text = table[key] ?? tables.en[key] ?? key;
     return text.replace(/\{(\w+)\}/g, (_all, name) => String(values[name] ?? ""));
   };
 }

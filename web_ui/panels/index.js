@@ -3,6 +3,7 @@
 import { connectionPanel } from "./connection.js";
 import { displayPanel } from "./display.js";
 import { dpadPanel } from "./dpad.js";
+import { editorSwitchPanel } from "./editor_switch.js";
 import { languagePanel } from "./language.js";
 import { noticesPanel } from "./notices.js";
 import { playgroundPanel } from "./playground.js";
@@ -27,6 +28,7 @@ import { viewsPanel } from "./views.js";
  * @property {import("../scene/index.js").SceneView} scene
  * @property {import("../move/mover.js").Mover} mover
  * @property {import("../sound/speaker.js").Speaker} speaker
+ * @property {import("../editor_host.js").EditorHost} editor
  * @property {string} address   of the simulator, for people
  * @property {(text: string) => void} announce   to the live region
  */
@@ -40,6 +42,7 @@ import { viewsPanel } from "./views.js";
 /** @type {((context: Context) => Panel)[]} */
 export const PANELS = [
   connectionPanel,
+  editorSwitchPanel,
   languagePanel,
   soundPanel,
   stopPanel,

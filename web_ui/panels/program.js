@@ -16,7 +16,7 @@ const VERBS = /** @type {const} */ ([
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function programPanel(context) {
-  const { t, actions, store, announce } = context;
+  const { t, actions, store, announce, editor } = context;
   const behaviour = behaviourChoice(context);
   const name = h("strong", { class: "name" });
   const lamp = h("span", { class: "state" });
@@ -82,7 +82,12 @@ export function programPanel(context) {
     if (fault !== null) {
       upload.append(
         placed ? sourceView(now.text, fault, t("program.source")) : h("p", { class: "fault" }, fault.text),
-        h("small", {}, t("program.keeps")),
+        h(
+          "div",
+          { class: "row" },
+          h("small", {}, t("program.keeps")),
+          h("button", { type: "button", onclick: () => editor.openText(now.name, now.text) }, t("program.edit")),
+        ),
       );
     }
     announce(fault === null ? headline : `${headline}: ${fault.text}`);

@@ -1,0 +1,264 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { marks, readVerdict } from "../../web_ui/editor/checking.js";
+import { Desk, eventKey } from "../../web_ui/editor/desk.js";
+import { blank } from "../../web_ui/editor/documents.js";
+import { explain, signature, suggestions } from "../../web_ui/editor/help.js";
+import { History } from "../../web_ui/editor/history.js";
+import { Link } from "../../web_ui/editor/link.js";
+import { csv, parseNumbers } from "../../web_ui/editor/numbers.js";
+import { roundStep } from "../../web_ui/editor/plot.js";
+import { INITIAL, KEPT_EVENTS, reduce, splitEditorTopic } from "../../web_ui/editor/state.js";
+import { Keeper, KEPT_FILES } from "../../web_ui/editor/storage.js";
+import { PHRASES, WORDS } from "../../web_ui/editor/words/index.js";
+import { ALL, Workspace } from "../../web_ui/editor/workspace.js";
+
+/** A browser's storage in memory. */
+function shelf() {
+  /** @type {Map<string, string>} */ const kept = new Map();
+  return /** @type {Storage} */ ({
+    getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
+    setItem: (/** @type {string} */ key, /** @type {string} */ value) => void kept.set(key, value),
+    removeItem: (/** @type {string} */ key) => void kept.delete(key),
+  });
+}
+
+function workspace(storage = shelf()) {
+  let shown = 0;
+  const desk = new Workspace({ keeper: new Keeper(storage), now: () => 7, changed: () => (shown += 1) });
+  return { desk, storage, shown: () => shown };
+}
+
+/** @param {string} file @returns {any} */
+const program = (file) => ({ name: "robot.aesl", file, node: "", source: file });
+
+/** @param {string} topic @param {any} value @returns {any} */
+const message = (topic, value, timeNs = 5n) => ({ type: "message", topic, value, timeNs });
+
+/** @param {[string, number[]][]} named */
+const labelled = (named) => ({
+  layout: { dim: named.map(([label, values]) => ({ label, size: values.length, stride: values.length })) },
+  data: named.flatMap(([, values]) => values),
+});
+
+test("the editor's topics are those of robots with and without a name", () => {
+  assert.deepEqual(splitEditorTopic("/aseba/target"), { robot: "", name: "target" });
+  assert.deepEqual(splitEditorTopic("/anna/aseba/events"), { robot: "anna", name: "events" });
+  assert.equal(splitEditorTopic("/aseba/events/ping"), null);
+});
+
+test("variables are cut by their labels", () => {
+  const state = reduce(INITIAL, message("/aseba/variables", labelled([["a", [1]], ["b", [2, -3]]])));
+  assert.deepEqual([...state.variables[""].values], [["a", [1]], ["b", [2, -3]]]);
+});
+
+test("the log keeps the newest events, each with its robot, and can be emptied", () => {
+  let state = INITIAL;
+  for (let index = 0; index < KEPT_EVENTS + 3; index++) {
+    state = reduce(state, message("/anna/aseba/events", labelled([["ping", [index]]])));
+  }
+  assert.equal(state.log.length, KEPT_EVENTS);
+  const last = state.log.at(-1);
+  assert.deepEqual([last?.robot, last?.name, last?.values], ["anna", "ping", [KEPT_EVENTS + 2]]);
+  assert.deepEqual(reduce(state, { type: "forgetLog" }).log, []);
+});
+
+test("what is watched is plotted, of the selected robot only", () => {
+  const desk = new Desk(shelf(), () => 0);
+  desk.toggleWatch("b");
+  desk.toggleWatch(eventKey("ping"));
+  desk.receive(message("/anna/aseba/variables", labelled([["a", [1]], ["b", [2, 3]]])), "anna");
+  desk.receive(message("/anna/aseba/events", labelled([["ping", [9]]])), "anna");
+  desk.receive(message("/paul/aseba/events", labelled([["ping", [8]]])), "anna");
+  assert.deepEqual([...desk.history.series.keys()], ["b[0]", "b[1]", "ping(0)"]);
+  assert.deepEqual(desk.history.series.get("ping(0)")?.values, [9]);
+  desk.toggleWatch("b");
+  assert.deepEqual([...desk.history.series.keys()], ["ping(0)"]);
+});
+
+test("series become a table with one row per time", () => {
+  const history = new History();
+  history.add("a", 1, 10);
+  history.add("a", 2, 11);
+  history.add("b,c", 2, 20);
+  assert.equal(csv(history.rows()), 'seconds,a,"b,c"\r\n1,10,\r\n2,11,20\r\n');
+  history.add("a", 0, 5);
+  assert.deepEqual(history.series.get("a")?.values, [5]);
+});
+
+test("numbers are whole, in range, and as many as needed", () => {
+  assert.deepEqual(parseNumbers(" 1, -32768 3 ", 3).values, [1, -32768, 3]);
+  assert.equal(parseNumbers("1 2", 3).trouble?.key, "number.count");
+  for (const bad of ["32768", "1.5", "a", "--1"]) assert.equal(parseNumbers(bad, 1).trouble?.key, "number.range", bad);
+});
+
+test("grid lines stand at round numbers", () => assert.deepEqual([roundStep(100, 4), roundStep(7, 4), roundStep(60, 5)], [50, 2, 20]));
+
+test("a remark stands at its characters, whatever their width", () => {
+  const text = "a = 1\n# 😀😀 b\n😀 c";
+  const remark = { line: 3, column: 3, length: 1, message: "no" };
+  assert.deepEqual(marks(text, { errors: [remark], warnings: [] }), [
+    { from: text.length - 1, to: text.length, severity: "error", message: "no" },
+  ]);
+  const [placeless] = marks(text, { errors: [{ line: null, column: null, message: "big" }], warnings: [] });
+  assert.equal(placeless.from, 0);
+});
+
+test("remarks below the text or beside a line stay in the text", () => {
+  for (const [line, column] of [[99, 1], [1, 99], [0, 0]]) {
+    const [{ from, to }] = marks("ab", { errors: [], warnings: [{ line, column, length: 50, message: "" }] });
+    assert.ok(from >= 0 && from <= 2 && to >= from && to <= 2, `${line}:${column}`);
+  }
+});
+
+test("a verdict is read from the reason of the answer", () => {
+  const use = { variables: [1, 2], bytecode: [3, 4], stack: [5, 6] };
+  const reason = JSON.stringify({ errors: [], warnings: [], nodes: [{ use, variables: [{ name: "a" }] }] });
+  assert.deepEqual(readVerdict({ result: { successful: true, reason } }).use, use);
+});
+
+const VOCABULARY = /** @type {import("../../web_ui/editor/help.js").Vocabulary} */ ({
+  target: {
+    variables: [
+      { name: "prox.horizontal", size: 7, address: 0, hidden: false, help: "distance" },
+      { name: "_id", size: 1, address: 1, hidden: true, help: "" },
+    ],
+    events: [{ name: "prox", help: "ten times a second" }],
+    natives: [{ name: "math.max", parameters: [{ name: "dest", size: -1 }, { name: "a", size: 1 }, { name: "b", size: 2 }], hidden: false, help: "m" }],
+    keywords: ["if", "while"],
+    limits: {},
+  },
+  events: [{ name: "ping", value: 2 }],
+  constants: [{ name: "SPEED", value: 200 }],
+  variables: [{ name: "count", size: 3 }],
+  definitions: [
+    { name: "count", from: 0, kind: "variable" },
+    { name: "turn", from: 9, kind: "subroutine" },
+  ],
+});
+
+for (const [before, names] of /** @type {[string, string[]][]} */ ([
+  ["onevent p", ["ping", "prox"]],
+  ["emit ", ["ping"]],
+  ["call ", ["math.max"]],
+  ["callsub ", ["turn"]],
+  ["var ", []],
+  ["# pro", []],
+  ["a = 12", []],
+  ["a = pro", ["count", "SPEED", "prox.horizontal", "if", "while"]],
+])) {
+  test(`'${before}' is completed with what fits there`, () => {
+    assert.deepEqual(suggestions(before, VOCABULARY).items.map(({ name }) => name), names);
+  });
+}
+
+test("a name is explained where it stands", () => {
+  assert.equal(explain("a = prox.horizontal[1]", 8, VOCABULARY)?.item.help, "distance");
+  assert.equal(explain("onevent prox", 9, VOCABULARY)?.item.kind, "event");
+  assert.equal(explain("b = SPEED", 5, VOCABULARY)?.item.detail, "= 200");
+  assert.equal(explain("b = count", 5, VOCABULARY)?.item.detail, "[3]");
+  assert.equal(explain("nothing", 2, VOCABULARY), null);
+});
+
+test("a signature says what the parameters hold", () => {
+  assert.equal(signature(/** @type {any} */ (VOCABULARY.target?.natives[0])), "math.max(dest[], a, b[2])");
+});
+
+test("what a robot runs is shown until a person has changed something", () => {
+  const { desk } = workspace();
+  desk.tell(ALL, program("a = 1"));
+  assert.equal(desk.code, "a = 1");
+  desk.edit("a = 2");
+  desk.tell(ALL, program("a = 3"));
+  assert.equal(desk.code, "a = 2");
+  desk.follow();
+  desk.tell(ALL, program("a = 4"));
+  assert.equal(desk.code, "a = 4");
+});
+
+test("what a robot tells back after loading changes nothing", () => {
+  const { desk, shown } = workspace();
+  desk.edit("a = 1");
+  desk.loaded(ALL, desk.current.text);
+  const before = shown();
+  desk.tell(ALL, program(desk.current.text));
+  assert.equal(shown(), before);
+});
+
+test("a file that is no program is refused at its place, and what was there stays", () => {
+  const { desk } = workspace();
+  desk.edit("a = 1");
+  assert.deepEqual(desk.open("bad.aesl", "<network>\n<node></network>"), {
+    name: "bad.aesl",
+    line: 2,
+    column: 7,
+    what: "found </network>, expected </node>",
+  });
+  assert.equal(desk.code, "a = 1");
+});
+
+test("what another file replaces unsaved is among the recent ones", () => {
+  const { desk } = workspace();
+  desk.edit("a = 1");
+  desk.rename("mine");
+  desk.open("other.txt", "b = 2");
+  assert.equal(desk.current.name, "other.aesl");
+  assert.deepEqual(desk.keeper.recent().map(({ name }) => name), ["other.aesl", "mine.aesl"]);
+});
+
+test("an unsaved text waits for the next visit, a saved one does not", () => {
+  const { desk, storage } = workspace();
+  desk.edit("a = 1");
+  const next = workspace(storage).desk;
+  assert.equal(next.code, "");
+  assert.equal(next.draft?.name, "program.aesl");
+  next.restoreDraft();
+  assert.equal(next.code, "a = 1");
+  next.saved();
+  assert.equal(workspace(storage).desk.current.text, blank().text);
+  const last = workspace(storage).desk;
+  assert.equal(last.at(ALL) && last.draft, null);
+});
+
+test("recent files are few, and something broken in the storage is nothing", () => {
+  const storage = shelf();
+  const keeper = new Keeper(storage);
+  for (let index = 0; index < KEPT_FILES + 5; index++) keeper.remember({ name: `${index}`, text: "", time: index });
+  assert.equal(keeper.recent().length, KEPT_FILES);
+  storage.setItem("editor.recent", "{");
+  assert.deepEqual(keeper.recent(), []);
+});
+
+test("a program for all takes the place of those that single robots had", async () => {
+  /** @type {any[]} */ const asked = [];
+  const client = { setParameters: async (/** @type {any} */ given) => (asked.push(given), { ok: true, message: "" }) };
+  const link = new Link(/** @type {any} */ (client));
+  await link.load(null, "a.aesl", "x", ["anna", "paul"]);
+  await link.load("anna", "b.aesl", "y", ["anna", "paul"]);
+  assert.deepEqual(asked.map((given) => given.map((/** @type {any} */ each) => `${each.name}=${each.value}`)), [
+    [
+      "/aseba_runtime.robots.anna.script.source=",
+      "/aseba_runtime.robots.paul.script.source=",
+      "/aseba_runtime.script.name=a.aesl",
+      "/aseba_runtime.script.source=x",
+    ],
+    ["/aseba_runtime.robots.anna.script.name=b.aesl", "/aseba_runtime.robots.anna.script.source=y"],
+  ]);
+});
+
+test("a variable's refusal is told with its reason", async () => {
+  const value = { results: [{ successful: false, reason: "too large" }] };
+  const link = new Link(/** @type {any} */ ({ call: async () => ({ ok: true, message: "", value }) }));
+  assert.deepEqual(await link.setVariable("", "a", [1]), { ok: false, message: "too large" });
+});
+
+for (const [language, table] of Object.entries(WORDS)) {
+  test(`the editor has every text in ${language}, with the same values`, () => {
+    assert.deepEqual(Object.keys(table), Object.keys(WORDS.en));
+    /** @param {string} text */
+    const values = (text) => [...text.matchAll(/\{\w+\}/g)].map(([name]) => name).sort();
+    for (const [key, text] of Object.entries(WORDS.en)) assert.deepEqual(values(table[key]), values(text), key);
+    if (language !== "en") assert.deepEqual(Object.keys(PHRASES[language]), Object.keys(PHRASES.de));
+  });
+}

@@ -1,0 +1,138 @@
+"""The Aseba editor in a real Chromium against the running suite: errors, breakpoints, variables, events, files."""
+
+from __future__ import annotations
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+from tests.web_ui.page_support import MARKS, open_page
+
+pytestmark = MARKS
+
+PROGRAM = """\
+var count = 0
+timer.period[0] = 50
+onevent timer0
+count = count + 1
+if count > 30000 then
+count = 0
+end
+"""
+
+
+@pytest.fixture
+def editor(suite, page):
+    """The editor, open and empty, of a robot that stands still."""
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.click("#editor-switch")
+    page.wait_for_selector(".cm-content")
+    page.wait_for_function("() => window.thymio.state().services.includes('/aseba_runtime/check')")
+    return page
+
+
+def write(page, text):
+    """Replace the program by typing, without the editor's own indentation and brackets."""
+    page.focus(".cm-content")
+    page.keyboard.press("Control+a")
+    page.keyboard.insert_text(text)
+
+
+def expect(page, selector, **options):
+    return playwright.expect(page.locator(selector, **options))
+
+
+def click_beside(page, line):
+    """Where breakpoints are set, beside a line."""
+    gutter = page.locator(".code .breakpoints").bounding_box()
+    number = page.locator(".cm-lineNumbers .cm-gutterElement:visible", has_text=str(line)).first.bounding_box()
+    page.mouse.click(gutter["x"] + gutter["width"] / 2, number["y"] + number["height"] / 2)
+
+
+def test_a_broken_program_is_marked_while_it_is_typed_and_a_good_one_runs(editor):
+    write(editor, "onevent prox\nmotor.left.targt = 1\n")
+    expect(editor, ".verdict").to_contain_text("Line 2")
+    expect(editor, ".verdict").to_contain_text("motor.left.target")
+    expect(editor, ".cm-lint-marker-error").to_have_count(1)
+    expect(editor, ".cm-lintRange-error").to_have_text("motor.left.targt")
+    write(editor, PROGRAM)
+    expect(editor, ".verdict").to_contain_text("No errors")
+    expect(editor, ".cm-lint-marker-error").to_have_count(0)
+    editor.keyboard.press("F9")
+    editor.wait_for_function("() => window.thymio.state().program.name === 'program.aesl'")
+    editor.wait_for_function("() => Number(document.querySelector('[data-variable=count]')?.textContent) > 2")
+
+
+def test_a_breakpoint_stops_the_program_and_it_goes_on_by_lines(editor):
+    write(editor, PROGRAM)
+    editor.keyboard.press("Control+Enter")
+    editor.wait_for_function("() => window.thymio.state().program.name === 'program.aesl'")
+    click_beside(editor, 4)
+    expect(editor, ".editor-foot .state").to_contain_text("paused (line 4)")
+    expect(editor, ".current-line").to_have_text("count = count + 1")
+    before = int(editor.inner_text("[data-variable=count]"))
+    editor.keyboard.press("F7")
+    expect(editor, ".current-line").to_have_text("if count > 30000 then")
+    expect(editor, "[data-variable=count]").to_have_text(str(before + 1))
+    editor.focus(".cm-content")
+    editor.locator(".cm-line", has_text="count = count + 1").click()
+    editor.keyboard.press("Control+b")
+    expect(editor, ".breakpoints .breakpoint:visible").to_have_count(0)
+    editor.keyboard.press("F9")
+    expect(editor, ".editor-foot .state").to_have_text("running")
+
+
+def test_a_variable_is_edited_within_its_range(editor):
+    editor.fill(".variables input[type=search]", "motor.left.target")
+    value = editor.locator("[data-variable='motor.left.target']")
+    value.click()
+    editor.locator(".variables td input").fill("40000")
+    editor.keyboard.press("Enter")
+    expect(editor, ".variables .fault").to_contain_text("40000")
+    editor.locator(".variables td input").fill("120")
+    editor.keyboard.press("Enter")
+    playwright.expect(value).to_have_text("120")
+
+
+def test_an_event_is_defined_sent_and_logged(editor):
+    editor.click("#tool-tab-events")
+    for name, size in (("ping", "1"), ("pong", "1")):
+        editor.fill("[data-new=event]", name)
+        editor.fill(".events .entry .number", size)
+        editor.keyboard.press("Enter")
+        editor.locator(f"[data-send={name}]").wait_for()
+    write(editor, "onevent ping\nemit pong event.args[0] + 1\n")
+    expect(editor, ".verdict").to_contain_text("No errors")
+    editor.keyboard.press("Control+Enter")
+    editor.wait_for_function("() => window.thymio.state().program.name === 'program.aesl'")
+    editor.get_by_label("Values of ping: 1").fill("41")
+    editor.click("[data-send=ping]")
+    expect(editor, ".log li").to_contain_text("pong 42")
+
+
+def test_a_file_is_opened_changed_and_saved_without_loss_and_a_draft_outlives_the_page(editor, tmp_path):
+    head = '<!DOCTYPE aesl-source>\n<network>\n<constant value="4" name="SIZE"/>\n<!-- mine -->\n'
+    plugins = '<toolsPlugins><X y="1"/></toolsPlugins>'
+    text = f'{head}<node nodeId="1" name="thymio-II">var a = SIZE{plugins}</node>\n</network>\n'
+    file = tmp_path / "my maze.aesl"
+    file.write_text(text)
+    editor.set_input_files("#editor-file", str(file))
+    expect(editor, ".cm-content").to_have_text("var a = SIZE")
+    editor.focus(".cm-content")
+    editor.keyboard.press("Control+End")
+    editor.keyboard.type("_")
+    playwright.expect(editor.get_by_label("not saved as a file")).to_be_visible()
+    editor.reload()
+    editor.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
+    editor.click("#editor-switch")
+    editor.click("[data-draft=restore]")
+    expect(editor, ".cm-content").to_have_text("var a = SIZE_")
+    with editor.expect_download() as saved:
+        editor.click("[data-verb=save]")
+    assert saved.value.suggested_filename == "my maze.aesl"
+    assert saved.value.path().read_text() == text.replace("= SIZE", "= SIZE_")
+    broken = tmp_path / "broken.aesl"
+    broken.write_text("<network>\n<node>a < b</node></network>")
+    editor.set_input_files("#editor-file", str(broken))
+    expect(editor, ".verdict").to_contain_text("line 2, column 9")
+    expect(editor, ".cm-content").to_have_text("var a = SIZE_")

@@ -1,0 +1,76 @@
+// The compiler's opinion of a text: what to ask the check service, and where its answer belongs in the text.
+
+/** @typedef {{ line: number | null, column: number | null, length?: number, message: string, kind?: string }} Remark */
+/** @typedef {{ variables: [number, number], bytecode: [number, number], stack: [number, number] }} Use */
+/**
+ * @typedef {object} Verdict
+ * @property {Remark[]} errors
+ * @property {Remark[]} warnings
+ * @property {Use | null} use
+ * @property {{ name: string, size?: number }[]} variables
+ */
+/** @typedef {{ from: number, to: number, severity: "error" | "warning", message: string }} Mark */
+/** @typedef {{ name: string, value: number }} Entry */
+
+export const CHECK_SERVICE = "/aseba_runtime/check";
+const STRING = 4; // rcl_interfaces/msg/ParameterType
+const STRING_ARRAY = 9;
+
+/**
+ * A request of rcl_interfaces/srv/SetParametersAtomically.
+ *
+ * @param {{ source: string, language: string, events: Entry[], constants: Entry[] }} what
+ */
+export function checkRequest({ source, language, events, constants }) {
+  /** @param {Entry[]} entries */
+  const list = (entries) => ({
+    type: STRING_ARRAY,
+    string_array_value: entries.map(({ name, value }) => `${name} ${value}`),
+  });
+  return {
+    parameters: [
+      { name: "source", value: { type: STRING, string_value: source } },
+      { name: "language", value: { type: STRING, string_value: language } },
+      { name: "events", value: list(events) },
+      { name: "constants", value: list(constants) },
+    ],
+  };
+}
+
+/** @param {any} answer @returns {Verdict} */
+export function readVerdict(answer) {
+  const { errors = [], warnings = [], nodes = [] } = JSON.parse(answer.result.reason);
+  return { errors, warnings, use: nodes[0]?.use ?? null, variables: nodes[0]?.variables ?? [] };
+}
+
+/**
+ * Remarks as ranges of the text; one without a place stands at its beginning.
+ *
+ * @param {string} text
+ * @param {Pick<Verdict, "errors" | "warnings">} verdict
+ * @returns {Mark[]}
+ */
+export function marks(text, { errors, warnings }) {
+  const lines = text.split("\n");
+  /** @type {number[]} */ const starts = [];
+  let at = 0;
+  for (const line of lines) {
+    starts.push(at);
+    at += line.length + 1;
+  }
+  /** @param {Remark} remark @param {Mark["severity"]} severity @returns {Mark} */
+  const mark = ({ line, column, length = 1, message }, severity) => {
+    const index = Math.min(Math.max((line ?? 1) - 1, 0), lines.length - 1);
+    const points = [...lines[index]]; // a column counts characters, not halves of them
+    const first = Math.max((column ?? 1) - 1, 0);
+    const before = points.slice(0, first).join("").length;
+    const under = points.slice(first, first + Math.max(length, 1)).join("").length;
+    const from = starts[index] + before;
+    return { from, to: from + under, severity, message };
+  };
+  const found = [
+    ...errors.map((remark) => mark(remark, "error")),
+    ...warnings.map((remark) => mark(remark, "warning")),
+  ];
+  return found.sort((one, other) => one.from - other.from);
+}

@@ -1,0 +1,13 @@
+// A text as a file of the person's computer.
+
+/** @param {string} name @param {string} text @param {string} type  of the content */
+export function download(name, text, type) {
+  const address = URL.createObjectURL(new Blob([text], { type }));
+  const link = document.createElement("a");
+  link.href = address;
+  link.download = name;
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(address), 0);
+}

@@ -1,0 +1,44 @@
+// Below the text: what the compiler says, where the robot stands, and how full its memories are.
+
+import { h, setAttribute, setText } from "../panels/dom.js";
+
+/** @typedef {[used: number, size: number] | null} Share */
+
+/** @param {import("../i18n/index.js").Translate} t @param {() => void} go  to the place of the message */
+export function footer(t, go) {
+  const words = h("button", { type: "button", class: "plain verdict", onclick: go });
+  const lamp = h("span", { class: "state" });
+  const bars = /** @type {const} */ (["variables", "bytecode", "stack"]).map((name) => {
+    const fill = h("span", { class: "fill" });
+    const text = h("span", {});
+    const element = h("span", { class: "memory", title: t(`memory.${name}`), hidden: true }, fill, text);
+    return { name, fill, text, element };
+  });
+  const element = h("div", { class: "editor-foot" }, words, lamp, h("span", { class: "memories" }, ...bars.map((bar) => bar.element)));
+  return {
+    element,
+    /** @param {{ kind: "good" | "warning" | "error" | "", text: string }} verdict */
+    tell({ kind, text }) {
+      setText(words, text);
+      setAttribute(words, "data-kind", kind);
+    },
+    /** @param {string} state @param {string} text */
+    robot(state, text) {
+      setText(lamp, text);
+      setAttribute(lamp, "data-state", state);
+    },
+    /** @param {Record<"variables" | "bytecode" | "stack", Share>} use */
+    memories(use) {
+      for (const { name, fill, text, element } of bars) {
+        const share = use[name];
+        element.hidden = share === null;
+        if (share === null) continue;
+        const [used, size] = share;
+        const percent = Math.round((100 * used) / Math.max(size, 1));
+        fill.style.width = `${Math.min(percent, 100)}%`;
+        setText(text, `${t(`memory.${name}`)} ${used}/${size} (${percent} %)`);
+        setAttribute(element, "data-full", String(percent > 90));
+      }
+    },
+  };
+}

@@ -1,0 +1,453 @@
+// The editor on the page: tabs, toolbar, text, tools and footer around one desk. It draws what the desk, the page's
+// state and the text say, and hands on what a person does.
+
+import { openSearchPanel } from "@codemirror/search";
+
+import { translator } from "../i18n/index.js";
+import { LARGEST_PROGRAM } from "../actions.js";
+import { h, icon, ICONS, setAttribute } from "../panels/dom.js";
+import { locate } from "../state/index.js";
+import { robotTopic } from "../state/names.js";
+import { readAesl } from "./aesl.js";
+import { breakpointLines, showBreakpoints, showPlace } from "./breakpoints.js";
+import { marks } from "./checking.js";
+import { isInRobot, isUnsaved } from "./documents.js";
+import { download } from "./download.js";
+import { footer } from "./footer.js";
+import { Link } from "./link.js";
+import { createText } from "./text.js";
+import { toolbar, watchKeys } from "./toolbar.js";
+import { toolbox } from "./tools/index.js";
+import { PHRASES, WORDS } from "./words/index.js";
+import { ALL } from "./workspace.js";
+
+import "./editor.css";
+
+export { Desk } from "./desk.js";
+export { splitEditorTopic } from "./state.js";
+
+const CHECK_DELAY_MS = 300;
+
+/** @typedef {import("./link.js").Verb} Verb */
+/** @typedef {import("./documents.js").Document} Document */
+/** @typedef {import("./checking.js").Verdict} Verdict */
+
+/**
+ * @param {object} options
+ * @param {import("./desk.js").Desk} options.desk
+ * @param {import("../protocol/client.js").Client} options.client
+ * @param {import("../state/store.js").Store} options.store
+ * @param {string} options.language
+ * @param {import("../i18n/index.js").Translate} options.pageText
+ * @param {(text: string) => void} options.announce
+ * @param {() => void} options.close
+ */
+export function createEditor({ desk, client, store, language, pageText, announce, close }) {
+  const t = translator(language, WORDS);
+  const link = new Link(client);
+  const { workspace } = desk;
+  /** @type {Verdict | null} */ let verdict = null;
+  /** @type {import("./aesl.js").Aesl} */ let file = readAesl(workspace.current.text);
+  let fileText = workspace.current.text;
+  /** @type {any} */ let statusShown = null;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */ let checkTimer;
+  let checks = 0;
+  let scheduled = false;
+  let said = "";
+
+  const robots = () => Object.keys(store.state.robots);
+  /** The robot whose values are shown. */
+  const robot = () => (workspace.tab === ALL ? store.state.selected : workspace.tab);
+  /** The robot the tab's program is for; null for all. */
+  const owner = () => (workspace.tab === ALL ? null : workspace.tab);
+  const status = () => store.state.programs[robot()] ?? null;
+  const target = () => desk.state.targets[robot()] ?? null;
+
+  const element = h("section", { class: "editor", "aria-label": t("editor") });
+  const redraw = () => {
+    if (scheduled || !element.isConnected) return;
+    scheduled = true;
+    requestAnimationFrame(() => {
+      scheduled = false;
+      render();
+    });
+  };
+
+  /** @param {string} text @param {"good" | "warning" | "error" | ""} kind */
+  const tell = (text, kind) => {
+    foot.tell({ text, kind });
+    announce(text);
+  };
+
+  /** @param {string} code */
+  const codeChanged = (code) => {
+    workspace.edit(code);
+    checkSoon();
+    redraw();
+  };
+
+  const vocabulary = () => ({
+    target: target(),
+    events: file.events,
+    constants: file.constants,
+    variables: verdict?.variables ?? [],
+  });
+
+  const code = h("div", { class: "code" });
+  const text = createText({
+    parent: code,
+    label: t("editor.code"),
+    phrases: PHRASES[language] ?? {},
+    vocabulary,
+    changed: codeChanged,
+    toggleBreakpoint: (line) => toggleBreakpoint(line),
+  });
+
+  /** Ask the compiler, a moment after the last change. */
+  const checkSoon = () => {
+    clearTimeout(checkTimer);
+    checkTimer = setTimeout(check, CHECK_DELAY_MS);
+  };
+  const check = async () => {
+    const number = ++checks;
+    const source = workspace.code;
+    const { events, constants } = readAesl(workspace.current.text);
+    const answer = await link.check({ source, language, events, constants });
+    if (number !== checks || source !== workspace.code) return; // a later one is on its way
+    verdict = answer;
+    if (answer === null) {
+      foot.tell({ text: t("verdict.unknown"), kind: "" });
+      return;
+    }
+    text.mark(marks(source, answer));
+    const [first] = [...answer.errors, ...answer.warnings];
+    if (first === undefined) foot.tell({ text: `✓ ${t("verdict.good")}`, kind: "good" });
+    else {
+      const kind = answer.errors.length > 0 ? "error" : "warning";
+      const said = first.line === null ? first.message : t("verdict.at", { line: first.line, message: first.message });
+      foot.tell({ text: `${kind === "error" ? "✕" : "⚠"} ${said}`, kind });
+      if (kind === "error") announce(said);
+    }
+    redraw();
+  };
+
+  /** Another text is on the desk. */
+  const show = () => {
+    text.show(`${workspace.tab} ${workspace.current.node} ${workspace.current.name}`, workspace.code);
+    verdict = null;
+    statusShown = null;
+    check();
+    redraw();
+  };
+  desk.onText = show;
+
+  const firstLine = () => Number(status()?.values.first_line ?? 1) || 1;
+  /** Whether the robot stands in just the text on the screen. */
+  const isShown = () => {
+    const { source } = workspace.current;
+    const program = target()?.program;
+    const node = file.nodes[workspace.current.node]?.name ?? "";
+    const name = status()?.values.node ?? "";
+    const same = name === "" || name === node || file.nodes.length === 1;
+    return isInRobot(workspace.current) && program?.file === source && same;
+  };
+
+  /** @param {number} line */
+  const toggleBreakpoint = async (line) => {
+    const lines = breakpointLines(text.view.state);
+    const wanted = lines.includes(line) ? lines.filter((each) => each !== line) : [...lines, line];
+    showBreakpoints(text.view, wanted);
+    if (isInRobot(workspace.current)) await sendBreakpoints();
+  };
+  const sendBreakpoints = async () => {
+    const first = firstLine();
+    const lines = breakpointLines(text.view.state).map((line) => line + first - 1);
+    const { ok, message } = await link.setBreakpoints(owner(), lines);
+    if (!ok) {
+      tell(message, "error");
+      statusShown = null; // what is in force comes back
+      redraw();
+    }
+  };
+
+  const load = async () => {
+    const { tab } = workspace;
+    const { name, text: source } = workspace.current;
+    const lines = breakpointLines(text.view.state);
+    const { ok, message } = await link.load(owner(), name, source, robots());
+    if (!ok) {
+      const fault = locate(message, name);
+      tell(fault.line === null ? fault.text : t("verdict.at", { line: codeLine(fault.line), message: fault.text }), "error");
+      return false;
+    }
+    workspace.loaded(tab, source);
+    tell(t("editor.loaded", { name }), "good");
+    if (lines.length > 0) await sendBreakpoints();
+    redraw();
+    return true;
+  };
+  /** A line of the file as one of the code on the screen. @param {number} line */
+  const codeLine = (line) => {
+    const units = file.nodes[workspace.current.node]?.units ?? [];
+    const before = units.length === 0 ? 1 : fileText.slice(0, units[0].from).split("\n").length;
+    return Math.max(line - before + 1, 1);
+  };
+
+  /** @param {Verb} verb */
+  const can = (verb) => affected().some((name) => store.state.services.includes(robotTopic(name, `aseba/${verb}`)));
+  const affected = () => (workspace.tab === ALL ? robots() : [workspace.tab]);
+  /** @param {Verb} verb */
+  const control = async (verb) => {
+    const answers = await Promise.all(affected().map((name) => link.control(name, verb)));
+    const refused = answers.find(({ ok }) => !ok);
+    if (refused !== undefined) tell(refused.message, "error");
+  };
+
+  /** @type {import("./toolbar.js").Deeds} */
+  const deeds = {
+    newFile: () => workspace.newFile(),
+    open: (chosen) => open(chosen),
+    choose(choice) {
+      const name = choice.slice(choice.indexOf(" ") + 1);
+      if (choice.startsWith("sample ")) {
+        workspace.follow();
+        link.loadBuiltIn(owner(), name, robots()).then(({ ok, message }) => ok || tell(message, "error"));
+        return;
+      }
+      const kept = workspace.keeper.recent().find((each) => each.name === name);
+      if (kept !== undefined) openText(kept.name, kept.text);
+    },
+    save() {
+      const { name, text: content } = workspace.current;
+      download(name, content, "application/xml");
+      workspace.saved();
+      redraw();
+    },
+    load: () => void load(),
+    run: () => void (isInRobot(workspace.current) ? control("run") : load()),
+    control: (verb) => void control(verb),
+    resize(step) {
+      desk.resize(step);
+      redraw();
+    },
+    find: () => openSearchPanel(text.view),
+  };
+
+  /** @param {File} chosen */
+  const open = async (chosen) => {
+    if (chosen.size > LARGEST_PROGRAM) return tell(t("editor.tooLarge", { name: chosen.name }), "error");
+    openText(chosen.name, await chosen.text());
+  };
+  /** @param {string} name @param {string} content */
+  const openText = (name, content) => {
+    const refusal = workspace.open(name, content);
+    if (refusal !== null) tell(t("editor.refused", { ...refusal }), "error");
+    text.view.focus();
+  };
+
+  const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": t("editor.robots") });
+  const nodes = h("select", { "aria-label": t("editor.nodes"), onchange: () => workspace.chooseNode(Number(nodes.value)) });
+  const name = h("input", { class: "file-name", "aria-label": t("editor.file"), spellcheck: "false" });
+  name.addEventListener("change", () => {
+    workspace.rename(name.value);
+    redraw();
+  });
+  const unsaved = h("span", { class: "unsaved", role: "img", "aria-label": t("editor.unsaved"), title: t("editor.unsaved") }, "●");
+  const notLoaded = h("small", {}, t("editor.notLoaded"));
+  const draft = h("div", { class: "draft", hidden: true });
+  const bar = toolbar(t, deeds);
+  const foot = footer(t, () => {
+    const [first] = [...(verdict?.errors ?? []), ...(verdict?.warnings ?? [])];
+    if (first?.line) goTo(first.line, first.column ?? 1);
+  });
+  /** @param {number} line @param {number} column */
+  const goTo = (line, column) => {
+    const { doc } = text.view.state;
+    if (line > doc.lines) return;
+    const at = doc.line(line);
+    text.view.dispatch({ selection: { anchor: Math.min(at.from + column - 1, at.to) }, scrollIntoView: true });
+    text.view.focus();
+  };
+  const tools = toolbox({
+    t,
+    desk,
+    announce,
+    redraw,
+    insert(words) {
+      text.view.dispatch(text.view.state.replaceSelection(words));
+      text.view.focus();
+    },
+    setVariable: (variable, values) => link.setVariable(robot(), variable, values),
+    emit: (event, values) => link.emit(robot(), event, values),
+    define(kind, entry, value) {
+      workspace.define(kind, entry, value);
+      checkSoon();
+      redraw();
+    },
+  });
+  element.append(
+    h(
+      "div",
+      { class: "editor-head" },
+      tabs,
+      nodes,
+      name,
+      unsaved,
+      notLoaded,
+      h(
+        "button",
+        { type: "button", class: "plain close", "aria-label": t("editor.close"), title: t("editor.close"), onclick: close },
+        icon(ICONS.close),
+      ),
+    ),
+    bar.element,
+    draft,
+    h("div", { class: "editor-body" }, code, tools.element),
+    foot.element,
+  );
+  watchKeys(element, deeds);
+
+  let tabsShown = "";
+  const drawTabs = () => {
+    const wanted = desk.tabs(robots());
+    if (!wanted.includes(workspace.tab)) workspace.choose(ALL);
+    if (wanted.join() !== tabsShown) {
+      tabsShown = wanted.join();
+      tabs.hidden = wanted.length < 2;
+      tabs.replaceChildren(
+        ...wanted.map((tab) =>
+          h(
+            "button",
+            {
+              type: "button",
+              role: "tab",
+              "data-tab": tab,
+              onclick() {
+                workspace.choose(tab);
+                if (tab !== ALL) store.dispatch({ type: "select", robot: tab });
+                redraw();
+              },
+            },
+            tab === ALL ? t("editor.all") : tab,
+          ),
+        ),
+      );
+    }
+    for (const tab of tabs.children)
+      setAttribute(tab, "aria-selected", String(tab.getAttribute("data-tab") === workspace.tab));
+  };
+
+  let nodesShown = "";
+  const drawFile = () => {
+    const document = workspace.current;
+    if (document.text !== fileText) {
+      fileText = document.text;
+      file = readAesl(fileText);
+    }
+    const names = file.nodes.map((node) => `${node.name} ${node.id}`);
+    nodes.hidden = names.length < 2;
+    if (names.join() !== nodesShown) {
+      nodesShown = names.join();
+      nodes.replaceChildren(...names.map((each, index) => h("option", { value: index }, each)));
+    }
+    nodes.value = String(document.node);
+    if (name !== element.ownerDocument.activeElement) name.value = document.name;
+    unsaved.hidden = !isUnsaved(document);
+    notLoaded.hidden = isInRobot(document);
+    element.style.setProperty("--code-size", `${desk.fontSize}px`);
+  };
+
+  /** @type {import("./storage.js").Kept | null} */ let draftShown = null;
+  const drawDraft = () => {
+    const kept = workspace.draft;
+    if (kept === draftShown) return;
+    draftShown = kept;
+    draft.hidden = kept === null;
+    if (kept === null) return;
+    const time = new Date(kept.time).toLocaleString(language);
+    /** @param {string} key @param {() => void} act */
+    const button = (key, act) =>
+      h("button", { type: "button", "data-draft": key, onclick: () => (act(), redraw()) }, t(`editor.${key}`));
+    draft.replaceChildren(
+      h("span", {}, t("editor.draft", { name: kept.name, time })),
+      button("restore", () => workspace.restoreDraft()),
+      button("discard", () => workspace.forgetDraft()),
+    );
+  };
+
+  const drawStatus = () => {
+    const now = status();
+    const values = now?.values ?? {};
+    const key = now === null || !isShown() ? "other" : now;
+    if (key !== statusShown) {
+      statusShown = key;
+      if (key === "other") showPlace(text.view, null);
+      else {
+        const first = firstLine();
+        const inForce = JSON.parse(values.breakpoints || "[]").map((/** @type {number} */ line) => line - first + 1);
+        showBreakpoints(text.view, inForce);
+        const at = Number(values.line ?? "") - first + 1;
+        const fault = values.state === "fault";
+        showPlace(text.view, values.line && at >= 1 ? { line: at, fault } : null);
+        for (const [line, became] of Object.entries(JSON.parse(values.breakpoints_moved || "{}"))) {
+          if (became === null) announce(t("breakpoint.none", { line: Number(line) - first + 1 }));
+        }
+      }
+    }
+    const known = ["running", "paused", "stopped", "fault"].includes(values.state ?? "");
+    const word = known ? pageText(`state.${values.state}`) : (values.state ?? "");
+    const place = values.line && values.state !== "running" ? ` (${pageText("state.line", { line: Number(values.line) - firstLine() + 1 })})` : "";
+    const detail = values.fault ? `: ${values.fault}` : "";
+    foot.robot(values.state ?? "", word + place + detail);
+    if (word + place + detail !== said) {
+      said = word + place + detail;
+      announce(said);
+    }
+    /** @param {string} name @returns {import("./footer.js").Share} */
+    const told = (name) =>
+      values[`${name}_size`] === undefined ? null : [Number(values[`${name}_used`]), Number(values[`${name}_size`])];
+    const use = verdict?.use;
+    foot.memories({
+      variables: use?.variables ?? told("variables"),
+      bytecode: use?.bytecode ?? told("bytecode"),
+      stack: use?.stack ?? told("stack"),
+    });
+  };
+
+  const render = () => {
+    drawTabs();
+    workspace.tell(ALL, desk.state.targets[store.state.selected]?.program);
+    if (workspace.tab !== ALL) workspace.tell(workspace.tab, target()?.program);
+    drawFile();
+    drawDraft();
+    drawStatus();
+    bar.render(can, workspace.keeper.recent(), desk.state.behaviours);
+    tools.render({
+      robot: robot(),
+      target: target(),
+      variables: desk.state.variables[robot()] ?? null,
+      log: desk.state.log,
+      file,
+    });
+  };
+
+  return {
+    element,
+    redraw,
+    open,
+    openText,
+    /** The editor is on the page now. */
+    begin() {
+      show();
+      render();
+      text.view.focus();
+    },
+    destroy() {
+      clearTimeout(checkTimer);
+      text.view.destroy();
+      element.remove();
+    },
+  };
+}
+
+/** @typedef {ReturnType<typeof createEditor>} Editor */

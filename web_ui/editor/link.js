@@ -1,0 +1,89 @@
+// What the editor asks of the Aseba runtime, as calls, parameters and messages (docs/aseba_ros.md).
+
+import { robotTopic } from "../state/names.js";
+import { CHECK_SERVICE, checkRequest, readVerdict } from "./checking.js";
+
+/** @typedef {import("../protocol/client.js").Client} Client */
+/** @typedef {{ ok: boolean, message: string }} Answer */
+/** @typedef {"run" | "pause" | "stop" | "step" | "step_line" | "reset"} Verb */
+
+const RUNTIME = "/aseba_runtime.";
+const INTEGER = 2; // rcl_interfaces/msg/ParameterType
+const INTEGER_ARRAY = 7;
+
+export class Link {
+  /** @param {Client} client */
+  constructor(client) {
+    this.client = client;
+  }
+
+  /** @param {Parameters<typeof checkRequest>[0]} what @returns {Promise<import("./checking.js").Verdict | null>} */
+  async check(what) {
+    const { ok, value } = await this.client.call(CHECK_SERVICE, checkRequest(what));
+    return ok && value !== undefined ? readVerdict(value) : null;
+  }
+
+  /**
+   * Give a program to one robot, or with null to all; those that had one of their own lose it.
+   *
+   * @param {string | null} robot
+   * @param {string} name
+   * @param {string} source
+   * @param {readonly string[]} robots  all there are
+   * @returns {Promise<Answer>}
+   */
+  load(robot, name, source, robots) {
+    return this.client.setParameters([
+      ...this.#released(robot, robots),
+      { name: `${prefix(robot)}script.name`, value: name },
+      { name: `${prefix(robot)}script.source`, value: source },
+    ]);
+  }
+
+  /** A built-in behaviour as program. @param {string | null} robot @param {string} name @param {readonly string[]} robots */
+  loadBuiltIn(robot, name, robots) {
+    return this.client.setParameters([
+      ...this.#released(robot, robots),
+      { name: `${prefix(robot)}script.path`, value: name },
+    ]);
+  }
+
+  /** @param {string | null} robot @param {readonly string[]} robots */
+  #released(robot, robots) {
+    if (robot !== null || robots.length < 2) return [];
+    return robots.map((each) => ({ name: `${prefix(each)}script.source`, value: "" }));
+  }
+
+  /** @param {string | null} robot @param {number[]} lines  of the file, from 1 @returns {Promise<Answer>} */
+  setBreakpoints(robot, lines) {
+    return this.client.setParameters([{ name: `${prefix(robot)}breakpoints`, value: lines }]);
+  }
+
+  /** @param {string} robot @param {Verb} verb @returns {Promise<Answer>} */
+  control(robot, verb) {
+    return this.client.call(robotTopic(robot, `aseba/${verb}`));
+  }
+
+  /** @param {string} robot @param {string} name @param {number[]} values @returns {Promise<Answer>} */
+  async setVariable(robot, name, values) {
+    const value =
+      values.length === 1
+        ? { type: INTEGER, integer_value: values[0] }
+        : { type: INTEGER_ARRAY, integer_array_value: values };
+    const request = { parameters: [{ name, value }] };
+    const answer = await this.client.call(robotTopic(robot, "aseba/set_variables"), request);
+    const [result] = answer.value?.results ?? [];
+    return result === undefined ? answer : { ok: result.successful, message: result.reason };
+  }
+
+  /** @param {string} robot @param {string} event @param {number[]} values */
+  emit(robot, event, values) {
+    const layout = { dim: [{ label: event, size: values.length, stride: values.length }] };
+    this.client.publish(robotTopic(robot, "aseba/emit"), "std_msgs/msg/Int16MultiArray", { layout, data: values });
+  }
+}
+
+/** Parameters of one robot, or of all. @param {string | null} robot */
+function prefix(robot) {
+  return robot === null ? RUNTIME : `${RUNTIME}robots.${robot}.`;
+}

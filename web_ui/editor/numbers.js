@@ -1,0 +1,30 @@
+// Numbers that a person typed, and tables for a spreadsheet.
+
+import { GREATEST, LEAST } from "./aesl.js";
+
+/** @typedef {{ values: number[], trouble: null } | { values: null, trouble: { key: string, values: Record<string, string | number> } }} Parsed */
+
+/**
+ * Whole numbers between spaces or commas.
+ *
+ * @param {string} text
+ * @param {number} count  how many there must be
+ * @param {number} [least]
+ * @param {number} [greatest]
+ * @returns {Parsed}
+ */
+export function parseNumbers(text, count, least = LEAST, greatest = GREATEST) {
+  const words = text.split(/[\s,;]+/).filter((word) => word !== "");
+  if (words.length !== count)
+    return { values: null, trouble: { key: "number.count", values: { count, found: words.length } } };
+  const bad = words.find((word) => !/^[+-]?\d+$/.test(word) || Number(word) < least || Number(word) > greatest);
+  if (bad !== undefined) return { values: null, trouble: { key: "number.range", values: { found: bad, least, greatest } } };
+  return { values: words.map(Number), trouble: null };
+}
+
+/** A table as RFC 4180 has it. @param {readonly (string | number)[][]} rows */
+export function csv(rows) {
+  /** @param {string | number} cell */
+  const quoted = (cell) => (/[",\r\n]/.test(String(cell)) ? `"${String(cell).replaceAll('"', '""')}"` : String(cell));
+  return rows.map((row) => row.map(quoted).join(",") + "\r\n").join("");
+}

@@ -1,0 +1,59 @@
+// What the browser keeps for the editor: recent files, and a draft of each tab for the day the browser closes.
+
+/** @typedef {{ name: string, text: string, time: number }} Kept  milliseconds since 1970 */
+/** @typedef {Pick<Storage, "getItem" | "setItem" | "removeItem">} Shelf */
+
+const RECENT_KEY = "editor.recent";
+const DRAFT_KEY = "editor.draft.";
+export const KEPT_FILES = 10;
+/** A browser gives a page about 5 million characters. */
+export const KEPT_CHARACTERS = 1_000_000;
+
+export class Keeper {
+  /** @param {Shelf} shelf */
+  constructor(shelf) {
+    this.shelf = shelf;
+  }
+
+  /** Newest first. @returns {Kept[]} */
+  recent() {
+    return this.#read(RECENT_KEY) ?? [];
+  }
+
+  /** @param {Kept} file  replaces one of the same name */
+  remember(file) {
+    let room = KEPT_CHARACTERS;
+    const others = this.recent().filter(({ name }) => name !== file.name);
+    const kept = [file, ...others].slice(0, KEPT_FILES).filter(({ text }) => (room -= text.length) >= 0);
+    this.#write(RECENT_KEY, kept);
+  }
+
+  /** @param {string} tab @returns {Kept | null} */
+  draft(tab) {
+    return this.#read(DRAFT_KEY + tab);
+  }
+
+  /** @param {string} tab @param {Kept | null} draft  null: there is nothing to keep */
+  keepDraft(tab, draft) {
+    if (draft === null) this.shelf.removeItem(DRAFT_KEY + tab);
+    else this.#write(DRAFT_KEY + tab, draft);
+  }
+
+  /** @param {string} key @returns {any} */
+  #read(key) {
+    try {
+      return JSON.parse(this.shelf.getItem(key) ?? "null");
+    } catch {
+      return null; // written by something else
+    }
+  }
+
+  /** @param {string} key @param {any} value */
+  #write(key, value) {
+    try {
+      this.shelf.setItem(key, JSON.stringify(value));
+    } catch {
+      this.shelf.removeItem(key); // full: rather nothing than an old one
+    }
+  }
+}

@@ -1,0 +1,160 @@
+// The text field itself: CodeMirror with what Aseba needs, and nothing of robots.
+
+import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap, snippet } from "@codemirror/autocomplete";
+import { defaultKeymap, history, historyKeymap, indentWithTab, toggleLineComment } from "@codemirror/commands";
+import { bracketMatching, codeFolding, foldGutter, foldKeymap, indentOnInput, indentUnit, syntaxTree } from "@codemirror/language";
+import { lintGutter, lintKeymap, setDiagnostics } from "@codemirror/lint";
+import { gotoLine, highlightSelectionMatches, search, searchKeymap } from "@codemirror/search";
+import { EditorState } from "@codemirror/state";
+import {
+  EditorView,
+  highlightActiveLine,
+  highlightActiveLineGutter,
+  highlightSpecialChars,
+  hoverTooltip,
+  keymap,
+  lineNumbers,
+} from "@codemirror/view";
+
+import { breakpointGutter } from "./breakpoints.js";
+import { explain, suggestions } from "./help.js";
+import { aseba, INDENT } from "./language.js";
+import { outline } from "./outline.js";
+
+/** @typedef {import("./help.js").Vocabulary} Vocabulary */
+/** @typedef {import("./help.js").Item} Item */
+
+const TYPES = /** @type {Record<Item["kind"], string>} */ ({
+  variable: "variable",
+  constant: "constant",
+  event: "interface",
+  native: "function",
+  subroutine: "method",
+  keyword: "keyword",
+});
+
+/**
+ * @param {object} options
+ * @param {HTMLElement} options.parent
+ * @param {string} options.label
+ * @param {Record<string, string>} options.phrases   CodeMirror's own words in the page's language
+ * @param {() => Omit<Vocabulary, "definitions">} options.vocabulary
+ * @param {(code: string) => void} options.changed   a person changed the text
+ * @param {(line: number) => void} options.toggleBreakpoint
+ */
+export function createText({ parent, label, phrases, vocabulary, changed, toggleBreakpoint }) {
+  /** @param {EditorState} state @returns {Vocabulary} */
+  const words = (state) => ({
+    ...vocabulary(),
+    definitions: outline(syntaxTree(state), (from, to) => state.sliceDoc(from, to)),
+  });
+
+  /** @param {import("@codemirror/autocomplete").CompletionContext} context */
+  const complete = ({ state, pos, explicit }) => {
+    const line = state.doc.lineAt(pos);
+    const { from, items } = suggestions(state.sliceDoc(line.from, pos), words(state));
+    if (items.length === 0 || (!explicit && line.from + from === pos)) return null;
+    return { from: line.from + from, options: items.map(option), validFor: /^[\p{L}\p{N}_.]*$/u };
+  };
+
+  const extensions = [
+    lineNumbers(),
+    breakpointGutter(toggleBreakpoint),
+    lintGutter(),
+    codeFolding(),
+    foldGutter({ openText: "▾", closedText: "▸" }),
+    highlightActiveLineGutter(),
+    highlightSpecialChars(),
+    history(),
+    indentOnInput(),
+    indentUnit.of(INDENT),
+    EditorState.tabSize.of(4),
+    bracketMatching(),
+    closeBrackets(),
+    autocompletion({ override: [complete], icons: false }),
+    highlightActiveLine(),
+    highlightSelectionMatches(),
+    search({ top: true }),
+    hoverTooltip((view, pos) => {
+      const line = view.state.doc.lineAt(pos);
+      const found = explain(line.text, pos - line.from, words(view.state));
+      if (found === null || found.item.kind === "keyword") return null;
+      const { from, to, item } = found;
+      return { pos: line.from + from, end: line.from + to, above: true, create: () => ({ dom: helpOf(item) }) };
+    }),
+    aseba(),
+    EditorState.phrases.of(phrases),
+    EditorView.contentAttributes.of({ "aria-label": label, spellcheck: "false", autocapitalize: "off" }),
+    EditorView.updateListener.of((update) => {
+      if (update.docChanged) changed(update.state.doc.toString());
+    }),
+    keymap.of([
+      {
+        key: "Mod-b",
+        run: ({ state }) => {
+          toggleBreakpoint(state.doc.lineAt(state.selection.main.head).number);
+          return true;
+        },
+      },
+      { key: "Mod-g", run: gotoLine },
+      { key: "Mod-d", run: toggleLineComment },
+      ...closeBracketsKeymap,
+      ...completionKeymap,
+      ...defaultKeymap,
+      ...searchKeymap,
+      ...historyKeymap,
+      ...foldKeymap,
+      ...lintKeymap,
+      indentWithTab,
+    ]),
+  ];
+  /** @type {Map<string, EditorState>} */ const states = new Map();
+  /** @type {string | null} */ let key = null;
+  const view = new EditorView({ parent, state: EditorState.create({ extensions }) });
+  return {
+    view,
+    /**
+     * Another text. Each key has a history of its own, to which one comes back as long as the text is the same.
+     *
+     * @param {string} next
+     * @param {string} code
+     */
+    show(next, code) {
+      if (key !== null) states.set(key, view.state);
+      const known = states.get(next);
+      key = next;
+      const same = known !== undefined && known.doc.toString() === code;
+      view.setState(same ? known : EditorState.create({ doc: code, extensions }));
+    },
+    /** @param {import("./checking.js").Mark[]} marks */
+    mark(marks) {
+      const end = view.state.doc.length;
+      const fitting = marks.map((mark) => ({ ...mark, from: Math.min(mark.from, end), to: Math.min(mark.to, end) }));
+      view.dispatch(setDiagnostics(view.state, fitting));
+    },
+  };
+}
+
+/** @param {Item} item @returns {import("@codemirror/autocomplete").Completion} */
+function option(item) {
+  const { name, kind, detail, help, native } = item;
+  const fields = native?.parameters.map((parameter) => `\${${parameter.name}}`).join(", ");
+  return {
+    label: name,
+    type: TYPES[kind],
+    detail,
+    ...(help === "" ? {} : { info: help }),
+    ...(fields === undefined ? {} : { apply: snippet(`${name}(${fields})`) }),
+  };
+}
+
+/** @param {Item} item */
+function helpOf({ name, detail, help }) {
+  const dom = document.createElement("div");
+  dom.className = "help";
+  const head = document.createElement("code");
+  head.textContent = name + (detail.startsWith("=") ? ` ${detail}` : detail);
+  dom.append(head);
+  if (help !== "") dom.append(Object.assign(document.createElement("p"), { textContent: help }));
+  return dom;
+}

@@ -1,0 +1,133 @@
+// The editor's buttons: files on the left, the robot on the right, and the keys that do the same.
+
+import { fileButton, h, icon, ICONS } from "../panels/dom.js";
+
+/** @typedef {import("./link.js").Verb} Verb */
+/**
+ * @typedef {object} Deeds   what the buttons do
+ * @property {() => void} newFile
+ * @property {(file: File) => void} open
+ * @property {(choice: string) => void} choose   of the list of recent files and samples
+ * @property {() => void} save
+ * @property {() => void} load
+ * @property {() => void} run
+ * @property {(verb: Verb) => void} control
+ * @property {(step: number) => void} resize
+ * @property {() => void} find
+ */
+
+const SAVE = "M5 3h11l5 5v13H3V3zm2 2v5h8V5zm5 8a3 3 0 1 0 0 6 3 3 0 0 0 0-6z";
+const LOAD = "M11 3h2v9h4l-5 6-5-6h4zM4 19h16v2H4z";
+const NEXT = "M4 5h12v2H4zM4 11h7v2H4zM4 17h12v2H4zM15 9l5 3.500-5 3.500z";
+const FIND = "M10 3a7 7 0 1 0 4.200 12.600L20 21.400 21.400 20l-5.800-5.800A7 7 0 0 0 10 3zm0 2a5 5 0 1 1 0 10 5 5 0 0 1 0-10z";
+const NEW = "M5 2h9l5 5v15H5zm8 2H7v16h10V8h-4z";
+
+const VERBS = /** @type {const} */ ([
+  ["pause", ICONS.pause, "F10"],
+  ["stop", ICONS.stop, ""],
+  ["step_line", NEXT, "F7"],
+  ["step", ICONS.step, "Shift+F7"],
+  ["reset", ICONS.restart, "F8"],
+]);
+
+/** @param {import("../i18n/index.js").Translate} t @param {Deeds} deeds */
+export function toolbar(t, deeds) {
+  /** @param {string} name @param {string} path @param {string} key @param {() => void} act @param {boolean} [worded] */
+  const button = (name, path, key, act, worded = false) => {
+    const title = key === "" ? t(`editor.${name}`) : `${t(`editor.${name}`)} (${key})`;
+    const words = worded ? [h("span", {}, t(`editor.${name}`))] : [];
+    return h(
+      "button",
+      { type: "button", title, "aria-label": t(`editor.${name}`), "data-verb": name, onclick: act },
+      path === "" ? "" : icon(path),
+      ...words,
+    );
+  };
+  const choice = h("select", { class: "recent", "aria-label": t("editor.choose") });
+  choice.addEventListener("change", () => {
+    const { value } = choice;
+    choice.value = "";
+    if (value !== "") deeds.choose(value);
+  });
+  const run = button("run", ICONS.play, "F9", deeds.run, true);
+  const verbs = VERBS.map(([verb, path, key]) => ({
+    verb: /** @type {Verb} */ (verb),
+    element: button(verb, path, key, () => deeds.control(verb)),
+  }));
+  const smaller = h("button", { type: "button", "aria-label": t("editor.smaller"), title: t("editor.smaller"), onclick: () => deeds.resize(-1) }, "A−");
+  const larger = h("button", { type: "button", "aria-label": t("editor.larger"), title: t("editor.larger"), onclick: () => deeds.resize(1) }, "A+");
+  const element = h(
+    "div",
+    { class: "editor-bar", role: "toolbar", "aria-label": t("editor.toolbar") },
+    h(
+      "div",
+      { class: "group" },
+      button("new", NEW, "", deeds.newFile),
+      fileButton({ id: "editor-file", label: "", help: t("editor.open"), accept: ".aesl,.aseba,.txt", open: deeds.open }),
+      button("save", SAVE, "Ctrl+S", deeds.save),
+      choice,
+      button("find", FIND, "Ctrl+F", deeds.find),
+      smaller,
+      larger,
+    ),
+    h("div", { class: "group" }, button("load", LOAD, "Ctrl+Enter", deeds.load, true), run, ...verbs.map(({ element }) => element)),
+  );
+  element.querySelector(".file button")?.setAttribute("aria-label", t("editor.open"));
+  let listed = "";
+
+  return {
+    element,
+    /**
+     * @param {(verb: Verb) => boolean} can
+     * @param {readonly { name: string }[]} recent
+     * @param {readonly { name: string, description: string }[]} samples
+     */
+    render(can, recent, samples) {
+      for (const { verb, element } of verbs) element.disabled = !can(verb);
+      const names = JSON.stringify([recent.map(({ name }) => name), samples]);
+      if (names === listed) return;
+      listed = names;
+      choice.replaceChildren(
+        h("option", { value: "" }, t("editor.choose")),
+        h("optgroup", { label: t("editor.recent") }, ...recent.map(({ name }) => h("option", { value: `recent ${name}` }, name))),
+        h(
+          "optgroup",
+          { label: t("editor.samples") },
+          ...samples.map(({ name, description }) => h("option", { value: `sample ${name}`, title: description }, name)),
+        ),
+      );
+    },
+  };
+}
+
+/**
+ * Keys that work wherever in the editor the focus is.
+ *
+ * @param {HTMLElement} element
+ * @param {Deeds} deeds
+ */
+export function watchKeys(element, deeds) {
+  const keys = /** @type {Record<string, () => void>} */ ({
+    F7: () => deeds.control("step_line"),
+    "Shift+F7": () => deeds.control("step"),
+    F8: () => deeds.control("reset"),
+    F9: deeds.run,
+    F10: () => deeds.control("pause"),
+    "Ctrl+Enter": deeds.load,
+    "Ctrl+s": deeds.save,
+  });
+  element.addEventListener(
+    "keydown",
+    (event) => {
+      const ctrl = event.ctrlKey || event.metaKey ? "Ctrl+" : "";
+      const act = keys[`${ctrl}${event.shiftKey ? "Shift+" : ""}${event.key}`];
+      if (act === undefined || event.altKey) return;
+      event.preventDefault();
+      event.stopPropagation();
+      if (!event.repeat) act();
+    },
+    true,
+  );
+  // Escape closes what is open in the editor; it does not stop the robots as elsewhere on the page.
+  element.addEventListener("keydown", (event) => event.key === "Escape" && event.stopPropagation());
+}

@@ -1,0 +1,59 @@
+// The constants of the program: values are changed in place, and kept in the file.
+
+import { h, setText } from "../../panels/dom.js";
+import { GREATEST, LEAST } from "../aesl.js";
+import { parseNumbers } from "../numbers.js";
+import { entryForm } from "./entry_form.js";
+
+/** @param {import("./index.js").ToolContext} context @returns {import("./index.js").Tool} */
+export function constantsTool({ t, define }) {
+  const body = h("tbody");
+  const trouble = h("p", { class: "fault", role: "alert", hidden: true });
+  let listed = "";
+
+  /** @param {string} name @param {number} value */
+  const rowOf = (name, value) => {
+    const input = h("input", { type: "text", inputmode: "numeric", value, "aria-label": name, "data-constant": name });
+    input.addEventListener("change", () => {
+      const { values, trouble: wrong } = parseNumbers(input.value, 1);
+      trouble.hidden = values !== null;
+      if (values !== null) return define("constant", name, values[0]);
+      setText(trouble, `${name}: ${t(wrong.key, wrong.values)}`);
+      input.value = String(value);
+    });
+    return h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, name),
+      h("td", {}, input),
+      h(
+        "td",
+        { class: "mark" },
+        h(
+          "button",
+          { type: "button", class: "plain", "aria-label": t("remove", { name }), onclick: () => define("constant", name, null) },
+          "✕",
+        ),
+      ),
+    );
+  };
+
+  const form = entryForm({
+    t,
+    kind: "constant",
+    least: LEAST,
+    greatest: GREATEST,
+    label: t("value"),
+    add: (name, value) => define("constant", name, value),
+  });
+  return {
+    name: "constants",
+    element: h("div", { class: "constants" }, h("table", {}, body), trouble, form),
+    render({ file }) {
+      const signature = JSON.stringify(file.constants.map(({ name, value }) => [name, value]));
+      if (signature === listed) return;
+      listed = signature;
+      body.replaceChildren(...file.constants.map(({ name, value }) => rowOf(name, value)));
+    },
+  };
+}

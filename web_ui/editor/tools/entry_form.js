@@ -1,0 +1,39 @@
+// A line with which an event or constant is added: name, number, button; wrong input is told in place.
+
+import { h, setText } from "../../panels/dom.js";
+import { WORD } from "../help.js";
+import { parseNumbers } from "../numbers.js";
+
+/**
+ * @param {object} options
+ * @param {import("../../i18n/index.js").Translate} options.t
+ * @param {"event" | "constant"} options.kind
+ * @param {number} options.least
+ * @param {number} options.greatest
+ * @param {string} options.label   of the number
+ * @param {(name: string, value: number) => void} options.add
+ */
+export function entryForm({ t, kind, least, greatest, label, add }) {
+  const name = h("input", { type: "text", "aria-label": t(`${kind}.name`), placeholder: t(`${kind}.name`), "data-new": kind });
+  const value = h("input", { type: "text", inputmode: "numeric", "aria-label": label, placeholder: label, class: "number" });
+  const trouble = h("p", { class: "fault", role: "alert", hidden: true });
+  const form = h("form", { class: "entry" }, name, value, h("button", { type: "submit" }, t("add")), trouble);
+  /** @param {string} text */
+  const complain = (text) => {
+    trouble.hidden = text === "";
+    setText(trouble, text);
+  };
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    const word = name.value.trim();
+    if (new RegExp(`^${WORD.source}$`, "u").exec(word) === null || /^[0-9]/.test(word))
+      return complain(t("name.bad", { name: word }));
+    const { values, trouble: wrong } = parseNumbers(value.value || "0", 1, least, greatest);
+    if (values === null) return complain(t(wrong.key, wrong.values));
+    complain("");
+    add(word, values[0]);
+    name.value = value.value = "";
+    name.focus();
+  });
+  return form;
+}

@@ -1,0 +1,129 @@
+// The program's events: send, add, remove, plot; and the log of what robots said.
+
+import { h, setAttribute, setText } from "../../panels/dom.js";
+import { LARGEST_EVENT } from "../aesl.js";
+import { eventKey } from "../desk.js";
+import { download } from "../download.js";
+import { csv, parseNumbers } from "../numbers.js";
+import { entryForm } from "./entry_form.js";
+
+const SHOWN_EVENTS = 100;
+
+/** @param {bigint} timeNs */
+const seconds = (timeNs) => (Number(timeNs / 1_000_000n) / 1000).toFixed(3);
+
+/** @param {import("./index.js").ToolContext} context @returns {import("./index.js").Tool} */
+export function eventsTool({ t, desk, emit, define, announce, redraw }) {
+  const body = h("tbody");
+  const trouble = h("p", { class: "fault", role: "alert", hidden: true });
+  const log = h("ol", { class: "log", role: "log", tabindex: "0", "aria-label": t("events.log") });
+  /** @type {import("./index.js").View | null} */ let shown = null;
+  let listed = "";
+  /** @type {readonly import("../state.js").LoggedEvent[] | null} */ let logged = null;
+
+  const form = entryForm({
+    t,
+    kind: "event",
+    least: 0,
+    greatest: LARGEST_EVENT,
+    label: t("events.size"),
+    add: (name, size) => define("event", name, size),
+  });
+
+  /** @param {string} name @param {number} size */
+  const rowOf = (name, size) => {
+    const input = h("input", {
+      type: "text",
+      value: Array(size).fill(0).join(" "),
+      hidden: size === 0,
+      "aria-label": t("events.values", { name, size }),
+    });
+    const send = () => {
+      const { values, trouble: wrong } = parseNumbers(input.value, size);
+      trouble.hidden = values !== null;
+      if (values === null) return setText(trouble, `${name}: ${t(wrong.key, wrong.values)}`);
+      emit(name, values);
+      announce(t("events.sent", { name }));
+    };
+    input.addEventListener("keydown", ({ key }) => key === "Enter" && send());
+    const plot = h("button", {
+      type: "button",
+      class: "plain star",
+      "data-watch": name,
+      "aria-label": t("variables.watch", { name }),
+      title: t("variables.watch", { name }),
+      onclick: () => {
+        desk.toggleWatch(eventKey(name));
+        redraw();
+      },
+    });
+    return h(
+      "tr",
+      {},
+      h("td", { class: "mark" }, plot),
+      h("th", { scope: "row" }, `${name} [${size}]`),
+      h("td", { class: "send" }, input, h("button", { type: "button", "data-send": name, onclick: send }, t("events.send"))),
+      h(
+        "td",
+        { class: "mark" },
+        h(
+          "button",
+          { type: "button", class: "plain", "aria-label": t("remove", { name }), onclick: () => define("event", name, null) },
+          "✕",
+        ),
+      ),
+    );
+  };
+
+  const element = h(
+    "div",
+    { class: "events" },
+    h("table", {}, body),
+    trouble,
+    form,
+    h(
+      "div",
+      { class: "row" },
+      h("h3", {}, t("events.log")),
+      h("button", { type: "button", onclick: () => desk.receive({ type: "forgetLog" }, "") ?? redraw() }, t("clear")),
+      h(
+        "button",
+        {
+          type: "button",
+          onclick: () => {
+            const rows = (shown?.log ?? []).map(({ timeNs, robot, name, values }) => [seconds(timeNs), robot, name, ...values]);
+            download("events.csv", csv([["seconds", t("robot"), t("name")], ...rows]), "text/csv");
+          },
+        },
+        "CSV",
+      ),
+    ),
+    log,
+  );
+  return {
+    name: "events",
+    element,
+    render(view) {
+      shown = view;
+      const events = view.file.events.map(({ name, value }) => ({ name, size: value }));
+      const signature = JSON.stringify(events);
+      if (signature !== listed) {
+        listed = signature;
+        body.replaceChildren(...events.map(({ name, size }) => rowOf(name, size)));
+      }
+      for (const star of body.querySelectorAll("[data-watch]")) {
+        const watched = desk.watched.has(eventKey(star.getAttribute("data-watch") ?? ""));
+        setText(star, watched ? "★" : "☆");
+        setAttribute(star, "aria-pressed", String(watched));
+      }
+      if (view.log === logged) return;
+      logged = view.log;
+      const lines = logged.slice(-SHOWN_EVENTS).reverse();
+      log.replaceChildren(
+        ...lines.map(({ timeNs, robot, name, values }) =>
+          h("li", {}, h("time", {}, seconds(timeNs)), ` ${robot === "" ? "" : `${robot}: `}${name} ${values.join(" ")}`),
+        ),
+      );
+    },
+  };
+}

@@ -1,0 +1,69 @@
+// What is watched, over time: a canvas with one line per value, and its numbers as CSV.
+
+import { h, setText } from "../../panels/dom.js";
+import { download } from "../download.js";
+import { csv } from "../numbers.js";
+import { drawPlot, STYLES } from "../plot.js";
+
+const SPANS = [5, 10, 30, 60, 300]; // seconds
+
+/** @param {import("./index.js").ToolContext} context @returns {import("./index.js").Tool} */
+export function plotTool({ t, desk, redraw }) {
+  const canvas = h("canvas", { class: "plot", role: "img", "aria-label": t("tool.plot") });
+  const legend = h("ul", { class: "legend" });
+  const nothing = h("p", { class: "nothing" }, t("plot.none"));
+  const span = h(
+    "select",
+    { "aria-label": t("plot.span"), onchange: redraw },
+    ...SPANS.map((seconds) => h("option", { value: seconds, selected: seconds === 10 }, `${seconds} s`)),
+  );
+  let paused = false;
+  let listed = "";
+  const pause = h("button", {
+    type: "button",
+    "aria-pressed": "false",
+    onclick: () => {
+      paused = !paused;
+      pause.setAttribute("aria-pressed", String(paused));
+      redraw();
+    },
+  }, t("plot.pause"));
+  return {
+    name: "plot",
+    element: h(
+      "div",
+      { class: "plotting" },
+      h(
+        "div",
+        { class: "row" },
+        span,
+        pause,
+        h("button", { type: "button", onclick: () => { desk.history.clear(); redraw(); } }, t("clear")),
+        h("button", { type: "button", onclick: () => download("plot.csv", csv(desk.history.rows()), "text/csv") }, "CSV"),
+      ),
+      nothing,
+      canvas,
+      legend,
+    ),
+    render() {
+      const series = [...desk.history.series.values()];
+      nothing.hidden = series.length > 0;
+      if (paused) return;
+      drawPlot(canvas, series, Number(span.value));
+      const names = series.map(({ name }) => name).join();
+      if (names !== listed) {
+        listed = names;
+        legend.replaceChildren(
+          ...series.map(({ name }, index) => {
+            const { color, mark } = STYLES[index % STYLES.length];
+            return h("li", {}, h("b", { style: `color: ${color}`, "aria-hidden": "true" }, mark), ` ${name} `, h("output", {}));
+          }),
+        );
+      }
+      series.forEach(({ values }, index) => {
+        const output = legend.children[index]?.querySelector("output");
+        if (output) setText(output, String(values.at(-1) ?? ""));
+      });
+    },
+  };
+}

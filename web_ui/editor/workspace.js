@@ -1,0 +1,172 @@
+// The programs on the desk, one per tab: which robot has which, what is kept for a closed browser. No screen.
+
+import { AeslError } from "./aesl.js";
+import { blank, codeOf, edited, fileName, fromRobot, isInRobot, isUnsaved, opened, redefined } from "./documents.js";
+
+/** @typedef {import("./documents.js").Document} Document */
+/** @typedef {import("./state.js").ProgramInfo} ProgramInfo */
+/** @typedef {{ name: string, line: number, column: number, what: string }} Refusal */
+
+/** The tab of the program for all robots; the others have their robot's name. */
+export const ALL = "*";
+
+export class Workspace {
+  /**
+   * @param {object} options
+   * @param {import("./storage.js").Keeper} options.keeper
+   * @param {() => number} options.now      milliseconds since 1970
+   * @param {() => void} options.changed    another text is to be shown
+   */
+  constructor({ keeper, now, changed }) {
+    this.keeper = keeper;
+    this.now = now;
+    this.changed = changed;
+    this.tab = ALL;
+    /** @type {Map<string, Document>} */ this.documents = new Map();
+    /** @type {Map<string, import("./storage.js").Kept>} */ this.drafts = new Map();
+    /** @type {Set<string>} */ this.following = new Set(); // tabs that take the robot's next program whatever they hold
+  }
+
+  /** @returns {Document} */
+  get current() {
+    return this.at(this.tab);
+  }
+
+  /** @param {string} tab @returns {Document} */
+  at(tab) {
+    const known = this.documents.get(tab);
+    if (known !== undefined) return known;
+    const document = blank(tab === ALL ? undefined : fileName(tab));
+    this.documents.set(tab, document);
+    const draft = this.keeper.draft(tab);
+    if (draft !== null) this.drafts.set(tab, draft);
+    return document;
+  }
+
+  /** @param {string} tab */
+  choose(tab) {
+    if (tab === this.tab) return;
+    this.at(tab);
+    this.tab = tab;
+    this.changed();
+  }
+
+  /** @param {number} node */
+  chooseNode(node) {
+    this.documents.set(this.tab, { ...this.current, node });
+    this.changed();
+  }
+
+  newFile() {
+    this.#replace(this.tab, blank());
+  }
+
+  /**
+   * Put a file on the desk; nothing changes when it is refused.
+   *
+   * @param {string} name
+   * @param {string} text
+   * @returns {Refusal | null}
+   */
+  open(name, text) {
+    try {
+      this.#replace(this.tab, opened(fileName(name), text));
+      this.keeper.remember({ name: fileName(name), text, time: this.now() });
+      return null;
+    } catch (error) {
+      if (!(error instanceof AeslError)) throw error;
+      return { name, line: error.line, column: error.column, what: error.message };
+    }
+  }
+
+  /** The text on the screen is now this. @param {string} code */
+  edit(code) {
+    this.#set(edited(this.current, code));
+  }
+
+  /** @param {"event" | "constant"} kind @param {string} name @param {number | null} value */
+  define(kind, name, value) {
+    this.#set(redefined(this.current, kind, name, value));
+  }
+
+  /** @param {string} name */
+  rename(name) {
+    this.#set({ ...this.current, name: fileName(name) });
+  }
+
+  saved() {
+    const document = this.current;
+    this.keeper.remember({ name: document.name, text: document.text, time: this.now() });
+    this.#set({ ...document, saved: document.text });
+  }
+
+  /** The robot took this text. @param {string} tab @param {string} text */
+  loaded(tab, text) {
+    this.documents.set(tab, { ...this.at(tab), loaded: text, source: text });
+  }
+
+  /** Whatever the robot gets next is to be shown here. */
+  follow() {
+    this.following.add(this.tab);
+  }
+
+  /**
+   * What a robot runs: shown where nothing of one's own would be lost.
+   *
+   * @param {string} tab
+   * @param {ProgramInfo | null | undefined} program
+   */
+  tell(tab, program) {
+    if (!program?.file) return;
+    const document = this.at(tab);
+    if (program.file === document.source) return;
+    const untouched = isInRobot(document) || (document.loaded === null && !isUnsaved(document) && document.text === blank().text);
+    if (!untouched && !this.following.has(tab)) return;
+    this.following.delete(tab);
+    try {
+      this.#replace(tab, fromRobot(program));
+    } catch (error) {
+      if (!(error instanceof AeslError)) throw error; // the runtime reads more than we do; what is on the desk stays
+    }
+  }
+
+  /** The draft that an earlier visit left of this tab. */
+  get draft() {
+    const draft = this.drafts.get(this.tab);
+    return draft === undefined || draft.text === this.current.text ? null : draft;
+  }
+
+  restoreDraft() {
+    const draft = this.drafts.get(this.tab);
+    if (draft === undefined) return;
+    this.drafts.delete(this.tab);
+    const { text: saved } = blank();
+    this.#replace(this.tab, { ...opened(draft.name, draft.text), saved });
+  }
+
+  forgetDraft() {
+    this.drafts.delete(this.tab);
+    this.keeper.keepDraft(this.tab, null);
+  }
+
+  /** @returns {string} */
+  get code() {
+    return codeOf(this.current);
+  }
+
+  /** @param {Document} document */
+  #set(document) {
+    this.documents.set(this.tab, document);
+    const { name, text } = document;
+    this.drafts.delete(this.tab);
+    this.keeper.keepDraft(this.tab, isUnsaved(document) ? { name, text, time: this.now() } : null);
+  }
+
+  /** Another document; what would be lost is among the recent files. @param {string} tab @param {Document} document */
+  #replace(tab, document) {
+    const old = this.documents.get(tab);
+    if (old !== undefined && isUnsaved(old)) this.keeper.remember({ name: old.name, text: old.text, time: this.now() });
+    this.documents.set(tab, document);
+    if (tab === this.tab) this.changed();
+  }
+}

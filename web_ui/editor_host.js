@@ -1,0 +1,93 @@
+// The place of the editor on the page: loads it when it is first opened, gives it messages while it is open.
+
+/** @typedef {import("./editor/index.js").Editor} Editor */
+/** @typedef {import("./editor/desk.js").Desk} Desk */
+/** @typedef {import("./panels/index.js").Context} Context */
+
+const TOPIC = /^\/(?:[^/]+\/)?aseba\/(?:target|variables|events)$|^\/aseba_runtime\/behaviours$/;
+
+export class EditorHost {
+  /**
+   * @param {object} options
+   * @param {HTMLElement} options.slot
+   * @param {() => import("./protocol/client.js").Client} options.client
+   * @param {() => void} options.changed   opened or closed
+   */
+  constructor({ slot, client, changed }) {
+    this.slot = slot;
+    this.client = client;
+    this.changed = changed;
+    this.isOpen = false;
+    /** @type {typeof import("./editor/index.js") | null} */ this.module = null;
+    /** @type {Desk | null} */ this.desk = null;
+    /** @type {Editor | null} */ this.editor = null;
+    /** @type {Context | null} */ this.context = null;
+  }
+
+  /** Whether the editor needs this topic now. @param {string} topic */
+  wants(topic) {
+    return this.isOpen && TOPIC.test(topic);
+  }
+
+  /** @param {import("./protocol/client.js").ClientEvent} event @param {string} selected  robot */
+  receive(event, selected) {
+    if (this.desk === null || (event.type !== "message" && event.type !== "disconnected")) return;
+    this.desk.receive(event, selected);
+    this.redraw();
+  }
+
+  redraw() {
+    if (this.isOpen) this.editor?.redraw();
+  }
+
+  /** The page has other words, or is new. @param {Context} context */
+  dress(context) {
+    this.context = context;
+    if (this.isOpen) this.#build();
+  }
+
+  async open() {
+    if (this.isOpen) return;
+    this.module ??= await import("./editor/index.js");
+    this.desk ??= new this.module.Desk(localStorage, Date.now);
+    this.isOpen = true;
+    document.body.classList.add("with-editor");
+    this.slot.hidden = false;
+    this.#build();
+    this.client().refresh();
+    this.changed();
+  }
+
+  close() {
+    this.isOpen = false;
+    this.editor?.destroy();
+    this.editor = null;
+    document.body.classList.remove("with-editor");
+    this.slot.hidden = true;
+    this.client().refresh();
+    this.changed();
+  }
+
+  /** A program dropped or refused elsewhere on the page. @param {string} name @param {string} text */
+  async openText(name, text) {
+    await this.open();
+    this.editor?.openText(name, text);
+  }
+
+  #build() {
+    if (this.module === null || this.desk === null || this.context === null) return;
+    this.editor?.destroy();
+    const { t, language, store, announce } = this.context;
+    this.editor = this.module.createEditor({
+      desk: this.desk,
+      client: this.client(),
+      store,
+      language,
+      pageText: t,
+      announce,
+      close: () => this.close(),
+    });
+    this.slot.replaceChildren(this.editor.element);
+    this.editor.begin();
+  }
+}
