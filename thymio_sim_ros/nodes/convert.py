@@ -33,9 +33,10 @@ from std_msgs.msg import (
 )
 from visualization_msgs.msg import Marker, MarkerArray
 
-from thymio_sim_ros.nodes import qos, senses
+from thymio_sim_ros.nodes import patches, qos, senses
 from thymio_sim_ros.nodes.headers import SECOND_NS, stamped
 from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
+from thymio_sim_ros.nodes.templates import Patch
 from thymio_sim_ros.sim import commands, readings
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt, Twist
 from thymio_sim_ros.sim.sensors import Sensor
@@ -99,21 +100,14 @@ class Row:
     on_change: bool = False
     is_event: bool = False
     """Whether `encode` gives nothing for most readings."""
+    patch: Patch | None = None
+    """What a reading changes in the serialised message, for topics with much traffic."""
 
 
 def quaternion(yaw_rad: float, tilt: Tilt = LEVEL) -> Quaternion:
     """A turn about z, of a body that leans."""
-    z, w = math.sin(yaw_rad / 2), math.cos(yaw_rad / 2)
-    if tilt == LEVEL:
-        return Quaternion(z=z, w=w)
-    sr, cr = math.sin(tilt.roll_rad / 2), math.cos(tilt.roll_rad / 2)
-    sp, cp = math.sin(tilt.pitch_rad / 2), math.cos(tilt.pitch_rad / 2)
-    return Quaternion(
-        x=w * cp * sr - z * sp * cr,
-        y=w * sp * cr + z * cp * sr,
-        z=z * cp * cr - w * sp * sr,
-        w=w * cp * cr + z * sp * sr,
-    )
+    x, y, z, w = patches.rotation(yaw_rad, tilt)
+    return Quaternion(x=x, y=y, z=z, w=w)
 
 
 def yaw_of(rotation: Quaternion) -> float:
@@ -122,17 +116,13 @@ def yaw_of(rotation: Quaternion) -> float:
 
 
 def _range(reading: readings.ProximityReading, names: RobotNames, options: ConvertOptions, *, index: int) -> Range:
-    value, said = reading.ranges_m[index], options.proximity[index]
-    if options.driver_ranges:
-        value = -1.0 if math.isinf(value) else max(value, said.min_m)
-    elif value < said.min_m:
-        value = -math.inf
+    said = options.proximity[index]
     message = Range(
         radiation_type=Range.INFRARED,
         field_of_view=said.fov_rad,
         min_range=said.min_m,
         max_range=said.max_m,
-        range=value,
+        range=patches.seen_m(reading, options, index),
     )
     return stamped(message, reading.stamp_ns, names.frame(f"proximity_{PROXIMITY[index]}_link"))
 
@@ -153,14 +143,12 @@ def _laser(reading: readings.ProximityReading, names: RobotNames, _options: Conv
 
 
 def _ground(reading: readings.GroundReading, names: RobotNames, options: ConvertOptions, *, index: int) -> Range:
-    dark = reading.words[4 + index] < options.ground_threshold
-    not_reflecting, reflecting = (1.0, 0.0) if options.driver_ranges else (math.inf, -math.inf)
     message = Range(
         radiation_type=Range.INFRARED,
         field_of_view=GROUND_FOV_RAD,
         min_range=GROUND_MIN_M,
         max_range=GROUND_MAX_M,
-        range=not_reflecting if dark else reflecting,
+        range=patches.below_m(reading, options, index),
     )
     return stamped(message, reading.stamp_ns, names.frame(f"ground_{SIDES[index]}_link"))
 
@@ -266,6 +254,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
                 partial(_ground, index=i),
                 "-inf: the floor reflects, +inf: it does not; as the driver has it 0 and 1",
                 f"ground_{side}_link",
+                patch=patches.below_patch(i),
             )
             for i, side in enumerate(SIDES)
         ),
@@ -278,6 +267,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
                 partial(_range, index=i),
                 "distance in m of a wall; +inf: nothing, -inf: too close; as the driver has it -1 and the minimum",
                 f"proximity_{name}_link",
+                patch=patches.seen_patch(i),
             )
             for i, name in enumerate(PROXIMITY)
         ),
@@ -320,8 +310,16 @@ ROWS: dict[str, tuple[Row, ...]] = {
         ),
     ),
     "pose": (
-        Row("odom", Odometry, _odometry, "by the wheels, from zero; they slip", "odom", always=True),
-        Row(TRUTH, Odometry, _truth, "where the robot really is", MAP_FRAME),
+        Row(
+            "odom",
+            Odometry,
+            _odometry,
+            "by the wheels, from zero; they slip",
+            "odom",
+            always=True,
+            patch=patches.ODOMETRY,
+        ),
+        Row(TRUTH, Odometry, _truth, "where the robot really is", MAP_FRAME, patch=patches.TRUTH),
     ),
     "leds": (
         Row(
@@ -394,8 +392,13 @@ def rows_of(sensor: Sensor) -> tuple[Row, ...]:
     """Topics of a sensor; one added by a plug-in has those of its words."""
     variables = ", ".join(f"`{name}`" if size == 1 else f"`{name}[{size}]`" for name, size in sensor.aseba.variables)
     about = f"Aseba's integers: {variables}" if variables else "the event, without values"
+    count = sum(size for _, size in sensor.aseba.variables)
     is_seen = sensor.aseba.variables or sensor.aseba.event
-    raw = (Row(f"raw/{sensor.name}", Int16MultiArray, _words, about),) if is_seen else ()
+    raw = (
+        (Row(f"raw/{sensor.name}", Int16MultiArray, _words, about, patch=patches.words_patch(count)),)
+        if is_seen
+        else ()
+    )
     return ROWS.get(sensor.name, ()) + raw
 
 

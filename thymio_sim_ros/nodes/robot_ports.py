@@ -20,6 +20,7 @@ from thymio_sim_ros.nodes.convert import CommandError, ConvertOptions, Row
 from thymio_sim_ros.nodes.description import urdf
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.robot_inputs import Moment, RobotInput, robot_inputs
+from thymio_sim_ros.nodes.templates import Template
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.placement import PlacementError
@@ -31,6 +32,9 @@ __all__ = ["DESCRIBED", "DESCRIPTION", "SERVICES", "WARN_EVERY_S", "PortOptions"
 Post = Callable[[Command], None]
 
 WARN_EVERY_S = 5.0
+
+ASK_EVERY_NS = 50_000_000
+"""A topic that nobody listens to asks again after so much simulated time."""
 
 DESCRIPTION = "robot_description"
 DESCRIBED = (String, "the robot as URDF, made of primitives, with turning wheels")
@@ -53,13 +57,15 @@ class PortOptions:
 
 @dataclass(slots=True)
 class _Outlet:
-    """The publisher of a row, what it sent last, and when it may send again."""
+    """The publisher of a row, what it sent last, when it may send again; until when it is sure that nobody listens."""
 
     row: Row
     publisher: Any
     every_ns: int
     last: Any = None
     next_ns: int = 0
+    idle_ns: int = 0
+    template: Template | None = None
 
 
 class RobotPorts:
@@ -104,28 +110,38 @@ class RobotPorts:
 
     def publish(self, sensor: str, reading: Reading) -> None:
         """Send one reading on every topic made from it."""
+        stamp_ns = reading.stamp_ns
         for outlet in self._outlets[sensor]:
+            if stamp_ns < outlet.idle_ns:
+                continue
             row = outlet.row
             if outlet.every_ns:
-                if reading.stamp_ns < outlet.next_ns:
+                if stamp_ns < outlet.next_ns:
                     continue
-                outlet.next_ns = (reading.stamp_ns // outlet.every_ns + 1) * outlet.every_ns
+                outlet.next_ns = (stamp_ns // outlet.every_ns + 1) * outlet.every_ns
             if not row.always and not outlet.publisher.get_subscription_count():
+                outlet.idle_ns = stamp_ns + ASK_EVERY_NS
                 continue
-            message = row.encode(reading, self.names, self._content())
+            content = self._content()
+            if outlet.template is not None and outlet.template.options is content:
+                outlet.publisher.publish(outlet.template.fill(reading))
+                continue
+            message = row.encode(reading, self.names, content)
             if message is None:
                 continue
             if row.on_change:
                 if outlet.last == message:
                     continue
                 outlet.last = message
+            if row.patch is not None:
+                outlet.template = Template.checked(row.patch, message, reading, content)
             outlet.publisher.publish(message)
 
     def forget(self) -> None:
         """Send the next reading of every kind, also an unchanged one: the world was reset."""
         for outlets in self._outlets.values():
             for outlet in outlets:
-                outlet.last, outlet.next_ns = None, outlet.every_ns
+                outlet.last, outlet.next_ns, outlet.idle_ns = None, outlet.every_ns, 0
 
     def close(self) -> None:
         """Take all topics and services of this robot out of the graph."""

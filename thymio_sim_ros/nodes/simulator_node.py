@@ -27,7 +27,7 @@ from thymio_sim_ros.nodes.robot_inputs import Moment
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
 from thymio_sim_ros.nodes.roster import Roster
 from thymio_sim_ros.nodes.simulator_params import SimulatorParams
-from thymio_sim_ros.nodes.transforms import Transforms
+from thymio_sim_ros.nodes.transforms import TRANSFORMING, Transforms
 from thymio_sim_ros.nodes.world_ports import Pace, WorldPorts, WorldState
 from thymio_sim_ros.nodes.world_services import WorldServices
 from thymio_sim_ros.runlog import RunLog
@@ -106,7 +106,8 @@ class Simulator:
             for robot, sensor, reading in result.readings:
                 ports = self._roster[robot]
                 ports.publish(sensor, reading)
-                self._transforms.take(ports.names, reading)
+                if sensor in TRANSFORMING:
+                    self._transforms.take(ports.names, reading)
             self._transforms.flush()
             self._world_ports.publish_clock(result.now_ns, last=self.paused)
         self._world_ports.publish_objects(self.world, last=self.paused)

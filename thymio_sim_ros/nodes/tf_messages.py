@@ -11,8 +11,7 @@ import functools
 import logging
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 from thymio_sim_ros.nodes import typesupport
 
@@ -42,8 +41,7 @@ _LITTLE_ENDIAN_CDR = b"\x00\x01\x00\x00"
 _HEADER = struct.Struct("<4sI")  # encapsulation, number of transforms
 
 
-@dataclass(frozen=True, slots=True)
-class Transform:
+class Transform(NamedTuple):
     """Pose of frame `child` in `frame` at `stamp_ns`: metres and a unit quaternion x, y, z, w."""
 
     stamp_ns: int
@@ -108,17 +106,19 @@ def encode(transforms: Sequence[Transform]) -> bytes:
     """CDR of a TFMessage, little-endian. Stamps from 0 to 2**31 s."""
     parts = [_HEADER.pack(_LITTLE_ENDIAN_CDR, len(transforms))]
     offset = 4  # CDR aligns from behind the encapsulation
-    for transform in transforms:
-        frame, child = transform.frame.encode(), transform.child.encode()
-        layout = _layout(offset % 8, len(frame) + 1, len(child) + 1)
-        sec, nanosec = divmod(transform.stamp_ns, _SECOND_NS)
-        parts.append(
-            layout.pack(
-                sec, nanosec, len(frame) + 1, frame, len(child) + 1, child, *transform.translation, *transform.rotation
-            )
-        )
+    for stamp_ns, frame, child, translation, rotation in transforms:
+        layout, *named = _named(offset % 8, frame, child)
+        parts.append(layout.pack(*divmod(stamp_ns, _SECOND_NS), *named, *translation, *rotation))
         offset += layout.size
     return b"".join(parts)
+
+
+@functools.lru_cache(maxsize=8192)
+def _named(alignment: int, frame: str, child: str) -> tuple[struct.Struct, int, bytes, int, bytes]:
+    """The layout of a transform between these frames, and their names as it packs them."""
+    frame_bytes, child_bytes = frame.encode(), child.encode()
+    frame_size, child_size = len(frame_bytes) + 1, len(child_bytes) + 1
+    return _layout(alignment, frame_size, child_size), frame_size, frame_bytes, child_size, child_bytes
 
 
 def decode(data: bytes) -> tuple[Transform, ...]:

@@ -9,20 +9,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from thymio_sim_ros.nodes import qos, tf_messages
-from thymio_sim_ros.nodes.convert import quaternion
 from thymio_sim_ros.nodes.description import fixed_frames, wheel_position
 from thymio_sim_ros.nodes.names import MAP_FRAME, SIDES, RobotNames
+from thymio_sim_ros.nodes.patches import rotation
 from thymio_sim_ros.nodes.tf_messages import Transform
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.readings import MotorReading, PoseReading, Reading
 
-__all__ = ["TransformOptions", "Transforms", "origin_of"]
+__all__ = ["TRANSFORMING", "TransformOptions", "Transforms", "origin_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +34,10 @@ class TransformOptions:
     publish_wheels: bool = True
     publish_static: bool = True
     namespaced: bool = False
+
+
+TRANSFORMING = ("motor", "pose")
+"""The sensors whose readings make transforms."""
 
 
 class _Channel:
@@ -106,16 +111,28 @@ class Transforms:
         return names.topic(channel.word) if self._options.namespaced else f"/{channel.word}"
 
     def _frames(self, names: RobotNames, reading: PoseReading) -> list[Transform]:
-        ns, base, odom = reading.stamp_ns, names.frame("base_link"), names.frame("odom")
+        ns = reading.stamp_ns
+        origin, odom, base, *wheels = _moving_frames(names)
         frames = [_planar(ns, odom, base, reading.odometry, reading.tilt)]
         if self._options.publish_map:
-            origin = origin_of(reading.truth, reading.odometry)
-            frames.insert(0, _planar(ns, names.frame(MAP_FRAME), odom, origin))
+            frames.insert(0, _planar(ns, origin, odom, origin_of(reading.truth, reading.odometry)))
         if self._options.publish_wheels:
-            for side, angle in zip(SIDES, self._angles.get(names.name, (0.0, 0.0)), strict=True):
+            angles = self._angles.get(names.name, (0.0, 0.0))
+            for wheel, place, angle in zip(wheels, _WHEELS, angles, strict=True):
                 turn = (0.0, math.sin(angle / 2), 0.0, math.cos(angle / 2))
-                frames.append(Transform(ns, base, names.frame(f"{side}_wheel_link"), wheel_position(side), turn))
+                frames.append(Transform(ns, base, wheel, place, turn))
         return frames
+
+
+_WHEELS = tuple(map(wheel_position, SIDES))
+
+
+@cache
+def _moving_frames(names: RobotNames) -> tuple[str, ...]:
+    """The map's frame, the odometry's, the robot's and those of its wheels."""
+    return tuple(
+        names.frame(usual) for usual in (MAP_FRAME, "odom", "base_link", *(f"{side}_wheel_link" for side in SIDES))
+    )
 
 
 def origin_of(truth: Pose, odometry: Pose) -> Pose:
@@ -128,5 +145,4 @@ def origin_of(truth: Pose, odometry: Pose) -> Pose:
 
 
 def _planar(ns: int, frame: str, child: str, pose: Pose, tilt: Tilt = LEVEL) -> Transform:
-    turn = quaternion(pose.yaw_rad, tilt)
-    return Transform(ns, frame, child, (pose.x_m, pose.y_m, 0.0), (turn.x, turn.y, turn.z, turn.w))
+    return Transform(ns, frame, child, (pose.x_m, pose.y_m, 0.0), rotation(pose.yaw_rad, tilt))

@@ -1,0 +1,54 @@
+"""Patched messages are those that the serialiser makes, for every reading, name and option."""
+
+from __future__ import annotations
+
+import math
+import struct
+
+import pytest
+from rclpy.serialization import deserialize_message, serialize_message
+from std_msgs.msg import Float32
+
+from thymio_sim_ros.nodes import convert, reference
+from thymio_sim_ros.nodes.convert import ConvertOptions
+from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.templates import Patch, Template
+from thymio_sim_ros.sim import readings
+from thymio_sim_ros.sim.geometry import Pose, Tilt, Twist
+
+PATCHED = [(sensor, row) for sensor in reference.own_sensors() for row in convert.rows_of(sensor) if row.patch]
+
+
+def reading_of(sensor, seed):
+    count = sum(size for _, size in sensor.aseba.variables)
+    words = tuple((seed * 7919 + index * 104_729) % 2000 - 500 for index in range(count))
+    stamp = 1_230_000_000 * seed
+    if sensor.name == "proximity":
+        return readings.ProximityReading(stamp, words, (math.inf, 0.01, 0.05, 0.1, 0.14, 0.02 * seed, 0.03))
+    if sensor.name == "ground":
+        return readings.GroundReading(stamp, words, (0.1, 0.9))
+    if sensor.name == "pose":
+        place, turn = Pose(1.5 * seed, -2.5, 0.7 * seed), Twist(0.125, -0.5 * seed)
+        return readings.PoseReading(
+            stamp, (), place, turn, Pose(-place.x_m, 3.0, 1.0), Twist(0.25, float(seed)), Tilt(0.1, 0.2)
+        )
+    return readings.PlainReading(stamp, words)
+
+
+@pytest.mark.parametrize("options", [ConvertOptions(), ConvertOptions(True, 100, pose_covariance=(0.0,) * 6)])
+@pytest.mark.parametrize("name", ["", "anna", "a_robot_1"])
+@pytest.mark.parametrize(("sensor", "row"), PATCHED, ids=[row.topic for _, row in PATCHED])
+def test_a_patched_message_is_the_serialised_one(sensor, row, name, options):
+    names, first = RobotNames(name), reading_of(sensor, 1)
+    template = Template.checked(row.patch, row.encode(first, names, options), first, options)
+    assert template is not None
+    for seed in (2, 3, 1):
+        reading = reading_of(sensor, seed)
+        fresh = serialize_message(row.encode(reading, names, options))
+        assert deserialize_message(template.fill(reading), row.type) == deserialize_message(fresh, row.type)
+
+
+def test_a_patch_in_the_wrong_place_is_no_template():
+    reading = readings.PlainReading(5, (1,))
+    patch = Patch(struct.Struct("<ff"), lambda reading, options: (1.0, 2.0), has_stamp=False)
+    assert Template.checked(patch, Float32(data=3.0), reading, None) is None
