@@ -1,0 +1,45 @@
+"""The layouts against the running suite: every topic and service they name is there."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tests.bridge.studio import Studio
+from thymio_sim_ros.studio_layout import render
+
+DATATYPE = re.compile(r'"topicName": "(/[\w/]+)",\s*"datatype": "([\w/]+)"')
+
+
+@pytest.fixture
+def suite(ros, bridge):
+    """Simulator, runtime and bridge, and a client of it."""
+    from thymio_sim_ros.nodes.aseba_node import AsebaRuntime, RuntimeParams
+    from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
+
+    ros.live(Simulator(ros.context, SimulatorParams(playground="line")))
+    ros.live(AsebaRuntime(ros.context, RuntimeParams(path="line_follower"), use_sim_time=True))
+    with Studio(bridge(use_sim_time=True).port, ros.until) as studio:
+        yield studio
+
+
+def test_every_name_of_the_layout_is_in_the_running_suite(ros, suite):
+    text = render("lichtblick")
+    names = {name.partition(".")[0] for name in re.findall(r'"(/[\w/.]+)', text)}
+    services = set(re.findall(r'"serviceName": "(/[\w/]+)"', text))
+    assert len(names) > 30
+    assert len(services) > 5
+
+    def missing():
+        suite.read()
+        return (names - services - suite.channels.keys()) | (services - suite.services.keys())
+
+    ros.until(lambda: not missing(), what="all names of the layout")
+
+
+def test_what_the_layout_publishes_has_the_type_of_its_topic(ros, suite):
+    published = DATATYPE.findall(render("lichtblick"))
+    assert len(published) > 5
+    for topic, datatype in published:
+        assert suite.channel(topic).schema_name == datatype
