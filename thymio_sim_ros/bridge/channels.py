@@ -285,11 +285,8 @@ class Switchboard:
                 letters.append(Letter((client,), update))
 
     def _set_time(self, command: ev.SetTime, letters: list[Letter]) -> None:
-        is_back = command.time_ns < self._time_ns
         self._time_ns = command.time_ns
         self._tell_all(ms.Time(command.time_ns), letters)
-        if is_back:  # clients have dropped what lay in the future, latched messages too
-            self._tell_kept(letters)
 
     def _new_session(self, command: ev.NewSession, letters: list[Letter]) -> None:
         self._info = replace(self._info, session_id=command.session_id)
@@ -301,6 +298,14 @@ class Switchboard:
                 self._clients[client] = replace(state, graph=ConnectionGraph())
         self._set_graph(ev.SetGraph(self._graph), letters)
 
+    def _repeat_kept(self, command: ev.RepeatKept, letters: list[Letter]) -> None:
+        for channel_id, kept in self._kept.items():
+            letters += (
+                Letter((client,), ms.MessageData(subscription_id, self._time_ns, data.payload))
+                for client, subscription_id in self.routes(channel_id)
+                for data in kept
+            )
+
     def _tell(self, command: ev.Tell, letters: list[Letter]) -> None:
         if command.client in self._clients:
             letters.append(Letter((command.client,), command.message))
@@ -310,15 +315,6 @@ class Switchboard:
     def _tell_all(self, message: ms.ServerMessage, letters: list[Letter]) -> None:
         if self._clients:
             letters.append(Letter(tuple(self._clients), message))
-
-    def _tell_kept(self, letters: list[Letter]) -> None:
-        """Give latched messages to everybody who is subscribed, once more."""
-        for channel_id, kept in self._kept.items():
-            letters += (
-                Letter((client,), ms.MessageData(subscription_id, self._time_ns, data.payload))
-                for client, subscription_id in self.routes(channel_id)
-                for data in kept
-            )
 
     def _values(self, names: Iterable[str], request_id: str | None) -> ms.ParameterValues:
         known = (self._parameters[name] for name in names if name in self._parameters)
@@ -371,5 +367,6 @@ _FROM_OWNER: dict[type, Callable[[Switchboard, Any, list[Letter]], None]] = {
     ev.SetGraph: Switchboard._set_graph,
     ev.SetTime: Switchboard._set_time,
     ev.NewSession: Switchboard._new_session,
+    ev.RepeatKept: Switchboard._repeat_kept,
     ev.Tell: Switchboard._tell,
 }

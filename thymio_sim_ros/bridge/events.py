@@ -191,6 +191,11 @@ class NewSession:
 
 
 @dataclass(frozen=True, slots=True)
+class RepeatKept:
+    """Give what is kept for newcomers to all subscribers once more: they have dropped it with the past."""
+
+
+@dataclass(frozen=True, slots=True)
 class Tell:
     """A message for one client; forgotten when it has left."""
 
@@ -210,5 +215,6 @@ Command = (
     | SetGraph
     | SetTime
     | NewSession
+    | RepeatKept
     | Tell
 )

@@ -44,6 +44,8 @@ __all__ = ["FoxgloveBridge", "main"]
 
 _DISCOVER_S = 0.25
 _REFRESH_S = 1.0
+_REPEAT_S = 1.0
+"""After time went back: what a client gets while it drops the past may go with it (measured with Lichtblick)."""
 _HURRY_S = 0.02
 """Period of polling while something waits for discovery: a call, a message of a new publisher."""
 
@@ -134,6 +136,8 @@ class FoxgloveBridge:
         self._is_service = allow_list(values.service_whitelist)
         self._hurry = self.node.create_timer(_HURRY_S, self._poll_waiting, clock=steady)
         self._hurry.cancel()
+        self._repeat = self.node.create_timer(_REPEAT_S, self._repeat_kept, clock=steady)
+        self._repeat.cancel()
         self._calls = Calls(self.node, wake=self._hurry.reset)
         self._topics = Topics(
             self.node,
@@ -173,8 +177,13 @@ class FoxgloveBridge:
         now_ns = self.node.get_clock().now().nanoseconds
         if now_ns < self._sim_now_ns:
             self._server.post(ev.NewSession(_new_id()))
+            self._repeat.reset()
         self._sim_now_ns = now_ns
         self._server.post(ev.SetTime(now_ns))
+
+    def _repeat_kept(self) -> None:
+        self._repeat.cancel()
+        self._server.post(ev.RepeatKept())
 
     def _discover(self) -> None:
         """Follow the graph."""

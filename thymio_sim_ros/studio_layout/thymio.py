@@ -21,6 +21,7 @@ _SPEED_M_S, _TURN_RAD_S, _TELEOP_HZ = 0.1, 1.0, 10
 _WINDOW_S = 20
 
 _FRAMES = (
+    "odom",
     "base_link",
     "base_footprint",
     "left_wheel_link",
@@ -236,7 +237,7 @@ def _plot(key: str, title: str, series: Iterable[tuple[str, str]], *, low: float
             "isSynced": True,
             "xAxisVal": "timestamp",
             "followingViewWidth": _WINDOW_S,
-            "sidebarDimension": 180,
+            "sidebarDimension": 210,
         },
     )
 
