@@ -177,6 +177,17 @@ test("what a robot runs is shown until a person has changed something", () => {
   assert.equal(desk.code, "a = 4");
 });
 
+test("a new program and an opened file stay when a robot tells of its own", () => {
+  const { desk } = workspace();
+  desk.tell(ALL, program("a = 1"));
+  desk.newFile();
+  desk.tell(ALL, program("a = 1"));
+  assert.equal(desk.code, "");
+  desk.open("mine.aesl", "b = 1");
+  desk.tell(ALL, program("a = 1"));
+  assert.equal(desk.code, "b = 1");
+});
+
 test("what a robot tells back after loading changes nothing", () => {
   const { desk, shown } = workspace();
   desk.edit("a = 1");

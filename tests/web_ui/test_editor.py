@@ -136,3 +136,24 @@ def test_a_file_is_opened_changed_and_saved_without_loss_and_a_draft_outlives_th
     editor.set_input_files("#editor-file", str(broken))
     expect(editor, ".verdict").to_contain_text("line 2, column 9")
     expect(editor, ".cm-content").to_have_text("var a = SIZE_")
+
+
+def test_each_of_two_robots_has_its_program(suite, page):
+    open_page(page, suite("--playground", "two_robots", "--program", "none"))
+    page.click("#editor-switch")
+    names = page.evaluate("Object.keys(window.thymio.state().robots)")
+    assert len(names) == 2
+    for name, text in zip(names, ("var mine = 11\n", "var mine = 22\n"), strict=True):
+        page.click(f".editor-head [data-tab={name}]")
+        write(page, text)
+        page.keyboard.press("Control+Enter")
+    for name, value in zip(names, ("11", "22"), strict=True):
+        page.click(f".editor-head [data-tab={name}]")
+        expect(page, "[data-variable=mine]").to_have_text(value)
+    page.click(".editor-head [data-tab='*']")
+    write(page, "var ours = 33\n")
+    page.keyboard.press("Control+Enter")
+    for name in names:
+        page.click(f".editor-head [data-tab={name}]")
+        expect(page, "[data-variable=ours]").to_have_text("33")
+        expect(page, ".cm-content").to_have_text("var ours = 33")

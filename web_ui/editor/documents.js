@@ -10,6 +10,7 @@ import { looksLikeAesl, newAesl, readAesl, withCode, withEntry } from "./aesl.js
  * @property {string} saved           text as last opened, saved or taken from a robot
  * @property {string | null} loaded   text as last loaded into a robot or taken from it; null: never
  * @property {string | null} source   the robot's source that it was taken from or that was loaded
+ * @property {boolean} own            whether a person began or opened it
  */
 
 export const UNTITLED = "program.aesl";
@@ -17,7 +18,7 @@ export const UNTITLED = "program.aesl";
 /** @param {string} [name] @returns {Document} */
 export function blank(name = UNTITLED) {
   const text = newAesl();
-  return { name, text, node: 0, saved: text, loaded: null, source: null };
+  return { name, text, node: 0, saved: text, loaded: null, source: null, own: false };
 }
 
 /**
@@ -31,7 +32,7 @@ export function opened(name, text) {
   const wrapped = looksLikeAesl(text) ? text : newAesl(text.replaceAll("\r\n", "\n"));
   const { nodes } = readAesl(wrapped);
   const whole = nodes.length > 0 ? wrapped : wrapped.replace(/<\/network>/, '<node nodeId="1" name="thymio-II"></node>\n</network>');
-  return { name: name || UNTITLED, text: whole, node: 0, saved: whole, loaded: null, source: null };
+  return { name: name || UNTITLED, text: whole, node: 0, saved: whole, loaded: null, source: null, own: true };
 }
 
 /**
@@ -43,7 +44,7 @@ export function opened(name, text) {
 export function fromRobot({ name, file, node = "" }) {
   const document = opened(name, file);
   const index = readAesl(document.text).nodes.findIndex((each) => each.name === node);
-  return { ...document, node: Math.max(index, 0), loaded: document.text, source: file };
+  return { ...document, node: Math.max(index, 0), loaded: document.text, source: file, own: false };
 }
 
 /** @param {Document} document @returns {string} */

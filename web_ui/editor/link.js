@@ -32,12 +32,13 @@ export class Link {
    * @param {readonly string[]} robots  all there are
    * @returns {Promise<Answer>}
    */
-  load(robot, name, source, robots) {
-    return this.client.setParameters([
+  async load(robot, name, source, robots) {
+    const { ok, message } = await this.client.setParameters([
       ...this.#released(robot, robots),
       { name: `${prefix(robot)}script.name`, value: name },
       { name: `${prefix(robot)}script.source`, value: source },
     ]);
+    return { ok, message: message.replace(`${prefix(robot)}script.source: `, "") };
   }
 
   /** A built-in behaviour as program. @param {string | null} robot @param {string} name @param {readonly string[]} robots */

@@ -58,8 +58,15 @@ export function createText({ parent, label, phrases, vocabulary, changed, toggle
   };
 
   const extensions = [
-    lineNumbers(),
     breakpointGutter(toggleBreakpoint),
+    lineNumbers({
+      domEventHandlers: {
+        mousedown(view, line) {
+          toggleBreakpoint(view.state.doc.lineAt(line.from).number);
+          return true;
+        },
+      },
+    }),
     lintGutter(),
     codeFolding(),
     foldGutter({ openText: "▾", closedText: "▸" }),

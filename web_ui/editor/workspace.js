@@ -58,7 +58,7 @@ export class Workspace {
   }
 
   newFile() {
-    this.#replace(this.tab, blank());
+    this.#replace(this.tab, { ...blank(), own: true });
   }
 
   /**
@@ -120,7 +120,7 @@ export class Workspace {
     if (!program?.file) return;
     const document = this.at(tab);
     if (program.file === document.source) return;
-    const untouched = isInRobot(document) || (document.loaded === null && !isUnsaved(document) && document.text === blank().text);
+    const untouched = isInRobot(document) || (!document.own && !isUnsaved(document));
     if (!untouched && !this.following.has(tab)) return;
     this.following.delete(tab);
     try {
