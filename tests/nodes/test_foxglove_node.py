@@ -47,3 +47,15 @@ def test_the_greeting_says_where_to_connect(bridge):
     life = bridge()
     assert f"ws://localhost:{life.port}" in life.greeting
     assert f"ds.url=ws%3A%2F%2Flocalhost%3A{life.port}" in life.greeting
+
+
+@pytest.mark.parametrize(
+    ("address", "host"), [("127.0.0.1", "localhost"), ("127.0.0.2", "127.0.0.2"), ("::1", "localhost")]
+)
+def test_the_greeting_names_the_address(ros, address, host):
+    try:
+        life = FoxgloveBridge(context=ros.context, port=0, address=address)
+    except StartError:
+        pytest.skip(f"no {address} here")
+    assert f"ws://{host}:{life.port}" in life.greeting
+    life.close()

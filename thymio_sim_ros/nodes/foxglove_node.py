@@ -92,7 +92,8 @@ class FoxgloveBridge:
     def greeting(self) -> str:
         """Where to connect, for a person."""
         scheme = "wss" if self.params.tls else "ws"
-        host = "localhost" if self.address in ("127.0.0.1", "0.0.0.0", "::1", "::") else self.address
+        host = f"[{self.address}]" if ":" in self.address else self.address
+        host = "localhost" if self.address in ("127.0.0.1", "0.0.0.0", "::1", "::") else host
         link = f"https://app.foxglove.dev/?ds=foxglove-websocket&ds.url={scheme}%3A%2F%2F{host}%3A{self.port}"
         return f"Foxglove: {scheme}://{host}:{self.port} or {link}"
 
