@@ -30,14 +30,14 @@ def rays(reading: readings.ProximityReading, names: RobotNames, _options: object
     """The seven rays of the proximity sensors as lines, as long as what they measure, for viewers."""
     marker = Marker(ns="rays", action=Marker.ADD, type=Marker.LINE_LIST, frame_locked=True)
     marker.scale.x = RAY_WIDTH_M
+    free, hit = (ColorRGBA(r=red, g=green, b=blue, a=alpha) for red, green, blue, alpha in (_FREE, _HIT))
     for (x_m, y_m, yaw_rad), range_m in zip(thymio2.PROXIMITY_POSES, reading.ranges_m, strict=True):
         is_free = math.isinf(range_m)
         length_m = thymio2.PROXIMITY_RANGE_M if is_free else range_m
         end = (x_m + length_m * math.cos(yaw_rad), y_m + length_m * math.sin(yaw_rad))
         for x, y in ((x_m, y_m), end):
             marker.points.append(Point(x=x, y=y, z=thymio2.PROXIMITY_HEIGHT_M))
-            red, green, blue, alpha = _FREE if is_free else _HIT
-            marker.colors.append(ColorRGBA(r=red, g=green, b=blue, a=alpha))
+            marker.colors.append(free if is_free else hit)
     return stamped(marker, reading.stamp_ns, names.frame("base_link"))
 
 
