@@ -104,4 +104,4 @@ def test_parameters_that_the_bridge_does_not_have_are_told(monkeypatch):
     context.init(args=["--ros-args", "-p", "num_threads:=2", "-p", "use_sim_time:=false", "-p", "port:=0"])
     FoxgloveBridge(context=context).close()
     context.shutdown()
-    assert told == ["parameter num_threads is not one of this bridge and does nothing; see docs/foxglove.md"]
+    assert told == ["parameter num_threads is none of foxglove_bridge and does nothing; see docs/foxglove.md"]

@@ -7,6 +7,8 @@ import json
 import pytest
 from nav_msgs.msg import Odometry
 from rcl_interfaces.srv import SetParameters
+from rclpy.context import Context
+from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32MultiArray, Int16MultiArray, String
@@ -14,6 +16,9 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros.nodes import qos, tf_messages
+from thymio_sim_ros.nodes.life import greeted, run_main
+from thymio_sim_ros.nodes.simulator_node import Simulator
+from thymio_sim_ros.nodes.web_node import WebPage, WebParams
 from thymio_sim_ros.nodes.world_services import SERVICES
 
 COUNTS = "var n = 0\nonevent prox\nn = n + 1\ncall leds.top(n, 0, 0)\nmotor.left.target = 200\nmotor.right.target = 200"
@@ -118,3 +123,43 @@ def test_nothing_of_a_simulator_is_left_in_the_graph(ros, simulation):
     ros.until(lambda: not any(name.startswith("/proximity") for name, _ in ros.node.get_topic_names_and_types()))
     ours = {name.replace("~", "/simulator") for name in SERVICES} | {"/is_ready", "/reset_odometry"}
     ros.until(lambda: not ours & {name for name, _ in ros.node.get_service_names_and_types()})
+
+
+@pytest.fixture
+def logged(monkeypatch):
+    """What nodes wrote to the log at these two levels."""
+    told = []
+    for level in ("info", "warning"):
+        monkeypatch.setattr(RcutilsLogger, level, lambda self, text, **_: told.append(text))
+    return told
+
+
+def test_an_executable_says_what_there_is_and_where(ros, logged, simulation, runtime):
+    page = ros.live(WebPage(ros.context, WebParams(port=0)))
+    hosts = [page, simulation(playground="two_robots").simulator, runtime(COUNTS, robots=["anna"])]
+    assert list(greeted(hosts)) == hosts
+    where, world, programs = logged
+    assert where == f"Page: http://localhost:{page.port}/"
+    assert world == "Playground two_robots, robots in /red, /blue"
+    assert programs == "Program: program"
+
+
+@pytest.mark.parametrize(
+    ("node", "name", "page"), [(Simulator, "simulator", "ros.md"), (WebPage, "web_ui", "ros2-tools.md")]
+)
+def test_a_misspelt_parameter_is_told(ros_domain, logged, node, name, page):
+    context = Context()
+    context.init(args=["--ros-args", "-p", "playgroud:=maze", "-p", "use_sim_time:=false"])
+    node(context, *([WebParams(port=0)] if node is WebPage else [])).close()
+    context.shutdown()
+    assert [text for text in logged if text.startswith("parameter")] == [
+        f"parameter playgroud is none of {name} and does nothing; see docs/{page}"
+    ]
+
+
+@pytest.mark.parametrize(("argument", "code"), [("--help", 0), ("playground:=maze", 2), ("extra", 2)])
+def test_an_argument_that_is_not_of_ros_is_answered_and_nothing_starts(capfd, argument, code):
+    assert run_main(lambda context: pytest.fail("started"), [argument, "--ros-args", "-p", "seed:=1"]) == code
+    out, err = capfd.readouterr()
+    assert "--ros-args -p PARAMETER:=VALUE" in (out if code == 0 else err)
+    assert (f"argument '{argument}' found" in err) == bool(code)

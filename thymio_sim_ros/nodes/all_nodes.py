@@ -11,13 +11,13 @@ from rclpy.context import Context
 
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes.aseba_node import AsebaRuntime, RuntimeParams
-from thymio_sim_ros.nodes.life import Life, run_main
+from thymio_sim_ros.nodes.life import Host, greeted, run_main
 from thymio_sim_ros.nodes.names import ros_names
 from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
 from thymio_sim_ros.suite import Suite
 
 
-def lives(context: Context, suite: Suite) -> Iterator[Life]:
+def lives(context: Context, suite: Suite) -> Iterator[Host]:
     """Simulator, Aseba runtime and, as wanted, bridge and page, in the order of their start."""
     simulator = SimulatorParams(
         playground=suite.playground,
@@ -58,4 +58,4 @@ def run(suite: Suite, args: Sequence[str] | None = None, *, on_ready: Callable[[
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `thymio`: the suite with its defaults, ROS arguments for everything else."""
-    return run(Suite(), args)
+    return run_main(lambda context: greeted(lives(context, Suite())), args)

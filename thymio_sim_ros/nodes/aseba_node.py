@@ -38,7 +38,7 @@ from thymio_sim_ros.nodes.aseba_bus import Bus
 from thymio_sim_ros.nodes.aseba_params import RuntimeParams, WrongValueError
 from thymio_sim_ros.nodes.check_service import CheckService
 from thymio_sim_ros.nodes.device_ports import DevicePorts, Wishes
-from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, run_main
+from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
 
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
@@ -87,6 +87,12 @@ class AsebaRuntime:
         except (OptionError, WrongValueError, CardError, SettingsError, *PROGRAM_ERRORS) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
+
+    @property
+    def greeting(self) -> str:
+        """What the robots run, for a person; who they are is not known before the simulator tells."""
+        programs = dict.fromkeys(ports.program.name for ports in self.robots if ports.program.name)
+        return f"Program: {', '.join(programs) or 'none'}"
 
     def turn(self, executor: Executor) -> None:
         """Handle messages; let handlers that used up their budget go on."""
@@ -314,4 +320,4 @@ def _program(share: Share | None) -> object:
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `aseba_runtime`."""
-    return run_main(lambda context: [AsebaRuntime(context)], args)
+    return run_main(lambda context: greeted([AsebaRuntime(context)]), args)

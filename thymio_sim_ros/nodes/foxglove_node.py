@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 import traceback
 import uuid
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -31,12 +31,12 @@ from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes.foxglove_assets import AssetError, load_asset
 from thymio_sim_ros.nodes.foxglove_calls import Calls
 from thymio_sim_ros.nodes.foxglove_graph import allow_list, connection_graph, is_parameter_service, visible
-from thymio_sim_ros.nodes.foxglove_options import FoxgloveParams, announced, check, tls_context, warn_of_unknown
+from thymio_sim_ros.nodes.foxglove_options import FoxgloveParams, announced, check, tls_context
 from thymio_sim_ros.nodes.foxglove_parameters import Parameters
 from thymio_sim_ros.nodes.foxglove_publishers import ClientPublishers
 from thymio_sim_ros.nodes.foxglove_services import Services
 from thymio_sim_ros.nodes.foxglove_topics import Topics
-from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, run_main
+from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, greeted, run_main
 from thymio_sim_ros.nodes.mailbox import Mailbox
 from thymio_sim_ros.nodes.qos import LATCHED
 
@@ -76,7 +76,7 @@ class FoxgloveBridge:
             )
             self.params = params.declare(self.node, values)
             check(self.params)
-            warn_of_unknown(self.node)
+            params.warn_of_unknown(self.node, "foxglove.md")
             self._uses_sim_time = bool(self.node.get_parameter("use_sim_time").value)
             self._mailbox: Mailbox[ev.Event] = Mailbox(self.node, self._on_event)
             self._server = self._open_server()
@@ -259,10 +259,4 @@ def _new_id() -> str:
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `foxglove_bridge`."""
-
-    def build(context: Context) -> Iterator[FoxgloveBridge]:
-        bridge = FoxgloveBridge(context=context)
-        bridge.node.get_logger().info(bridge.greeting)
-        yield bridge
-
-    return run_main(build, args)
+    return run_main(lambda context: greeted([FoxgloveBridge(context=context)]), args)

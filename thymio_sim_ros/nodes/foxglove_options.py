@@ -6,16 +6,12 @@ import re
 import ssl
 from dataclasses import dataclass, fields
 
-from rclpy.node import Node
-
 from thymio_sim_ros.bridge import Capability
 from thymio_sim_ros.nodes.foxglove_assets import ASSETS
 from thymio_sim_ros.nodes.life import StartError
 from thymio_sim_ros.nodes.params import param
 
-__all__ = ["FoxgloveParams", "announced", "check", "tls_context", "warn_of_unknown"]
-
-_OF_RCL = ("use_sim_time", "qos_overrides.", "start_type_description_service")
+__all__ = ["FoxgloveParams", "announced", "check", "tls_context"]
 
 
 @dataclass(frozen=True)
@@ -108,13 +104,3 @@ def check(values: FoxgloveParams) -> None:
                     re.compile(pattern)
                 except re.error as error:
                     raise StartError(f"parameter {item.name}: '{pattern}' is no regular expression: {error}") from error
-
-
-def warn_of_unknown(node: Node) -> None:
-    """Tell which parameters were given that the bridge does not have: ROS would ignore them without a word."""
-    given = node._parameter_overrides  # rclpy has no public way to see them
-    for name in sorted(given):
-        if not node.has_parameter(name) and not name.startswith(_OF_RCL):
-            node.get_logger().warning(
-                f"parameter {name} is not one of this bridge and does nothing; see docs/foxglove.md"
-            )

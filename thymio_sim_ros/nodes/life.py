@@ -11,7 +11,8 @@ import signal
 import sys
 import threading
 import traceback
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
 from types import FrameType
 from typing import Protocol
 
@@ -45,6 +46,21 @@ class Life(Protocol):
 
     def close(self) -> None:
         """End everything that was opened, last opened first."""
+
+
+class Host(Life, Protocol):
+    """A life that has something to say when it begins."""
+
+    @property
+    def greeting(self) -> str:
+        """One line for a person: what there is, and where."""
+
+
+def greeted(hosts: Iterable[Host]) -> Iterator[Life]:
+    """The same lives, each with its greeting in the log."""
+    for host in hosts:
+        host.node.get_logger().info(host.greeting)
+        yield host
 
 
 def make_executor(context: Context) -> Executor:
@@ -133,8 +149,12 @@ def run_main(
     """Run the lives that `build` gives until SIGINT or SIGTERM; the exit code.
 
     Each life gets its thread as soon as it is built; `on_ready` is called when all run. A `StartError` is one
-    line on stderr and exit code 2, with nothing left running.
+    line on stderr and exit code 2, with nothing left running; arguments that are not of ROS likewise.
     """
+    words = sys.argv if args is None else ["", *args]
+    stray = _stray(words[1:])
+    if stray:
+        return _explain(Path(words[0]).name.removeprefix("thymio_"), stray)
     context = Context()
     threads = Threads(context)
 
@@ -161,3 +181,27 @@ def run_main(
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         threads.close()
         context.try_shutdown()
+
+
+def _stray(words: Sequence[str]) -> list[str]:
+    """What stands outside of `--ros-args … --`; rclpy's own function also drops a forgotten `-p`'s `NAME:=VALUE`."""
+    stray, is_of_ros = [], False
+    for word in words:
+        if word == "--ros-args" or (word == "--" and is_of_ros):
+            is_of_ros = word == "--ros-args"
+        elif not is_of_ros and not word.startswith("__"):  # __ns:=/anna, as it was once written
+            stray.append(word)
+    return stray
+
+
+def _explain(executable: str, stray: Sequence[str]) -> int:
+    """How parameters are given: to who asks for it, and to who wrote something else; the exit code."""
+    usage = (
+        f"usage: ros2 run thymio_sim_ros {executable} --ros-args -p PARAMETER:=VALUE ...\n"
+        "Its parameters while it runs: ros2 param list, ros2 param describe; all of them: docs/ros.md"
+    )
+    if set(stray) & {"-h", "--help"}:
+        print(usage)
+        return 0
+    print(f"thymio-sim: argument '{stray[0]}' found, expected none but those of ROS\n{usage}", file=sys.stderr)
+    return 2

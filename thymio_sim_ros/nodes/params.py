@@ -26,6 +26,8 @@ from thymio_sim_ros.nodes.life import StartError
 
 T = TypeVar("T")
 
+_OF_RCL = ("use_sim_time", "qos_overrides.", "start_type_description_service")
+
 
 def param(
     default: Any,
@@ -161,6 +163,18 @@ def declare(node: Node, defaults: T) -> T:
             raise StartError(reason)
         values = _with(values, one.path, value)
     return values
+
+
+def warn_of_unknown(node: Node, page: str) -> None:
+    """Tell which parameters a node was started with that it does not have: ROS ignores them without a word.
+
+    `page` of docs/ lists those that it has. Call it once all are declared.
+    """
+    for name in sorted(node._parameter_overrides):  # rclpy has no public way to see them
+        if not node.has_parameter(name) and not name.startswith(_OF_RCL):
+            node.get_logger().warning(
+                f"parameter {name} is none of {node.get_name()} and does nothing; see docs/{page}"
+            )
 
 
 def refusal(values: Any, parameters: Iterable[Parameter]) -> str:

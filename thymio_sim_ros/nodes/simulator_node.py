@@ -21,7 +21,7 @@ from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes.headers import SECOND_NS
-from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, run_main
+from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.robot_inputs import Moment
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
@@ -52,6 +52,7 @@ class Simulator:
         self.node = Node("simulator", context=context)
         try:
             self.params = params.declare(self.node, defaults or SimulatorParams())
+            params.warn_of_unknown(self.node, "ros.md")
             self.playground_name, playground = self._load(self.params.playground)
             self._log = self._open_log(self.params.log)
         except (PlaygroundError, resources.ResourceError, StartError, OSError) as error:
@@ -80,6 +81,12 @@ class Simulator:
     def names(self) -> Mapping[str, RobotNames]:
         """The names in ROS of the robots, by those in the world."""
         return self._roster.by_robot
+
+    @property
+    def greeting(self) -> str:
+        """What there is now, for a person."""
+        robots = ", ".join(f"/{names.name}" for names in self.names.values())
+        return f"Playground {self.playground_name}, robots in {robots or 'none'}"
 
     def turn(self, executor: Executor) -> None:
         """Ticks that are owed, then messages until the next tick is due."""
@@ -288,4 +295,4 @@ class Simulator:
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `simulator`."""
-    return run_main(lambda context: [Simulator(context)], args)
+    return run_main(lambda context: greeted([Simulator(context)]), args)

@@ -22,7 +22,7 @@ from rclpy.node import Node
 import thymio_sim_ros
 from thymio_sim_ros import resources
 from thymio_sim_ros.nodes import params
-from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, run_main
+from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, greeted, run_main
 from thymio_sim_ros.nodes.params import param
 from thymio_sim_ros.suite import ADDRESS, FOXGLOVE_PORT, HTTP_PORT
 
@@ -107,6 +107,7 @@ class WebPage:
     def __init__(self, context: Context, defaults: WebParams | None = None) -> None:
         self.node = Node("web_ui", context=context)
         self.params = params.declare(self.node, defaults or WebParams())
+        params.warn_of_unknown(self.node, "ros2-tools.md")
         config = {"foxglove_port": self.params.foxglove_port, "version": thymio_sim_ros.__version__}
         page = resources.page()
         if page is None:
@@ -118,11 +119,18 @@ class WebPage:
             self.node.destroy_node()
             where = f"{self.params.address}:{self.params.port}"
             raise StartError(
-                f"the page's port {where} cannot be used: {error.strerror}; choose another with --port"
+                f"the page's port {where} cannot be used: {error.strerror}; "
+                "choose another with --port, or port:=NUMBER of ros2"
             ) from error
         self.port = int(self._server.server_address[1])
         self._thread = threading.Thread(target=self._server.serve_forever, args=(0.1,), name="http", daemon=True)
         self._thread.start()
+
+    @property
+    def greeting(self) -> str:
+        """Where to look, for a person."""
+        host = "localhost" if self.params.address in ("127.0.0.1", "0.0.0.0") else self.params.address
+        return f"Page: http://{host}:{self.port}/"
 
     def turn(self, executor: Executor) -> None:
         """Nothing but parameters to answer."""
@@ -138,4 +146,4 @@ class WebPage:
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `web_ui`."""
-    return run_main(lambda context: [WebPage(context)], args)
+    return run_main(lambda context: greeted([WebPage(context)]), args)
