@@ -50,6 +50,7 @@ RULES = {
     f"{OURS}.registry": Rule(frozenset(), never=NO_WALL_CLOCK),
     f"{OURS}.runner": Rule(_names("aseba_vm", "sim", "device", "registry", "runlog"), never=NO_WALL_CLOCK - {"time"}),
     f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"foxglove_websocket", "websockets"})),
+    f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
     f"{OURS}.nodes": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.launch": Rule(frozenset(), frozenset({"launch", "launch_ros"})),
     f"{OURS}.testing": Rule(_names("device", "loading", "runner", "sim", "testing"), frozenset({"pytest"})),

@@ -111,6 +111,24 @@ def census() -> Counter[type]:
     return Counter(type(thing) for thing in gc.get_objects() if type(thing) in kinds)
 
 
+def test_a_stalled_client_costs_its_limit_and_one_message() -> None:
+    limit, message = 1 << 16, bytes(1 << 12)
+
+    async def scenario() -> None:
+        async with bridge(ServerSettings(buffer_limit=limit)) as server:
+            stalled = StalledClient(server.port)
+            await stalled.connect()
+            await stalled.say(ms.Subscribe((ms.Subscription(1, CHANNEL.id),)))
+            await server.sink.until(lambda events: len(events) == 1)
+            (connection,) = [thing for thing in gc.get_objects() if type(thing) is ServerConnection]
+            for _ in range(5000):  # 20 MB
+                server.publish(message)
+                assert connection.transport.get_write_buffer_size() <= limit + 2 * len(message)
+            stalled.abort()
+
+    asyncio.run(scenario())
+
+
 def test_a_flood_of_control_answers_to_a_stalled_client_is_bounded() -> None:
     async def scenario() -> None:
         limit = 1 << 14
