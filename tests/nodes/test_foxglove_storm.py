@@ -7,6 +7,7 @@ import random
 from collections import Counter
 
 from geometry_msgs.msg import Twist, Vector3
+from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message, serialize_message
 from rclpy.subscription import Subscription
@@ -76,6 +77,25 @@ def test_500_clients_that_come_and_go_leave_nothing_of_ros_behind(ros, bridge):
     for number in range(500):
         visit(number)
     assert settle() == before
+
+
+def test_nodes_that_come_and_go_while_clients_do_are_followed(ros, bridge):
+    port = bridge().port
+    with Studio(port, ros.until) as watcher:
+        watcher.send(ms.SubscribeConnectionGraph())
+        for number in range(10):
+            node = Node(f"guest_{number}", context=ros.context, enable_rosout=False)
+            node.create_publisher(String, f"/guest_{number}", 10)
+            node.create_service(SetBool, f"/flip_{number}", flip)
+            with Studio(port, ros.until) as visitor:
+                visitor.subscribe(1, f"/guest_{number}")
+                visitor.service(f"/flip_{number}")
+                node.destroy_node()
+        ros.until(lambda: not [topic for topic in watcher.read().channels if topic.startswith("/guest_")])
+        ros.until(lambda: not [name for name in watcher.read().services if name.startswith("/flip_")])
+        graph = [update for update in watcher.received if isinstance(update, ms.ConnectionGraphUpdate)]
+        assert {name for update in graph for name in update.removed_topics} <= {f"/guest_{n}" for n in range(10)}
+        assert not [status for status in watcher.received if isinstance(status, ms.Status)]
 
 
 def test_a_client_that_vanishes_while_its_call_is_answered_harms_nobody(ros, bridge):
