@@ -13,19 +13,25 @@ DATATYPE = re.compile(r'"topicName": "(/[\w/]+)",\s*"datatype": "([\w/]+)"')
 
 
 @pytest.fixture
-def suite(ros, bridge):
-    """Simulator, runtime and bridge, and a client of it."""
+def suite(ros, bridge, request):
+    """Simulator, runtime and bridge, and a client of it; of the playground that a test asks for, or of `line`."""
+    playground, robots = getattr(request, "param", ("line", [""]))
     from thymio_sim_ros.nodes.aseba_node import AsebaRuntime, RuntimeParams
     from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
 
-    ros.live(Simulator(ros.context, SimulatorParams(playground="line")))
-    ros.live(AsebaRuntime(ros.context, RuntimeParams(path="line_follower"), use_sim_time=True))
+    ros.live(Simulator(ros.context, SimulatorParams(playground=playground)))
+    ros.live(AsebaRuntime(ros.context, RuntimeParams(robots=robots, path="line_follower"), use_sim_time=True))
     with Studio(bridge(use_sim_time=True).port, ros.until) as studio:
         yield studio
 
 
-def test_every_name_of_the_layout_is_in_the_running_suite(ros, suite):
-    text = render("lichtblick")
+@pytest.mark.parametrize(
+    ("suite", "robot"),
+    [(("line", [""]), ""), (("two_robots", ["red", "blue"]), "blue")],
+    indirect=["suite"],
+)
+def test_every_name_of_the_layout_is_in_the_running_suite(ros, suite, robot):
+    text = render("lichtblick", robot)
     names = {name.partition(".")[0] for name in re.findall(r'"(/[\w/.]+)', text)}
     services = set(re.findall(r'"serviceName": "(/[\w/]+)"', text))
     assert len(names) > 30
