@@ -305,7 +305,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
     h("div", { class: "editor-body" }, code, tools.element),
     foot.element,
   );
-  watchKeys(element, deeds);
+  const forgetKeys = watchKeys(element, deeds);
 
   let tabsShown = "";
   const drawTabs = () => {
@@ -395,7 +395,8 @@ export function createEditor({ desk, client, store, language, pageText, announce
       }
     }
     const known = ["running", "paused", "stopped", "fault"].includes(values.state ?? "");
-    const word = known ? pageText(`state.${values.state}`) : (values.state ?? "");
+    const other = values.state === "off" ? t("state.off") : (values.state ?? "");
+    const word = known ? pageText(`state.${values.state}`) : other;
     const place = values.line && values.state !== "running" ? ` (${pageText("state.line", { line: Number(values.line) - firstLine() + 1 })})` : "";
     const detail = values.fault ? `: ${values.fault}` : "";
     foot.robot(values.state ?? "", word + place + detail);
@@ -444,6 +445,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
     },
     destroy() {
       clearTimeout(checkTimer);
+      forgetKeys();
       text.view.destroy();
       element.remove();
     },

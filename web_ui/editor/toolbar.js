@@ -101,10 +101,11 @@ export function toolbar(t, deeds) {
 }
 
 /**
- * Keys that work wherever in the editor the focus is.
+ * Keys: the function keys wherever the focus is, the others inside the editor. Returns what ends it.
  *
  * @param {HTMLElement} element
  * @param {Deeds} deeds
+ * @returns {() => void}
  */
 export function watchKeys(element, deeds) {
   const keys = /** @type {Record<string, () => void>} */ ({
@@ -116,18 +117,18 @@ export function watchKeys(element, deeds) {
     "Ctrl+Enter": deeds.load,
     "Ctrl+s": deeds.save,
   });
-  element.addEventListener(
-    "keydown",
-    (event) => {
-      const ctrl = event.ctrlKey || event.metaKey ? "Ctrl+" : "";
-      const act = keys[`${ctrl}${event.shiftKey ? "Shift+" : ""}${event.key}`];
-      if (act === undefined || event.altKey) return;
-      event.preventDefault();
-      event.stopPropagation();
-      if (!event.repeat) act();
-    },
-    true,
-  );
+  /** @param {KeyboardEvent} event */
+  const press = (event) => {
+    const ctrl = event.ctrlKey || event.metaKey ? "Ctrl+" : "";
+    const act = keys[`${ctrl}${event.shiftKey ? "Shift+" : ""}${event.key}`];
+    const inside = event.target instanceof Node && element.contains(event.target);
+    if (act === undefined || event.altKey || (ctrl !== "" && !inside)) return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (!event.repeat) act();
+  };
+  window.addEventListener("keydown", press, true);
   // Escape closes what is open in the editor; it does not stop the robots as elsewhere on the page.
   element.addEventListener("keydown", (event) => event.key === "Escape" && event.stopPropagation());
+  return () => window.removeEventListener("keydown", press, true);
 }

@@ -14,6 +14,11 @@ const VERBS = /** @type {const} */ ([
   ["reset", ICONS.restart],
 ]);
 
+/** The line as the editor counts, from that on which the node's code begins. @param {import("../state/index.js").Program} program */
+function codeLine({ line, values }) {
+  return Number(line) - Number(values.first_line ?? 1) + 1;
+}
+
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function programPanel(context) {
   const { t, actions, store, announce, editor } = context;
@@ -104,7 +109,7 @@ export function programPanel(context) {
       setText(name, program?.name || t("program.none"));
       setText(lamp, word);
       setAttribute(lamp, "data-state", program?.state ?? "");
-      const line = program?.line && program.state !== "running" ? ` (${t("state.line", { line: program.line })})` : "";
+      const line = program?.line && program.state !== "running" ? ` (${t("state.line", { line: codeLine(program) })})` : "";
       setText(message, program !== null && program.level > 0 ? program.message + line : "");
       message.hidden = message.textContent === "";
       for (const { verb, button } of verbs) button.disabled = !state.services.includes(actions.programService(verb));

@@ -109,6 +109,7 @@ export function variablesTool({ t, desk, announce, setVariable, redraw }) {
       if (sorted.join() !== listed) {
         if (body.querySelector("input") !== null) return; // somebody is typing
         listed = sorted.join();
+        const focused = /** @type {HTMLElement | null} */ (body.querySelector(":focus"));
         body.replaceChildren(
           ...sorted.map((name) => {
             const row = rows.get(name) ?? rowOf(name, known.get(name)?.help ?? "");
@@ -116,6 +117,7 @@ export function variablesTool({ t, desk, announce, setVariable, redraw }) {
             return row.row;
           }),
         );
+        focused?.focus(); // moving its row took it away
       }
       for (const name of sorted) {
         const row = rows.get(name);
