@@ -16,6 +16,7 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros.nodes import qos, tf_messages
+from thymio_sim_ros.nodes.aseba_node import AsebaRuntime
 from thymio_sim_ros.nodes.life import greeted, run_main
 from thymio_sim_ros.nodes.simulator_node import Simulator
 from thymio_sim_ros.nodes.web_node import WebPage, WebParams
@@ -145,7 +146,12 @@ def test_an_executable_says_what_there_is_and_where(ros, logged, simulation, run
 
 
 @pytest.mark.parametrize(
-    ("node", "name", "page"), [(Simulator, "simulator", "ros.md"), (WebPage, "web_ui", "ros2-tools.md")]
+    ("node", "name", "page"),
+    [
+        (Simulator, "simulator", "ros.md"),
+        (AsebaRuntime, "aseba_runtime", "ros.md"),
+        (WebPage, "web_ui", "ros2-tools.md"),
+    ],
 )
 def test_a_misspelt_parameter_is_told(ros_domain, logged, node, name, page):
     context = Context()

@@ -110,6 +110,7 @@ def adopt_overrides(node: Node) -> dict[str, Any]:
     """
     found = {}
     ours = params.by_name(RuntimeParams())
+    params.warn_of_unknown(node, "ros.md", lambda name: name in ours or is_free(name))
     for name in list(node.get_parameters_by_prefix("")):
         match = _FREE.fullmatch(name)
         if match is not None and (match["robot"] or match["constant"]):

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import Field, dataclass, field
 from typing import Any, TypeVar
 
@@ -165,13 +165,14 @@ def declare(node: Node, defaults: T) -> T:
     return values
 
 
-def warn_of_unknown(node: Node, page: str) -> None:
+def warn_of_unknown(node: Node, page: str, is_known: Callable[[str], bool] | None = None) -> None:
     """Tell which parameters a node was started with that it does not have: ROS ignores them without a word.
 
-    `page` of docs/ lists those that it has. Call it once all are declared.
+    `page` of docs/ lists those that it has; `is_known` tells them, else all are declared when this is called.
     """
+    known = is_known or node.has_parameter
     for name in sorted(node._parameter_overrides):  # rclpy has no public way to see them
-        if not node.has_parameter(name) and not name.startswith(_OF_RCL):
+        if not known(name) and not name.startswith(_OF_RCL):
             node.get_logger().warning(
                 f"parameter {name} is none of {node.get_name()} and does nothing; see docs/{page}"
             )
