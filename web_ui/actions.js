@@ -109,6 +109,9 @@ export class Actions {
     if (!result.successful) {
       this.store.dispatch({ type: "notice", level: "error", text: this.t("move.refused", { reason: result.reason }) });
     }
+    else if (this.store.state.simulator?.paused) {
+      this.store.dispatch({ type: "notice", level: "info", text: this.t("move.later") });
+    }
     return result.successful;
   }
 

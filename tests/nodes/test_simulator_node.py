@@ -20,6 +20,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from thymio_sim_ros.nodes import tf_messages
 from thymio_sim_ros.nodes.convert import yaw_of
+from thymio_sim_ros.nodes.life import make_executor
 from thymio_sim_ros.sim.commands import BUTTONS, LED_GROUPS, BodyTwist
 
 WALL_AHEAD = json.dumps(
@@ -196,6 +197,22 @@ def test_pause_step_and_run(ros, simulation):
     assert "pause" in refused.message
     states = ros.collect(String, "/simulator/state", latched=True)
     ros.until(lambda: states and json.loads(states[-1].data)["paused"] is False)
+
+
+def test_where_a_robot_stands_is_repeated_while_time_stands_still(ros, simulation):
+    sim = simulation(playground="base")
+    sim.simulator.pause(True)
+    odometry = ros.collect(Odometry, "/ground_truth/odom")
+    nobody = make_executor(ros.context)
+
+    def arrived() -> bool:
+        sim.simulator.turn(nobody)
+        return bool(odometry)
+
+    ros.until(arrived)
+    place, pose = odometry[-1].pose.pose.position, sim.world.robots["thymio"].pose
+    assert (place.x, place.y) == (pose.x_m, pose.y_m)
+    assert sim.world.now_ns == 0
 
 
 def test_the_playground_can_be_changed_and_a_bad_one_is_refused(ros, simulation):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -39,25 +40,47 @@ def browser() -> Iterator[Any]:
         browser.close()
 
 
-@pytest.fixture
-def suite(ros_domain, tmp_path) -> Iterator[Callable[..., str]]:
-    """Start the suite with these arguments; gives the page's address."""
-    started: list[Process] = []
+class Suites:
+    """Suites of one test. Called with arguments it starts one and gives its page's address."""
 
-    def start(*arguments: str) -> str:
-        port = free_port()
-        command = ["--port", str(port), "--foxglove-port", str(free_port()), *arguments]
-        started.append(Process(tmp_path, "thymio_sim_ros.cli", *command))
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._running: list[Process] = []
+
+    def __call__(self, *arguments: str, ports: tuple[int, int] | None = None) -> str:
+        port, foxglove_port = ports or (free_port(), free_port())
+        command = ["--port", str(port), "--foxglove-port", str(foxglove_port), *arguments]
+        self._running.append(Process(self._folder, "thymio_sim_ros.cli", *command))
         return f"http://127.0.0.1:{port}/"
 
-    yield start
-    for process in started:
-        process.end()
+    def end(self) -> None:
+        """End all that run."""
+        while self._running:
+            self._running.pop().end()
+
+
+@pytest.fixture
+def suite(ros_domain, tmp_path) -> Iterator[Suites]:
+    """Start the suite with these arguments; gives the page's address."""
+    suites = Suites(tmp_path)
+    yield suites
+    suites.end()
 
 
 @pytest.fixture
 def page(browser) -> Iterator[Any]:
     """A page that fails the test when a script on it fails or it asks another host."""
+    yield from checked_page(browser)
+
+
+@pytest.fixture
+def other_page(browser) -> Iterator[Any]:
+    """One more such page, of another person."""
+    yield from checked_page(browser)
+
+
+def checked_page(browser: Any) -> Iterator[Any]:
+    """A page of its own browser profile, whose problems are an assertion at its end."""
     page = browser.new_page(viewport={"width": 800, "height": 600}, bypass_csp=True)  # wait_for_function evaluates
     page.set_default_timeout(DEADLINE_MS)
     problems: list[str] = []

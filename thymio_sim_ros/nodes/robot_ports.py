@@ -23,8 +23,9 @@ from thymio_sim_ros.nodes.robot_inputs import Moment, RobotInput, robot_inputs
 from thymio_sim_ros.nodes.templates import Template
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.geometry import Pose, Tilt, Twist
 from thymio_sim_ros.sim.placement import PlacementError
-from thymio_sim_ros.sim.readings import Reading
+from thymio_sim_ros.sim.readings import PoseReading, Reading
 from thymio_sim_ros.sim.sensors import all_sensors
 
 __all__ = ["DESCRIBED", "DESCRIPTION", "SERVICES", "WARN_EVERY_S", "PortOptions", "RobotPorts"]
@@ -136,6 +137,14 @@ class RobotPorts:
             if row.patch is not None:
                 outlet.template = Template.checked(row.patch, message, reading, content)
             outlet.publisher.publish(message)
+
+    def tell_place(self, now_ns: int, pose: Pose, tilt: Tilt) -> None:
+        """Say where the robot stands while time does, for those who come late."""
+        still = Twist(0.0, 0.0)
+        reading = PoseReading(now_ns, (), pose, still, pose, still, tilt)
+        for outlet in self._outlets["pose"]:
+            if outlet.row.topic == convert.TRUTH:
+                outlet.publisher.publish(outlet.row.encode(reading, self.names, self._content()))
 
     def forget(self) -> None:
         """Send the next reading of every kind, also an unchanged one: the world was reset."""

@@ -244,6 +244,9 @@ class Simulator:
         self._last_beat_ns = now_ns
         if self.paused:
             self._world_ports.publish_clock(self.world.now_ns, last=True)
+            self.follow()
+            for name, robot in self.world.robots.items():
+                self._roster[name].tell_place(self.world.now_ns, robot.pose, robot.tilt)
         self._publish_state()
         pace = Pace(self._late_ticks, self._pacer.dropped_ticks, self._refused)
         self._world_ports.publish_diagnostics(self._state(), pace)

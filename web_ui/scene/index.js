@@ -20,6 +20,8 @@ import { RobotModel } from "./robot.js";
 const SKY = 0xdfecf6;
 /** A lost picture that has not come back by then is drawn in 2D. */
 const LOST_FOR_GOOD_MS = 4000;
+/** From above, a name stands this far over its robot. */
+const FLAT_LABEL_PX = 24;
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 
 export class SceneView {
@@ -266,7 +268,7 @@ export class SceneView {
     for (const { model, label } of this.robots.values()) {
       const place = model.group.visible ? this.#project(model.group.position.clone().setZ(0.115)) : null;
       label.hidden = place === null;
-      if (place !== null) label.style.transform = `translate(${place.x}px, ${place.y}px) translate(-50%, -100%)`;
+      if (place !== null) label.style.transform = `translate(${place.x}px, ${place.y}px) translate(-50%, calc(-100% - ${this.isFlat ? FLAT_LABEL_PX : 0}px))`;
     }
     const { robots, selected } = this.state();
     const group = this.robots.get(selected)?.model.group;

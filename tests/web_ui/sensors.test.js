@@ -1,0 +1,69 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { asText, groupsOf } from "../../web_ui/panels/sensor_rows.js";
+import { numbersOf } from "../../web_ui/scene/numbers.js";
+import { Quality } from "../../web_ui/scene/quality.js";
+import { robotColour } from "../../web_ui/state/colours.js";
+import { NEW_ROBOT } from "../../web_ui/state/robot.js";
+
+const ROBOT = {
+  ...NEW_ROBOT,
+  proximity: { center: 0.05 },
+  raw: {
+    proximity: [0, 0, 3000, 0, 0, 0, 0],
+    ground: [0, 0, 1, 1, 300, 900],
+    motor: [100, -100, -160, 160],
+    accelerometer: [0, -23, 23],
+    temperature: [221],
+    sound: [51, 256],
+    remote: [3, 87],
+    comm: [5, 0, 0, 5, 0, 0, 0, 0, 0, 0, 1500, 0, 0, 0, 0],
+    battery: [796, 796],
+  },
+};
+
+test("every value stands in SI units beside Thymio's integer, ready for a spreadsheet", () => {
+  const lines = asText(groupsOf((key) => key), ROBOT).split("\n").map((line) => line.split("\t")); // prettier-ignore
+  const find = (/** @type {string} */ label, group = "sensors.others") =>
+    lines.find(([title, name]) => title === group && name === label)?.slice(2);
+  assert.deepEqual(find("sensors.temperature"), ["22.1 °C", "221"]);
+  assert.deepEqual(find("sensors.microphone"), ["20 %", "51"]);
+  assert.deepEqual(find("sensors.remote"), ["sensors.address", "87"]);
+  assert.deepEqual(find("sensors.comm"), ["sensors.strength", "5"]);
+  assert.deepEqual(find("sensors.battery"), ["4.00 V", "796"]);
+  assert.deepEqual(find("z", "sensors.acceleration"), ["9.8 m/s²", "23"]);
+  assert.deepEqual(find("side.left", "sensors.pwm"), ["-20 %", "-160"]);
+  assert.deepEqual(find("proximity.center", "sensors.proximity"), ["5.0 cm", "3000"]);
+});
+
+test("a robot that has said nothing yet has empty values", () => {
+  const text = asText(groupsOf((key) => key), NEW_ROBOT); // prettier-ignore
+  assert.ok(!text.includes("NaN") && !text.includes("undefined"));
+});
+
+test("numbers stand at the ends of the beams and beside the ground patches", () => {
+  const numbers = numbersOf(ROBOT);
+  assert.deepEqual(
+    numbers.map(({ text }) => text),
+    ["0", "0", "3000", "0", "0", "0", "0", "300", "900"],
+  );
+  assert.ok(Math.abs(numbers[2].place.x - 0.0795 - 0.05) < 1e-9);
+  assert.deepEqual(numbersOf(NEW_ROBOT), []);
+});
+
+test("a quality chosen by hand stays, and automatic begins anew", () => {
+  const quality = new Quality(1);
+  quality.choose("fine");
+  for (let frame = 0; frame < 200; frame++) assert.equal(quality.note(frame * 200, true), false);
+  assert.equal(quality.settings.pixelRatio, 2);
+  quality.choose("auto");
+  assert.equal(quality.level, 1);
+  quality.choose("no such");
+  assert.equal(quality.choice, "auto");
+});
+
+test("robots have colours of their own, in order", () => {
+  assert.notEqual(robotColour(["a", "b"], "a"), robotColour(["a", "b"], "b"));
+  assert.equal(robotColour([], "x"), robotColour(["x"], "x"));
+});

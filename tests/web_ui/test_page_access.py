@@ -1,0 +1,65 @@
+"""The page for everyone: no serious finding of axe, in every language and on small screens; values can be kept."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.web_ui.page_support import MARKS, open_page
+
+pytestmark = MARKS
+
+AXE = Path(__file__).parents[2] / "web_ui/node_modules/axe-core/axe.min.js"
+FINDINGS = """async () => (await axe.run()).violations
+    .filter(({impact}) => impact === "serious" || impact === "critical")
+    .map(({id, nodes}) => [id, ...nodes.map(({html, any}) => html.slice(0, 120) + " " + (any[0]?.message ?? ""))])"""
+OVERLAPPING = """() => {
+    const outside = [];
+    for (const one of document.querySelectorAll("header button, header select, footer button, footer select,"
+      + " .views button, .dpad button")) {
+        const {left, top, right, bottom} = one.getBoundingClientRect();
+        const hit = document.elementFromPoint((left + right) / 2, (top + bottom) / 2);
+        if (left < 0 || top < 0 || right > innerWidth || bottom > innerHeight || !one.contains(hit))
+            outside.push(one.outerHTML.slice(0, 120));
+    }
+    return outside;
+}"""
+
+
+@pytest.mark.skipif(not AXE.exists(), reason="axe-core is not installed: npm install in web_ui")
+def test_axe_finds_nothing_serious(suite, page):
+    open_page(page, suite("--playground", "two_robots", "--behaviour", "menu"))
+    page.wait_for_function("() => document.querySelectorAll('.robots button').length === 2")
+    page.add_script_tag(path=str(AXE))
+    assert page.evaluate(FINDINGS) == []
+    page.locator("#view").focus()
+    page.keyboard.press("m")
+    page.locator("#numbers").check()
+    page.wait_for_function("() => document.querySelectorAll('.ray-number:not([hidden])').length > 0")
+    assert page.evaluate(FINDINGS) == []
+
+
+def test_at_800_by_600_every_control_is_in_sight_in_every_language(suite, page):
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    for language in ("de", "fr", "it", "en"):
+        page.select_option("select.language", language)
+        page.wait_for_function("(language) => document.documentElement.lang === language", arg=language)
+        assert page.evaluate(OVERLAPPING) == []
+
+
+def test_values_can_be_frozen_and_copied(suite, page):
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.wait_for_function("() => window.thymio.state().robot.raw.battery !== undefined")
+    for sensor in ("accelerometer", "temperature", "sound", "battery"):
+        page.wait_for_function("(sensor) => window.thymio.state().robot.raw[sensor] !== undefined", arg=sensor)
+    freeze = page.locator("[data-values=freeze]")
+    freeze.click()
+    page.locator("[data-operate=temperature]").fill("45")
+    page.wait_for_function("() => window.thymio.state().robot.raw.temperature[0] === 450")
+    page.locator("[data-values=copy]").click()
+    text = page.evaluate("() => navigator.clipboard.readText()")
+    assert "temperature\t22.0 °C\t220" in text
+    freeze.click()
+    page.get_by_role("cell", name="45.0 °C").wait_for()

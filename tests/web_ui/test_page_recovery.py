@@ -1,0 +1,45 @@
+"""The page finds back by itself after a lost connection or a restart, and shows the same to everybody."""
+
+from __future__ import annotations
+
+from tests.processes import free_port, wait_for_port
+from tests.web_ui.page_support import MARKS, open_page
+
+pytestmark = MARKS
+
+PAUSED = "() => window.thymio.state().simulator?.paused === true"
+
+
+def test_a_restarted_simulator_is_found_again_and_what_was_known_of_the_old_one_is_gone(suite, page):
+    ports = (free_port(), free_port())
+    open_page(page, suite("--playground", "two_robots", "--program", "none", ports=ports))
+    page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
+    suite.end()
+    page.wait_for_function("() => !window.thymio.connected")
+    banner = page.locator(".banner:not([hidden])")
+    assert "nothing needs to be done" in banner.inner_text()
+    suite("--playground", "base", "--program", "none", ports=ports)
+    wait_for_port(ports[1])
+    page.wait_for_function("() => window.thymio.connected")
+    page.wait_for_function("() => window.thymio.state().simulator?.playground === 'base'")
+    page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 1")
+    page.wait_for_function("() => window.thymio.state().robot.latest !== null")
+    assert page.locator(".banner:not([hidden])").count() == 0
+    assert page.locator(".chip").get_attribute("data-state") == "connected"
+
+
+def test_what_one_person_does_is_seen_by_another_who_came_late(suite, page, other_page):
+    address = suite("--playground", "base", "--program", "none")
+    open_page(page, address)
+    page.locator("#view").focus()
+    page.locator(".time button.primary").click()
+    page.wait_for_function(PAUSED)
+    open_page(other_page, address)
+    other_page.wait_for_function(PAUSED)
+    other_page.wait_for_function("() => window.thymio.state().markers > 0 && window.thymio.state().program !== null")
+    other_page.wait_for_function("() => window.thymio.state().playgrounds.length > 3")
+    other_page.locator(".time button.primary").click()
+    page.wait_for_function("() => window.thymio.state().simulator.paused === false")
+    other_page.select_option("#playground-choice", "obstacle")
+    page.wait_for_function("() => window.thymio.state().simulator.playground === 'obstacle'")
+    other_page.wait_for_function("() => window.thymio.state().simulator.playground === 'obstacle'")
