@@ -107,7 +107,7 @@ def test_an_event_is_defined_sent_and_logged(editor):
     editor.wait_for_function("() => window.thymio.state().program.name === 'program.aesl'")
     editor.get_by_label("Values of ping: 1").fill("41")
     editor.click("[data-send=ping]")
-    expect(editor, ".log li").to_contain_text("pong 42")
+    expect(editor, ".log p").to_contain_text("pong 42")
 
 
 def test_a_file_is_opened_changed_and_saved_without_loss_and_a_draft_outlives_the_page(editor, tmp_path):

@@ -54,8 +54,12 @@ export function toolbar(t, deeds) {
     verb: /** @type {Verb} */ (verb),
     element: button(verb, path, key, () => deeds.control(verb)),
   }));
-  const smaller = h("button", { type: "button", "aria-label": t("editor.smaller"), title: t("editor.smaller"), onclick: () => deeds.resize(-1) }, "A−");
-  const larger = h("button", { type: "button", "aria-label": t("editor.larger"), title: t("editor.larger"), onclick: () => deeds.resize(1) }, "A+");
+  /** @param {string} name @param {string} sign @param {number} step */
+  const sizer = (name, sign, step) => {
+    const title = t(`editor.${name}`);
+    const attributes = { type: "button", title, "aria-label": `${sign} ${title}`, onclick: () => deeds.resize(step) };
+    return h("button", attributes, sign);
+  };
   const element = h(
     "div",
     { class: "editor-bar", role: "toolbar", "aria-label": t("editor.toolbar") },
@@ -67,8 +71,8 @@ export function toolbar(t, deeds) {
       button("save", SAVE, "Ctrl+S", deeds.save),
       choice,
       button("find", FIND, "Ctrl+F", deeds.find),
-      smaller,
-      larger,
+      sizer("smaller", "A−", -1),
+      sizer("larger", "A+", 1),
     ),
     h("div", { class: "group" }, button("load", LOAD, "Ctrl+Enter", deeds.load, true), run, ...verbs.map(({ element }) => element)),
   );

@@ -16,7 +16,7 @@ const seconds = (timeNs) => (Number(timeNs / 1_000_000n) / 1000).toFixed(3);
 export function eventsTool({ t, desk, emit, define, announce, redraw }) {
   const body = h("tbody");
   const trouble = h("p", { class: "fault", role: "alert", hidden: true });
-  const log = h("ol", { class: "log", role: "log", tabindex: "0", "aria-label": t("events.log") });
+  const log = h("div", { class: "log", role: "log", tabindex: "0", "aria-label": t("events.log") });
   /** @type {import("./index.js").View | null} */ let shown = null;
   let listed = "";
   /** @type {readonly import("../state.js").LoggedEvent[] | null} */ let logged = null;
@@ -84,7 +84,7 @@ export function eventsTool({ t, desk, emit, define, announce, redraw }) {
     h(
       "div",
       { class: "row" },
-      h("h3", {}, t("events.log")),
+      h("h2", {}, t("events.log")),
       h("button", { type: "button", onclick: () => desk.receive({ type: "forgetLog" }, "") ?? redraw() }, t("clear")),
       h(
         "button",
@@ -121,7 +121,7 @@ export function eventsTool({ t, desk, emit, define, announce, redraw }) {
       const lines = logged.slice(-SHOWN_EVENTS).reverse();
       log.replaceChildren(
         ...lines.map(({ timeNs, robot, name, values }) =>
-          h("li", {}, h("time", {}, seconds(timeNs)), ` ${robot === "" ? "" : `${robot}: `}${name} ${values.join(" ")}`),
+          h("p", {}, h("time", {}, seconds(timeNs)), ` ${robot === "" ? "" : `${robot}: `}${name} ${values.join(" ")}`),
         ),
       );
     },

@@ -35,13 +35,13 @@ export function referenceTool({ t, insert }) {
       setText(list, "");
       if (target === null) return;
       list.append(
-        h("h3", {}, t("reference.natives")),
+        h("h2", {}, t("reference.natives")),
         ...target.natives
           .filter((native) => !native.hidden)
           .map((native) => entry(signature(native), `call ${signature(native)}`, native.help)),
-        h("h3", {}, t("reference.events")),
+        h("h2", {}, t("reference.events")),
         ...target.events.map(({ name, help }) => entry(name, `onevent ${name}`, help)),
-        h("h3", {}, t("tool.variables")),
+        h("h2", {}, t("tool.variables")),
         ...target.variables
           .filter((variable) => !variable.hidden)
           .map(({ name, size, help }) => entry(size === 1 ? name : `${name}[${size}]`, name, help)),
