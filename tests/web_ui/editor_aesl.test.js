@@ -29,8 +29,14 @@ test("the code of a node is its text and CDATA, without that of its children", (
 
 test("events and constants are read with their numbers", () => {
   const { events, constants } = readAesl(ODD);
-  assert.deepEqual(events.map(({ name, value }) => [name, value]), [["ping", 1]]);
-  assert.deepEqual(constants.map(({ name, value }) => [name, value]), [["A&B", -5]]);
+  assert.deepEqual(
+    events.map(({ name, value }) => [name, value]),
+    [["ping", 1]],
+  );
+  assert.deepEqual(
+    constants.map(({ name, value }) => [name, value]),
+    [["A&B", -5]],
+  );
 });
 
 test("the same code leaves every byte in place", () => {
@@ -56,7 +62,10 @@ test("any code comes back as it was put in, and the rest of the file stays", () 
           const read = readAesl(changed);
           assert.equal(read.nodes[index].code, second);
           const names = readAesl(text).events.map(({ name }) => name);
-          assert.deepEqual(read.events.map(({ name }) => name), names);
+          assert.deepEqual(
+            read.events.map(({ name }) => name),
+            names,
+          );
         }
       }
     });
@@ -71,7 +80,13 @@ test("the data of plug-ins and what stands behind the network outlive an edit", 
 
 test("events and constants are added behind the others, changed in place, and removed with their line", () => {
   const added = withEntry(ODD, "event", "pong", 2);
-  assert.deepEqual(readAesl(added).events.map(({ name, value }) => [name, value]), [["ping", 1], ["pong", 2]]);
+  assert.deepEqual(
+    readAesl(added).events.map(({ name, value }) => [name, value]),
+    [
+      ["ping", 1],
+      ["pong", 2],
+    ],
+  );
   assert.equal(withEntry(added, "event", "pong", null), ODD);
   assert.equal(withEntry(ODD, "constant", "A&B", 300), ODD.replace("'-5'", "'300'"));
   assert.equal(withEntry(ODD, "constant", "missing", null), ODD);
@@ -97,7 +112,8 @@ for (const [what, text, line, column, words] of /** @type {[string, string, numb
   test(`a file with ${what} is refused at its place`, () => {
     assert.throws(
       () => readAesl(text),
-      (error) => error instanceof AeslError && words.test(error.message) && error.line === line && error.column === column,
+      (error) =>
+        error instanceof AeslError && words.test(error.message) && error.line === line && error.column === column,
     );
   });
 }

@@ -6,7 +6,12 @@ import { readAesl } from "../../web_ui/editor/aesl.js";
 import { aseba, INDENT } from "../../web_ui/editor/language.js";
 import { outline } from "../../web_ui/editor/outline.js";
 import { parser } from "../../web_ui/editor/parser.js";
-import { foldable, getIndentation, indentUnit, syntaxTree } from "../../web_ui/node_modules/@codemirror/language/dist/index.js";
+import {
+  foldable,
+  getIndentation,
+  indentUnit,
+  syntaxTree,
+} from "../../web_ui/node_modules/@codemirror/language/dist/index.js";
 import { EditorState } from "../../web_ui/node_modules/@codemirror/state/dist/index.js";
 import { buildParserFile } from "../../web_ui/node_modules/@lezer/generator/dist/index.js";
 
@@ -65,7 +70,18 @@ test("an event without values is told from the statement behind it", () => {
 test("a name may begin like a keyword", () => assert.deepEqual(stumbles("if.x = 1 ende = 2 _emit_ = 3"), []));
 
 test("blocks are indented, and their ends are not", () => {
-  const doc = ["onevent prox", "if a == 1 then", "b = 2", "elseif c then", "d = 1", "else", "e = 1", "end", "sub x", "return"];
+  const doc = [
+    "onevent prox",
+    "if a == 1 then",
+    "b = 2",
+    "elseif c then",
+    "d = 1",
+    "else",
+    "e = 1",
+    "end",
+    "sub x",
+    "return",
+  ];
   const levels = [0, 1, 2, 1, 2, 1, 2, 1, 0, 1];
   let text = doc.join("\n");
   for (let index = 0; index < doc.length; index++) {
@@ -86,6 +102,8 @@ test("handlers and blocks can be folded", () => {
 
 test("the outline names what a program defines, also of one that is not finished", () => {
   const text = "const A = 1\nvar b[3]\nonevent prox\n\tif b[ then\nsub turn\n";
-  const found = outline(parser.parse(text), (from, to) => text.slice(from, to)).map(({ kind, name }) => `${kind} ${name}`);
+  const found = outline(parser.parse(text), (from, to) => text.slice(from, to)).map(
+    ({ kind, name }) => `${kind} ${name}`,
+  );
   assert.deepEqual(found, ["constant A", "variable b", "event prox", "subroutine turn"]);
 });

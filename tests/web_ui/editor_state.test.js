@@ -49,8 +49,23 @@ test("the editor's topics are those of robots with and without a name", () => {
 });
 
 test("variables are cut by their labels", () => {
-  const state = reduce(INITIAL, message("/aseba/variables", labelled([["a", [1]], ["b", [2, -3]]])));
-  assert.deepEqual([...state.variables[""].values], [["a", [1]], ["b", [2, -3]]]);
+  const state = reduce(
+    INITIAL,
+    message(
+      "/aseba/variables",
+      labelled([
+        ["a", [1]],
+        ["b", [2, -3]],
+      ]),
+    ),
+  );
+  assert.deepEqual(
+    [...state.variables[""].values],
+    [
+      ["a", [1]],
+      ["b", [2, -3]],
+    ],
+  );
 });
 
 test("the log keeps the newest events, each with its robot, and can be emptied", () => {
@@ -68,7 +83,16 @@ test("what is watched is plotted, of the selected robot only", () => {
   const desk = new Desk(shelf(), () => 0);
   desk.toggleWatch("b");
   desk.toggleWatch(eventKey("ping"));
-  desk.receive(message("/anna/aseba/variables", labelled([["a", [1]], ["b", [2, 3]]])), "anna");
+  desk.receive(
+    message(
+      "/anna/aseba/variables",
+      labelled([
+        ["a", [1]],
+        ["b", [2, 3]],
+      ]),
+    ),
+    "anna",
+  );
   desk.receive(message("/anna/aseba/events", labelled([["ping", [9]]])), "anna");
   desk.receive(message("/paul/aseba/events", labelled([["ping", [8]]])), "anna");
   assert.deepEqual([...desk.history.series.keys()], ["b[0]", "b[1]", "ping(0)"]);
@@ -93,7 +117,8 @@ test("numbers are whole, in range, and as many as needed", () => {
   for (const bad of ["32768", "1.5", "a", "--1"]) assert.equal(parseNumbers(bad, 1).trouble?.key, "number.range", bad);
 });
 
-test("grid lines stand at round numbers", () => assert.deepEqual([roundStep(100, 4), roundStep(7, 4), roundStep(60, 5)], [50, 2, 20]));
+test("grid lines stand at round numbers", () =>
+  assert.deepEqual([roundStep(100, 4), roundStep(7, 4), roundStep(60, 5)], [50, 2, 20]));
 
 test("a remark stands at its characters, whatever their width", () => {
   const text = "a = 1\n# 😀😀 b\n😀 c";
@@ -106,7 +131,11 @@ test("a remark stands at its characters, whatever their width", () => {
 });
 
 test("remarks below the text or beside a line stay in the text", () => {
-  for (const [line, column] of [[99, 1], [1, 99], [0, 0]]) {
+  for (const [line, column] of [
+    [99, 1],
+    [1, 99],
+    [0, 0],
+  ]) {
     const [{ from, to }] = marks("ab", { errors: [], warnings: [{ line, column, length: 50, message: "" }] });
     assert.ok(from >= 0 && from <= 2 && to >= from && to <= 2, `${line}:${column}`);
   }
@@ -125,7 +154,18 @@ const VOCABULARY = /** @type {import("../../web_ui/editor/help.js").Vocabulary} 
       { name: "_id", size: 1, address: 1, hidden: true, help: "" },
     ],
     events: [{ name: "prox", help: "ten times a second" }],
-    natives: [{ name: "math.max", parameters: [{ name: "dest", size: -1 }, { name: "a", size: 1 }, { name: "b", size: 2 }], hidden: false, help: "m" }],
+    natives: [
+      {
+        name: "math.max",
+        parameters: [
+          { name: "dest", size: -1 },
+          { name: "a", size: 1 },
+          { name: "b", size: 2 },
+        ],
+        hidden: false,
+        help: "m",
+      },
+    ],
     keywords: ["if", "while"],
     limits: {},
   },
@@ -149,7 +189,10 @@ for (const [before, names] of /** @type {[string, string[]][]} */ ([
   ["a = pro", ["count", "SPEED", "prox.horizontal", "if", "while"]],
 ])) {
   test(`'${before}' is completed with what fits there`, () => {
-    assert.deepEqual(suggestions(before, VOCABULARY).items.map(({ name }) => name), names);
+    assert.deepEqual(
+      suggestions(before, VOCABULARY).items.map(({ name }) => name),
+      names,
+    );
   });
 }
 
@@ -215,7 +258,10 @@ test("what another file replaces unsaved is among the recent ones", () => {
   desk.rename("mine");
   desk.open("other.txt", "b = 2");
   assert.equal(desk.current.name, "other.aesl");
-  assert.deepEqual(desk.keeper.recent().map(({ name }) => name), ["other.aesl", "mine.aesl"]);
+  assert.deepEqual(
+    desk.keeper.recent().map(({ name }) => name),
+    ["other.aesl", "mine.aesl"],
+  );
 });
 
 test("an unsaved text waits for the next visit, a saved one does not", () => {
@@ -247,15 +293,18 @@ test("a program for all takes the place of those that single robots had", async 
   const link = new Link(/** @type {any} */ (client));
   await link.load(null, "a.aesl", "x", ["anna", "paul"]);
   await link.load("anna", "b.aesl", "y", ["anna", "paul"]);
-  assert.deepEqual(asked.map((given) => given.map((/** @type {any} */ each) => `${each.name}=${each.value}`)), [
+  assert.deepEqual(
+    asked.map((given) => given.map((/** @type {any} */ each) => `${each.name}=${each.value}`)),
     [
-      "/aseba_runtime.robots.anna.script.source=",
-      "/aseba_runtime.robots.paul.script.source=",
-      "/aseba_runtime.script.name=a.aesl",
-      "/aseba_runtime.script.source=x",
+      [
+        "/aseba_runtime.robots.anna.script.source=",
+        "/aseba_runtime.robots.paul.script.source=",
+        "/aseba_runtime.script.name=a.aesl",
+        "/aseba_runtime.script.source=x",
+      ],
+      ["/aseba_runtime.robots.anna.script.name=b.aesl", "/aseba_runtime.robots.anna.script.source=y"],
     ],
-    ["/aseba_runtime.robots.anna.script.name=b.aesl", "/aseba_runtime.robots.anna.script.source=y"],
-  ]);
+  );
 });
 
 test("a variable's refusal is told with its reason", async () => {

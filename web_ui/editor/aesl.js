@@ -66,8 +66,7 @@ export function readAesl(text) {
       if (depth === 0) {
         if (rootSeen) throw new AeslError(text, part.from, `found a second root <${part.name}>, expected one`);
         rootSeen = true;
-        if (part.name !== "network")
-          throw new AeslError(text, part.from, `found <${part.name}>, expected <network>`);
+        if (part.name !== "network") throw new AeslError(text, part.from, `found <${part.name}>, expected <network>`);
         aesl.root = { from: part.from, to: text.length, inner: part.to };
       } else if (depth === 1 && part.name === "node") {
         const { name, nodeId } = attributesOf(text, part);

@@ -31,7 +31,10 @@ export function blank(name = UNTITLED) {
 export function opened(name, text) {
   const wrapped = looksLikeAesl(text) ? text : newAesl(text.replaceAll("\r\n", "\n"));
   const { nodes } = readAesl(wrapped);
-  const whole = nodes.length > 0 ? wrapped : wrapped.replace(/<\/network>/, '<node nodeId="1" name="thymio-II"></node>\n</network>');
+  const whole =
+    nodes.length > 0
+      ? wrapped
+      : wrapped.replace(/<\/network>/, '<node nodeId="1" name="thymio-II"></node>\n</network>');
   return { name: name || UNTITLED, text: whole, node: 0, saved: whole, loaded: null, source: null, own: true };
 }
 

@@ -14,7 +14,13 @@ export function footer(t, go) {
     const element = h("span", { class: "memory", title: t(`memory.${name}`), hidden: true }, fill, text);
     return { name, fill, text, element };
   });
-  const element = h("div", { class: "editor-foot" }, words, lamp, h("span", { class: "memories" }, ...bars.map((bar) => bar.element)));
+  const element = h(
+    "div",
+    { class: "editor-foot" },
+    words,
+    lamp,
+    h("span", { class: "memories" }, ...bars.map((bar) => bar.element)),
+  );
   return {
     element,
     /** @param {{ kind: "good" | "warning" | "error" | "", text: string }} verdict */

@@ -62,7 +62,13 @@ export function items({ target, events, constants, variables, definitions }) {
   for (const { name, help } of target?.events ?? []) add({ name, kind: "event", detail: "", help });
   for (const native of target?.natives ?? []) {
     if (!native.hidden)
-      add({ name: native.name, kind: "native", detail: signature(native).slice(native.name.length), help: native.help, native });
+      add({
+        name: native.name,
+        kind: "native",
+        detail: signature(native).slice(native.name.length),
+        help: native.help,
+        native,
+      });
   }
   for (const name of target?.keywords ?? []) add({ name, kind: "keyword", detail: "", help: "" });
   return [...found.values()];
@@ -80,7 +86,8 @@ export function suggestions(before, vocabulary) {
   const [, keyword, word = ""] = UNFINISHED.exec(before) ?? [];
   const from = before.length - word.length;
   if (comment || /^\d/.test(word)) return { from, items: [] };
-  const kinds = keyword === undefined ? /** @type {Kind[]} */ (["variable", "constant", "keyword"]) : FOLLOWERS[keyword];
+  const kinds =
+    keyword === undefined ? /** @type {Kind[]} */ (["variable", "constant", "keyword"]) : FOLLOWERS[keyword];
   const own = new Set(vocabulary.events.map(({ name }) => name));
   const emits = keyword === "emit" || keyword === "_emit";
   const fitting = items(vocabulary).filter(({ kind, name }) => kinds.includes(kind) && (!emits || own.has(name)));

@@ -177,7 +177,10 @@ export function createEditor({ desk, client, store, language, pageText, announce
     const { ok, message } = await link.load(owner(), name, source, robots());
     if (!ok) {
       const fault = locate(message, name);
-      tell(fault.line === null ? fault.text : t("verdict.at", { line: codeLine(fault.line), message: fault.text }), "error");
+      tell(
+        fault.line === null ? fault.text : t("verdict.at", { line: codeLine(fault.line), message: fault.text }),
+        "error",
+      );
       return false;
     }
     workspace.loaded(tab, source);
@@ -246,13 +249,20 @@ export function createEditor({ desk, client, store, language, pageText, announce
   };
 
   const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": t("editor.robots") });
-  const nodes = h("select", { "aria-label": t("editor.nodes"), onchange: () => workspace.chooseNode(Number(nodes.value)) });
+  const nodes = h("select", {
+    "aria-label": t("editor.nodes"),
+    onchange: () => workspace.chooseNode(Number(nodes.value)),
+  });
   const name = h("input", { class: "file-name", "aria-label": t("editor.file"), spellcheck: "false" });
   name.addEventListener("change", () => {
     workspace.rename(name.value);
     redraw();
   });
-  const unsaved = h("span", { class: "unsaved", role: "img", "aria-label": t("editor.unsaved"), title: t("editor.unsaved") }, "●");
+  const unsaved = h(
+    "span",
+    { class: "unsaved", role: "img", "aria-label": t("editor.unsaved"), title: t("editor.unsaved") },
+    "●",
+  );
   const notLoaded = h("small", {}, t("editor.notLoaded"));
   const draft = h("div", { class: "draft", hidden: true });
   const bar = toolbar(t, deeds);
@@ -296,7 +306,13 @@ export function createEditor({ desk, client, store, language, pageText, announce
       notLoaded,
       h(
         "button",
-        { type: "button", class: "plain close", "aria-label": t("editor.close"), title: t("editor.close"), onclick: close },
+        {
+          type: "button",
+          class: "plain close",
+          "aria-label": t("editor.close"),
+          title: t("editor.close"),
+          onclick: close,
+        },
         icon(ICONS.close),
       ),
     ),
@@ -397,7 +413,10 @@ export function createEditor({ desk, client, store, language, pageText, announce
     const known = ["running", "paused", "stopped", "fault"].includes(values.state ?? "");
     const other = values.state === "off" ? t("state.off") : (values.state ?? "");
     const word = known ? pageText(`state.${values.state}`) : other;
-    const place = values.line && values.state !== "running" ? ` (${pageText("state.line", { line: Number(values.line) - firstLine() + 1 })})` : "";
+    const place =
+      values.line && values.state !== "running"
+        ? ` (${pageText("state.line", { line: Number(values.line) - firstLine() + 1 })})`
+        : "";
     const detail = values.fault ? `: ${values.fault}` : "";
     foot.robot(values.state ?? "", word + place + detail);
     if (word + place + detail !== said) {

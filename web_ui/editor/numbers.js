@@ -18,7 +18,8 @@ export function parseNumbers(text, count, least = LEAST, greatest = GREATEST) {
   if (words.length !== count)
     return { values: null, trouble: { key: "number.count", values: { count, found: words.length } } };
   const bad = words.find((word) => !/^[+-]?\d+$/.test(word) || Number(word) < least || Number(word) > greatest);
-  if (bad !== undefined) return { values: null, trouble: { key: "number.range", values: { found: bad, least, greatest } } };
+  if (bad !== undefined)
+    return { values: null, trouble: { key: "number.range", values: { found: bad, least, greatest } } };
   return { values: words.map(Number), trouble: null };
 }
 

@@ -71,7 +71,9 @@ export function drawPlot(canvas, series, span) {
     context.strokeStyle = color;
     context.setLineDash(dashes);
     context.beginPath();
-    times.forEach((time, at) => (at === 0 ? context.moveTo(x(time), y(values[at])) : context.lineTo(x(time), y(values[at]))));
+    times.forEach((time, at) =>
+      at === 0 ? context.moveTo(x(time), y(values[at])) : context.lineTo(x(time), y(values[at])),
+    );
     context.lineTo(x(end), y(values.at(-1) ?? low));
     context.stroke();
   });

@@ -19,7 +19,8 @@ import { fileButton, h, icon, ICONS } from "../panels/dom.js";
 const SAVE = "M5 3h11l5 5v13H3V3zm2 2v5h8V5zm5 8a3 3 0 1 0 0 6 3 3 0 0 0 0-6z";
 const LOAD = "M11 3h2v9h4l-5 6-5-6h4zM4 19h16v2H4z";
 const NEXT = "M4 5h12v2H4zM4 11h7v2H4zM4 17h12v2H4zM15 9l5 3.500-5 3.500z";
-const FIND = "M10 3a7 7 0 1 0 4.200 12.600L20 21.400 21.400 20l-5.800-5.800A7 7 0 0 0 10 3zm0 2a5 5 0 1 1 0 10 5 5 0 0 1 0-10z";
+const FIND =
+  "M10 3a7 7 0 1 0 4.200 12.600L20 21.400 21.400 20l-5.800-5.800A7 7 0 0 0 10 3zm0 2a5 5 0 1 1 0 10 5 5 0 0 1 0-10z";
 const NEW = "M5 2h9l5 5v15H5zm8 2H7v16h10V8h-4z";
 
 const VERBS = /** @type {const} */ ([
@@ -67,14 +68,26 @@ export function toolbar(t, deeds) {
       "div",
       { class: "group" },
       button("new", NEW, "", deeds.newFile),
-      fileButton({ id: "editor-file", label: "", help: t("editor.open"), accept: ".aesl,.aseba,.txt", open: deeds.open }),
+      fileButton({
+        id: "editor-file",
+        label: "",
+        help: t("editor.open"),
+        accept: ".aesl,.aseba,.txt",
+        open: deeds.open,
+      }),
       button("save", SAVE, "Ctrl+S", deeds.save),
       choice,
       button("find", FIND, "Ctrl+F", deeds.find),
       sizer("smaller", "A−", -1),
       sizer("larger", "A+", 1),
     ),
-    h("div", { class: "group" }, button("load", LOAD, "Ctrl+Enter", deeds.load, true), run, ...verbs.map(({ element }) => element)),
+    h(
+      "div",
+      { class: "group" },
+      button("load", LOAD, "Ctrl+Enter", deeds.load, true),
+      run,
+      ...verbs.map(({ element }) => element),
+    ),
   );
   element.querySelector(".file button")?.setAttribute("aria-label", t("editor.open"));
   let listed = "";
@@ -93,7 +106,11 @@ export function toolbar(t, deeds) {
       listed = names;
       choice.replaceChildren(
         h("option", { value: "" }, t("editor.choose")),
-        h("optgroup", { label: t("editor.recent") }, ...recent.map(({ name }) => h("option", { value: `recent ${name}` }, name))),
+        h(
+          "optgroup",
+          { label: t("editor.recent") },
+          ...recent.map(({ name }) => h("option", { value: `recent ${name}` }, name)),
+        ),
         h(
           "optgroup",
           { label: t("editor.samples") },

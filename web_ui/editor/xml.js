@@ -40,8 +40,7 @@ export function* scan(text) {
     } else if (closing !== undefined) {
       const last = open.pop();
       if (last === undefined) throw new AeslError(text, at, `found </${closing}> that nothing opened`);
-      if (last.name !== closing)
-        throw new AeslError(text, at, `found </${closing}>, expected </${last.name}>`);
+      if (last.name !== closing) throw new AeslError(text, at, `found </${closing}>, expected </${last.name}>`);
       yield { kind: "close", name: closing, from: at, to, closed: false };
     } else {
       const kind = all.startsWith("<![CDATA[") ? "cdata" : all.startsWith("<") ? "other" : "text";
@@ -58,7 +57,9 @@ export function* scan(text) {
 /** @param {string} text @param {number} at */
 function trouble(text, at) {
   const found = JSON.stringify(text.slice(at, at + 20));
-  return text.startsWith("<!--", at) ? "this comment has no end" : `found ${found}, expected a tag; '<' is written &lt;`;
+  return text.startsWith("<!--", at)
+    ? "this comment has no end"
+    : `found ${found}, expected a tag; '<' is written &lt;`;
 }
 
 /** @param {string} text @param {Part} part @returns {Record<string, Attribute>} */

@@ -8,7 +8,12 @@ const CODE = "M8.500 6.500 3 12l5.500 5.500 1.500-1.500L6 12l4-4zM15.500 6.500 1
 export function editorSwitchPanel({ t, editor }) {
   const element = h(
     "button",
-    { type: "button", id: "editor-switch", title: t("editor.help"), onclick: () => (editor.isOpen ? editor.close() : editor.open()) },
+    {
+      type: "button",
+      id: "editor-switch",
+      title: t("editor.help"),
+      onclick: () => (editor.isOpen ? editor.close() : editor.open()),
+    },
     icon(CODE),
     h("span", {}, t("editor")),
   );

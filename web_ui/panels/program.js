@@ -109,7 +109,8 @@ export function programPanel(context) {
       setText(name, program?.name || t("program.none"));
       setText(lamp, word);
       setAttribute(lamp, "data-state", program?.state ?? "");
-      const line = program?.line && program.state !== "running" ? ` (${t("state.line", { line: codeLine(program) })})` : "";
+      const line =
+        program?.line && program.state !== "running" ? ` (${t("state.line", { line: codeLine(program) })})` : "";
       setText(message, program !== null && program.level > 0 ? program.message + line : "");
       message.hidden = message.textContent === "";
       for (const { verb, button } of verbs) button.disabled = !state.services.includes(actions.programService(verb));

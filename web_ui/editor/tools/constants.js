@@ -31,7 +31,12 @@ export function constantsTool({ t, define }) {
         { class: "mark" },
         h(
           "button",
-          { type: "button", class: "plain", "aria-label": t("remove", { name }), onclick: () => define("constant", name, null) },
+          {
+            type: "button",
+            class: "plain",
+            "aria-label": t("remove", { name }),
+            onclick: () => define("constant", name, null),
+          },
           "✕",
         ),
       ),

@@ -14,8 +14,19 @@ import { parseNumbers } from "../numbers.js";
  * @param {(name: string, value: number) => void} options.add
  */
 export function entryForm({ t, kind, least, greatest, label, add }) {
-  const name = h("input", { type: "text", "aria-label": t(`${kind}.name`), placeholder: t(`${kind}.name`), "data-new": kind });
-  const value = h("input", { type: "text", inputmode: "numeric", "aria-label": label, placeholder: label, class: "number" });
+  const name = h("input", {
+    type: "text",
+    "aria-label": t(`${kind}.name`),
+    placeholder: t(`${kind}.name`),
+    "data-new": kind,
+  });
+  const value = h("input", {
+    type: "text",
+    inputmode: "numeric",
+    "aria-label": label,
+    placeholder: label,
+    class: "number",
+  });
   const trouble = h("p", { class: "fault", role: "alert", hidden: true });
   const form = h("form", { class: "entry" }, name, value, h("button", { type: "submit" }, t("add")), trouble);
   /** @param {string} text */

@@ -62,13 +62,23 @@ export function eventsTool({ t, desk, emit, define, announce, redraw }) {
       {},
       h("td", { class: "mark" }, plot),
       h("th", { scope: "row" }, `${name} [${size}]`),
-      h("td", { class: "send" }, input, h("button", { type: "button", "data-send": name, onclick: send }, t("events.send"))),
+      h(
+        "td",
+        { class: "send" },
+        input,
+        h("button", { type: "button", "data-send": name, onclick: send }, t("events.send")),
+      ),
       h(
         "td",
         { class: "mark" },
         h(
           "button",
-          { type: "button", class: "plain", "aria-label": t("remove", { name }), onclick: () => define("event", name, null) },
+          {
+            type: "button",
+            class: "plain",
+            "aria-label": t("remove", { name }),
+            onclick: () => define("event", name, null),
+          },
           "✕",
         ),
       ),
@@ -91,7 +101,12 @@ export function eventsTool({ t, desk, emit, define, announce, redraw }) {
         {
           type: "button",
           onclick: () => {
-            const rows = (shown?.log ?? []).map(({ timeNs, robot, name, values }) => [seconds(timeNs), robot, name, ...values]);
+            const rows = (shown?.log ?? []).map(({ timeNs, robot, name, values }) => [
+              seconds(timeNs),
+              robot,
+              name,
+              ...values,
+            ]);
             download("events.csv", csv([["seconds", t("robot"), t("name")], ...rows]), "text/csv");
           },
         },

@@ -38,7 +38,13 @@ export function toolbox(context) {
   const tabs = tools.map(({ name }) =>
     h(
       "button",
-      { type: "button", role: "tab", id: `tool-tab-${name}`, "aria-controls": `tool-${name}`, onclick: () => choose(name) },
+      {
+        type: "button",
+        role: "tab",
+        id: `tool-tab-${name}`,
+        "aria-controls": `tool-${name}`,
+        onclick: () => choose(name),
+      },
       t(`tool.${name}`),
     ),
   );

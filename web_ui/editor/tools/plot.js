@@ -19,15 +19,19 @@ export function plotTool({ t, desk, redraw }) {
   );
   let paused = false;
   let listed = "";
-  const pause = h("button", {
-    type: "button",
-    "aria-pressed": "false",
-    onclick: () => {
-      paused = !paused;
-      pause.setAttribute("aria-pressed", String(paused));
-      redraw();
+  const pause = h(
+    "button",
+    {
+      type: "button",
+      "aria-pressed": "false",
+      onclick: () => {
+        paused = !paused;
+        pause.setAttribute("aria-pressed", String(paused));
+        redraw();
+      },
     },
-  }, t("plot.pause"));
+    t("plot.pause"),
+  );
   return {
     name: "plot",
     element: h(
@@ -38,8 +42,22 @@ export function plotTool({ t, desk, redraw }) {
         { class: "row" },
         span,
         pause,
-        h("button", { type: "button", onclick: () => { desk.history.clear(); redraw(); } }, t("clear")),
-        h("button", { type: "button", onclick: () => download("plot.csv", csv(desk.history.rows()), "text/csv") }, "CSV"),
+        h(
+          "button",
+          {
+            type: "button",
+            onclick: () => {
+              desk.history.clear();
+              redraw();
+            },
+          },
+          t("clear"),
+        ),
+        h(
+          "button",
+          { type: "button", onclick: () => download("plot.csv", csv(desk.history.rows()), "text/csv") },
+          "CSV",
+        ),
       ),
       nothing,
       canvas,
@@ -56,7 +74,13 @@ export function plotTool({ t, desk, redraw }) {
         legend.replaceChildren(
           ...series.map(({ name }, index) => {
             const { color, mark } = STYLES[index % STYLES.length];
-            return h("li", {}, h("b", { style: `color: ${color}`, "aria-hidden": "true" }, mark), ` ${name} `, h("output", {}));
+            return h(
+              "li",
+              {},
+              h("b", { style: `color: ${color}`, "aria-hidden": "true" }, mark),
+              ` ${name} `,
+              h("output", {}),
+            );
           }),
         );
       }

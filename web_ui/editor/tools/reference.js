@@ -15,7 +15,11 @@ export function referenceTool({ t, insert }) {
     h(
       "div",
       { class: "entry-help", "data-search": `${shownName} ${help}`.toLowerCase() },
-      h("button", { type: "button", class: "plain", title: t("reference.insert"), onclick: () => insert(text) }, shownName),
+      h(
+        "button",
+        { type: "button", class: "plain", title: t("reference.insert"), onclick: () => insert(text) },
+        shownName,
+      ),
       h("p", {}, help),
     );
   const apply = () => {

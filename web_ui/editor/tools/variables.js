@@ -76,7 +76,13 @@ export function variablesTool({ t, desk, announce, setVariable, redraw }) {
     });
     const value = h("button", { type: "button", class: "plain value", "data-variable": name });
     value.addEventListener("click", () => edit(name, value));
-    const row = h("tr", {}, h("td", { class: "mark" }, star), h("th", { scope: "row", title: help }, name), h("td", {}, value));
+    const row = h(
+      "tr",
+      {},
+      h("td", { class: "mark" }, star),
+      h("th", { scope: "row", title: help }, name),
+      h("td", {}, value),
+    );
     return { star, value, row };
   };
 

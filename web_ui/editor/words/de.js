@@ -28,8 +28,7 @@ export const de = {
   "editor.unsaved": "nicht als Datei gespeichert",
   "editor.notLoaded": "noch nicht im Roboter",
   "editor.loaded": "{name} ist geladen",
-  "editor.refused":
-    "{name} wurde nicht geöffnet: Zeile {line}, Spalte {column}: {what}. Was da war, ist noch da.",
+  "editor.refused": "{name} wurde nicht geöffnet: Zeile {line}, Spalte {column}: {what}. Was da war, ist noch da.",
   "editor.tooLarge": "{name} ist grösser als 1 MB und wurde nicht geöffnet.",
   "editor.draft": "{name} von {time} wurde nicht gespeichert.",
   "editor.restore": "Wiederherstellen",

@@ -28,8 +28,7 @@ export const it = {
   "editor.unsaved": "non salvato in un file",
   "editor.notLoaded": "non ancora nel robot",
   "editor.loaded": "{name} è caricato",
-  "editor.refused":
-    "{name} non è stato aperto: riga {line}, colonna {column}: {what}. Ciò che c'era c'è ancora.",
+  "editor.refused": "{name} non è stato aperto: riga {line}, colonna {column}: {what}. Ciò che c'era c'è ancora.",
   "editor.tooLarge": "{name} supera 1 MB e non è stato aperto.",
   "editor.draft": "{name} del {time} non è stato salvato.",
   "editor.restore": "Ripristina",
