@@ -77,7 +77,8 @@ ros2 run rviz2 rviz2 -d $(ros2 pkg prefix --share thymio_sim_ros)/rviz/thymio.rv
     --ros-args -p use_sim_time:=true -r __ns:=/anna
 ```
 
-RViz comes with a ROS installation, not with the wheels.
+RViz comes with a ROS installation, not with the wheels. What the commands of `ros2` answer on these nodes, and which
+lines they need where: [ros2-tools.md](ros2-tools.md).
 """
 
 QUALITY = """\

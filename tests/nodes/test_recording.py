@@ -1,0 +1,53 @@
+"""What `ros2 bag record` does: raw subscriptions to all of the graph with the QoS that each topic offers."""
+
+from __future__ import annotations
+
+import importlib
+from functools import partial
+
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.serialization import deserialize_message
+
+from thymio_sim_ros.nodes import tf_messages
+
+PROGRAM = "var n = 0\ntimer.period[0] = 100\nonevent timer0\nn = n + 1"
+# One of each kind: latched, of sensors, of the clock, of transforms, of the runtime; nobody commands anything.
+SPEAKS = {
+    "/aseba/status", "/clock", "/diagnostics", "/imu", "/markers", "/markers/objects", "/odom", "/proximity/center",
+    "/proximity/laser", "/raw/proximity", "/robot_description", "/simulator/state", "/tf", "/tf_static",
+}  # fmt: skip
+
+
+def message_class(kind):
+    if kind == tf_messages.TF_TYPE_NAME:
+        return tf_messages.TFMessage
+    package, _, name = kind.split("/")
+    return getattr(importlib.import_module(f"{package}.msg"), name)
+
+
+def offered(node, topic):
+    """The QoS that `ros2 bag record` chooses: what all publishers offer."""
+    policies = {info.qos_profile.durability for info in node.get_publishers_info_by_topic(topic)}
+    is_latched = policies == {DurabilityPolicy.TRANSIENT_LOCAL}
+    return QoSProfile(
+        depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL if is_latched else DurabilityPolicy.VOLATILE
+    )
+
+
+def test_everything_can_be_recorded_and_read_back(ros, simulation, runtime):
+    sim = simulation()
+    runtime(PROGRAM)
+    sim.step(0.2)
+    recorded, kinds = {}, {}
+    for topic, (kind, *others) in ros.node.get_topic_names_and_types():
+        if not ros.node.count_publishers(topic):
+            continue
+        assert others == []
+        kinds[topic] = message_class(kind)
+        keep = partial(recorded.setdefault, topic)
+        ros.node.create_subscription(kinds[topic], topic, keep, offered(ros.node, topic), raw=True)
+    assert kinds.keys() >= SPEAKS
+    sim.until(lambda: recorded.keys() >= SPEAKS)
+    for topic, message in recorded.items():
+        if kinds[topic] is not tf_messages.TFMessage:
+            assert isinstance(deserialize_message(message, kinds[topic]), kinds[topic])
