@@ -123,6 +123,7 @@ def test_rviz_is_started_with_the_shipped_configuration_if_wanted(description: C
     share, *names = path.args[0]
     assert (option, share.args, names) == ("-d", ("thymio_sim_ros",), ["rviz", "thymio.rviz"])
     assert rviz.kwargs["condition"].args[0].args == ("rviz",)
+    assert _actions(description, "Node")[0] is rviz, "where it is not installed, nothing may be running yet"
 
 
 @pytest.mark.parametrize(("code", "is_end"), [(0, False), (1, False), (-11, False), (2, True)])

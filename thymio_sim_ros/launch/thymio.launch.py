@@ -82,10 +82,7 @@ def generate_launch_description() -> LaunchDescription:
                 DeclareLaunchArgument(name, default_value=default, description=text, choices=CHOICES.get(name))
                 for name, (default, text) in ARGUMENTS.items()
             ),
-            _node("simulator", simulator, value["respawn"]),
-            _node("aseba_runtime", runtime, value["respawn"]),
-            _node("foxglove_bridge", bridge, value["respawn"]),
-            _node("web_ui", page, value["respawn"], condition=IfCondition(value["web"])),
+            # First: without rviz2 launch gives up at once, and would leave behind what runs by then.
             Node(
                 package="rviz2",
                 executable="rviz2",
@@ -93,6 +90,10 @@ def generate_launch_description() -> LaunchDescription:
                 parameters=[{"use_sim_time": True}],
                 condition=IfCondition(value["rviz"]),
             ),
+            _node("simulator", simulator, value["respawn"]),
+            _node("aseba_runtime", runtime, value["respawn"]),
+            _node("foxglove_bridge", bridge, value["respawn"]),
+            _node("web_ui", page, value["respawn"], condition=IfCondition(value["web"])),
         ]
     )
 
