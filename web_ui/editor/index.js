@@ -5,15 +5,16 @@ import { openSearchPanel } from "@codemirror/search";
 
 import { translator } from "../i18n/index.js";
 import { LARGEST_PROGRAM } from "../actions.js";
-import { h, icon, ICONS, setAttribute } from "../panels/dom.js";
+import { h } from "../panels/dom.js";
 import { locate } from "../state/index.js";
 import { robotTopic } from "../state/names.js";
 import { readAesl } from "./aesl.js";
 import { breakpointLines, showBreakpoints, showPlace } from "./breakpoints.js";
 import { marks } from "./checking.js";
-import { isInRobot, isUnsaved } from "./documents.js";
+import { isInRobot } from "./documents.js";
 import { download } from "./download.js";
 import { footer } from "./footer.js";
+import { header } from "./header.js";
 import { Link } from "./link.js";
 import { createText } from "./text.js";
 import { toolbar, watchKeys } from "./toolbar.js";
@@ -248,23 +249,14 @@ export function createEditor({ desk, client, store, language, pageText, announce
     text.view.focus();
   };
 
-  const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": t("editor.robots") });
-  const nodes = h("select", {
-    "aria-label": t("editor.nodes"),
-    onchange: () => workspace.chooseNode(Number(nodes.value)),
+  const head = header({
+    t,
+    language,
+    desk,
+    redraw,
+    close,
+    select: (name) => store.dispatch({ type: "select", robot: name }),
   });
-  const name = h("input", { class: "file-name", "aria-label": t("editor.file"), spellcheck: "false" });
-  name.addEventListener("change", () => {
-    workspace.rename(name.value);
-    redraw();
-  });
-  const unsaved = h(
-    "span",
-    { class: "unsaved", role: "img", "aria-label": t("editor.unsaved"), title: t("editor.unsaved") },
-    "●",
-  );
-  const notLoaded = h("small", {}, t("editor.notLoaded"));
-  const draft = h("div", { class: "draft", hidden: true });
   const bar = toolbar(t, deeds);
   const foot = footer(t, () => {
     const [first] = [...(verdict?.errors ?? []), ...(verdict?.warnings ?? [])];
@@ -296,100 +288,13 @@ export function createEditor({ desk, client, store, language, pageText, announce
     },
   });
   element.append(
-    h(
-      "div",
-      { class: "editor-head" },
-      tabs,
-      nodes,
-      name,
-      unsaved,
-      notLoaded,
-      h(
-        "button",
-        {
-          type: "button",
-          class: "plain close",
-          "aria-label": t("editor.close"),
-          title: t("editor.close"),
-          onclick: close,
-        },
-        icon(ICONS.close),
-      ),
-    ),
+    head.element,
     bar.element,
-    draft,
+    head.draft,
     h("div", { class: "editor-body" }, code, tools.element),
     foot.element,
   );
   const forgetKeys = watchKeys(element, deeds);
-
-  let tabsShown = "";
-  const drawTabs = () => {
-    const wanted = desk.tabs(robots());
-    if (!wanted.includes(workspace.tab)) workspace.choose(ALL);
-    if (wanted.join() !== tabsShown) {
-      tabsShown = wanted.join();
-      tabs.hidden = wanted.length < 2;
-      tabs.replaceChildren(
-        ...wanted.map((tab) =>
-          h(
-            "button",
-            {
-              type: "button",
-              role: "tab",
-              "data-tab": tab,
-              onclick() {
-                workspace.choose(tab);
-                if (tab !== ALL) store.dispatch({ type: "select", robot: tab });
-                redraw();
-              },
-            },
-            tab === ALL ? t("editor.all") : tab,
-          ),
-        ),
-      );
-    }
-    for (const tab of tabs.children)
-      setAttribute(tab, "aria-selected", String(tab.getAttribute("data-tab") === workspace.tab));
-  };
-
-  let nodesShown = "";
-  const drawFile = () => {
-    const document = workspace.current;
-    if (document.text !== fileText) {
-      fileText = document.text;
-      file = readAesl(fileText);
-    }
-    const names = file.nodes.map((node) => `${node.name} ${node.id}`);
-    nodes.hidden = names.length < 2;
-    if (names.join() !== nodesShown) {
-      nodesShown = names.join();
-      nodes.replaceChildren(...names.map((each, index) => h("option", { value: index }, each)));
-    }
-    nodes.value = String(document.node);
-    if (name !== element.ownerDocument.activeElement) name.value = document.name;
-    unsaved.hidden = !isUnsaved(document);
-    notLoaded.hidden = isInRobot(document);
-    element.style.setProperty("--code-size", `${desk.fontSize}px`);
-  };
-
-  /** @type {import("./storage.js").Kept | null} */ let draftShown = null;
-  const drawDraft = () => {
-    const kept = workspace.draft;
-    if (kept === draftShown) return;
-    draftShown = kept;
-    draft.hidden = kept === null;
-    if (kept === null) return;
-    const time = new Date(kept.time).toLocaleString(language);
-    /** @param {string} key @param {() => void} act */
-    const button = (key, act) =>
-      h("button", { type: "button", "data-draft": key, onclick: () => (act(), redraw()) }, t(`editor.${key}`));
-    draft.replaceChildren(
-      h("span", {}, t("editor.draft", { name: kept.name, time })),
-      button("restore", () => workspace.restoreDraft()),
-      button("discard", () => workspace.forgetDraft()),
-    );
-  };
 
   const drawStatus = () => {
     const now = status();
@@ -435,11 +340,15 @@ export function createEditor({ desk, client, store, language, pageText, announce
   };
 
   const render = () => {
-    drawTabs();
+    if (!desk.tabs(robots()).includes(workspace.tab)) workspace.choose(ALL);
     workspace.tell(ALL, desk.state.targets[store.state.selected]?.program);
     if (workspace.tab !== ALL) workspace.tell(workspace.tab, target()?.program);
-    drawFile();
-    drawDraft();
+    if (workspace.current.text !== fileText) {
+      fileText = workspace.current.text;
+      file = readAesl(fileText);
+    }
+    element.style.setProperty("--code-size", `${desk.fontSize}px`);
+    head.render(desk.tabs(robots()), file);
     drawStatus();
     bar.render(can, workspace.keeper.recent(), desk.state.behaviours);
     tools.render({
