@@ -239,13 +239,13 @@ class _Nobody:
         self.random_state = 0
 
     def call_native(self, _number: int, _pc: int, _popped: tuple[int, ...]) -> int:
-        raise NotImplementedError
+        raise AssertionError("translated code was run")
 
     def refuse_translated(self, _pc: int, _reason: int) -> None:
-        raise NotImplementedError
+        raise AssertionError("translated code was run")
 
     def emit(self, _number: int, _words: tuple[int, ...]) -> None:
-        raise NotImplementedError
+        raise AssertionError("translated code was run")
 
 
 _C_SIDE = r"""

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from aseba_vm import CompileError, Program, VirtualMachine, aesl, compile
 from aseba_vm.outbox import Emitted, Message, NativeCalled
+from aseba_vm.warn import CompileWarning
 from tests.aseba_vm.vectors import targets
 
 FOLDER = Path(__file__).parents[1] / "data" / "programs"
@@ -64,13 +65,11 @@ class Scenario:
         assert doubts == expected, f"{self.name}: expected warnings {expected}\nfound: {doubts}"
         _Play(self, program, engine).play()
 
-    def _located(self, doubt: object) -> str:
-        pos = getattr(doubt, "pos")  # noqa: B009  # an error or a warning
-        kind = getattr(doubt, "kind")  # noqa: B009
-        if pos is None:
-            return str(kind)
-        row, col = self.node.place(pos.offset)
-        return f"{kind} at {row + 1}:{col + 1}"
+    def _located(self, doubt: CompileError | CompileWarning) -> str:
+        if doubt.pos is None:
+            return doubt.kind
+        row, col = self.node.place(doubt.pos.offset)
+        return f"{doubt.kind} at {row + 1}:{col + 1}"
 
     def _compare(self, order: Order | None, verb: str, found: str, remark: str = "") -> None:
         place = self.name if order is None else f"{self.name}:{order.line}"
