@@ -111,6 +111,12 @@ def census() -> Counter[type]:
     return Counter(type(thing) for thing in gc.get_objects() if type(thing) in kinds)
 
 
+def server_connections(port: int) -> list[ServerConnection]:
+    """Connections of the server on this port; those of earlier tests may not have been collected yet."""
+    living = [thing for thing in gc.get_objects() if type(thing) is ServerConnection]
+    return [connection for connection in living if connection.local_address[1] == port]
+
+
 def test_a_stalled_client_costs_its_limit_and_one_message() -> None:
     limit, message = 1 << 16, bytes(1 << 12)
 
@@ -120,7 +126,7 @@ def test_a_stalled_client_costs_its_limit_and_one_message() -> None:
             await stalled.connect()
             await stalled.say(ms.Subscribe((ms.Subscription(1, CHANNEL.id),)))
             await server.sink.until(lambda events: len(events) == 1)
-            (connection,) = [thing for thing in gc.get_objects() if type(thing) is ServerConnection]
+            (connection,) = server_connections(server.port)
             for _ in range(5000):  # 20 MB
                 server.publish(message)
                 assert connection.transport.get_write_buffer_size() <= limit + 2 * len(message)
