@@ -26,9 +26,10 @@ from std_msgs.msg import (
     UInt8MultiArray,
 )
 
-from thymio_sim_ros.nodes import convert, qos
+from thymio_sim_ros.nodes import convert, limits, qos
 from thymio_sim_ros.nodes.convert import CommandError
 from thymio_sim_ros.nodes.headers import SECOND_NS
+from thymio_sim_ros.nodes.limits import Beyond
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.actuators.pen import PEN_WIDTHS_M
 from thymio_sim_ros.sim.commands import Command
@@ -51,7 +52,7 @@ class CommandRow:
     """One topic: `decode` gives the command of a message or raises CommandError.
 
     `encode` gives the message of a command; the row's topic is then what `topic_of` says of the command. `about`:
-    content and units, for the reference.
+    content and units, for the reference. `beyond`: what of a message is limited.
     """
 
     topic: str
@@ -60,6 +61,7 @@ class CommandRow:
     encode: Callable[[Any], Any] | None = None
     profile: QoSProfile = field(default_factory=lambda: qos.COMMAND)
     about: str = ""
+    beyond: Beyond = limits.nothing
 
 
 def led_topic(group: str) -> str:
@@ -264,12 +266,19 @@ def _rows() -> Iterator[CommandRow]:
         _decode_targets,
         _encode_targets,
         about="left, right in Thymio units, ±500; they hold until the next ones",
+        beyond=limits.targets,
     )
     for group in commands.LED_GROUPS:
         if group in BODY_LEDS:
             decode = partial(_decode_color, group=group)
             yield CommandRow(
-                led_topic(group), ColorRGBA, decode, _encode_color, qos.LEDS, about="0…1; alpha is ignored"
+                led_topic(group),
+                ColorRGBA,
+                decode,
+                _encode_color,
+                qos.LEDS,
+                about="0…1; alpha is ignored",
+                beyond=limits.color,
             )
         else:
             decode = partial(_decode_levels, group=group)
@@ -280,6 +289,7 @@ def _rows() -> Iterator[CommandRow]:
                 _encode_levels,
                 qos.LEDS,
                 about=f"{commands.LED_GROUPS[group]} intensities 0…1; none: back to the robot's own rules",
+                beyond=limits.intensities,
             )
     yield CommandRow(
         "led/single",
@@ -288,6 +298,7 @@ def _rows() -> Iterator[CommandRow]:
         _encode_single,
         qos.LEDS,
         about="number of the light 0…38, brightness 0…32",
+        beyond=limits.single,
     )
     yield CommandRow(
         "led/own",
@@ -296,6 +307,7 @@ def _rows() -> Iterator[CommandRow]:
         _encode_own,
         qos.LEDS,
         about="what the robot shows by itself; the group in layout.dim[0].label",
+        beyond=limits.intensities,
     )
     for name in ("circle", "blink", "kit"):
         yield CommandRow(
@@ -318,6 +330,7 @@ def _rows() -> Iterator[CommandRow]:
         _encode_tone,
         qos.EVENTS,
         about="Hz, s; 0 s until stopped, a negative time stops",
+        beyond=limits.tone,
     )
     yield CommandRow(
         "sound/system", Int8, _decode_system, _encode_system, qos.EVENTS, about="the robot's sound 0…7, -1 stops"
@@ -350,10 +363,17 @@ def _rows() -> Iterator[CommandRow]:
         "sound_threshold", Float32, _decode_threshold, _encode_threshold, about="0…1 of 255: louder is told on `sound`"
     )
     yield CommandRow("comm/enable", Bool, _decode_enable, _encode_enable, about="infrared communication on or off")
-    yield CommandRow("comm/tx", Int16, _decode_payload, _encode_payload, about="the value that is sent, 0…2047")
+    yield CommandRow(
+        "comm/tx",
+        Int16,
+        _decode_payload,
+        _encode_payload,
+        about="the value that is sent, 0…2047",
+        beyond=limits.payload,
+    )
     yield CommandRow("alarm", Bool, _decode_alarm, about="while true the sound of an arrow button every three seconds")
     yield CommandRow("pen/down", Bool, _decode_pen_down, about="true: the pen draws")
-    yield CommandRow("pen/color", ColorRGBA, _decode_pen_color, about="0…1; alpha 0 erases")
+    yield CommandRow("pen/color", ColorRGBA, _decode_pen_color, about="0…1; alpha 0 erases", beyond=limits.color)
     yield CommandRow("pen/width", Float32, _decode_pen_width, about="m, 0.001…0.1")
 
 

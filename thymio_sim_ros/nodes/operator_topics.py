@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from std_msgs.msg import Bool, Empty, Float32, Float32MultiArray, Int8, Int16MultiArray
 
-from thymio_sim_ros.nodes import convert, qos
+from thymio_sim_ros.nodes import convert, limits, qos
 from thymio_sim_ros.nodes.command_topics import CommandRow
 from thymio_sim_ros.nodes.convert import CommandError
 from thymio_sim_ros.sim import commands
@@ -79,6 +79,7 @@ ROWS = (
         lambda message: commands.Clap(_level(message)),
         profile=qos.EVENTS,
         about="a clap beside the robot, 0…1; others hear it by their distance",
+        beyond=limits.loudness,
     ),
     CommandRow(
         "press/sound",
@@ -86,6 +87,7 @@ ROWS = (
         lambda message: commands.SetNoiseLevel(_level(message)),
         profile=qos.EVENTS,
         about="steady noise round the robot, 0…1",
+        beyond=limits.loudness,
     ),
     CommandRow("press/remote", Int8, _remote, profile=qos.EVENTS, about="a key of a remote control, 0…127"),
     CommandRow(
@@ -99,7 +101,12 @@ ROWS = (
         about="roll, pitch in rad: hold the robot at this angle until told otherwise",
     ),
     CommandRow(
-        "press/light", Float32, _light, profile=qos.EVENTS, about="light on the ground besides the sensors' own, 0…1"
+        "press/light",
+        Float32,
+        _light,
+        profile=qos.EVENTS,
+        about="light on the ground besides the sensors' own, 0…1",
+        beyond=limits.light,
     ),
     CommandRow("press/temperature", Float32, _temperature, profile=qos.EVENTS, about="°C round the robot, -40…85"),
     CommandRow("press/battery", Float32, _battery, profile=qos.EVENTS, about="V of the battery, 0…5"),

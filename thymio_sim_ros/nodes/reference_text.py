@@ -15,7 +15,8 @@ name (`/anna/odom`, frame `anna/base_link`). One node, `/simulator`, serves all 
 until somebody subscribes, but for odometry, transforms, clock and what is sent on a change.
 
 Numbers that are not finite and arrays of a wrong size are refused with a warning, at most one every five seconds for
-each topic, and counted in `/diagnostics`. Speeds, intensities and loudness beyond their limits are limited.
+each topic, and counted in `/diagnostics`. Speeds, colors, intensities and loudness beyond the robot are limited, with a
+warning once for each topic, and counted there too.
 
 ## Existing code for the Thymio driver
 

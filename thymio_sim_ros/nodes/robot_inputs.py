@@ -17,10 +17,11 @@ from geometry_msgs.msg import Twist as TwistMsg
 from rclpy.qos import QoSProfile
 from std_msgs.msg import Bool, Empty, Float64MultiArray
 
-from thymio_sim_ros.nodes import command_topics, convert, operator_topics, plugin_topics, qos
+from thymio_sim_ros.nodes import command_topics, convert, limits, operator_topics, plugin_topics, qos
 from thymio_sim_ros.nodes.command_topics import CommandRow
 from thymio_sim_ros.nodes.convert import CommandError
 from thymio_sim_ros.nodes.headers import SECOND_NS
+from thymio_sim_ros.nodes.limits import Beyond
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 
@@ -37,13 +38,17 @@ class Moment:
 
 @dataclass(frozen=True, slots=True)
 class RobotInput:
-    """One topic: `commands` gives what a message says, or raises CommandError; `about` is for the reference."""
+    """One topic: `commands` gives what a message says, or raises CommandError; `about` is for the reference.
+
+    `beyond` says what of a message that was not refused is limited.
+    """
 
     topic: str
     type: type
     commands: Callable[[Any, Moment], Sequence[Command]]
     about: str
     profile: QoSProfile
+    beyond: Beyond = limits.nothing
 
 
 def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
@@ -51,11 +56,16 @@ def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
     plain, stamped = ("cmd_vel_unstamped", "cmd_vel") if stamped_cmd_vel else ("cmd_vel", "cmd_vel_stamped")
     speeds = "linear.x in m/s and angular.z in rad/s; scaled down together above the wheels' limit"
     return (
-        RobotInput(plain, TwistMsg, _twist, speeds, qos.COMMAND),
+        RobotInput(plain, TwistMsg, _twist, speeds, qos.COMMAND, limits.twist),
         RobotInput(
-            stamped, TwistStamped, _stamped_twist, f"{speeds}; refused when older than `cmd_vel_timeout`", qos.COMMAND
+            stamped,
+            TwistStamped,
+            _stamped_twist,
+            f"{speeds}; refused when older than `cmd_vel_timeout`",
+            qos.COMMAND,
+            limits.stamped_twist,
         ),
-        RobotInput("wheels/command", Float64MultiArray, _wheels, "left, right in rad/s", qos.COMMAND),
+        RobotInput("wheels/command", Float64MultiArray, _wheels, "left, right in rad/s", qos.COMMAND, limits.wheels),
         *map(_of_row, command_topics.ROWS),
         RobotInput("led/off", Empty, _leds_off, "all lights dark", qos.LEDS),
         RobotInput(
@@ -83,7 +93,9 @@ def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
 
 
 def _of_row(row: CommandRow) -> RobotInput:
-    return RobotInput(row.topic, row.type, lambda message, _moment: (row.decode(message),), row.about, row.profile)
+    return RobotInput(
+        row.topic, row.type, lambda message, _moment: (row.decode(message),), row.about, row.profile, row.beyond
+    )
 
 
 def _twist(message: TwistMsg, moment: Moment) -> Sequence[Command]:

@@ -82,12 +82,18 @@ class RobotPorts:
         moment: Callable[[], Moment],
         options: PortOptions,
         on_refusal: Callable[[], None] = lambda: None,
+        on_limit: Callable[[], None] = lambda: None,
     ) -> None:
-        """`content` and `moment` are asked with every message; `on_refusal` is called for each that is refused."""
+        """`content` and `moment` are asked with every message.
+
+        `on_refusal` is called for each that is refused, `on_limit` for each with something beyond the robot's limits.
+        """
         self.names = names
         self._node = node
         self._post = post
-        self._content, self._moment, self._on_refusal = content, moment, on_refusal
+        self._content, self._moment = content, moment
+        self._on_refusal, self._on_limit = on_refusal, on_limit
+        self._limited: set[str] = set()
         self._outlets: dict[str, list[_Outlet]] = {
             sensor.name: [
                 self._outlet(row, options.every_ns.get(row.topic, row.every_ns))
@@ -174,6 +180,9 @@ class RobotPorts:
             try:
                 for command in one.commands(message, self._moment()):
                     self._post(command)
+                beyond = one.beyond(message)
+                if beyond:
+                    self._tell_limit(one, beyond)
             except (CommandError, PlacementError) as error:
                 self._on_refusal()
                 self._node.get_logger().warning(
@@ -181,6 +190,13 @@ class RobotPorts:
                 )
 
         return take
+
+    def _tell_limit(self, one: RobotInput, beyond: str) -> None:
+        """Once for each topic: who means full speed by a large number does not want to hear it again and again."""
+        self._on_limit()
+        if one.topic not in self._limited:
+            self._limited.add(one.topic)
+            self._node.get_logger().warning(f"{self.names.topic(one.topic)} limited: {beyond}; told once")
 
     def _reset_odometry(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._post(commands.ResetOdometry())

@@ -60,7 +60,7 @@ class Simulator:
             raise StartError(str(error)) from error
         self.paused = self.params.start_paused
         self._set_pace()
-        self._refused = self._last_beat_ns = 0
+        self._refused = self._limited = self._last_beat_ns = 0
         self._content = self.params.convert_options
         self._world_ports = WorldPorts(
             self.node,
@@ -147,6 +147,10 @@ class Simulator:
         """A message was refused; the diagnostics tell how many."""
         self._refused += 1
 
+    def count_limited(self) -> None:
+        """A message wanted more than the robot can do; the diagnostics tell how many."""
+        self._limited += 1
+
     def close(self) -> None:
         """Destroy the node; the world goes with it, and its log ends."""
         if self._log is not None:
@@ -206,6 +210,7 @@ class Simulator:
             moment=self._moment,
             options=self._port_options,
             on_refusal=self.count_refusal,
+            on_limit=self.count_limited,
         )
 
     def _new_world(self, playground: Playground) -> World:
@@ -248,7 +253,7 @@ class Simulator:
             for name, robot in self.world.robots.items():
                 self._roster[name].tell_place(self.world.now_ns, robot.pose, robot.tilt)
         self._publish_state()
-        pace = Pace(self._late_ticks, self._pacer.dropped_ticks, self._refused)
+        pace = Pace(self._late_ticks, self._pacer.dropped_ticks, self._refused, self._limited)
         self._world_ports.publish_diagnostics(self._state(), pace)
 
     def _state(self) -> WorldState:

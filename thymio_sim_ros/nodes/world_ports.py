@@ -65,7 +65,7 @@ TOPICS: Mapping[str, WorldTopic] = {
     "/diagnostics": WorldTopic(
         DiagnosticArray,
         "1",
-        "real-time factor wanted and achieved, late and dropped ticks, refused messages, robots",
+        "real-time factor wanted and achieved, late and dropped ticks, refused and limited messages, robots",
         qos.SENSOR,
     ),
 }
@@ -99,11 +99,15 @@ class WorldState:
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """Since the start or the last change of pace: ticks that came late, or never; messages that were refused."""
+    """Since the start or the last change of pace: ticks that came late, or never.
+
+    Since the start: messages that were refused, and those with something beyond the robot's limits.
+    """
 
     late_ticks: int
     dropped_ticks: int
     refused: int
+    limited: int
 
 
 class WorldPorts:
@@ -175,6 +179,7 @@ class WorldPorts:
                 KeyValue(key="ticks late", value=str(pace.late_ticks)),
                 KeyValue(key="ticks dropped", value=str(pace.dropped_ticks)),
                 KeyValue(key="messages refused", value=str(pace.refused)),
+                KeyValue(key="messages limited", value=str(pace.limited)),
                 KeyValue(key="robots", value=str(len(state.robots))),
             ],
         )

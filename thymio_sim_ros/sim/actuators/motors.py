@@ -20,7 +20,7 @@ from thymio_sim_ros.sim.commands import BodyTwist, Command, MotorTargets, SetMot
 from thymio_sim_ros.sim.motor_control import WheelControl
 from thymio_sim_ros.sim.view import ActuatorView, GroupActuatorView
 
-__all__ = ["ACTUATOR", "MotorState"]
+__all__ = ["ACTUATOR", "MotorState", "wanted_speeds"]
 
 _AT_REST = (0.0, 0.0)
 
@@ -35,13 +35,17 @@ class MotorState:
     control: tuple[WheelControl, WheelControl] | None = None
 
 
-def wheel_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
-    """Left and right in m/s; both are scaled down together when one would be above the limit."""
+def wanted_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
+    """Left and right in m/s as a command has them, whether a wheel can turn so fast or not."""
     if isinstance(command, BodyTwist):
         turn = command.angular_rad_s * thymio2.WHEEL_TRACK_M / 2
-        left, right = command.linear_m_s - turn, command.linear_m_s + turn
-    else:
-        left, right = command.left_rad_s * thymio2.WHEEL_RADIUS_M, command.right_rad_s * thymio2.WHEEL_RADIUS_M
+        return command.linear_m_s - turn, command.linear_m_s + turn
+    return command.left_rad_s * thymio2.WHEEL_RADIUS_M, command.right_rad_s * thymio2.WHEEL_RADIUS_M
+
+
+def wheel_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
+    """Left and right in m/s; both are scaled down together when one would be above the limit."""
+    left, right = wanted_speeds(command)
     largest = max(abs(left), abs(right))
     scale = thymio2.MAX_SPEED_M_S / largest if largest > thymio2.MAX_SPEED_M_S else 1.0
     return (left * scale, right * scale)

@@ -1,0 +1,115 @@
+"""What in a message lies beyond what the robot can do: it is limited, and whoever sent it is told once.
+
+Each function answers for messages of one type with a sentence, or with nothing (ros-interface.md section 4.2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Any
+
+from geometry_msgs.msg import Twist, TwistStamped
+from std_msgs.msg import ColorRGBA, Float32, Float32MultiArray, Float64MultiArray, Int16, Int16MultiArray
+
+from thymio_sim_ros.sim import commands, thymio2
+from thymio_sim_ros.sim.actuators.comm import FULL_PAYLOAD
+from thymio_sim_ros.sim.actuators.motors import wanted_speeds
+from thymio_sim_ros.sim.tones import HIGHEST_HZ, LOWEST_HZ
+
+__all__ = [
+    "Beyond",
+    "color",
+    "intensities",
+    "light",
+    "loudness",
+    "nothing",
+    "payload",
+    "single",
+    "stamped_twist",
+    "targets",
+    "tone",
+    "twist",
+    "wheels",
+]
+
+Beyond = Callable[[Any], str]
+
+_ROUNDING = 1.0 + 1e-6
+"""Messages of single precision, and sums of theirs, may be this much above a limit that they mean to keep."""
+
+
+def nothing(_message: object) -> str:
+    """Of a topic whose values have no limits, or are refused beyond them."""
+    return ""
+
+
+def twist(message: Twist) -> str:
+    """Speeds of the body that a wheel cannot reach."""
+    return _speeds(commands.BodyTwist(message.linear.x, message.angular.z))
+
+
+def stamped_twist(message: TwistStamped) -> str:
+    """The same of a twist with a stamp."""
+    return twist(message.twist)
+
+
+def wheels(message: Float64MultiArray) -> str:
+    """Wheel speeds that a wheel cannot reach."""
+    return _speeds(commands.WheelVelocities(*message.data))
+
+
+def _speeds(command: commands.BodyTwist | commands.WheelVelocities) -> str:
+    fastest = max(abs(speed) for speed in wanted_speeds(command))
+    if fastest <= thymio2.MAX_SPEED_M_S * _ROUNDING:
+        return ""
+    return (
+        f"a wheel would need {fastest:.3g} m/s, expected at most {thymio2.MAX_SPEED_M_S:.3g};"
+        " both wheels are slowed down together"
+    )
+
+
+def _outside(values: Iterable[float], low: float, high: float, what: str) -> str:
+    for value in values:
+        if not low * _ROUNDING <= value <= high * _ROUNDING:
+            return f"{what} {value:g} found, expected {low:g} to {high:g}"
+    return ""
+
+
+def targets(message: Int16MultiArray) -> str:
+    """Targets of motors beyond full speed."""
+    return _outside(message.data, -thymio2.FULL_TARGET, thymio2.FULL_TARGET, "target")
+
+
+def color(message: ColorRGBA) -> str:
+    """Parts of a color beyond 0…1: often somebody counts to 255."""
+    return _outside((message.r, message.g, message.b), 0.0, 1.0, "color")
+
+
+def intensities(message: Float32MultiArray) -> str:
+    """Intensities of lights beyond 0…1."""
+    return _outside(message.data, 0.0, 1.0, "intensity")
+
+
+def _one(message: Float32, *, what: str) -> str:
+    return _outside((message.data,), 0.0, 1.0, what)
+
+
+loudness: Beyond = partial(_one, what="loudness")
+light: Beyond = partial(_one, what="light")
+
+
+def tone(message: Float32MultiArray) -> str:
+    """Frequencies that the loudspeaker's wave cannot have."""
+    hertz, seconds = message.data
+    return _outside((abs(hertz),), LOWEST_HZ, HIGHEST_HZ, "frequency") if seconds >= 0 else ""
+
+
+def payload(message: Int16) -> str:
+    """Values that infrared frames cannot carry; a negative one is a pulse without data."""
+    return _outside((message.data,), -0x8000, FULL_PAYLOAD, "value")
+
+
+def single(message: Int16MultiArray) -> str:
+    """Brightness of one light beyond 0…32."""
+    return _outside(message.data[1:], 0, commands.LED_FULL, "brightness")
