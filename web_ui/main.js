@@ -3,6 +3,7 @@
 import { Actions, isProgram } from "./actions.js";
 import { watchDrops } from "./drop.js";
 import { EditorHost } from "./editor_host.js";
+import { Shelf } from "./gallery/shelf.js";
 import { chooseLanguage, translator } from "./i18n/index.js";
 import { watchKeyboard } from "./keyboard.js";
 import { PANELS } from "./panels/index.js";
@@ -98,6 +99,8 @@ async function main() {
     },
   });
 
+  const shelf = new Shelf((world) => scene.photograph(world));
+
   const build = () => {
     t = translator(language);
     document.documentElement.lang = language;
@@ -110,7 +113,7 @@ async function main() {
     showTrouble();
     document.querySelectorAll(".banner, .hint").forEach((banner) => banner.remove());
     for (const panel of panels) panel.element.remove();
-    const context = { t, language, setLanguage, actions, store, scene, mover, speaker, editor, address, announce };
+    const context = { t, language, setLanguage, actions, store, scene, mover, speaker, editor, shelf, address, announce };
     panels = PANELS.map((create) => create(context));
     for (const panel of panels) element(`[data-slot="${panel.slot}"]`).append(panel.element);
     editor.dress(context);

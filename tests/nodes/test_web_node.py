@@ -11,6 +11,7 @@ import pytest
 from thymio_sim_ros import resources
 from thymio_sim_ros.nodes.life import StartError
 from thymio_sim_ros.nodes.web_node import WebPage, WebParams
+from thymio_sim_ros.sim import playground as playgrounds
 
 
 @pytest.fixture
@@ -43,7 +44,38 @@ def test_the_page_and_its_configuration_are_served(ros, built_page):
     assert response.headers["Content-Type"].startswith("text/javascript")
 
 
-@pytest.mark.parametrize("path", ["/../secret.txt", "/%2e%2e/secret.txt", "/assets/", "/nothing"])
+def test_shipped_playgrounds_are_served_with_their_pictures_inside(ros, built_page):
+    page = ros.live(WebPage(ros.context, WebParams(port=0)))
+    response, body = get(page.port, "/playgrounds/line_gradient.json")
+    assert response.status == 200
+    assert response.headers["Content-Type"] == "application/json"
+    served = playgrounds.loads(body, "line_gradient.json")
+    assert served.shapes == playgrounds.load(resources.playgrounds()["line_gradient"]).shapes
+    assert get(page.port, "/playgrounds/line_gradient.json")[1] == body
+
+
+def test_a_playground_that_cannot_be_read_is_named_with_what_is_wrong(ros, built_page, tmp_path, monkeypatch):
+    broken = tmp_path / "broken.json"
+    broken.write_text('{"format": 1}')
+    monkeypatch.setattr(resources, "playgrounds", lambda: {"broken": broken})
+    page = ros.live(WebPage(ros.context, WebParams(port=0)))
+    response, body = get(page.port, "/playgrounds/broken.json")
+    assert response.status == 422
+    assert b"title" in body
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/../secret.txt",
+        "/%2e%2e/secret.txt",
+        "/assets/",
+        "/nothing",
+        "/playgrounds/nothing.json",
+        "/playgrounds/..%2fpyproject.json",
+        "/playgrounds/playground.schema.json",
+    ],
+)
 def test_nothing_outside_the_page_is_served(ros, built_page, path):
     page = ros.live(WebPage(ros.context, WebParams(port=0)))
     response, body = get(page.port, path)

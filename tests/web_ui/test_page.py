@@ -151,9 +151,8 @@ def test_a_playground_of_aseba_is_opened_with_remarks_and_a_broken_one_is_refuse
     page.wait_for_function("window.thymio.state().simulator.playground === 'my maze.playground'")
     playwright.expect(page.locator("details.remarks")).to_contain_text("<feeder> left out")
     page.set_input_files("#playground-file", str(broken))
-    playwright.expect(page.locator("p.fault", has_text="broken.playground")).to_contain_text(
-        "line 2: <world> w: found 'wide', expected a number"
-    )
+    fault = page.locator("div.fault", has_text="broken.playground")
+    playwright.expect(fault.locator("dd")).to_contain_text(["line 2: <world> w", "'wide'", "a number"])
     assert page.evaluate("window.thymio.state().simulator.playground") == "my maze.playground"
 
 

@@ -1,13 +1,16 @@
 """The web page as a ROS node: static files over HTTP from a thread that shares nothing.
 
-The page speaks the Foxglove protocol to the bridge; this server only gives it its files and `/config.json`,
-which names the bridge's port. Loopback by default; nothing is written, nothing outside the page is served.
+The page speaks the Foxglove protocol to the bridge; this server only gives it its files, the shipped playgrounds as
+`/playgrounds/NAME.json`, and `/config.json`, which names the bridge's port. Loopback by default; nothing is written,
+nothing else is served.
 """
 
 from __future__ import annotations
 
 import json
+import re
 import threading
+import urllib.parse
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -21,10 +24,14 @@ from rclpy.node import Node
 
 import thymio_sim_ros
 from thymio_sim_ros import resources
+from thymio_sim_ros.gallery import Gallery
 from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, greeted, run_main
 from thymio_sim_ros.nodes.params import param
+from thymio_sim_ros.sim.playground import PlaygroundError
 from thymio_sim_ros.suite import ADDRESS, FOXGLOVE_PORT, HTTP_PORT
+
+_PLAYGROUND = re.compile(r"/playgrounds/([^/]+)\.json")
 
 # The platform's own table may be wrong (web-ui-features.md section 5.4).
 TYPES = {
@@ -55,20 +62,24 @@ class WebParams:
 
 
 class _Handler(SimpleHTTPRequestHandler):
-    """Serves the page's folder, never cached, and the configuration."""
+    """Serves the page's folder, never cached, the shipped playgrounds, and the configuration."""
 
     extensions_map = TYPES
 
-    def __init__(self, *args: Any, config: bytes, page: Path | None, **kwargs: Any) -> None:
+    def __init__(self, *args: Any, config: bytes, gallery: Gallery, page: Path | None, **kwargs: Any) -> None:
         self._config = config
+        self._gallery = gallery
         self._page = page
         super().__init__(*args, directory=str(page or Path("/nonexistent")), **kwargs)
 
     def do_GET(self) -> None:
-        """Configuration, a file of the page, or the sentence that tells how to build it."""
+        """Configuration, a playground, a file of the page, or the sentence that tells how to build it."""
         path = self.path.partition("?")[0]
+        playground = _PLAYGROUND.fullmatch(path)
         if path == "/config.json":
-            self._answer(200, "application/json", self._config)
+            self._answer(200, TYPES[".json"], self._config)
+        elif playground is not None:
+            self._playground(urllib.parse.unquote(playground[1]))
         elif self._page is None:
             text = f"<!doctype html><meta charset=utf-8><title>Thymio</title><p>{resources.PAGE_BUILD_HINT}</p>"
             self._answer(503, TYPES[".html"], text.encode())
@@ -87,6 +98,17 @@ class _Handler(SimpleHTTPRequestHandler):
 
     def log_message(self, *_args: Any) -> None:
         """A page view is no news."""
+
+    def _playground(self, name: str) -> None:
+        try:
+            text = self._gallery.text(name)
+        except PlaygroundError as error:
+            self._answer(422, "text/plain; charset=utf-8", str(error).encode())
+            return
+        if text is None:
+            self.send_error(404)
+        else:
+            self._answer(200, TYPES[".json"], text)
 
     def _answer(self, status: int, kind: str, body: bytes) -> None:
         self.send_response(status)
@@ -112,7 +134,7 @@ class WebPage:
         page = resources.page()
         if page is None:
             self.node.get_logger().warning(resources.PAGE_BUILD_HINT)
-        handler = partial(_Handler, config=json.dumps(config).encode(), page=page)
+        handler = partial(_Handler, config=json.dumps(config).encode(), gallery=Gallery(), page=page)
         try:
             self._server = _Server((self.params.address, self.params.port), handler)
         except OSError as error:

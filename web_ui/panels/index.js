@@ -29,6 +29,7 @@ import { viewsPanel } from "./views.js";
  * @property {import("../move/mover.js").Mover} mover
  * @property {import("../sound/speaker.js").Speaker} speaker
  * @property {import("../editor_host.js").EditorHost} editor
+ * @property {import("../gallery/shelf.js").Shelf} shelf   shipped playgrounds with their pictures
  * @property {string} address   of the simulator, for people
  * @property {(text: string) => void} announce   to the live region
  */

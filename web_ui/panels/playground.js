@@ -1,26 +1,38 @@
 // The playground: choose one of the shipped ones or open a file; a refused one leaves the old world.
 
+import { galleryDialog } from "../gallery/index.js";
 import { card } from "./card.js";
-import { fileButton, h, setText } from "./dom.js";
+import { fileButton, h, icon, setText } from "./dom.js";
+import { faultView } from "./fault.js";
+
+const PICTURES = "M4 4h7v7H4zM13 4h7v7h-7zM4 13h7v7H4zM13 13h7v7h-7z";
 
 /** @typedef {import("../state/index.js").PlaygroundInfo} PlaygroundInfo */
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
-export function playgroundPanel({ t, language, actions, announce }) {
+export function playgroundPanel(context) {
+  const { t, language, actions, announce } = context;
+  const gallery = galleryDialog(context);
   const select = h("select", { id: "playground-choice", "aria-label": t("playground.choose") });
   select.addEventListener("change", () => actions.loadPlayground(select.value));
   const description = h("p", { class: "description" });
   const summary = h("summary");
   const notes = h("ul");
   const remarks = h("details", { class: "remarks", hidden: true }, summary, notes);
-  const fault = h("p", { class: "fault", hidden: true });
+  const fault = h("div", { class: "fault", hidden: true });
   const element = card(
     "playground",
     t("playground"),
+    h("div", { class: "row" }, select),
     h(
       "div",
       { class: "row" },
-      select,
+      h(
+        "button",
+        { type: "button", id: "gallery-open", title: t("gallery.help"), onclick: gallery.open },
+        icon(PICTURES),
+        t("gallery.open"),
+      ),
       fileButton({
         id: "playground-file",
         label: t("playground.open"),
@@ -32,6 +44,7 @@ export function playgroundPanel({ t, language, actions, announce }) {
     description,
     remarks,
     fault,
+    gallery.element,
   );
   let listed = "";
   let noted = "";
@@ -39,7 +52,9 @@ export function playgroundPanel({ t, language, actions, announce }) {
   return {
     slot: "side",
     element,
-    render({ playgrounds, simulator, uploads }) {
+    render(state) {
+      const { playgrounds, simulator, uploads } = state;
+      gallery.render(state);
       const { playground } = uploads;
       const own =
         simulator !== null && !playgrounds.some(({ name }) => name === simulator.playground) ? simulator : null;
@@ -66,13 +81,11 @@ export function playgroundPanel({ t, language, actions, announce }) {
       }
       if (playground === shown) return;
       shown = playground;
-      const text =
-        playground?.phase === "refused"
-          ? `${t("playground.refused", { name: playground.name })} ${playground.fault?.text ?? ""}`
-          : "";
-      setText(fault, text);
-      fault.hidden = text === "";
-      if (text !== "") announce(text);
+      fault.hidden = playground?.phase !== "refused";
+      if (playground?.phase !== "refused") return;
+      const headline = t("playground.refused", { name: playground.name });
+      fault.replaceChildren(...faultView(t, headline, playground.fault));
+      announce(`${headline} ${playground.fault?.text ?? ""}`);
     },
   };
 }

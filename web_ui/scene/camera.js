@@ -3,6 +3,8 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
+import { fit } from "./fit.js";
+
 /** @typedef {"home" | "top" | "follow" | "eye"} ViewName */
 
 export const VIEWS = /** @type {readonly ViewName[]} */ (["home", "top", "follow", "eye"]);
@@ -12,7 +14,6 @@ const FOLLOW = { back: 0.42, up: 0.3 };
 const EYE = { ahead: 0.083, up: 0.045 };
 const TURN_STEP = Math.PI / 24;
 const ZOOM_STEP = 1.15;
-const MARGIN = 1.05;
 
 export class Camera {
   /** @param {HTMLElement} element  where the pointer works @param {() => void} changed */
@@ -47,11 +48,11 @@ export class Camera {
     return this.view === "follow" || this.view === "eye";
   }
 
-  /** A new world to fit in. @param {THREE.Vector3[]} corners */
-  frame(corners) {
+  /** A new world to fit in. @param {THREE.Vector3[]} corners @param {boolean} [held]  whether the camera stays where it is */
+  frame(corners, held = false) {
     if (corners.length === 0) return;
     this.corners = corners;
-    if (!this.goesAlong) this.look(this.view);
+    if (!held && !this.goesAlong) this.look(this.view);
   }
 
   /**
@@ -80,7 +81,7 @@ export class Camera {
     }
     // Seen from straight above there is no "up"; a hair beside it, x points to the right.
     const from = (view === "top" ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.22, -0.85, 0.85)).normalize();
-    const { target, distance } = this.#fit(from);
+    const { target, distance } = fit(this.camera, this.corners, from);
     this.#place(target, from.multiplyScalar(distance).add(target));
   }
 
@@ -141,37 +142,5 @@ export class Camera {
     this.camera.position.copy(position);
     this.controls.update();
     this.changed();
-  }
-
-  /**
-   * Where to look and how far to stand along `from`, so that all corners just fit the picture: each
-   * side of the picture is a plane through the camera, pushed out to the corner that is farthest.
-   *
-   * @param {THREE.Vector3} from  unit vector from the target to the camera
-   */
-  #fit(from) {
-    const right = new THREE.Vector3(0, 0, 1).cross(from).normalize();
-    const up = from.clone().cross(right);
-    const high = Math.tan((this.camera.fov * Math.PI) / 360);
-    const wide = high * this.camera.aspect;
-    /** @param {THREE.Vector3} axis @param {number} slope */
-    const reach = (axis, slope) => {
-      let [low, top] = [-Infinity, -Infinity];
-      for (const corner of this.corners) {
-        const depth = corner.dot(from) * slope;
-        const across = corner.dot(axis);
-        low = Math.max(low, depth - across);
-        top = Math.max(top, depth + across);
-      }
-      return { middle: (top - low) / 2, depth: (top + low) / 2 / slope };
-    };
-    const [sideways, upwards] = [reach(right, wide), reach(up, high)];
-    const depth = Math.max(sideways.depth, upwards.depth);
-    const eye = right
-      .multiplyScalar(sideways.middle)
-      .add(up.multiplyScalar(upwards.middle))
-      .addScaledVector(from, depth);
-    const distance = eye.z / from.z;
-    return { target: eye.addScaledVector(from, -distance), distance: distance * MARGIN };
   }
 }

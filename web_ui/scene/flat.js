@@ -3,7 +3,7 @@
 
 import * as THREE from "three";
 
-import { MARKER } from "../state/markers.js";
+import { hasPicture, MARKER } from "../state/markers.js";
 import { placed, ROBOT_OUTLINE } from "../move/things.js";
 import { poseAt } from "./motion.js";
 import { BUTTON_PLACES, LIGHTS, PROXIMITY_PLACES } from "./parts.js";
@@ -37,8 +37,8 @@ export class FlatView {
    * @param {{ x: number, y: number } | null} followed
    */
   aim(corners, followed) {
-    const { clientWidth, clientHeight } = this.canvas;
-    const aspect = clientWidth / Math.max(1, clientHeight);
+    const { width, height: high } = this.#size;
+    const aspect = width / Math.max(1, high);
     const box = new THREE.Box3().setFromPoints(corners.length > 0 ? corners : [new THREE.Vector3()]);
     const size = box.getSize(new THREE.Vector3());
     const middle = box.getCenter(new THREE.Vector3());
@@ -63,8 +63,7 @@ export class FlatView {
   draw(state, { nowMs, sensors, held, colour, changed }) {
     const { context, canvas, camera } = this;
     if (context === null) return;
-    canvas.width = canvas.clientWidth;
-    canvas.height = canvas.clientHeight;
+    Object.assign(canvas, this.#size);
     context.fillStyle = "#dfecf6";
     context.fillRect(0, 0, canvas.width, canvas.height);
     const scale = canvas.height / (camera.top - camera.bottom);
@@ -92,6 +91,12 @@ export class FlatView {
     context.setTransform(1, 0, 0, 1, 0, 0);
   }
 
+  /** As it is shown on the page; as it was made, if it is not. */
+  get #size() {
+    const { clientWidth, clientHeight, width, height } = this.canvas;
+    return clientWidth > 0 ? { width: clientWidth, height: clientHeight } : { width, height };
+  }
+
   /** @param {CanvasRenderingContext2D} context @param {Marker} marker @param {() => void} changed */
   #marker(context, marker, changed) {
     const { type, pose, scale, color, points, colors } = marker;
@@ -100,7 +105,7 @@ export class FlatView {
     context.translate(pose.position.x, pose.position.y);
     context.rotate(Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)));
     context.fillStyle = context.strokeStyle = css(color);
-    const picture = marker.texture?.data.length ? this.#picture(marker, changed) : null;
+    const picture = hasPicture(marker) ? this.#picture(marker, changed) : null;
     if (picture !== null) {
       context.scale(1, -1);
       context.drawImage(picture, -scale.x / 2, -scale.y / 2, scale.x, scale.y);
@@ -133,6 +138,7 @@ export class FlatView {
 
   /** @param {Marker} marker @param {() => void} changed */
   #picture(marker, changed) {
+    if (marker.texture?.image !== undefined) return marker.texture.image;
     const known = this.pictures.get(marker);
     if (known !== undefined) return known;
     this.pictures.set(marker, null);

@@ -7,7 +7,9 @@ import { Camera } from "./camera.js";
 import { robotColour } from "../state/colours.js";
 import { FlatView } from "./flat.js";
 import { Ghost } from "./ghost.js";
+import { litScene } from "./lights.js";
 import { Numbers, numbersOf } from "./numbers.js";
+import { photograph } from "./photographer.js";
 import { PlaygroundModel } from "./playground.js";
 import { watchPointer } from "./pointer.js";
 import { Quality } from "./quality.js";
@@ -17,7 +19,6 @@ import { RobotModel } from "./robot.js";
 /** @typedef {import("./camera.js").ViewName} ViewName */
 /** @typedef {import("./pointer.js").Target} Target */
 
-const SKY = 0xdfecf6;
 /** A lost picture that has not come back by then is drawn in 2D. */
 const LOST_FOR_GOOD_MS = 4000;
 /** From above, a name stands this far over its robot. */
@@ -54,16 +55,11 @@ export class SceneView {
     this.wantsFlat = false;
     this.isLost = false;
     /** @type {Target | null} */ this.hovered = null;
+    /** @type {{ world: State, settle: (picture: HTMLCanvasElement) => void }[]} */ this.sittings = [];
     /** @type {Map<string, { model: RobotModel, trail: PlaygroundModel, label: HTMLElement }>} */ this.robots = new Map();
-    this.scene = new THREE.Scene();
-    this.scene.background = new THREE.Color(SKY);
+    this.scene = litScene();
     this.playground = new PlaygroundModel(() => this.invalidate());
     this.objects = new PlaygroundModel(() => this.invalidate());
-    const sun = new THREE.DirectionalLight(0xffffff, 1.75);
-    sun.position.set(-1.2, -1.6, 3);
-    const fill = new THREE.DirectionalLight(0xffffff, 0.5); // so that faces turned away from the sun are not dull
-    fill.position.set(1, 1.4, 0.35);
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xccd5de, 1.75), sun, fill);
     this.scene.add(this.playground.group, this.objects.group, this.ghost.group);
     this.camera = new Camera(canvas, () => this.invalidate());
     this.renderer = createRenderer(canvas);
@@ -161,6 +157,14 @@ export class SceneView {
     return new Promise((settle) => shown.toBlob(settle, "image/png"));
   }
 
+  /** A small picture of another world, drawn in one of the next frames. @param {State} world @returns {Promise<HTMLCanvasElement>} */
+  photograph(world) {
+    return new Promise((settle) => {
+      this.sittings.push({ world, settle });
+      this.invalidate();
+    });
+  }
+
   /** @param {boolean} shown */
   setSensors(shown) {
     this.showSensors = shown;
@@ -205,8 +209,11 @@ export class SceneView {
     const moving = this.#updateRobots(state, nowMs);
     const pose = this.#selectedPose();
     if (pose !== null) this.camera.follow(pose);
+    const sitting = this.sittings.shift();
+    sitting?.settle(photograph(sitting.world, this.has3d ? this.renderer : null));
     this.#draw(nowMs);
     this.frames += 1;
+    if (this.sittings.length > 0) this.invalidate();
     this.#placeLabels();
     if (moving) this.invalidate();
     if (this.quality.note(nowMs, moving)) this.#resize();

@@ -2,7 +2,7 @@
 
 import * as THREE from "three";
 
-import { MARKER } from "../state/markers.js";
+import { hasPicture, MARKER } from "../state/markers.js";
 
 /** @typedef {import("../state/markers.js").Marker} Marker */
 
@@ -70,25 +70,32 @@ export class PlaygroundModel {
 
   /** @param {string} key @param {Marker} marker */
   #add(key, marker) {
-    const picture = marker.texture?.data.length ? Uint8Array.from(marker.texture.data) : null;
-    const mesh = picture === null ? this.#plain(marker) : this.#pictured(marker, picture);
+    const mesh = hasPicture(marker) ? this.#pictured(marker) : this.#plain(marker);
     place(mesh, marker);
     this.meshes.set(key, { marker, mesh });
     this.group.add(mesh);
   }
 
-  /** A picture lies flat in the marker's frame, as large as its scale. @param {Marker} marker @param {Uint8Array<ArrayBuffer>} png */
-  #pictured({ scale }, png) {
+  /** A picture lies flat in the marker's frame, as large as its scale. @param {Marker} marker */
+  #pictured({ scale, texture }) {
     const map = new THREE.Texture();
     map.colorSpace = THREE.SRGBColorSpace;
     map.anisotropy = 8;
-    map.flipY = false; // it arrives turned over
     const material = new THREE.MeshLambertMaterial({ map, transparent: true, visible: false, side: THREE.DoubleSide });
-    this.decode(new Blob([png], { type: "image/png" })).then((bitmap) => {
-      map.image = bitmap;
+    /** @param {ImageBitmap | HTMLCanvasElement} image */
+    const show = (image) => {
+      map.image = image;
       map.needsUpdate = material.visible = true;
-      this.changed();
-    });
+    };
+    if (texture?.image !== undefined) show(texture.image);
+    else {
+      map.flipY = false; // it arrives turned over
+      const png = Uint8Array.from(texture?.data ?? []);
+      this.decode(new Blob([png], { type: "image/png" })).then((bitmap) => {
+        show(bitmap);
+        this.changed();
+      });
+    }
     return new THREE.Mesh(new THREE.PlaneGeometry(scale.x, scale.y), material);
   }
 
@@ -132,7 +139,7 @@ function place(mesh, { pose: { position, orientation } }) {
  * @param {Marker} two
  */
 function isSameSolid(one, two) {
-  if (one.texture?.data.length || two.texture?.data.length) return false;
+  if (hasPicture(one) || hasPicture(two)) return false;
   /** @param {Marker} marker */
   const looks = ({ type, scale, color }) => [type, ...Object.values(scale), ...Object.values(color)].join(" ");
   return (one.type === MARKER.CUBE || one.type === MARKER.CYLINDER) && looks(one) === looks(two);

@@ -13,7 +13,8 @@
  * @property {Colour} color
  * @property {Vector[]} points
  * @property {Colour[]} colors
- * @property {{ data: ArrayLike<number> }} [texture]  a picture, PNG, over the whole of the marker; empty for none
+ * @property {{ data: ArrayLike<number>, image?: ImageBitmap | HTMLCanvasElement }} [texture]  a picture over the whole of
+ *   the marker: PNG, empty for none, or already read
  */
 
 export const MARKER = { CUBE: 1, SPHERE: 2, CYLINDER: 3, LINE_STRIP: 4, TRIANGLE_LIST: 11 };
@@ -35,4 +36,9 @@ export function applyMarkers(markers, changes) {
     else next.set(key, marker);
   }
   return next;
+}
+
+/** Whether there is a picture on it. @param {Marker} marker */
+export function hasPicture({ texture }) {
+  return texture !== undefined && (texture.image !== undefined || texture.data.length > 0);
 }

@@ -1,0 +1,36 @@
+"""The shipped playgrounds as texts that need no other file, for pages that draw and change them."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+
+from thymio_sim_ros import resources
+from thymio_sim_ros.sim import playground as playgrounds
+from thymio_sim_ros.sim import playground_text
+
+__all__ = ["Gallery"]
+
+
+class Gallery:
+    """Texts by name, each made once for each version of its file. Several threads may ask."""
+
+    def __init__(self) -> None:
+        self._texts: dict[Path, tuple[int, bytes]] = {}
+        self._lock = threading.Lock()
+
+    def text(self, name: str) -> bytes | None:
+        """One playground in our format with its pictures inside, UTF-8; None for a name that is not shipped.
+
+        PlaygroundError for a file that cannot be read.
+        """
+        path = resources.playgrounds().get(name)
+        if path is None:
+            return None
+        with self._lock:
+            version = path.stat().st_mtime_ns if path.exists() else 0
+            known = self._texts.get(path)
+            if known is None or known[0] != version:
+                text = playground_text.dumps(playgrounds.load(path)).encode()
+                known = self._texts[path] = (version, text)
+            return known[1]

@@ -1,0 +1,101 @@
+// The gallery: a window with a picture of every shipped playground, to choose one.
+
+import { faultView } from "../panels/fault.js";
+import { fileButton, h, icon, ICONS, setAttribute, setText } from "../panels/dom.js";
+
+/** @typedef {import("../state/index.js").PlaygroundInfo} PlaygroundInfo */
+
+/** @param {import("../panels/index.js").Context} context */
+export function galleryDialog({ t, language, actions, shelf, store }) {
+  const fault = h("div", { class: "fault", role: "alert", hidden: true });
+  const list = h("ul", { class: "samples" });
+  const close = h("button", { type: "button", class: "plain", "aria-label": t("gallery.close") }, icon(ICONS.close));
+  const dialog = h(
+    "dialog",
+    { class: "gallery", "aria-labelledby": "gallery-title" },
+    h("div", { class: "gallery-head" }, h("h2", { id: "gallery-title" }, t("gallery")), close),
+    fault,
+    list,
+    h(
+      "div",
+      { class: "row" },
+      fileButton({
+        id: "gallery-file",
+        label: t("gallery.file"),
+        help: t("playground.openHelp"),
+        accept: ".json,.playground,.xml,.zip",
+        open: (file) => {
+          waiting = true;
+          void actions.loadFile(file);
+        },
+      }),
+      h("small", {}, t("gallery.formats")),
+    ),
+  );
+  close.addEventListener("click", () => dialog.close());
+  dialog.addEventListener("click", (event) => event.target === dialog && dialog.close()); // beside it
+  dialog.addEventListener("keydown", (event) => event.stopPropagation()); // Escape closes, and stops no robot
+  /** @type {{ name: string, button: HTMLElement }[]} */ let cards = [];
+  let listed = "";
+  /** Whether a choice is on its way to the simulator. */
+  let waiting = false;
+
+  /** @param {PlaygroundInfo} info */
+  const card = (info) => {
+    const { title, description } = info.translations[language] ?? info;
+    const picture = h("img", { alt: "", width: 240, height: 160, hidden: true });
+    const robots = h("small", { class: "count" });
+    const button = h(
+      "button",
+      { type: "button", class: "sample", "data-playground": info.name, title: description },
+      h("span", { class: "frame" }, picture),
+      h("strong", {}, title),
+      robots,
+    );
+    button.addEventListener("click", () => {
+      waiting = true;
+      void actions.loadPlayground(info.name);
+    });
+    cards.push({ name: info.name, button });
+    void shelf.sample(info.name).then((sample) => {
+      if (sample === null) return;
+      const count = sample.playground.items.filter(({ kind }) => kind === "robot").length;
+      setText(robots, t(count === 1 ? "gallery.robot" : "gallery.robots", { count }));
+      picture.src = sample.picture;
+      picture.hidden = false;
+    });
+    return h("li", {}, button);
+  };
+
+  return {
+    element: dialog,
+    open: () => {
+      listed = "";
+      waiting = false;
+      fault.hidden = true;
+      dialog.showModal();
+      render(store.state);
+      (cards.find(({ button }) => button.ariaCurrent === "true")?.button ?? close).focus();
+    },
+    render,
+  };
+
+  /** @param {import("../state/index.js").State} state */
+  function render({ playgrounds, simulator, uploads }) {
+    if (!dialog.open) return;
+    const now = JSON.stringify(playgrounds);
+    if (now !== listed) {
+      listed = now;
+      cards = [];
+      list.replaceChildren(...playgrounds.map(card));
+    }
+    for (const { name, button } of cards) setAttribute(button, "aria-current", String(name === simulator?.playground));
+    const { playground } = uploads;
+    if (!waiting || playground === null || playground.phase === "sending") return;
+    waiting = false;
+    if (playground.phase === "accepted") return dialog.close();
+    fault.replaceChildren(...faultView(t, t("playground.refused", { name: playground.name }), playground.fault));
+    fault.hidden = false;
+    fault.scrollIntoView({ block: "nearest" });
+  }
+}

@@ -1,0 +1,52 @@
+// The shipped playgrounds: read from the server when they are first wanted, with a picture of each drawn from its data.
+
+import { parse } from "../playground/document.js";
+import { Markers } from "../playground/markers.js";
+import { Pictures } from "../playground/pictures.js";
+import { worldOf } from "../playground/world.js";
+
+/** @typedef {import("../playground/document.js").Playground} Playground */
+/** @typedef {{ playground: Playground, picture: string }} Sample  picture: address of an image */
+
+const SMALL = { width: 240, height: 160 };
+
+export class Shelf {
+  /** @param {(world: import("../state/index.js").State) => Promise<HTMLCanvasElement>} photograph */
+  constructor(photograph) {
+    this.photograph = photograph;
+    this.pictures = new Pictures(() => {});
+    this.markers = new Markers((uri) => this.pictures.get(uri));
+    /** @type {Map<string, Promise<Sample | null>>} */ this.samples = new Map();
+  }
+
+  /** A shipped playground with its picture; null for one that cannot be had. @param {string} name */
+  sample(name) {
+    let sample = this.samples.get(name);
+    if (sample === undefined) {
+      sample = this.#make(name).catch(() => null);
+      this.samples.set(name, sample);
+      sample.then((found) => found === null && this.samples.delete(name)); // asked again next time
+    }
+    return sample;
+  }
+
+  /** @param {string} name @returns {Promise<Sample>} */
+  async #make(name) {
+    const answer = await fetch(`playgrounds/${encodeURIComponent(name)}.json`);
+    if (!answer.ok) throw new Error(answer.statusText);
+    const playground = parse(await answer.text());
+    const images = playground.items.filter(({ kind }) => kind === "picture").map(({ image }) => image);
+    await Promise.all(images.map((uri) => this.pictures.read(uri)));
+    const drawn = await this.photograph(worldOf(playground.items, this.markers));
+    return { playground, picture: smaller(drawn).toDataURL("image/png") };
+  }
+}
+
+/** @param {HTMLCanvasElement} picture */
+function smaller(picture) {
+  const canvas = Object.assign(document.createElement("canvas"), SMALL);
+  const context = canvas.getContext("2d");
+  if (context !== null) context.imageSmoothingQuality = "high";
+  context?.drawImage(picture, 0, 0, SMALL.width, SMALL.height);
+  return canvas;
+}

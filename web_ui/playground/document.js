@@ -1,0 +1,106 @@
+// A playground as it is built: titles, and items in their order. Read from and written as our format. Pure.
+
+import { checkSettled } from "./judge.js";
+import { kindNamed, ROBOT } from "./kinds/index.js";
+import { check, describe, Fault, needed, optional, RULES } from "./rules.js";
+
+/** @typedef {import("./parts.js").Item} Item */
+/** @typedef {Readonly<{ title: string, description: string, translations: Readonly<Record<string, any>>, items: readonly Item[] }>} Playground */
+
+export const FORMAT = 1;
+/** As the simulator's (sim/playground.py). */
+export const MOST = { shapes: 1000, robots: 1000, translations: 50 };
+const LANGUAGE = /^[a-z]{2,3}(-[A-Za-z0-9]{2,8})*$/;
+
+const TITLES = { title: needed(RULES.line), description: optional(RULES.line, "") };
+
+/** The playground of a text. Throws a Fault that says where and why. @param {string} text @returns {Playground} */
+export function parse(text) {
+  /** @type {unknown} */ let data;
+  try {
+    data = JSON.parse(text.replace(/^\uFEFF/, ""));
+  } catch (error) {
+    throw new Fault("", error instanceof Error ? error.message : String(error), { word: "fault.json" });
+  }
+  if (typeof data !== "object" || data === null || Array.isArray(data)) throw new Fault("", describe(data), { word: "fault.object" }); // prettier-ignore
+  const { format, $schema, shapes = [], robots = [], translations = {}, ...titles } = /** @type {Record<string, any>} */ (data);
+  if (format !== FORMAT) throw new Fault("format", describe(format), { word: "fault.format" });
+  if ($schema !== undefined && typeof $schema !== "string") throw new Fault("$schema", describe($schema), { word: "fault.line", values: { longest: 2000 } }); // prettier-ignore
+  check(TITLES, titles, "");
+  checkTranslations(translations);
+  const items = [
+    ...list(shapes, "shapes", MOST.shapes).map((shape, index) => readShape(shape, index)),
+    ...list(robots, "robots", MOST.robots).map((start, index) => readRobot(start, index)),
+  ];
+  const playground = { title: titles.title, description: titles.description ?? "", translations, items };
+  checkSettled(playground);
+  return playground;
+}
+
+/** The text of a playground, one item a line, as the simulator writes it. @param {Playground} playground */
+export function write({ title, description, translations, items }) {
+  const shapes = items.filter(({ kind }) => kind !== "robot").map((item) => JSON.stringify(item));
+  const robots = items.filter(({ kind }) => kind === "robot").map(({ kind: _kind, ...start }) => JSON.stringify(start));
+  /** @param {string[]} lines */
+  const array = (lines) => (lines.length === 0 ? "[]" : `[\n    ${lines.join(",\n    ")}\n  ]`);
+  const members = [
+    `"format": ${FORMAT}`,
+    `"title": ${JSON.stringify(title)}`,
+    `"description": ${JSON.stringify(description)}`,
+    ...(Object.keys(translations).length > 0 ? [`"translations": ${JSON.stringify(translations)}`] : []),
+    `"shapes": ${array(shapes)}`,
+    `"robots": ${array(robots)}`,
+  ];
+  return `{\n  ${members.join(",\n  ")}\n}\n`;
+}
+
+/** Without what is as if left out. @param {Record<string, any> & { kind: string, name: string }} item @returns {Item} */
+export function tidy(item) {
+  const fields = kindNamed(item.kind)?.fields ?? {};
+  return /** @type {Item} */ (
+    Object.fromEntries(Object.entries(item).filter(([key, value]) => !(key in fields) || value !== fields[key].otherwise))
+  );
+}
+
+/** Where an item is in the file: `shapes[3]`. @param {Playground} playground @param {Item} item */
+export function keyOf({ items }, item) {
+  const isRobot = item.kind === "robot";
+  const peers = items.filter(({ kind }) => (kind === "robot") === isRobot);
+  return `${isRobot ? "robots" : "shapes"}[${peers.indexOf(item)}]`;
+}
+
+/** @param {unknown} value @param {string} key @param {number} most @returns {unknown[]} */
+function list(value, key, most) {
+  if (!Array.isArray(value)) throw new Fault(key, describe(value), { word: "fault.list" });
+  if (value.length > most) throw new Fault(key, String(value.length), { word: "fault.most", values: { most } });
+  return value;
+}
+
+/** @param {any} shape @param {number} index @returns {Item} */
+function readShape(shape, index) {
+  const key = `shapes[${index}]`;
+  if (typeof shape !== "object" || shape === null || Array.isArray(shape)) throw new Fault(key, describe(shape), { word: "fault.object" }); // prettier-ignore
+  if (typeof shape.kind !== "string" || shape.kind === "robot") throw new Fault(`${key}.kind`, describe(shape.kind), { word: "fault.kind" }); // prettier-ignore
+  const { kind, name = `${kind}_${index}`, ...values } = shape;
+  check({ name: needed(RULES.name) }, { name }, key);
+  const known = kindNamed(kind);
+  if (known !== undefined) check(known.fields, values, key); // one of another package is the simulator's to judge
+  return Object.freeze({ kind, name, ...values });
+}
+
+/** @param {any} start @param {number} index @returns {Item} */
+function readRobot(start, index) {
+  check(ROBOT.fields, start, `robots[${index}]`);
+  return Object.freeze({ kind: "robot", ...start });
+}
+
+/** @param {any} translations */
+function checkTranslations(translations) {
+  if (typeof translations !== "object" || translations === null || Array.isArray(translations) || Object.keys(translations).length > MOST.translations) {
+    throw new Fault("translations", describe(translations), { word: "fault.object" });
+  }
+  for (const [language, titles] of Object.entries(translations)) {
+    if (!LANGUAGE.test(language)) throw new Fault(`translations.${language}`, describe(language), { word: "fault.language" });
+    check(TITLES, titles, `translations.${language}`);
+  }
+}

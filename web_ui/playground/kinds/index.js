@@ -1,0 +1,47 @@
+// The kinds of things in a playground. To add one: a file, and a line here.
+
+import { activation } from "./activation.js";
+import { box } from "./box.js";
+import { cylinder } from "./cylinder.js";
+import { door } from "./door.js";
+import { octagon } from "./octagon.js";
+import { picture } from "./picture.js";
+import { rectangle } from "./rectangle.js";
+import { robot } from "./robot.js";
+import { track } from "./track.js";
+import { uFigure } from "./u_figure.js";
+import { wall } from "./wall.js";
+
+/**
+ * @typedef {object} Kind
+ * @property {string} name
+ * @property {"ground" | "paint" | "thing" | "robot"} group
+ * @property {import("../rules.js").Fields} fields   besides `kind`, and for shapes `name`
+ * @property {[string, string][]} points   keys of the places by which it is where it is; the first is its middle
+ * @property {string} [path]        key of a list of points
+ * @property {boolean} [relative]   the path is in the thing's own frame
+ * @property {number} [clicks]      places that are asked for; 1 where left out
+ * @property {Record<string, any>} fresh   values of a new one
+ * @property {(values: Record<string, any>) => import("../primitives.js").Primitive[]} primitives  of all values
+ */
+
+/** Kinds of shapes. */
+export const SHAPES = /** @type {Kind[]} */ ([
+  rectangle,
+  octagon,
+  picture,
+  track,
+  box,
+  cylinder,
+  wall,
+  uFigure,
+  door,
+  activation,
+]);
+export const ROBOT = robot;
+const BY_NAME = new Map([...SHAPES, robot].map((kind) => [kind.name, kind]));
+
+/** The kind of a name; undefined for one of another package. @param {string} name */
+export function kindNamed(name) {
+  return BY_NAME.get(name);
+}

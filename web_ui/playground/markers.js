@@ -1,0 +1,86 @@
+// A playground as markers, the way the simulator tells them, so that the same scene draws what runs and what is built.
+
+import { MARKER } from "../state/markers.js";
+import { partsOf } from "./parts.js";
+
+/** @typedef {import("../state/markers.js").Marker} Marker */
+/** @typedef {import("./parts.js").Item} Item */
+/** @typedef {import("./primitives.js").Primitive} Primitive */
+/** @typedef {{ image: ImageBitmap | HTMLCanvasElement, width: number, height: number }} Picture */
+
+/** Each paint lies this much above the one before, as in the simulator's markers. */
+const LAYER_M = 0.0002;
+
+export class Markers {
+  /** @param {(uri: string) => Picture | null} pictureOf  null while it is read */
+  constructor(pictureOf) {
+    this.pictureOf = pictureOf;
+    /** @type {WeakMap<Item, { layer: number, pictures: string, markers: Marker[] }>} */ this.known = new WeakMap();
+  }
+
+  /** Markers of what is the same stay the same objects. @param {readonly Item[]} items @returns {ReadonlyMap<string, Marker>} */
+  of(items) {
+    /** @type {Map<string, Marker>} */ const found = new Map();
+    items.forEach((item, layer) => {
+      for (const marker of this.#markersOf(item, layer)) found.set(`${marker.ns}/${marker.id}`, marker);
+    });
+    return found;
+  }
+
+  /** @param {Item} item @param {number} layer */
+  #markersOf(item, layer) {
+    const { primitives } = partsOf(item);
+    const pictures = primitives.map((part) => part.type === "print" && this.pictureOf(part.image) !== null).join();
+    const known = this.known.get(item);
+    if (known !== undefined && known.layer === layer && known.pictures === pictures) return known.markers;
+    /** @type {Marker[]} */ const markers = [];
+    const patches = primitives.flatMap((part) => (part.type === "floor" || part.type === "paint" ? [part] : []));
+    if (patches.length > 0) markers.push(flat(item.name, patches, layer * LAYER_M));
+    primitives.forEach((part, index) => {
+      if (part.type === "solid") markers.push(solid(item.name, index + 1, part));
+      else if (part.type === "print") {
+        const picture = this.pictureOf(part.image);
+        if (picture !== null) markers.push(print(item.name, index + 1, part, picture, layer * LAYER_M));
+      }
+    });
+    this.known.set(item, { layer, pictures, markers });
+    return markers;
+  }
+}
+
+/** @param {string} name @param {import("./primitives.js").Patch[]} patches @param {number} z @returns {Marker} */
+function flat(name, patches, z) {
+  const points = patches.flatMap(({ vertices }) =>
+    vertices.slice(2).flatMap((third, index) => [vertices[0], vertices[index + 1], third].map(([x, y]) => ({ x, y, z: 0 }))),
+  );
+  return { ...marker(`${patches[0].type}/${name}`, 0, MARKER.TRIANGLE_LIST, patches[0].color), pose: pose(0, 0, z, 0), points };
+}
+
+/** @param {string} name @param {number} id @param {import("./primitives.js").Solid} part @returns {Marker} */
+function solid(name, id, { pose: { x, y, yaw }, size, radius, height, color }) {
+  const [sizeX, sizeY] = size ?? [2 * radius, 2 * radius];
+  const type = size === null ? MARKER.CYLINDER : MARKER.CUBE;
+  return { ...marker(`solid/${name}`, id, type, color), pose: pose(x, y, height / 2, yaw), scale: { x: sizeX, y: sizeY, z: height } };
+}
+
+/** @param {string} name @param {number} id @param {import("./primitives.js").Print} part @param {Picture} picture @param {number} z @returns {Marker} */
+function print(name, id, { pose: { x, y, yaw }, sizeX, sizeY }, { image, width, height }, z) {
+  const scale = { x: sizeX, y: sizeY ?? (sizeX * height) / width, z: 1 };
+  return {
+    ...marker(`paint/${name}`, id, MARKER.TRIANGLE_LIST, "#ffffff"),
+    pose: pose(x, y, z, yaw),
+    scale,
+    texture: { data: [], image },
+  };
+}
+
+/** @param {string} ns @param {number} id @param {number} type @param {string} color @returns {Marker} */
+function marker(ns, id, type, color) {
+  const [r, g, b] = [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16) / 255);
+  return { ns, id, type, action: 0, pose: pose(0, 0, 0, 0), scale: { x: 1, y: 1, z: 1 }, color: { r, g, b, a: 1 }, points: [], colors: [] };
+}
+
+/** @param {number} x @param {number} y @param {number} z @param {number} yaw */
+function pose(x, y, z, yaw) {
+  return { position: { x, y, z }, orientation: { x: 0, y: 0, z: Math.sin(yaw / 2), w: Math.cos(yaw / 2) } };
+}

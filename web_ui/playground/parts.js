@@ -1,0 +1,77 @@
+// What an item of a playground is made of, computed once for each item: items never change, they are replaced.
+
+import { circle, placed } from "./geometry.js";
+import { kindNamed } from "./kinds/index.js";
+import { footprintOf } from "./primitives.js";
+import { ROBOT_OUTLINE } from "../move/things.js";
+
+/** @typedef {Readonly<Record<string, any> & { kind: string, name: string }>} Item  a shape, or a robot's start (kind "robot") */
+/** @typedef {import("./geometry.js").Footprint} Footprint */
+/** @typedef {import("./geometry.js").Point} Point */
+/**
+ * @typedef {object} Parts
+ * @property {Record<string, any>} values       all of them, also those left out
+ * @property {import("./primitives.js").Primitive[]} primitives
+ * @property {Footprint[]} footprints    ground on which nothing else can stand
+ * @property {Point[][]} floors
+ */
+
+/** @type {WeakMap<Item, Parts>} */
+const KNOWN = new WeakMap();
+
+/** Throws a Fault for one that cannot be built. @param {Item} item @returns {Parts} */
+export function partsOf(item) {
+  const known = KNOWN.get(item);
+  if (known !== undefined) return known;
+  const kind = kindNamed(item.kind);
+  const values = valuesOf(item);
+  const primitives = kind?.primitives(values) ?? [];
+  const solids = primitives.filter((part) => part.type === "solid");
+  const footprints = item.kind === "robot" ? [robotFootprint(values)] : solids.map(footprintOf);
+  const floors = primitives.flatMap((part) => (part.type === "floor" ? [part.vertices] : []));
+  const parts = { values, primitives, footprints, floors };
+  KNOWN.set(item, parts);
+  return parts;
+}
+
+/** All values of an item, with those left out. @param {Item} item @returns {Record<string, any>} */
+export function valuesOf(item) {
+  const fields = kindNamed(item.kind)?.fields ?? {};
+  return filled(fields, item);
+}
+
+/** @param {import("./rules.js").Fields} fields @param {Record<string, any>} given @returns {Record<string, any>} */
+function filled(fields, given) {
+  const values = { ...given };
+  for (const [key, { rule, otherwise }] of Object.entries(fields)) {
+    if (!(key in given)) values[key] = otherwise;
+    else if (rule.type === "object" && given[key] !== null) values[key] = filled(rule.fields ?? {}, given[key]);
+  }
+  return values;
+}
+
+/** What an item covers, as polygons that can be drawn and pointed at, with their heights. @param {Item} item @returns {{ outline: Point[], height: number }[]} */
+export function outlinesOf(item) {
+  if (item.kind === "robot") return [{ outline: placed(poseOfRobot(valuesOf(item)), ROBOT_OUTLINE[0]), height: 0.053 }];
+  return partsOf(item).primitives.flatMap((part) => {
+    if (part.type === "floor" || part.type === "paint") return [{ outline: part.vertices, height: 0 }];
+    if (part.type === "trigger") return [];
+    if (part.type === "print") {
+      const [x, y] = [part.sizeX / 2, (part.sizeY ?? part.sizeX) / 2];
+      return [{ outline: placed(part.pose, [[x, -y], [x, y], [-x, y], [-x, -y]]), height: 0 }]; // prettier-ignore
+    }
+    const footprint = footprintOf(part);
+    const outline = "radius" in footprint ? placed(part.pose, circle(footprint.radius)) : [...footprint.vertices];
+    return [{ outline, height: part.height }];
+  });
+}
+
+/** @param {Record<string, any>} values */
+function poseOfRobot({ x_m, y_m, yaw_rad }) {
+  return { x: x_m, y: y_m, yaw: yaw_rad };
+}
+
+/** @param {Record<string, any>} values @returns {Footprint} */
+function robotFootprint(values) {
+  return { vertices: placed(poseOfRobot(values), ROBOT_OUTLINE[0]) };
+}

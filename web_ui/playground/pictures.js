@@ -1,0 +1,53 @@
+// Pictures on the ground, read by the browser from their data URIs; each is read once.
+
+/** @typedef {import("./markers.js").Picture} Picture */
+
+/** Side of the largest picture that is drawn. */
+const MOST_TEXELS = 2048;
+
+export class Pictures {
+  /** @param {() => void} changed  called when one has been read */
+  constructor(changed) {
+    this.changed = changed;
+    /** @type {Map<string, Picture | null>} */ this.known = new Map();
+    /** @type {Map<string, Promise<void>>} */ this.reading = new Map();
+  }
+
+  /** Null while it is read, and for one that cannot be. @param {string} uri @returns {Picture | null} */
+  get(uri) {
+    if (!this.known.has(uri)) void this.read(uri);
+    return this.known.get(uri) ?? null;
+  }
+
+  /** @param {string} uri */
+  read(uri) {
+    let reading = this.reading.get(uri);
+    if (reading === undefined) {
+      this.known.set(uri, null);
+      reading = decode(uri).then((picture) => {
+        this.known.set(uri, picture);
+        if (picture !== null) this.changed();
+      });
+      this.reading.set(uri, reading);
+    }
+    return reading;
+  }
+}
+
+/** @param {string} uri @returns {Promise<Picture | null>} */
+async function decode(uri) {
+  const image = new Image();
+  image.src = uri;
+  try {
+    await image.decode();
+  } catch {
+    return null;
+  }
+  const [width, height] = [image.naturalWidth || 1024, image.naturalHeight || 1024];
+  const scale = Math.min(1, MOST_TEXELS / Math.max(width, height));
+  const canvas = document.createElement("canvas");
+  canvas.width = Math.max(1, Math.round(width * scale));
+  canvas.height = Math.max(1, Math.round(height * scale));
+  canvas.getContext("2d")?.drawImage(image, 0, 0, canvas.width, canvas.height);
+  return { image: canvas, width, height };
+}

@@ -1,0 +1,91 @@
+// Small pictures of whole worlds, one after the other, drawn with what draws the view: in a corner of its canvas, before
+// the view is drawn over it in the same frame.
+
+import * as THREE from "three";
+
+import { robotColour } from "../state/colours.js";
+import { fit } from "./fit.js";
+import { FlatView } from "./flat.js";
+import { litScene } from "./lights.js";
+import { PlaygroundModel } from "./playground.js";
+import { RobotModel } from "./robot.js";
+
+/** @typedef {import("../state/index.js").State} State */
+
+const FROM = new THREE.Vector3(-0.22, -0.85, 0.95).normalize();
+/** Drawn finer than shown, which smooths the edges. */
+const SIZE = { width: 480, height: 320 };
+
+/** @param {State} world @param {THREE.WebGLRenderer | null} renderer  null: from above in 2D @returns {HTMLCanvasElement} */
+export function photograph(world, renderer) {
+  return renderer === null ? fromAbove(world) : inSpace(world, renderer);
+}
+
+/** @param {State} world @param {THREE.WebGLRenderer} renderer */
+function inSpace(world, renderer) {
+  const scene = litScene();
+  const playground = new PlaygroundModel();
+  playground.update(world.markers);
+  const robots = Object.entries(world.robots).map(([name, robot]) => {
+    const model = new RobotModel(name);
+    model.update(robot, null, 0);
+    for (const { group } of model.sensing) group.visible = false;
+    return model;
+  });
+  scene.add(playground.group, ...robots.map(({ group }) => group));
+  const target = renderer.domElement;
+  const [width, height] = [Math.min(SIZE.width, target.width), Math.min(SIZE.height, target.height)];
+  const camera = new THREE.PerspectiveCamera(30, width / height, 0.02, 400);
+  camera.up.set(0, 0, 1);
+  const place = fit(camera, cornersOf(playground, robots), FROM);
+  camera.position.copy(FROM).multiplyScalar(place.distance).add(place.target);
+  camera.lookAt(place.target);
+
+  const ratio = renderer.getPixelRatio();
+  const whole = renderer.getSize(new THREE.Vector2());
+  renderer.setViewport(0, 0, width / ratio, height / ratio);
+  renderer.setScissor(0, 0, width / ratio, height / ratio);
+  renderer.setScissorTest(true);
+  renderer.render(scene, camera);
+  renderer.setScissorTest(false);
+  renderer.setViewport(0, 0, whole.x, whole.y);
+
+  const canvas = emptyCanvas();
+  const context = canvas.getContext("2d");
+  context?.drawImage(target, 0, target.height - height, width, height, 0, 0, canvas.width, canvas.height);
+  playground.dispose();
+  for (const robot of robots) robot.dispose();
+  return canvas;
+}
+
+/** @param {State} world */
+function fromAbove(world) {
+  const canvas = emptyCanvas();
+  const playground = new PlaygroundModel();
+  playground.update(world.markers);
+  const view = new FlatView(canvas);
+  view.aim(cornersOf(playground, []), null);
+  const names = Object.keys(world.robots);
+  view.draw(world, {
+    nowMs: 0,
+    sensors: false,
+    held: null,
+    colour: (name) => robotColour(names, name),
+    changed: () => {},
+  });
+  playground.dispose();
+  return canvas;
+}
+
+/** @param {PlaygroundModel} playground @param {RobotModel[]} robots */
+function cornersOf(playground, robots) {
+  const corners = playground.corners();
+  for (const { group } of robots) {
+    for (const [x, y] of [[-0.1, -0.1], [0.1, 0.1]]) corners.push(group.position.clone().add(new THREE.Vector3(x, y, 0.05))); // prettier-ignore
+  }
+  return corners.length > 0 ? corners : [new THREE.Vector3(-0.3, -0.3, 0), new THREE.Vector3(0.3, 0.3, 0)];
+}
+
+function emptyCanvas() {
+  return Object.assign(document.createElement("canvas"), SIZE);
+}
