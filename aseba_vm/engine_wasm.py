@@ -24,9 +24,9 @@ from aseba_vm.wasm_host import (
     REFUSED,
     STACK,
     Code,
-    Runtime,
 )
 from aseba_vm.wasm_natives import call, functions, is_usual, unrolled
+from aseba_vm.wasm_runtime import Runtime
 
 _TRAPPED = -1
 """The kind of exit until there is one."""

@@ -1,4 +1,4 @@
-"""The way into WebAssembly and back without parameters: the quickest that this version of ``wasmtime`` has.
+"""The way into WebAssembly and back: the quickest that this version of ``wasmtime`` has.
 
 What the library documents checks and converts every value, which costs more than a short event; its bindings hold the
 same calls without that. Where they look otherwise, the documented ones do.
@@ -7,23 +7,28 @@ same calls without that. Where they look otherwise, the documented ones do.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
 
-def caller(wasmtime: Any, store: Any, function: Any) -> Callable[[], object]:
-    """Return what calls a function of a module. It holds Python's lock; a budget bounds for how long."""
+def caller(wasmtime: Any, store: Any, function: Any, arguments: Sequence[float] = ()) -> Callable[[], object]:
+    """Return what calls a function of a module, always with the same arguments: an int is an i32, a float an f64.
+
+    It holds Python's lock; whoever makes the function bounds for how long.
+    """
     try:
         bindings = wasmtime._bindings
         raw = ctypes.PyDLL(bindings.dll._name).wasmtime_func_call_unchecked
-        values = (bindings.wasmtime_val_raw_t * 1)()
+        values = (bindings.wasmtime_val_raw_t * max(1, len(arguments)))()
+        for value, argument in zip(values, arguments, strict=False):
+            setattr(value, "i32" if isinstance(argument, int) else "f64", argument)
         trap = ctypes.POINTER(bindings.wasm_trap_t)()
         context = ctypes.c_void_p(ctypes.cast(store._context(), ctypes.c_void_p).value)
         places = [ctypes.c_void_p(ctypes.addressof(part)) for part in (function._func, values, trap)]
     except AttributeError:
-        return partial(function, store)
-    call = partial(raw, context, places[0], places[1], ctypes.c_size_t(1), places[2])
+        return partial(function, store, *arguments)
+    call = partial(raw, context, places[0], places[1], ctypes.c_size_t(len(values)), places[2])
     call.kept = (store, function, values, trap)  # type: ignore[attr-defined]  # alive as long as the call
     return call
 

@@ -6,9 +6,7 @@ the places in it, in bytes.
 
 from __future__ import annotations
 
-import atexit
 import ctypes
-import importlib
 import struct
 import weakref
 from collections.abc import Callable, MutableSequence
@@ -16,6 +14,7 @@ from typing import Any, NamedTuple
 
 from aseba_vm.host import Machine, Run
 from aseba_vm.wasm_calls import callee, caller
+from aseba_vm.wasm_runtime import Runtime
 
 VARIABLES = 0
 BRANCHES = 0x20000
@@ -79,41 +78,6 @@ class Code(NamedTuple):
 
     module: Any
     is_random: bool
-
-
-class Runtime:
-    """The compiler, one for the process."""
-
-    _instance: Runtime | None = None
-
-    def __init__(self) -> None:
-        """Load ``wasmtime``."""
-        self.wasmtime: Any = importlib.import_module("wasmtime")
-        self.engine = self.wasmtime.Engine()
-        self._modules: weakref.WeakSet[Any] = weakref.WeakSet()
-        self._hosts: weakref.WeakSet[WasmHost] = weakref.WeakSet()
-        atexit.register(self._close)
-
-    def compile(self, text: str) -> Any:
-        """Return a module."""
-        module = self.wasmtime.Module(self.engine, text)
-        self._modules.add(module)
-        return module
-
-    def serve(self, host: WasmHost) -> None:
-        """Note a host; it is closed before the process takes ``wasmtime`` itself apart."""
-        self._hosts.add(host)
-
-    def _close(self) -> None:
-        for made in [*self._hosts, *self._modules, self.engine]:
-            made.close()
-
-    @classmethod
-    def get(cls) -> Runtime:
-        """Return the compiler, started when first asked for."""
-        if cls._instance is None:
-            cls._instance = cls()
-        return cls._instance
 
 
 class WasmHost:

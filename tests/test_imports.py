@@ -45,6 +45,8 @@ DECLARATIONS = _names(
 RULES = {
     "aseba_vm": Rule(_names("aseba_vm"), never=NO_WALL_CLOCK),
     f"{OURS}.sim": Rule(_names("sim", "registry"), frozenset({"numpy"}), NO_WALL_CLOCK),
+    # one compiler of WebAssembly for the process: that of the machine
+    f"{OURS}.sim.kernel": Rule(_names("sim.kernel", "aseba_vm"), frozenset({"numpy"}), NO_WALL_CLOCK),
     f"{OURS}.sim.physics": Rule(_names("sim"), frozenset({"numpy", "pymunk"}), NO_WALL_CLOCK),
     f"{OURS}.device": Rule(_names("aseba_vm", "device", "registry") | DECLARATIONS, never=NO_WALL_CLOCK),
     f"{OURS}.registry": Rule(frozenset(), never=NO_WALL_CLOCK),

@@ -14,6 +14,8 @@ import numpy.typing as npt
 
 from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.frames import BOX, DISC, HEIGHT, NOWHERE_M, Frames, Values, polygon_in_frame
+from thymio_sim_ros.sim.kernel.casting import Casting
+from thymio_sim_ros.sim.kernel.memory import is_available
 from thymio_sim_ros.sim.rays import Obstacle
 
 __all__ = ["Fan", "Indices", "Raycaster", "Values"]
@@ -23,7 +25,9 @@ _SAME_M = 1e-9
 """Sizes closer than this are those of the same thing."""
 _TINY = 1e-300
 """Stands for 0 where a ray runs along a side."""
-_HULL_FRAME, _HULL_PLANES = polygon_in_frame(thymio2.hull())
+_HULL_FRAME, _planes = polygon_in_frame(thymio2.hull())
+assert _planes is not None  # it is no box
+_HULL_PLANES = _planes
 
 Indices = npt.NDArray[np.intp]
 _NOTHING: Indices = np.zeros(0, dtype=np.intp)
@@ -61,7 +65,12 @@ class Raycaster:
     Their poses are told with every cast; other things that move, when they may have moved.
     """
 
-    def __init__(self, fixed: Sequence[Obstacle], loose: Sequence[Obstacle | None] = ()) -> None:
+    def __init__(
+        self, fixed: Sequence[Obstacle], loose: Sequence[Obstacle | None] = (), *, is_compiled: bool | None = None
+    ) -> None:
+        """`is_compiled`: by kernels, or with numpy; None: by kernels where they are available. Nothing else differs."""
+        self._is_compiled = is_available() if is_compiled is None else is_compiled
+        self._kernels: dict[Fan, Casting] = {}
         self._frames = Frames([*fixed, *loose])
         self._fixed = len(fixed)
         self._loose = list(loose)
@@ -91,6 +100,8 @@ class Raycaster:
 
         Sensors are counted robot by robot; distances are in m by sensor and ray, inf where a ray meets nothing.
         """
+        if self._is_compiled:
+            return self._cast_compiled(poses, fan)
         sensors, rays = fan.directions.shape[1:]
         frames, kinds = self._with_robots(poses)
         robot, thing = self._near(poses, frames, fan)
@@ -131,6 +142,26 @@ class Raycaster:
         first = np.flatnonzero(np.diff(number, prepend=-1))
         return number[first], np.minimum.reduceat(distances[seen[order]], first, axis=0)
 
+    def _cast_compiled(self, poses: Values, fan: Fan) -> tuple[Indices, Values]:
+        kernel = self._kernels.get(fan)
+        if kernel is None:
+            things = len(self._frames.rows)
+            kernel = Casting(fan, len(poses), things, self._fixed, _HULL_FRAME, _MARGIN_M / 3)
+            self._kernels[fan] = kernel
+        found = kernel.cast(poses, self._frames.rows) if fan in self._lists else None
+        while found is None:
+            frames, kinds = self._with_robots(poses)
+            robot, thing = self._pairs(poses, frames, fan)
+            places = self._places(poses, frames)
+            self._lists[fan] = (places, robot, thing)
+            kernel.begin(frames, kinds, [*self._frames.polygons, _HULL_PLANES], robot, thing, places)
+            found = kernel.cast(poses, self._frames.rows)
+        return found
+
+    def _places(self, poses: Values, frames: Values) -> Values:
+        """Where everything is that can move."""
+        return np.concatenate((frames[self._fixed : len(frames) - len(poses), :2], poses[:, :2]))
+
     def _with_robots(self, poses: Values) -> tuple[Values, Indices]:
         """All obstacles and after them the robots as frames."""
         x, y, cos, sin, half_x, half_y = _HULL_FRAME
@@ -148,7 +179,7 @@ class Raycaster:
     def _near(self, poses: Values, frames: Values, fan: Fan) -> tuple[Indices, Indices]:
         """Pairs of robots and things, at least as high as the rays, that may be in reach: robot by robot."""
         found = self._lists.get(fan)
-        places = np.concatenate((frames[self._fixed : len(frames) - len(poses), :2], poses[:, :2]))
+        places = self._places(poses, frames)
         if found is None or np.abs(places - found[0]).max(initial=0.0) > _MARGIN_M / 3:
             found = self._lists[fan] = (places, *self._pairs(poses, frames, fan))
         return found[1:]
@@ -189,7 +220,6 @@ class Raycaster:
             else:
                 polygons = self._frames.polygons
                 planes = polygons[this] if this < len(polygons) else _HULL_PLANES
-                assert planes is not None
                 distances[rows] = _meet_polygon(*ray, planes)
         return distances
 
@@ -200,7 +230,7 @@ def _facing(
     """Those whose rays may meet the circle round the thing, in whose frame the sensors are at x, y, turned by c, s."""
     ax, ay = fan.axes[:, sensor]
     ax, ay = c * ax - s * ay, s * ax + c * ay
-    radius = np.hypot(near[:, 4], near[:, 5])
+    radius = np.sqrt(near[:, 4] * near[:, 4] + near[:, 5] * near[:, 5])
     ahead, aside = -(ax * x + ay * y), np.abs(ax * y - ay * x)
     facing = np.flatnonzero((aside * fan.cos[sensor] - ahead * fan.sin[sensor] <= radius) & (ahead >= -radius))
     return pair[facing], sensor[facing]

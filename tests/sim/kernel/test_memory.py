@@ -1,0 +1,42 @@
+"""Arrays in the memory that kernels see."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.sim.kernel import samples
+from thymio_sim_ros.sim.kernel.language import KernelError
+from thymio_sim_ros.sim.kernel.memory import KernelMemory
+
+
+def test_arrays_lie_side_by_side_and_are_zero() -> None:
+    memory = KernelMemory(1000)
+    words, floats = memory.array(3, np.uint16), memory.array((2, 3), np.float64)
+    words[:], floats[:] = 7, 1.5
+    assert memory.array(4, np.int32).tolist() == [0, 0, 0, 0]
+    assert words.tolist() == [7, 7, 7]
+    assert floats.tolist() == [[1.5] * 3] * 2
+
+
+def test_what_room_says_is_enough() -> None:
+    shapes = [(3, np.uint16), ((5, 7), np.float64), (1, np.int32), (40000, np.float64)]
+    memory = KernelMemory(sum(KernelMemory.room(*shape) for shape in shapes))
+    assert [memory.array(*shape).size for shape in shapes] == [3, 35, 1, 40000]
+
+
+def test_a_full_memory_says_so() -> None:
+    with pytest.raises(MemoryError, match=r"an array of 9000: found 65536 bytes, expected 72000"):
+        KernelMemory(1000).array(9000, np.float64)
+
+
+def test_arrays_of_elsewhere_are_refused() -> None:
+    memory = KernelMemory(1000)
+    for array in (np.zeros(1), memory.array(2, np.int32), memory.array((2, 2), np.float64)[:, 0]):
+        with pytest.raises(KernelError, match="expected float64 in one piece in this memory"):
+            memory.bind(samples, samples.early, array)
+
+
+def test_the_number_of_arguments_is_checked() -> None:
+    with pytest.raises(KernelError, match="early: found 0 arguments, expected 1"):
+        KernelMemory(1000).bind(samples, samples.early)

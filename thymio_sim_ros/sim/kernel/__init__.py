@@ -1,0 +1,1 @@
+"""Kernels: loops over many robots that are compiled where that is possible (docs/performance.md)."""

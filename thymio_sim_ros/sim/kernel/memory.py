@@ -1,0 +1,99 @@
+"""Memory that Python and compiled kernels share, and kernels bound to arrays in it.
+
+Kernels run in WebAssembly when the package wasmtime is installed (`pip install thymio-sim-ros[fast]`); nothing but time
+depends on it. A kernel that reads beyond its arrays would not be noticed here: tests run all of them in Python too.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Callable
+from functools import cache
+from types import ModuleType
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from aseba_vm.wasm_calls import caller
+from aseba_vm.wasm_runtime import Runtime
+from thymio_sim_ros.sim.kernel.language import Kernel, KernelError, parameters, translate
+
+__all__ = ["KernelMemory", "is_available"]
+
+_PAGE = 0x10000
+_ALIGNMENT = 16
+_TYPES = {"Floats": np.dtype(np.float64), "Ints": np.dtype(np.int32), "Words": np.dtype(np.uint16)}
+
+Shape = int | tuple[int, ...]
+A = TypeVar("A", bound=np.generic)
+
+
+@cache
+def is_available() -> bool:
+    """Whether kernels can be compiled here."""
+    return importlib.util.find_spec("wasmtime") is not None
+
+
+class KernelMemory:
+    """So many bytes, of which arrays are taken. Invariant: an array keeps its place as long as its memory is open."""
+
+    def __init__(self, size: int) -> None:
+        """Needs wasmtime."""
+        runtime = Runtime.get()
+        self._wasmtime = wasmtime = runtime.wasmtime
+        self._store = wasmtime.Store(runtime.engine)
+        pages = -(-size // _PAGE)
+        memory = wasmtime.Memory(self._store, wasmtime.MemoryType(wasmtime.Limits(pages, pages)))
+        self._memory = memory
+        self._instances: dict[ModuleType, Any] = {}
+        self._bytes = np.ctypeslib.as_array(memory.data_ptr(self._store), (pages * _PAGE,))
+        self._base = self._bytes.ctypes.data
+        self._used = 0
+        runtime.serve(self)
+
+    @staticmethod
+    def room(shape: Shape, kind: type[np.generic]) -> int:
+        """Bytes that an array takes at most."""
+        return int(np.prod(shape)) * np.dtype(kind).itemsize + _ALIGNMENT
+
+    def array(self, shape: Shape, kind: type[A]) -> npt.NDArray[A]:
+        """An array of zeros; MemoryError when there is no room."""
+        start = -(-self._used // _ALIGNMENT) * _ALIGNMENT
+        end = start + int(np.prod(shape)) * np.dtype(kind).itemsize
+        if end > len(self._bytes):
+            raise MemoryError(f"an array of {shape}: found {len(self._bytes) - start} bytes, expected {end - start}")
+        self._used = end
+        return self._bytes[start:end].view(kind).reshape(shape)
+
+    def bind(self, module: ModuleType, kernel: Kernel, *arguments: npt.NDArray[Any] | float) -> Callable[[], object]:
+        """What calls a kernel of a module, always with these numbers and these arrays of this memory."""
+        kinds = parameters(kernel)[0]
+        if len(kinds) != len(arguments):
+            raise KernelError(f"{kernel.__name__}: found {len(arguments)} arguments, expected {len(kinds)}")
+        values = [
+            self._place(argument, kind) if isinstance(argument, np.ndarray) else argument
+            for argument, kind in zip(arguments, kinds.values(), strict=True)
+        ]
+        instance = self._instances.get(module)
+        if instance is None:
+            instance = self._wasmtime.Instance(self._store, _compiled(module), [self._memory]).exports(self._store)
+            self._instances[module] = instance
+        return caller(self._wasmtime, self._store, instance[kernel.__name__], values)
+
+    def close(self) -> None:
+        """Free the memory; its arrays and bound kernels must not be used any more."""
+        self._store.close()
+
+    def _place(self, array: npt.NDArray[Any], kind: str) -> int:
+        place = array.ctypes.data - self._base
+        if array.dtype != _TYPES[kind] or not array.flags.c_contiguous or not 0 <= place <= len(self._bytes):
+            raise KernelError(f"an array of {array.dtype}, expected {_TYPES[kind]} in one piece in this memory")
+        return place
+
+
+@cache
+def _compiled(module: ModuleType) -> Any:
+    """All kernels of a module, compiled once."""
+    kernels = [module.__dict__[name] for name in module.KERNELS]
+    return Runtime.get().compile(translate(kernels))
