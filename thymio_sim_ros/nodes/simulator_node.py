@@ -19,7 +19,7 @@ from rclpy.parameter import Parameter
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.nodes import params
+from thymio_sim_ros.nodes import dds_profile, params
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
@@ -303,4 +303,5 @@ class Simulator:
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `simulator`."""
-    return run_main(lambda context: greeted([Simulator(context)]), args)
+    with dds_profile.alone():
+        return run_main(lambda context: greeted([Simulator(context)]), args)
