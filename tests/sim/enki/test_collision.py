@@ -11,8 +11,8 @@ from tests.sim.enki.scenes import Scene, mean_rows, play
 SEEDS = range(6)
 TOLERANCE_M = 0.003
 TOLERANCE_RAD = 0.005
-PART_OF_WAY = 0.1
-"""The reference has viscous friction on top, which we have not: a thing that is kicked goes a little less far there."""
+PART_OF_WAY = 0.04
+"""A kick, and with it the way after it, hangs on the place of contact: the reference finds one, we find two."""
 
 
 @pytest.mark.enki("collision")
@@ -28,7 +28,7 @@ def test_robots_rest_where_measured(scene: Scene) -> None:
 
 @pytest.mark.enki("collision", pushed=True)
 def test_things_rest_where_measured(scene: Scene) -> None:
-    """Within 3 mm, a tenth of the way that they went, and three standard errors."""
+    """Within 3 mm, a twenty-fifth of the way that they went, and three standard errors."""
     found = mean_rows([play(scene, seed=seed) for seed in SEEDS])[-1]
     first, expected, std = scene["mean"][0], scene["mean"][-1], scene["std"][-1]
     spread = math.sqrt(1 / scene["runs"] + 1 / len(SEEDS))

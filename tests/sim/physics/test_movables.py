@@ -158,3 +158,24 @@ def test_reset_puts_things_back() -> None:
     run(world, 2.0)
     world.reset()
     assert place_of(world, "crate") == Pose(0.15, 0.0, 0.0)
+
+
+def test_a_thing_that_slides_loses_a_hundredth_of_its_speed_each_second_beside_its_friction() -> None:
+    friction, drag = 0.0025, 0.01
+    world = quiet(crate(0.16, friction=friction, restitution=0.81))
+    send(world, MotorTargets(500, 500))
+    run(world, 0.5)
+    send(world, MotorTargets(0, 0))
+    run(world, 0.1)
+    first = place_of(world, "crate").x_m
+    run(world, 1.0)
+    second = place_of(world, "crate").x_m
+    speed = second - first  # in the middle of that second
+    run(world, 4.0)
+    third = place_of(world, "crate").x_m
+    run(world, 1.0)
+    slower = place_of(world, "crate").x_m - third  # five seconds later
+    brake = friction * 9.81
+    expected = (speed + brake / drag) * math.exp(-5 * drag) - brake / drag
+    assert slower == pytest.approx(expected, abs=1e-5)
+    assert slower < speed - 5 * brake - 0.004

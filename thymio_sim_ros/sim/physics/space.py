@@ -5,6 +5,7 @@ While nothing is in anybody's reach and nothing moves by itself, pymunk rests an
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 
@@ -29,6 +30,8 @@ _SLOP_M = 0.0002
 """Overlap that is left between touching bodies."""
 _ITERATIONS = 40
 """Of the solver: with fewer, mirrored worlds do not push mirrored."""
+_DRAG_PER_S = 0.01
+"""Of its speed a thing loses this part each second, beside its friction (playground-formats.md section 1.3)."""
 _DROWSY_S = 0.1
 """What has been at rest for so long costs nothing until it is touched."""
 
@@ -40,6 +43,7 @@ class Physics:
         self._space = pymunk.Space()
         self._space.collision_slop = _SLOP_M
         self._space.iterations = _ITERATIONS
+        self._space.damping = math.exp(-_DRAG_PER_S)
         self._space.idle_speed_threshold = AT_REST_M_S
         self._space.sleep_time_threshold = _DROWSY_S
         solids = tuple(solids)
