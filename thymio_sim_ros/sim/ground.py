@@ -14,17 +14,20 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from thymio_sim_ros.sim.kernel.footprints import TAPS as _TAPS
+from thymio_sim_ros.sim.kernel.memory import is_available
+from thymio_sim_ros.sim.kernel.sampling import Sampling
 from thymio_sim_ros.sim.picture import Area, Picture
 from thymio_sim_ros.sim.primitives import Color, Floor, Mark
 
 __all__ = ["Ground", "GroundSample"]
 
-_TAPS = 9
 _TAP_STEP_M = 0.0025
 _TAP_SIGMA_M = 0.004
 _CELLS_PER_PIXEL = 2
 """Blurred values per pixel: the samples' step is a multiple of half a millimetre."""
-_TILE_CELLS = 64
+_TILE_SHIFT = 6
+_TILE_CELLS = 1 << _TILE_SHIFT
 _MAX_TILES = 1024
 """Blurred tiles that are kept at once: at most 64 MB."""
 
@@ -50,7 +53,10 @@ NO_FLOOR = GroundSample(0.0, 0.0)
 class Ground:
     """Reflectance and color of the ground. Invariant: only `draw_segment` and `restore` change it."""
 
-    def __init__(self, floors: Sequence[Floor], paints: Sequence[Mark]) -> None:
+    def __init__(self, floors: Sequence[Floor], paints: Sequence[Mark], *, is_compiled: bool | None = None) -> None:
+        """`is_compiled`: many places by a kernel, or with numpy; None: by a kernel where that is available."""
+        self._is_compiled = is_available() if is_compiled is None else is_compiled
+        self._sampling: Sampling | None = None
         self._picture = Picture(floors, paints)
         self._cell_m = self._picture.pixel_m / _CELLS_PER_PIXEL
         steps = (np.arange(_TAPS) - _TAPS // 2) * _TAP_STEP_M
@@ -85,6 +91,10 @@ class Ground:
 
     def sample_all(self, x_m: _Values, y_m: _Values) -> tuple[_Values, _Values]:
         """`sample` for many places at once: reflectances and floors, the same to the last bit."""
+        if self._is_compiled:
+            found = self._sampled(x_m, y_m)
+            if found is not None:
+                return found
         cells_x = np.floor(x_m / self._cell_m).astype(np.intp)
         cells_y = np.floor(y_m / self._cell_m).astype(np.intp)
         colors = self._plain_colors(cells_x // _TILE_CELLS, cells_y // _TILE_CELLS)
@@ -121,6 +131,23 @@ class Ground:
         if self._picture.restore():
             self._tiles.clear()
             self._plain[:] = _UNKNOWN
+
+    def _sampled(self, x_m: _Values, y_m: _Values) -> tuple[_Values, _Values] | None:
+        """By the kernel; None when there are tiles that are not known."""
+        if self._sampling is None or self._sampling.places != len(x_m):
+            picture = self._picture
+            steps = (np.arange(_TAPS) - _TAPS // 2) * _TAP_STEP_M
+            self._sampling = Sampling(
+                len(x_m),
+                picture.pixels,
+                self._plain,
+                picture.greys,
+                (self._cell_m, picture.pixel_m, *steps.tolist(), *self._weights),
+                (_TILE_SHIFT, *self._plain.shape, *self._corner, *picture.pixels.shape, *picture.origin),
+            )
+            picture.move_to(self._sampling.pixels, self._sampling.greys)
+            self._plain = self._sampling.tiles
+        return self._sampling.sample(x_m, y_m)
 
     def _tiles_that_see(self, area: Area) -> list[tuple[int, int]]:
         """Tiles with a footprint that reaches into an area of the picture."""

@@ -100,8 +100,12 @@ class Picture:
         """Take away all that was drawn; whether there was anything."""
         if self._before is None:
             return False
-        self.pixels, self._before = self._before, None
+        self.pixels[:], self._before = self._before, None
         return True
+
+    def move_to(self, pixels: npt.NDArray[np.uint16], greys: npt.NDArray[np.float64]) -> None:
+        """Live in these arrays, which hold the same, from now on."""
+        self.pixels, self.greys = pixels, greys
 
     def padded(self, top: int, bottom: int, left: int, right: int) -> npt.NDArray[np.uint16]:
         """Rows `top`…`bottom` and columns `left`…`right` (not included), without floor beyond the picture."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
 
+from tests.sim.kernel.engines import run_by_python
 from tests.sim.test_raycaster import FAN, scatter, things
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
@@ -19,11 +19,6 @@ from thymio_sim_ros.sim.rays import Obstacle
 
 def rows(poses: Sequence[Pose]) -> Any:
     return np.array([(pose.x_m, pose.y_m, pose.yaw_rad) for pose in poses]).reshape(-1, 3)
-
-
-def run_by_python(self: KernelMemory, module: ModuleType, kernel: Any, *arguments: Any) -> Any:
-    flat = [argument.reshape(-1) if isinstance(argument, np.ndarray) else argument for argument in arguments]
-    return lambda: kernel(*flat)
 
 
 @pytest.fixture(params=["compiled", "by Python"])

@@ -1,0 +1,61 @@
+"""The kernel of footprints gives the bits of numpy, compiled and run by Python."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pytest
+
+from tests.sim.kernel.engines import run_by_python
+from thymio_sim_ros.sim.ground import Ground
+from thymio_sim_ros.sim.kernel.memory import KernelMemory
+from thymio_sim_ros.sim.primitives import Color, Floor, Paint
+
+SIDE_M = 0.6
+
+
+def area(dice: random.Random, size_m: float) -> tuple[tuple[float, float], ...]:
+    left, bottom = dice.uniform(-0.1, SIDE_M), dice.uniform(-0.1, SIDE_M)
+    right, top = left + dice.uniform(0.002, size_m), bottom + dice.uniform(0.002, size_m)
+    return ((left, bottom), (right, bottom), (right, top), (left, top))
+
+
+def color(dice: random.Random) -> Color:
+    return (dice.random(), dice.random(), dice.random())
+
+
+def grounds(dice: random.Random) -> list[Ground]:
+    """The same ground with numpy and with kernels: floors with gaps between them, painted."""
+    floors = [Floor(f"floor {number}", area(dice, SIDE_M), color(dice)) for number in range(3)]
+    paints = [Paint(f"paint {number}", area(dice, 0.1), color(dice)) for number in range(60)]
+    return [Ground(floors, paints, is_compiled=is_compiled) for is_compiled in (False, True)]
+
+
+@pytest.fixture(params=["compiled", "by Python"])
+def kernels(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    if request.param != "compiled":
+        monkeypatch.setattr(KernelMemory, "bind", run_by_python)
+    return str(request.param)
+
+
+@pytest.mark.usefixtures("kernels")
+@pytest.mark.parametrize("seed", range(8))
+def test_random_grounds_are_seen_bit_for_bit_while_they_are_drawn_on(seed: int) -> None:
+    dice = random.Random(seed)
+    both = grounds(dice)
+    seen = set[float]()
+    for step in range(8):
+        count = 40 if step % 3 else 60
+        places = np.array([(dice.uniform(-0.05, 0.65), dice.uniform(-0.05, 0.65)) for _ in range(count)]).T
+        (greys, floors), (same_greys, same_floors) = (ground.sample_all(*places) for ground in both)
+        assert same_greys.tolist() == greys.tolist()
+        assert same_floors.tolist() == floors.tolist()
+        seen.update(greys.tolist())
+        line = [dice.uniform(0.0, SIDE_M) for _ in range(4)]
+        pen = None if step == 5 else color(dice)
+        for ground in both:
+            ground.draw_segment(*line, 0.02, pen)
+            if step == 6:
+                ground.restore()
+    assert len(seen) > 40
