@@ -9,7 +9,6 @@ from collections import Counter
 from collections.abc import Iterator
 
 import pytest
-from websockets.asyncio.server import ServerConnection
 
 from tests.bridge.peers import CHANNEL, DEADLINE_S, Bridge, Client, StalledClient, bridge
 from thymio_sim_ros.bridge import ServerSettings, wire
@@ -17,6 +16,7 @@ from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.bridge.client_state import ClientState
 from thymio_sim_ros.bridge.outlet import Outlet
+from thymio_sim_ros.bridge.transport import SharedConnection
 
 FRAMES = 10_000
 VISITS = 500
@@ -107,13 +107,13 @@ async def visit(server: Bridge, number: int) -> None:
 def census() -> Counter[type]:
     """Living objects of what a connection costs."""
     gc.collect()
-    kinds = (ClientState, Outlet, ServerConnection, asyncio.Task)
+    kinds = (ClientState, Outlet, SharedConnection, asyncio.Task)
     return Counter(type(thing) for thing in gc.get_objects() if type(thing) in kinds)
 
 
-def server_connections(port: int) -> list[ServerConnection]:
+def server_connections(port: int) -> list[SharedConnection]:
     """Connections of the server on this port; those of earlier tests may not have been collected yet."""
-    living = [thing for thing in gc.get_objects() if type(thing) is ServerConnection]
+    living = [thing for thing in gc.get_objects() if type(thing) is SharedConnection]
     return [connection for connection in living if connection.local_address[1] == port]
 
 

@@ -153,6 +153,23 @@ def test_a_client_that_vanishes_is_forgotten() -> None:
     asyncio.run(scenario())
 
 
+def test_messages_for_a_client_that_has_just_vanished_are_dropped_without_a_word(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def scenario() -> None:
+        async with bridge() as server:
+            client = StalledClient(server.port)
+            await client.connect()
+            await client.say(ms.Subscribe((ms.Subscription(1, CHANNEL.id),)))
+            await server.sink.until(lambda events: len(events) == 1)
+            client.abort()
+            server.publish(*[KILOBYTE] * 100)
+            await server.until(lambda: server.server.client_count == 0)
+
+    asyncio.run(scenario())
+    assert caplog.messages == []
+
+
 def test_a_healthy_client_beside_a_stalled_one_loses_nothing() -> None:
     async def scenario() -> None:
         settings = ServerSettings(buffer_limit=LIMIT)

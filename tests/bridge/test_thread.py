@@ -16,6 +16,7 @@ from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerInfo, ServerThread, wire
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.bridge.thread import listen
+from thymio_sim_ros.bridge.vocabulary import StatusLevel
 
 CHANNEL = ms.Channel(1, "/t", "cdr", "std_msgs/msg/String", "string data", "ros2msg")
 DEADLINE_S = 20.0
@@ -117,6 +118,51 @@ def test_commands_of_another_thread_arrive_in_order() -> None:
             if isinstance(message, ms.MessageData):
                 times.append(message.time_ns)
         assert times == list(range(100))
+    server.close()
+
+
+def test_data_overtakes_no_command_and_no_command_data() -> None:
+    server, sink = start()
+    server.post(ev.AddChannels((CHANNEL,)))
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:  # type: ignore[arg-type]  # plain strings
+        client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+        assert sink.subscribed.wait(DEADLINE_S)
+        for number in range(200):
+            for _ in range(number % 3):
+                server.post(ev.Tell(1, ms.Status(StatusLevel.INFO, str(number))))
+            server.post(ev.Data(1, number, b"x"))
+        told: list[str] = []
+        while told.count("data 199") < 1:
+            message = wire.decode_server(client.recv(timeout=DEADLINE_S))
+            if isinstance(message, ms.MessageData):
+                told.append(f"data {message.time_ns}")
+            elif isinstance(message, ms.Status):
+                told.append(message.message)
+        assert told == [word for n in range(200) for word in [str(n)] * (n % 3) + [f"data {n}"]]
+    server.close()
+
+
+def test_data_does_not_wait_for_a_busy_event_loop() -> None:
+    class Busy(Sink):
+        def __init__(self) -> None:
+            super().__init__()
+            self.may_go_on = threading.Event()
+
+        def post(self, event: ev.Event) -> None:
+            super().post(event)
+            assert self.may_go_on.wait(DEADLINE_S)
+
+    sink = Busy()
+    server = ServerThread(ServerInfo("test", ()), sink, port=0)
+    server.post(ev.AddChannels((CHANNEL,)))
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:  # type: ignore[arg-type]  # plain strings
+        client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+        assert sink.subscribed.wait(DEADLINE_S)
+        server.post(ev.Data(1, 7, b"x"))
+        while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
+            pass
+        assert message.time_ns == 7
+        sink.may_go_on.set()
     server.close()
 
 

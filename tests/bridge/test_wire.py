@@ -214,4 +214,4 @@ def test_text_that_utf8_cannot_carry_is_escaped() -> None:
 
 
 def test_the_hot_path_gives_the_frame_of_the_value() -> None:
-    assert wire.message_data(7, 9, b"p") == wire.encode_server(ms.MessageData(7, 9, b"p"))
+    assert wire.data_head(7, 9) + b"p" == wire.encode_server(ms.MessageData(7, 9, b"p"))

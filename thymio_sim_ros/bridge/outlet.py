@@ -7,25 +7,30 @@ control frames pile up to `_CONTROL_FACTOR` limits is disconnected.
 
 from __future__ import annotations
 
-from websockets.asyncio.server import ServerConnection, broadcast
+from websockets.protocol import State
 
+from thymio_sim_ros.bridge.framing import framed
 from thymio_sim_ros.bridge.messages import Status
+from thymio_sim_ros.bridge.transport import SharedConnection
 from thymio_sim_ros.bridge.vocabulary import StatusLevel
 from thymio_sim_ros.bridge.wire import encode_server
 
 _CONTROL_FACTOR = 8
 _WARNING_PERIOD_S = 30.0
-_WARNING = encode_server(
-    # The first words are the vendor's: its clients show a tip when they read them.
-    Status(StatusLevel.WARNING, "Send buffer limit reached: this connection is slow, only newest messages are sent")
+_WARNING = framed(
+    encode_server(
+        # The first words are the vendor's: its clients show a tip when they read them.
+        Status(StatusLevel.WARNING, "Send buffer limit reached: this connection is slow, only newest messages are sent")
+    )
 )
 
 
 class Outlet:
-    """Frames for one connection."""
+    """Frames for one connection; called by one thread at a time, whichever it is."""
 
-    def __init__(self, connection: ServerConnection, limit: int) -> None:
-        self._connection = connection
+    def __init__(self, connection: SharedConnection, limit: int) -> None:
+        self._protocol = connection.protocol
+        self._transport = connection.transport
         self._limit = limit
         self._newest: dict[int, bytes] = {}
         self._next_warning_s = float("-inf")
@@ -37,28 +42,31 @@ class Outlet:
         """Whether data waits for the socket."""
         return bool(self._newest)
 
-    def control(self, frame: str | bytes) -> None:
+    def control(self, frame: bytes) -> None:
         """Send a frame that must not be lost."""
-        broadcast((self._connection,), frame)
-        if self._buffered() > _CONTROL_FACTOR * self._limit:
-            self._connection.transport.abort()
+        if self._is_open():
+            self._transport.write(frame)
+        if self._transport.get_write_buffer_size() > _CONTROL_FACTOR * self._limit:
+            self._transport.abort()
 
-    def data(self, subscription_id: int, frame: bytes, now_s: float) -> None:
-        """Send a frame, or keep it as the newest of its subscription."""
-        if not self._newest and self._buffered() <= self._limit:
-            broadcast((self._connection,), frame)
-            return
+    def data(self, subscription_id: int, frame: bytes, now_s: float) -> bool:
+        """Send a frame, or keep it as the newest of its subscription; returns whether it is sent."""
+        if not self._newest and self._offer(frame):
+            return True
         self.dropped += subscription_id in self._newest
         self._newest[subscription_id] = frame
         if now_s >= self._next_warning_s:
             self._next_warning_s = now_s + _WARNING_PERIOD_S
             self.control(_WARNING)
+        return False
 
     def flush(self) -> None:
         """Send kept frames as far as there is room now."""
-        while self._newest and self._buffered() <= self._limit:
+        while self._newest:
             subscription_id = next(iter(self._newest))
-            broadcast((self._connection,), self._newest.pop(subscription_id))
+            if not self._offer(self._newest[subscription_id]):
+                return
+            del self._newest[subscription_id]
 
     def forget(self, subscription_id: int) -> None:
         """Drop what is kept for an ended subscription."""
@@ -66,7 +74,12 @@ class Outlet:
 
     def abort(self) -> None:
         """End the connection without waiting for the client."""
-        self._connection.transport.abort()
+        self._transport.abort()
 
-    def _buffered(self) -> int:
-        return self._connection.transport.get_write_buffer_size()
+    def _offer(self, frame: bytes) -> bool:
+        """Send unless too much waits; returns whether it is done with."""
+        return not self._is_open() or self._transport.offer(frame, self._limit)
+
+    def _is_open(self) -> bool:
+        """Nothing may follow a frame that closes."""
+        return self._protocol.state is State.OPEN

@@ -1,7 +1,9 @@
 """The asyncio side: sockets around the switchboard, on the current API of `websockets`.
 
-Everything here runs in one event loop. Nothing waits for a client: each has its `Outlet`; reading pauses for a client
-while the owner of the data is behind, which slows that client only.
+Everything here runs in one event loop, but for data, which may be published from another thread (`publish_now`).
+Switchboard and outlets therefore belong to whoever has the turn: the loop while it handles something, else the thread
+that publishes. Nothing waits for a client: each has its `Outlet`; reading pauses for a client while the owner of the
+data is behind, which slows that client only.
 """
 
 from __future__ import annotations
@@ -10,6 +12,8 @@ import asyncio
 import itertools
 import logging
 import ssl
+import threading
+import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from http import HTTPStatus
@@ -25,11 +29,13 @@ from websockets.typing import Subprotocol
 from thymio_sim_ros.bridge.channels import Letter, Switchboard
 from thymio_sim_ros.bridge.errors import FrameError
 from thymio_sim_ros.bridge.events import Command, Data, Event
-from thymio_sim_ros.bridge.messages import ServerMessage, Status, Time, Unsubscribe
+from thymio_sim_ros.bridge.framing import binary_head, framed
+from thymio_sim_ros.bridge.messages import Status, Time, Unsubscribe
 from thymio_sim_ros.bridge.origins import is_allowed
 from thymio_sim_ros.bridge.outlet import Outlet
+from thymio_sim_ros.bridge.transport import SharedConnection
 from thymio_sim_ros.bridge.vocabulary import SUBPROTOCOLS, StatusLevel
-from thymio_sim_ros.bridge.wire import decode_client, encode_server, message_data
+from thymio_sim_ros.bridge.wire import DATA_HEAD_SIZE, data_head, decode_client, encode_server
 
 __all__ = ["BridgeServer", "EventSink", "ServerSettings"]
 
@@ -67,7 +73,7 @@ class ServerSettings:
 
 
 class BridgeServer:
-    """A Foxglove server on its listening sockets. All methods belong to the event loop's thread."""
+    """A Foxglove server on its listening sockets. Methods belong to the event loop's thread, but for `publish_now`."""
 
     def __init__(self, board: Switchboard, sink: EventSink, settings: ServerSettings | None = None) -> None:
         self._board = board
@@ -76,11 +82,15 @@ class BridgeServer:
         self._log = logging.getLogger(__name__)
         self._outlets: dict[int, Outlet] = {}
         self._client_ids = itertools.count(1)
-        self._flushing: asyncio.TimerHandle | None = None
+        self._flush_is_due = False
+        self._loop: asyncio.AbstractEventLoop
         self._servers: list[Server] = []
+        self._turn = threading.Lock()
+        """Held by the thread that works on board and outlets."""
 
     async def start(self, listeners: Iterable[socket]) -> None:
         """Serve on bound sockets, which become the server's own."""
+        self._loop = asyncio.get_running_loop()
         settings = self._settings
         # Refused handshakes are answered with their reason; websockets would log each with a traceback.
         log = logging.getLogger(f"{__name__}.websockets")
@@ -90,6 +100,7 @@ class BridgeServer:
                 self._serve_client,
                 sock=listener,
                 ssl=settings.tls,
+                create_connection=SharedConnection,
                 select_subprotocol=_select_subprotocol,
                 process_request=self._check_origin,
                 compression=None,
@@ -104,8 +115,6 @@ class BridgeServer:
 
     async def close(self) -> None:
         """Say goodbye to all clients; those that do not listen are cut off after `_CLOSE_S`."""
-        if self._flushing is not None:
-            self._flushing.cancel()
         for server in self._servers:
             server.close()
         closed = asyncio.gather(*(server.wait_closed() for server in self._servers))
@@ -120,58 +129,73 @@ class BridgeServer:
         return len(self._outlets)
 
     def apply(self, commands: Iterable[Command]) -> None:
-        """Carry out commands in order."""
-        for command in commands:
-            if isinstance(command, Data):
-                self._publish(command)
-            else:
-                self._deliver(self._board.apply(command))
+        """Carry out commands in order; they are taken while it is the loop's turn."""
+        with self._turn:
+            for command in commands:
+                if isinstance(command, Data):
+                    self._publish(command)
+                else:
+                    self._deliver(self._board.apply(command))
+
+    def publish_now(self, data: Data) -> bool:
+        """Send data from the calling thread, unless the loop is at work; returns whether it was done."""
+        if not self._turn.acquire(blocking=False):
+            return False
+        try:
+            self._publish(data)
+        finally:
+            self._turn.release()
+        return True
 
     def _publish(self, data: Data) -> None:
         """Hot path: one frame per distinct subscription id."""
         self._board.keep(data)
-        now_s = asyncio.get_running_loop().time()
+        routes = self._board.routes(data.channel_id)
+        if not routes:
+            return
+        now_s = time.monotonic()
+        head = binary_head(DATA_HEAD_SIZE + len(data.payload))
         frames: dict[int, bytes] = {}
-        for client, subscription_id in self._board.routes(data.channel_id):
+        for client, subscription_id in routes:
             frame = frames.get(subscription_id)
             if frame is None:
-                frame = frames[subscription_id] = message_data(subscription_id, data.time_ns, data.payload)
-            outlet = self._outlets[client]
-            outlet.data(subscription_id, frame, now_s)
-            if outlet.is_behind:
-                self._flush_soon()
+                frame = frames[subscription_id] = head + data_head(subscription_id, data.time_ns) + data.payload
+            if not self._outlets[client].data(subscription_id, frame, now_s):
+                self._see_to_flushing()
+
+    def _see_to_flushing(self) -> None:
+        if not self._flush_is_due:
+            self._flush_is_due = True
+            self._loop.call_soon_threadsafe(self._flush_soon)
 
     def _deliver(self, letters: Sequence[Letter]) -> None:
         for letter in letters:
-            frame = encode_server(letter.message)
+            frame = framed(encode_server(letter.message))
             for client in letter.clients:
-                self._send(client, letter.message, frame)
-
-    def _send(self, client: int, message: ServerMessage, frame: str | bytes) -> None:
-        outlet = self._outlets[client]
-        if isinstance(message, Time) and isinstance(frame, bytes):
-            outlet.data(_TIME_SLOT, frame, asyncio.get_running_loop().time())
-            if outlet.is_behind:
-                self._flush_soon()
-        else:
-            outlet.control(frame)
+                if not isinstance(letter.message, Time):
+                    self._outlets[client].control(frame)
+                elif not self._outlets[client].data(_TIME_SLOT, frame, time.monotonic()):
+                    self._see_to_flushing()
 
     def _flush_soon(self) -> None:
-        if self._flushing is None:
-            self._flushing = asyncio.get_running_loop().call_later(_FLUSH_PERIOD_S, self._flush)
+        self._loop.call_later(_FLUSH_PERIOD_S, self._flush)
 
     def _flush(self) -> None:
-        self._flushing = None
-        for outlet in self._outlets.values():
-            outlet.flush()
-        if any(outlet.is_behind for outlet in self._outlets.values()):
+        with self._turn:
+            for outlet in self._outlets.values():
+                outlet.flush()
+            self._flush_is_due = any(outlet.is_behind for outlet in self._outlets.values())
+        if self._flush_is_due:
             self._flush_soon()
 
     async def _serve_client(self, connection: ServerConnection) -> None:
+        assert isinstance(connection, SharedConnection)
         client = next(self._client_ids)
-        outlet = self._outlets[client] = Outlet(connection, self._settings.buffer_limit)
-        for message in self._board.join(client):
-            outlet.control(encode_server(message))
+        outlet = Outlet(connection, self._settings.buffer_limit)
+        with self._turn:
+            self._outlets[client] = outlet
+            for message in self._board.join(client):
+                outlet.control(framed(encode_server(message)))
         try:
             async for frame in connection:
                 self._receive(client, frame)
@@ -180,22 +204,28 @@ class BridgeServer:
         except ConnectionClosed:
             pass  # a lost connection ends like a closed one
         finally:
-            del self._outlets[client]
-            for event in self._board.leave(client):
-                self._sink.post(event)
+            with self._turn:
+                del self._outlets[client]
+                events = self._board.leave(client)
+            self._tell(events)
 
     def _receive(self, client: int, frame: str | bytes) -> None:
         try:
             message = decode_client(frame)
         except FrameError as error:
-            self._outlets[client].control(encode_server(Status(StatusLevel.ERROR, str(error))))
+            with self._turn:
+                self._outlets[client].control(framed(encode_server(Status(StatusLevel.ERROR, str(error)))))
             return
-        outcome = self._board.receive(client, message)
-        if isinstance(message, Unsubscribe):
-            for subscription_id in message.subscription_ids:
-                self._outlets[client].forget(subscription_id)
-        self._deliver(outcome.letters)
-        for event in outcome.events:
+        with self._turn:
+            outcome = self._board.receive(client, message)
+            if isinstance(message, Unsubscribe):
+                for subscription_id in message.subscription_ids:
+                    self._outlets[client].forget(subscription_id)
+            self._deliver(outcome.letters)
+        self._tell(outcome.events)
+
+    def _tell(self, events: Iterable[Event]) -> None:
+        for event in events:
             self._sink.post(event)
 
     def _check_origin(self, connection: ServerConnection, request: Request) -> Response | None:

@@ -1,4 +1,4 @@
-"""The event loop's thread: commands come in from any thread, in batches with one wake-up each."""
+"""The event loop's thread: data is sent by who has it, other commands come in in batches with one wake-up each."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import errno
 import socket
 import threading
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from thymio_sim_ros.bridge.channels import Switchboard
 from thymio_sim_ros.bridge.events import Command, Data
@@ -114,9 +114,12 @@ class ServerThread:
         return self._server.client_count
 
     def post(self, command: Command) -> None:
-        """Hand a command to the loop; order is kept. Any one thread at a time."""
-        if isinstance(command, Data) and len(self._waiting) >= _MAX_WAITING:
-            return
+        """Send data, hand anything else to the loop; order is kept. Any one thread at a time."""
+        if isinstance(command, Data):
+            if not self._waiting and not self._is_closed and self._server.publish_now(command):
+                return
+            if len(self._waiting) >= _MAX_WAITING:
+                return
         self._waiting.append(command)
         if not self._wake_is_due and not self._is_closed:
             self._wake_is_due = True
@@ -132,10 +135,12 @@ class ServerThread:
 
     def _drain(self) -> None:
         self._wake_is_due = False
-        batch = []
+        self._server.apply(self._taken())
+
+    def _taken(self) -> Iterator[Command]:
+        """What waits, taken one by one: nobody may overtake a command that is neither here nor carried out."""
         while self._waiting:
-            batch.append(self._waiting.popleft())
-        self._server.apply(batch)
+            yield self._waiting.popleft()
 
     def _run(self) -> None:
         try:

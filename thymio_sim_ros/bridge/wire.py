@@ -27,7 +27,7 @@ from thymio_sim_ros.bridge.messages import (
 )
 from thymio_sim_ros.bridge.vocabulary import ASSET_OPCODE, BinaryOpcode, ClientBinaryOpcode
 
-__all__ = ["decode_client", "decode_server", "encode_client", "encode_server", "message_data"]
+__all__ = ["DATA_HEAD_SIZE", "data_head", "decode_client", "decode_server", "encode_client", "encode_server"]
 
 Frame = str | bytes
 
@@ -40,9 +40,13 @@ _ASSET = struct.Struct("<BIBI")
 _MESSAGE_DATA = int(BinaryOpcode.MESSAGE_DATA)
 
 
-def message_data(subscription_id: int, time_ns: int, payload: bytes) -> bytes:
-    """The frame of a `MessageData`, without the detour over the value: this is the hot path."""
-    return _DATA.pack(_MESSAGE_DATA, subscription_id, time_ns) + payload
+DATA_HEAD_SIZE = _DATA.size
+"""Bytes of a `MessageData` before its payload."""
+
+
+def data_head(subscription_id: int, time_ns: int) -> bytes:
+    """The frame of a `MessageData` up to its payload, without the detour over the value: this is the hot path."""
+    return _DATA.pack(_MESSAGE_DATA, subscription_id, time_ns)
 
 
 def decode_client(frame: Frame) -> ClientMessage:
@@ -171,7 +175,7 @@ _SERVER_BINARY: dict[int, Callable[[memoryview], Any]] = {
     ASSET_OPCODE: _unpack_asset,
 }
 _PACKERS: dict[type, Callable[[Any], bytes]] = {
-    MessageData: lambda data: message_data(data.subscription_id, data.time_ns, data.payload),
+    MessageData: lambda data: data_head(data.subscription_id, data.time_ns) + data.payload,
     Time: lambda time: _TIME.pack(BinaryOpcode.TIME, time.time_ns),
     ServiceResponse: lambda call: _pack_call(BinaryOpcode.SERVICE_CALL_RESPONSE, call),
     AssetResponse: _pack_asset,

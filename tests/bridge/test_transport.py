@@ -1,0 +1,167 @@
+"""Several threads write to one connection."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import struct
+import threading
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+
+import pytest
+
+from tests.bridge.peers import DEADLINE_S
+from thymio_sim_ros.bridge.transport import SharedTransport
+
+CHUNK = struct.Struct("<II992x")
+"""Who writes, its count, and padding."""
+
+
+class Ends:
+    """A shared transport and the plain socket at the other end."""
+
+    def __init__(self, transport: SharedTransport, peer: socket.socket) -> None:
+        self.transport = transport
+        self.peer = peer
+
+    def fill(self) -> int:
+        """Write until something waits; how many bytes were written."""
+        written = 0
+        while not self.transport.get_write_buffer_size():
+            self.transport.write(bytes(1000))
+            written += 1000
+        return written
+
+    async def read(self, size: int) -> bytes:
+        """So many bytes, or less at the end."""
+        data = bytearray()
+        async with asyncio.timeout(DEADLINE_S):
+            while len(data) < size:
+                piece = await asyncio.get_running_loop().sock_recv(self.peer, 1 << 16)
+                if not piece:
+                    break
+                data += piece
+        return bytes(data)
+
+
+class Protocol(asyncio.Protocol):
+    """Releases the transport as a connection does."""
+
+    def __init__(self) -> None:
+        self.transport: SharedTransport | None = None
+        self.lost = asyncio.Event()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        assert self.transport is not None
+        self.transport.release()
+        self.lost.set()
+
+
+@asynccontextmanager
+async def ends() -> AsyncIterator[Ends]:
+    """Two ends of a connection whose kernel buffers are small."""
+    loop = asyncio.get_running_loop()
+    near, far = socket.socketpair()
+    for end in (near, far):
+        end.setblocking(False)
+        end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)
+    inner, protocol = await loop.connect_accepted_socket(Protocol, near)
+    protocol.transport = SharedTransport(inner, loop)
+    try:
+        yield Ends(protocol.transport, far)
+    finally:
+        protocol.transport.abort()
+        await protocol.lost.wait()
+        far.close()
+
+
+def test_messages_of_two_threads_arrive_whole_and_in_order() -> None:
+    count = 2000
+
+    async def scenario() -> None:
+        async with ends() as pair:
+
+            def write(writer: int) -> None:
+                for number in range(count):
+                    pair.transport.write(CHUNK.pack(writer, number))
+
+            other = threading.Thread(target=write, args=(1,))
+            other.start()
+            reading = asyncio.create_task(pair.read(2 * count * CHUNK.size))
+            for number in range(count):
+                pair.transport.write(CHUNK.pack(0, number))
+                if number % 10 == 0:
+                    await asyncio.sleep(0)
+            data = await reading
+            other.join()
+            chunks = list(CHUNK.iter_unpack(data))
+            for writer in (0, 1):
+                assert [number for who, number in chunks if who == writer] == list(range(count))
+
+    asyncio.run(scenario())
+
+
+def test_what_the_kernel_does_not_take_waits_and_counts() -> None:
+    async def scenario() -> None:
+        async with ends() as pair:
+            written = pair.fill()
+            waiting = pair.transport.get_write_buffer_size()
+            assert 0 < waiting <= 1000
+            pair.transport.write(bytes(5000))
+            assert pair.transport.get_write_buffer_size() == waiting + 5000
+            assert len(await pair.read(written + 5000)) == written + 5000
+            assert pair.transport.get_write_buffer_size() == 0
+
+    asyncio.run(scenario())
+
+
+def test_an_offer_is_refused_while_more_than_its_limit_waits() -> None:
+    async def scenario() -> None:
+        async with ends() as pair:
+            written = pair.fill()
+            waiting = pair.transport.get_write_buffer_size()
+            assert not pair.transport.offer(b"late", waiting - 1)
+            assert pair.transport.offer(b"in time", waiting)
+            assert (await pair.read(written + 7)).endswith(b"in time")
+
+    asyncio.run(scenario())
+
+
+@pytest.mark.parametrize("end", [SharedTransport.close, SharedTransport.write_eof])
+def test_all_that_was_written_arrives_before_the_end(end: Callable[[SharedTransport], None]) -> None:
+    async def scenario() -> None:
+        async with ends() as pair:
+            written = pair.fill()
+            pair.transport.write(b"the last")
+            end(pair.transport)
+            pair.transport.write(b"too late")
+            data = await pair.read(written + 100)
+            assert len(data) == written + 8
+            assert data.endswith(b"the last")
+
+    asyncio.run(scenario())
+
+
+def test_another_thread_may_cut_a_connection_off() -> None:
+    async def scenario() -> None:
+        async with ends() as pair:
+            written = pair.fill()
+            await asyncio.to_thread(pair.transport.abort)
+            assert len(await pair.read(written)) < written
+
+    asyncio.run(scenario())
+
+
+def test_writing_to_somebody_who_has_left_does_nothing() -> None:
+    async def scenario() -> None:
+        async with ends() as pair:
+            pair.peer.close()
+            pair.transport.write(b"lost")
+            pair.transport.write(b"lost")
+            assert pair.transport.get_write_buffer_size() == 0
+            pair.transport.release()
+            pair.transport.write(b"lost")
+            assert pair.transport.get_write_buffer_size() == 0
+
+    asyncio.run(scenario())
