@@ -114,6 +114,16 @@ class NativeCall:
         address = self.addresses[argument]
         return list(self.memory[address : address + self.sizes[argument]])
 
+    def words(self) -> list[int]:
+        """Return a copy of the words of all arguments, one after the other."""
+        memory, found = self.memory, []
+        for address, size in zip(self.addresses, self.sizes, strict=True):
+            if size == 1:
+                found.append(memory[address])
+            else:
+                found += memory[address : address + size]
+        return found
+
     def value(self, argument: int) -> int:
         """Return the first word of an argument."""
         return self.memory[self.addresses[argument]]

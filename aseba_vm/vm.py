@@ -190,7 +190,7 @@ class VirtualMachine:
         """Set words of the variable memory. Raises ValueError outside the memory."""
         if start < 0 or start + len(values) > len(self.variables):
             raise ValueError(f"{len(values)} words at {start} are outside a memory of {len(self.variables)}")
-        self.variables[start : start + len(values)] = [wrap(value) for value in values]
+        self.variables.words[start : start + len(values)] = [wrap(value) for value in values]
 
     # -- events (VM spec, sections 10.2 and 10.5)
 

@@ -100,10 +100,10 @@ class WasmHost:
         self._exit = memoryview(self._array(ctypes.c_ubyte, EXIT, _EXIT_FORMAT.size)).cast("B")
         self._budget = self._array(ctypes.c_int64, EXIT, 1)
         self._stack = self._array(ctypes.c_int32, STACK, (TABLES - STACK) // 4)
-        own = weakref.WeakMethod
+        own = weakref.ref(self)
         self._imports = [
-            callee(wasmtime, self._store, _of(own(self._serve))),
-            callee(wasmtime, self._store, _of(own(self._drain))),
+            callee(wasmtime, self._store, _of(own, WasmHost._serve)),
+            callee(wasmtime, self._store, _of(own, WasmHost._drain)),
             memory,
         ]
         self._is_random = False
@@ -150,7 +150,7 @@ class WasmHost:
         """Call a native for translated code."""
         if self._emitted[0]:
             self._drain()
-        number, pc, count, _ = self._request
+        number, pc, count = self._request[:3]
         if number >= REFUSED:
             self._machine.refuse_translated(pc, number - REFUSED)
             return
@@ -179,12 +179,12 @@ class WasmHost:
         return (kind * size).from_address(self._base + place)
 
 
-def _of(method: weakref.WeakMethod[Callable[[], None]]) -> Callable[[], None]:
-    """Return a function that keeps nobody alive."""
+def _of(own: weakref.ref[WasmHost], method: Callable[[WasmHost], None]) -> Callable[[], None]:
+    """Return a function that calls a method and keeps nobody alive."""
 
     def call() -> None:
-        bound = method()
-        if bound is not None:
-            bound()
+        host = own()
+        if host is not None:
+            method(host)
 
     return call

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from thymio_sim_ros.device.layout import THYMIO, fitting, target
-from thymio_sim_ros.sim.aseba_face import AsebaFace, Native
+from thymio_sim_ros.sim.aseba_face import Native
 from thymio_sim_ros.sim.commands import Command
 
 
@@ -41,9 +41,13 @@ class SensorBinding:
 
 @dataclass(frozen=True, slots=True)
 class OutputBinding:
-    """Variables that a program writes and the command they make together."""
+    """Variables that a program writes and the command they make together.
+
+    `runs` are their places joined where they touch: (address, address after the last word).
+    """
 
     slots: tuple[Slot, ...]
+    runs: tuple[tuple[int, int], ...]
     command: Callable[[Sequence[int]], Command]
 
 
@@ -55,7 +59,7 @@ def sensors(layout: str = THYMIO) -> dict[str, SensorBinding]:
     for sensor in fitting()[0]:
         if not (sensor.aseba.variables or sensor.aseba.event):
             continue
-        slots = tuple(_slots(sensor.aseba, layout))
+        slots = tuple(_slots(sensor.aseba.variables, layout, has_edges=sensor.aseba.edge_events))
         found[sensor.name] = SensorBinding(
             slots,
             _runs(slots),
@@ -75,12 +79,14 @@ def sensor_names() -> tuple[str, ...]:
 def outputs(layout: str = THYMIO) -> tuple[OutputBinding, ...]:
     """Every group of variables that makes a command; groups that the layout lacks are left out."""
     addresses = target(layout).addresses
-    return tuple(
-        OutputBinding(tuple(Slot(*addresses[name]) for name, _ in output.variables), output.command)
-        for actuator in fitting()[1]
-        for output in actuator.aseba.outputs
-        if all(name in addresses for name, _ in output.variables)
-    )
+    found = []
+    for actuator in fitting()[1]:
+        for output in actuator.aseba.outputs:
+            if all(name in addresses for name, _ in output.variables):
+                slots = tuple(_slots(output.variables, layout))
+                runs = tuple((address, address + end - begin) for address, begin, end in _runs(slots))
+                found.append(OutputBinding(slots, runs, output.command))
+    return tuple(found)
 
 
 @cache
@@ -95,11 +101,11 @@ def at_reset() -> tuple[Command, ...]:
     return tuple(command for actuator in fitting()[1] for command in actuator.aseba.at_reset)
 
 
-def _slots(face: AsebaFace, layout: str) -> Iterator[Slot]:
+def _slots(variables: Sequence[tuple[str, int]], layout: str, *, has_edges: bool = False) -> Iterator[Slot]:
     addresses, begin = target(layout).addresses, 0
-    for name, size in face.variables:
+    for name, size in variables:
         if name in addresses:
-            yield Slot(addresses[name][0], size, begin, _event(name, layout) if face.edge_events else None)
+            yield Slot(addresses[name][0], size, begin, _event(name, layout) if has_edges else None)
         begin += size
 
 

@@ -32,7 +32,7 @@ def native_functions(send: Send, body: Body) -> dict[str, Native]:
 
 def _commanding(native: aseba_face.Native, send: Send) -> Native:
     def call_native(call: NativeCall) -> None:
-        words = [word for argument in range(len(call.sizes)) for word in call.read(argument)]
+        words = call.words()
         try:
             command = native.command(words)
         except ValueError as error:

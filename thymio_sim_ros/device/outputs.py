@@ -23,7 +23,7 @@ from thymio_sim_ros.sim.commands import (
 
 __all__ = ["Outputs"]
 
-_SOUNDS = PlayTone | PlaySystemSound | PlaySamples | StopSound
+_SOUNDS = frozenset({PlayTone, PlaySystemSound, PlaySamples, StopSound})
 """Commands with which a program uses sound."""
 _NOTHING: Mapping[str, Sequence[int]] = MappingProxyType({})
 
@@ -37,6 +37,8 @@ class Outputs:
         """Whether the program has used sound since the reset."""
         self._addresses = target(layout).addresses
         self._outputs = bindings.outputs(layout)
+        self._by_address = {output.slots[0].address: number for number, output in enumerate(self._outputs)}
+        """Output by where its first variable lies."""
         self._settings = settings
         self._rules = rules
         self._vm: VirtualMachine | None = None
@@ -62,15 +64,16 @@ class Outputs:
 
         Lights that a program sets again and again to the same are told once.
         """
-        if isinstance(command, _SOUNDS):
-            self.has_used_sound = True
-            self._rules.silence()
-        elif isinstance(command, SetLed):
-            self._lit.clear()
-        if not isinstance(command, SetLeds):
+        if isinstance(command, SetLeds):
+            if self._lit.get(command.group) != command.levels:
+                self._waiting.append(self._taken_over(command))
+        else:
             self._waiting.append(command)
-        elif self._lit.get(command.group) != command.levels:
-            self._waiting.append(self._taken_over(command))
+            if type(command) in _SOUNDS:
+                self.has_used_sound = True
+                self._rules.silence()
+            elif isinstance(command, SetLed):
+                self._lit.clear()
         for variable, words in writes.items():
             self._write(variable, words)
 
@@ -82,10 +85,10 @@ class Outputs:
     def take_changes(self) -> list[Command]:
         """What variables say that changed since the last time."""
         commands: list[Command] = []
-        for output, sent in zip(self._outputs, self._sent, strict=True):
+        for number, output in enumerate(self._outputs):
             words = self._words(output)
-            if words != sent:
-                sent[:] = words
+            if words != self._sent[number]:
+                self._sent[number] = words
                 commands.append(self._meant(output.command(words)))
         return commands
 
@@ -113,12 +116,14 @@ class Outputs:
             return
         address, _ = self._addresses[variable]
         self._vm.write_variables(address, words)
-        for output, sent in zip(self._outputs, self._sent, strict=True):
-            if output.slots[0].address == address:
-                sent[:] = self._words(output)
+        number = self._by_address.get(address)
+        if number is not None:
+            self._sent[number] = self._words(self._outputs[number])
 
     def _words(self, output: bindings.OutputBinding) -> list[int]:
         """What the variables of an output hold."""
         assert self._vm is not None
-        memory = self._vm.variables.words
-        return [word for slot in output.slots for word in memory[slot.address : slot.address + slot.size]]
+        memory, words = self._vm.variables.words, []
+        for begin, end in output.runs:
+            words += memory[begin:end]
+        return words

@@ -127,4 +127,5 @@ def volts_to_units(volts: float) -> int:
 
 def saturate_led(word: int) -> int:
     """Brightness 0…32 of an Aseba word: the firmware keeps its low byte, and 32 and more is full (section 8.1)."""
-    return min(word & 0xFF, LED_FULL)
+    level = word & 0xFF
+    return level if level < LED_FULL else LED_FULL

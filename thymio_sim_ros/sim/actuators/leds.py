@@ -131,12 +131,14 @@ def _limited(group: str, levels: tuple[int, ...]) -> tuple[int, ...]:
     size = LED_GROUPS.get(group)
     if size is None or len(levels) != size:
         raise ValueError(f"lights: found {group!r} with {len(levels)} levels")
+    if max(levels) <= LED_FULL and min(levels) >= 0:
+        return levels
     return tuple(max(0, min(LED_FULL, level)) for level in levels)
 
 
 def _setter(group: str) -> Callable[[Sequence[int]], Command]:
     def set_leds(words: Sequence[int]) -> Command:
-        return SetLeds(group, tuple(units.saturate_led(word) for word in words))
+        return SetLeds(group, tuple(map(units.saturate_led, words)))
 
     return set_leds
 
