@@ -73,6 +73,7 @@ class Runner:
                 host.start(behaviour, program)
             elif program is not None:
                 host.load(program)
+        self._bound = frozenset(bindings.sensor_names())
         self.emitted: list[tuple[str, EmittedEvent]] = []
         self._start()
 
@@ -84,12 +85,11 @@ class Runner:
     def step(self) -> StepResult:
         """One tick of the world, and what the programs make of it."""
         result = self.world.step()
-        bound = bindings.sensors()
+        bound, devices = self._bound, self.devices
         for robot, sensor, reading in result.readings:
-            device = self.devices.get(robot)
-            if device is not None and sensor in bound:
-                device.feed(sensor, reading.words)
-        for device in self.devices.values():
+            if sensor in bound and robot in devices:
+                devices[robot].feed(sensor, reading.words)
+        for device in devices.values():
             device.advance(result.now_ns)
         self._run_devices()
         return result
@@ -138,7 +138,8 @@ class Runner:
         for _ in range(MOST_ROUNDS):
             for device in self.devices.values():
                 device.run(BUDGET)
-            if sum(self._pass_on(name, host) for name, host in self.hosts.items()) == 0:
+            speakers = [name for name, device in self.devices.items() if device.has_emitted]
+            if sum(self._pass_on(name, self.hosts[name]) for name in speakers) == 0:
                 break
         for name, device in self.devices.items():
             for command in device.take_commands():

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 from thymio_sim_ros.device.layout import THYMIO, fitting, target
 from thymio_sim_ros.sim.aseba_face import Native
@@ -24,16 +25,26 @@ class Slot:
     edge: int | None = None
 
 
+class Run(NamedTuple):
+    """A part of the memory, and of the words that belong there; each ends before its `end`."""
+
+    address: int
+    address_end: int
+    begin: int
+    end: int
+
+
 @dataclass(frozen=True, slots=True)
 class SensorBinding:
     """The variables that hold parts of a reading of `size` words, and the local event it raises.
 
-    `runs` are the same places joined where they touch: (address, first word of the reading, the word after its last).
+    `runs` are the same places joined where they touch, `edges` those of them that raise an event of their own.
     `above`: address of the variable that the first word must exceed for the event, and that must not be 0.
     """
 
     slots: tuple[Slot, ...]
-    runs: tuple[tuple[int, int, int], ...]
+    runs: tuple[Run, ...]
+    edges: tuple[Slot, ...]
     size: int
     event: int | None
     above: int | None = None
@@ -41,13 +52,10 @@ class SensorBinding:
 
 @dataclass(frozen=True, slots=True)
 class OutputBinding:
-    """Variables that a program writes and the command they make together.
-
-    `runs` are their places joined where they touch: (address, address after the last word).
-    """
+    """Variables that a program writes and the command they make together; `runs` as in `SensorBinding`."""
 
     slots: tuple[Slot, ...]
-    runs: tuple[tuple[int, int], ...]
+    runs: tuple[Run, ...]
     command: Callable[[Sequence[int]], Command]
 
 
@@ -63,6 +71,7 @@ def sensors(layout: str = THYMIO) -> dict[str, SensorBinding]:
         found[sensor.name] = SensorBinding(
             slots,
             _runs(slots),
+            tuple(slot for slot in slots if slot.edge is not None),
             sum(size for _, size in sensor.aseba.variables),
             None if sensor.aseba.event is None else _event(sensor.aseba.event, layout),
             addresses[sensor.aseba.above][0] if sensor.aseba.above in addresses else None,
@@ -84,8 +93,7 @@ def outputs(layout: str = THYMIO) -> tuple[OutputBinding, ...]:
         for output in actuator.aseba.outputs:
             if all(name in addresses for name, _ in output.variables):
                 slots = tuple(_slots(output.variables, layout))
-                runs = tuple((address, address + end - begin) for address, begin, end in _runs(slots))
-                found.append(OutputBinding(slots, runs, output.command))
+                found.append(OutputBinding(slots, _runs(slots), output.command))
     return tuple(found)
 
 
@@ -109,14 +117,14 @@ def _slots(variables: Sequence[tuple[str, int]], layout: str, *, has_edges: bool
         begin += size
 
 
-def _runs(slots: Sequence[Slot]) -> tuple[tuple[int, int, int], ...]:
-    runs: list[tuple[int, int, int]] = []
+def _runs(slots: Sequence[Slot]) -> tuple[Run, ...]:
+    runs: list[Run] = []
     for slot in slots:
-        address, begin, end = runs[-1] if runs else (-1, 0, 0)
-        if (slot.address - address, slot.begin) == (end - begin, end) and runs:
-            runs[-1] = (address, begin, end + slot.size)
-        else:
-            runs.append((slot.address, slot.begin, slot.begin + slot.size))
+        run = Run(slot.address, slot.address + slot.size, slot.begin, slot.begin + slot.size)
+        if runs and (runs[-1].address_end, runs[-1].end) == (run.address, run.begin):
+            run = Run(runs[-1].address, run.address_end, runs[-1].begin, run.end)
+            runs.pop()
+        runs.append(run)
     return tuple(runs)
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from aseba_vm import VirtualMachine
 from aseba_vm.outbox import BadCode, DivisionByZero, Emitted, NodeSpecific, OutOfBounds
 from thymio_sim_ros.device import bindings
+from thymio_sim_ros.device.bindings import Slot
 from thymio_sim_ros.device.body import RESTART, Body
 from thymio_sim_ros.device.breakpoints import Breakpoints, LineDebugger
 from thymio_sim_ros.device.card import Card
@@ -71,6 +72,9 @@ class AsebaDevice:
         self._notices: list[str] = []
         self._noticed: set[str] = set()
         self._is_changed = True
+        """Whether the program, or somebody else, may have written to the memory since outputs looked at it."""
+        self._is_news = True
+        """Whether the memory may have changed since the robot's own rules looked at it."""
         self._state = RUNNING
         self._fault: DeviceStatus | None = None
         settings = Settings(options.settings_file)
@@ -121,6 +125,7 @@ class AsebaDevice:
         self._program = program
         self._names = [name for name, _ in program.events]
         self._handled = frozenset(0xFFFE - event.number for event in program.program.events)
+        self._wanted = self._handled | self._watched
         self._vm.clear_breakpoints()
         self._debugger = LineDebugger(self._vm, program)
         words = program.program.words
@@ -143,21 +148,19 @@ class AsebaDevice:
         if sensor in self._slow and not self._is_due(sensor):
             return
         new = list(words)
-        memory, old, wanted = self._vm.variables.words, self._last.get(sensor), self._handled | self._watched
-        for address, begin, end in binding.runs:
-            memory[address : address + end - begin] = new[begin:end]
-        if new != (old or [0] * binding.size):
-            for slot in binding.slots:
-                begin, end = slot.begin, slot.begin + slot.size
-                if slot.edge in wanted and new[begin:end] != (old[begin:end] if old else [0] * slot.size):
-                    self._happen(slot.edge)
+        memory = self._vm.variables.words
+        for address, address_end, begin, end in binding.runs:
+            part = new[begin:end]
+            if memory[address:address_end] != part:
+                memory[address:address_end] = part
+                self._is_news = True
+        if binding.edges:
+            self._compare(self._last.get(sensor, [0] * binding.size), new, binding.edges)
         self._last[sensor] = new
         event = binding.event
-        if event is None:
-            return
         if event == self._rc5:
             self._rules.flash_remote()
-        if event not in wanted or (event == self._sound_finished and not self._outputs.has_used_sound):
+        if event not in self._wanted or (event == self._sound_finished and not self._outputs.has_used_sound):
             return
         if binding.above is None or new[0] > memory[binding.above] != 0:
             self._happen(event)
@@ -172,7 +175,7 @@ class AsebaDevice:
         """Execute handlers until nothing waits, or so many instructions were executed."""
         if not self.is_busy:
             return
-        self._is_changed = True
+        self._is_changed = self._is_news = True
         vm, queue = self._vm, self._queue
         turn = queue.policy.turn
         end = vm.instructions + budget
@@ -214,7 +217,7 @@ class AsebaDevice:
         if self._state == OFF:
             self._restart()
         elif self._debugger.leave_breakpoint():
-            self._is_changed = True
+            self._is_changed = self._is_news = True
             self._listen()
             if self._state != FAULT:
                 self._run_again()
@@ -234,7 +237,7 @@ class AsebaDevice:
         self.pause()
         self._start_if_idle()
         self._vm.step()
-        self._is_changed = True
+        self._is_changed = self._is_news = True
         self._listen()
 
     def step_line(self) -> None:
@@ -245,7 +248,7 @@ class AsebaDevice:
         if self._start_if_idle():
             return
         self._debugger.step_line()
-        self._is_changed = True
+        self._is_changed = self._is_news = True
         self._listen()
 
     def set_breakpoints(self, lines: Sequence[int]) -> Breakpoints:
@@ -282,13 +285,19 @@ class AsebaDevice:
         """
         if not 0 <= self._now_ns - self._rules_ns < PERIOD_NS:
             self._rules_ns = self._now_ns - self._now_ns % PERIOD_NS
-            if self._state != OFF:
+            if self._state != OFF and (self._is_news or self._rules.is_moving):
+                self._is_news = False
                 self._outputs.tell(*self._rules.look(self._vm.variables.words))
         commands = self._outputs.take()
         if self._is_changed:
             self._is_changed = False
             commands += self._outputs.take_changes()
         return commands
+
+    @property
+    def has_emitted(self) -> bool:
+        """Whether there are events to take."""
+        return bool(self._events)
 
     def take_events(self) -> list[EmittedEvent]:
         """What the program emitted since the last time, in order."""
@@ -298,6 +307,7 @@ class AsebaDevice:
     def watch_events(self, names: Collection[str]) -> None:
         """Remember when these local events happen, whether the program handles them or not."""
         self._watched = frozenset(index for index, event in enumerate(self._target.local_events) if event.name in names)
+        self._wanted = self._handled | self._watched
 
     def take_local_events(self) -> list[str]:
         """Those watched events that happened since the last time, in order."""
@@ -331,7 +341,15 @@ class AsebaDevice:
         if wrong:
             raise ValueError(f"{name}: {wrong[0]} found, expected -32768 to 32767")
         self._vm.write_variables(address, words)
-        self._is_changed = True
+        self._is_changed = self._is_news = True
+
+    def _compare(self, old: list[int], new: list[int], edges: Sequence[Slot]) -> None:
+        """Raise the events of variables that have changed."""
+        if new != old:
+            for slot in edges:
+                begin, end = slot.begin, slot.begin + slot.size
+                if slot.edge in self._wanted and new[begin:end] != old[begin:end]:
+                    self._happen(slot.edge)
 
     def _happen(self, index: int) -> None:
         if index in self._handled:
@@ -430,7 +448,7 @@ class AsebaDevice:
         own = {"_id": (self.node_id,), "event.source": (self.node_id,), "sd.present": (has_card,)}
         for name, words in (own | dict(self._first_values)).items():
             vm.write_variables(self._addresses[name][0], words)
-        self._is_changed = True
+        self._is_changed = self._is_news = True
         vm.random_state = (self.node_id - 1) * 25173 & 0xFFFF  # robots differ, a run repeats itself
         self._event, self._begun = INIT, vm.instructions
         self._queue.reset()

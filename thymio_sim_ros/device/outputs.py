@@ -124,6 +124,6 @@ class Outputs:
         """What the variables of an output hold."""
         assert self._vm is not None
         memory, words = self._vm.variables.words, []
-        for begin, end in output.runs:
-            words += memory[begin:end]
+        for address, address_end, _, _ in output.runs:
+            words += memory[address:address_end]
         return words

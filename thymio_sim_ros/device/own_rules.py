@@ -55,7 +55,7 @@ class _Proximity(_Still):
         self._low, self._high = [1200] * 7 + [0] * 2, [4000] * 7 + [900] * 2
 
     def show(self, words: Sequence[Sequence[int]]) -> Levels:
-        levels = [self._level(number, value) for number, value in enumerate([*words[0], *words[1]])]
+        levels = list(map(self._level, range(9), (*words[0], *words[1])))
         left, center_left, center, center_right, right, rear_left, rear_right, *ground = levels
         front = (left, center_left, center, center, center_right, right)
         return {"proximity": (*front, rear_left, rear_right), "ground": tuple(ground)}
@@ -64,7 +64,8 @@ class _Proximity(_Still):
         low, high = self._low, self._high
         if 0 < value < low[number]:
             low[number] = value
-        high[number] = max(high[number], value)
+        if value > high[number]:
+            high[number] = value
         return max(0, LED_FULL * (value - low[number]) // (high[number] - low[number]))
 
 
@@ -194,6 +195,13 @@ def _spans(addresses: Mapping[str, tuple[int, int]]) -> list[tuple[int, int]]:
     return spans
 
 
+def _place(spans: Sequence[tuple[int, int]], address: int, size: int) -> tuple[int, int, int]:
+    """Number of the part that holds a variable, and its begin and end there."""
+    number = next(number for number, (begin, end) in enumerate(spans) if begin <= address < end)
+    offset = address - spans[number][0]
+    return number, offset, offset + size
+
+
 class OwnRules:
     """The rules of one robot. Invariant: each tells a group only when it looks different from the last time."""
 
@@ -210,15 +218,16 @@ class OwnRules:
         self._remote = _Remote()
         rules: list[_Rule] = [*(make() for make in _RULES), self._remote]
         self._rules = [
-            (rule, [self._addresses[name] for name in rule.variables])
+            (rule, [_place(self._spans, *self._addresses[name]) for name in rule.variables])
             for rule in rules
             if all(name in self._addresses for name in rule.variables)
         ]
-        self._seen: list[list[list[int]] | None] = [None] * len(self._rules)
+        self._seen: list[list[Sequence[int]] | None] = [None] * len(self._rules)
         self._shown: dict[str, tuple[int, ...]] = {}
         self._taken: set[str] = set()
-        self._last: list[list[int]] = []
-        self._is_moving = True
+        self._last: list[Sequence[int]] = []
+        self.is_moving = True
+        """Whether the next look may show something else though the variables stay as they are."""
         self._is_silent = False
 
     def take(self, group: str) -> None:
@@ -232,21 +241,21 @@ class OwnRules:
     def flash_remote(self) -> None:
         """A remote control was heard."""
         self._remote.flash()
-        self._is_moving = True
+        self.is_moving = True
 
     def look(self, memory: Sequence[int]) -> Iterable[Command]:
         """One look at the variables: what changes on lights and loudspeaker."""
-        words = [memory[begin:end] for begin, end in self._spans]
-        if words == self._last and not self._is_moving:
+        parts = [memory[begin:end] for begin, end in self._spans]
+        if parts == self._last and not self.is_moving:
             return ()
-        self._last = [list(span) for span in words]
-        commands = [*self._lights(memory), *self._sounds(memory)]
-        self._is_moving = any(rule.is_moving for rule, _ in self._rules)
+        self._last = parts
+        commands = [*self._lights(parts), *self._sounds(memory)]
+        self.is_moving = any(rule.is_moving for rule, _ in self._rules)
         return commands
 
-    def _lights(self, memory: Sequence[int]) -> Iterator[Command]:
+    def _lights(self, parts: Sequence[Sequence[int]]) -> Iterator[Command]:
         for number, (rule, places) in enumerate(self._rules):
-            words = [list(memory[address : address + size]) for address, size in places]
+            words = [parts[part][begin:end] for part, begin, end in places]
             seen = self._seen[number]
             if words == seen and not rule.is_moving:
                 continue
