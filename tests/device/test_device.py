@@ -118,6 +118,16 @@ def test_lights_that_are_set_to_the_same_again_are_told_once():
     assert told("proximity", NEAR) == both
 
 
+def test_the_same_reading_again_takes_back_what_the_program_wrote_over_it():
+    device = device_with("onevent buttons\nprox.horizontal[2] = 7")
+    device.feed("proximity", NEAR)
+    device.feed("buttons", (0, 0, 0, 0, 0))
+    device.run(BUDGET)
+    assert device.get_variable("prox.horizontal")[2] == 7
+    device.feed("proximity", NEAR)
+    assert device.get_variable("prox.horizontal") == tuple(NEAR)
+
+
 def test_variables_of_the_lights_work_like_their_natives():
     device = device_with("onevent prox\nleds.circle[3] = 20")
     device.feed("proximity", NEAR)
@@ -131,6 +141,16 @@ def test_timers_raise_their_events_in_simulated_time():
         device.advance(tick * 10_000_000)
         device.run(BUDGET)
     assert device.get_variable("n") == (600, 240)
+
+
+def test_a_timer_set_from_outside_runs_from_the_next_run_on():
+    device = device_with("var n = 0\nonevent timer0\nn++")
+    for now_ms, expected in ((0, 0), (10, 0), (109, 0), (110, 1)):
+        device.advance(now_ms * 1_000_000)
+        if now_ms == 10:
+            device.set_variable("timer.period", (100, 0))
+        device.run(BUDGET)
+        assert device.get_variable("n") == (expected,)
 
 
 def test_a_period_below_the_tick_loses_nothing():

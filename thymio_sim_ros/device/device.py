@@ -63,7 +63,8 @@ class AsebaDevice:
         self._rules = OwnRules(self._addresses)
         self._rules_ns = 0
         self._now_ns = 0
-        self._last: dict[str, list[int]] = {}
+        self._last: dict[str, tuple[Sequence[int], int]] = {}
+        """The last words of each sensor, and the number of writes then."""
         self._event = ""
         self._begun = 0
         self._events: list[EmittedEvent] = []
@@ -71,8 +72,12 @@ class AsebaDevice:
         self._happened: list[str] = []
         self._notices: list[str] = []
         self._noticed: set[str] = set()
-        self._is_changed = True
-        """Whether the program, or somebody else, may have written to the memory since outputs looked at it."""
+        self._are_periods_new = False
+        """Whether somebody else than the program may have changed the periods of timers."""
+        self._writes = 0
+        """How often the program, or somebody else, may have written to the memory."""
+        self._told_writes = -1
+        """That number when outputs looked at it."""
         self._is_news = True
         """Whether the memory may have changed since the robot's own rules looked at it."""
         self._state = RUNNING
@@ -100,9 +105,8 @@ class AsebaDevice:
     @property
     def is_busy(self) -> bool:
         """Whether something waits for instructions: a handler that goes on, or an event."""
-        if self._vm.is_step_by_step:
-            return False
-        return self._vm.is_active or self._queue.waits
+        vm = self._vm
+        return (vm.is_active or self._queue.waits or self._are_periods_new) and not vm.is_step_by_step
 
     @property
     def status(self) -> DeviceStatus:
@@ -130,7 +134,7 @@ class AsebaDevice:
         self._debugger = LineDebugger(self._vm, program)
         words = program.program.words
         self._vm.set_bytecode((*words, *[0] * (self._target.bytecode_size - len(words))))
-        for sensor, reading in readings:
+        for sensor, (reading, _) in readings:
             for slot in self._sensors[sensor].slots:
                 self._vm.write_variables(slot.address, reading[slot.begin : slot.begin + slot.size])
         if not warm:
@@ -147,22 +151,21 @@ class AsebaDevice:
             raise ValueError(f"{len(words)} words found, expected {binding.size}")
         if sensor in self._slow and not self._is_due(sensor):
             return
-        new = list(words)
         memory = self._vm.variables.words
-        for address, address_end, begin, end in binding.runs:
-            part = new[begin:end]
-            if memory[address:address_end] != part:
-                memory[address:address_end] = part
-                self._is_news = True
-        if binding.edges:
-            self._compare(self._last.get(sensor, [0] * binding.size), new, binding.edges)
-        self._last[sensor] = new
+        old, new = self._last.get(sensor), (tuple(words), self._writes)
+        if new != old:
+            for address, address_end, begin, end in binding.runs:
+                memory[address:address_end] = words[begin:end]
+            self._is_news = True
+            self._last[sensor] = new
+            if binding.edges:
+                self._compare(old[0] if old is not None else (0,) * binding.size, new[0], binding.edges)
         event = binding.event
         if event == self._rc5:
             self._rules.flash_remote()
         if event not in self._wanted or (event == self._sound_finished and not self._outputs.has_used_sound):
             return
-        if binding.above is None or new[0] > memory[binding.above] != 0:
+        if binding.above is None or words[0] > memory[binding.above] != 0:
             self._happen(event)
 
     def advance(self, now_ns: int) -> None:
@@ -175,7 +178,7 @@ class AsebaDevice:
         """Execute handlers until nothing waits, or so many instructions were executed."""
         if not self.is_busy:
             return
-        self._is_changed = self._is_news = True
+        self._note_writing()
         vm, queue = self._vm, self._queue
         turn = queue.policy.turn
         end = vm.instructions + budget
@@ -190,7 +193,7 @@ class AsebaDevice:
             if queue.policy.kills and vm.is_active and not queue.waits:
                 break  # the rest of a long handler belongs to the next step
         if not vm.is_active:
-            queue.notice(self._words_at(self._periods))
+            self._notice_periods()
 
     def hears(self, sender: AsebaDevice) -> bool:
         """Whether the radios of the two are set to the same network."""
@@ -217,7 +220,7 @@ class AsebaDevice:
         if self._state == OFF:
             self._restart()
         elif self._debugger.leave_breakpoint():
-            self._is_changed = self._is_news = True
+            self._note_writing()
             self._listen()
             if self._state != FAULT:
                 self._run_again()
@@ -237,7 +240,7 @@ class AsebaDevice:
         self.pause()
         self._start_if_idle()
         self._vm.step()
-        self._is_changed = self._is_news = True
+        self._note_writing()
         self._listen()
 
     def step_line(self) -> None:
@@ -248,7 +251,7 @@ class AsebaDevice:
         if self._start_if_idle():
             return
         self._debugger.step_line()
-        self._is_changed = self._is_news = True
+        self._note_writing()
         self._listen()
 
     def set_breakpoints(self, lines: Sequence[int]) -> Breakpoints:
@@ -289,8 +292,8 @@ class AsebaDevice:
                 self._is_news = False
                 self._outputs.tell(*self._rules.look(self._vm.variables.words))
         commands = self._outputs.take()
-        if self._is_changed:
-            self._is_changed = False
+        if self._told_writes != self._writes:
+            self._told_writes = self._writes
             commands += self._outputs.take_changes()
         return commands
 
@@ -341,15 +344,21 @@ class AsebaDevice:
         if wrong:
             raise ValueError(f"{name}: {wrong[0]} found, expected -32768 to 32767")
         self._vm.write_variables(address, words)
-        self._is_changed = self._is_news = True
+        self._note_writing()
+        self._are_periods_new = True
 
-    def _compare(self, old: list[int], new: list[int], edges: Sequence[Slot]) -> None:
+    def _compare(self, old: Sequence[int], new: Sequence[int], edges: Sequence[Slot]) -> None:
         """Raise the events of variables that have changed."""
         if new != old:
             for slot in edges:
                 begin, end = slot.begin, slot.begin + slot.size
                 if slot.edge in self._wanted and new[begin:end] != old[begin:end]:
                     self._happen(slot.edge)
+
+    def _note_writing(self) -> None:
+        """The program, or somebody else, may have written to the memory."""
+        self._writes += 1
+        self._is_news = True
 
     def _happen(self, index: int) -> None:
         if index in self._handled:
@@ -368,6 +377,7 @@ class AsebaDevice:
     def _run_again(self) -> None:
         self._vm.resume()
         self._state, self._fault = RUNNING, None
+        self._are_periods_new = True
 
     def _restart(self) -> None:
         """As after a switch off and on: unsaved settings are lost, the program begins anew."""
@@ -382,9 +392,9 @@ class AsebaDevice:
         return number != before
 
     def _start_next(self) -> None:
-        """Start the next event, or count time up to the next timer event; at the end comes what belongs to now."""
+        """Start the next event, if there is one."""
         if not self._vm.is_active:
-            self._queue.notice(self._words_at(self._periods))
+            self._notice_periods()
         event = self._queue.take()
         if isinstance(event, GlobalEvent):
             self._start_global(event)
@@ -436,9 +446,10 @@ class AsebaDevice:
             self._noticed.add(notice)
             self._notices.append(notice)
 
-    def _words_at(self, place: tuple[int, int]) -> list[int]:
-        address, size = place
-        return list(self._vm.variables.words[address : address + size])
+    def _notice_periods(self) -> None:
+        address, size = self._periods
+        self._queue.notice(list(self._vm.variables.words[address : address + size]))
+        self._are_periods_new = False
 
     def _on_reset(self, vm: VirtualMachine) -> None:
         """The robot's share in a reset (thymio-robot.md section 4)."""
@@ -448,7 +459,7 @@ class AsebaDevice:
         own = {"_id": (self.node_id,), "event.source": (self.node_id,), "sd.present": (has_card,)}
         for name, words in (own | dict(self._first_values)).items():
             vm.write_variables(self._addresses[name][0], words)
-        self._is_changed = self._is_news = True
+        self._note_writing()
         vm.random_state = (self.node_id - 1) * 25173 & 0xFFFF  # robots differ, a run repeats itself
         self._event, self._begun = INIT, vm.instructions
         self._queue.reset()

@@ -64,8 +64,8 @@ class EventQueue:
 
     @property
     def waits(self) -> bool:
-        """Whether an event, or time that is not counted yet, waits for the machine."""
-        return bool(self._pending or self._arrived or self._incoming or self._timers.lag_ms)
+        """Whether an event waits for the machine."""
+        return bool(self._pending or self._arrived or self._incoming) or self._timers.are_due
 
     @property
     def has_incoming(self) -> bool:
@@ -93,11 +93,14 @@ class EventQueue:
         self._timers.notice(periods)
 
     def take(self) -> int | GlobalEvent | None:
-        """The next event, or None: time was counted up to the next timer, or to the end."""
-        if not self._pending and self._timers.lag_ms:
-            for timer in self._timers.next_firing():
+        """The next event, or None: time was counted to its end. What happens now comes after all timers before."""
+        is_now = not self._timers.lag_ms
+        if not self._pending and not is_now:
+            fired = self._timers.next_firing()
+            for timer in fired:
                 self._add(self._pending, self._timer_events[timer])
-        elif not self._timers.lag_ms:
+            is_now = not fired
+        if is_now and (self._arrived or self._incoming):
             for index in self._arrived:
                 self._add(self._pending, index)
             self._arrived.clear()

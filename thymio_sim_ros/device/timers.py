@@ -16,11 +16,16 @@ LONGEST_LAG_MS = 1000
 
 
 class Timers:
-    """Invariant: a running timer's count is below its period; the timers are never ahead of the clock."""
+    """Invariant: a running timer fires later than what is counted; the timers are never ahead of the clock."""
+
+    __slots__ = ("_at_ms", "_clock_ms", "_fires_ms", "_next_ms", "_periods")
 
     def __init__(self, count: int = 2) -> None:
         self._periods = [0] * count
-        self._counts = [0] * count
+        self._fires_ms = [0] * count
+        """When each fires next, if it runs."""
+        self._next_ms: int | None = None
+        """The earliest of these; None: no timer runs."""
         self._at_ms: int | None = None
         self._clock_ms = 0
 
@@ -29,47 +34,63 @@ class Timers:
         """Milliseconds that have passed and are not counted yet."""
         return 0 if self._at_ms is None else self._clock_ms - self._at_ms
 
+    @property
+    def are_due(self) -> bool:
+        """Whether one has fired in the time that is not counted yet."""
+        return self._next_ms is not None and self._next_ms <= self._clock_ms and self._at_ms is not None
+
     def set_clock(self, now_ns: int) -> tuple[int, ...]:
         """Show the clock; returns timers that fired before the last look, unheard. Time that goes back: start anew."""
         now_ms = now_ns // MILLISECOND_NS
         if self._at_ms is None or now_ms < self._clock_ms:
             self._at_ms = self._clock_ms = now_ms
-            self._counts = [0] * len(self._counts)
+            self._fires_ms = [now_ms + period for period in self._periods]
+            self._find_next()
             return ()
-        if max(self._periods) <= 0:  # no timer runs: nothing to count
+        if self._next_ms is None:
             self._at_ms = self._clock_ms = now_ms
             return ()
-        missed = self._count(self.lag_ms)
+        missed = self._count(self._clock_ms - self._at_ms)
         self._clock_ms = now_ms
         early = self._count(max(0, self.lag_ms - LONGEST_LAG_MS))
-        return tuple(sorted({*missed, *early}))
+        return tuple(sorted({*missed, *early})) if missed or early else ()
 
     def notice(self, periods: Sequence[int]) -> None:
         """Take over changed periods in ms; one of 0 or less stops its timer."""
+        if periods == self._periods:
+            return
         for index, period in enumerate(periods):
             if period != self._periods[index]:
-                self._periods[index], self._counts[index] = period, 0
+                self._periods[index], self._fires_ms[index] = period, (self._at_ms or 0) + period
+        self._find_next()
 
     def next_firing(self) -> tuple[int, ...]:
         """Count on to the next moment at which timers fire and return them; () when the clock comes first."""
-        left = [period - count for period, count in zip(self._periods, self._counts, strict=True) if period > 0]
-        return self._count(min([*left, self.lag_ms]))
+        if self._next_ms is None or self._at_ms is None:
+            return self._count(self.lag_ms)
+        return self._count(min(self._next_ms, self._clock_ms) - self._at_ms)
 
     def reset(self) -> None:
         """Stop all timers and forget the clock."""
-        count = len(self._periods)
-        self._periods, self._counts = [0] * count, [0] * count
-        self._at_ms = None
+        self._periods = [0] * len(self._periods)
+        self._next_ms = self._at_ms = None
 
     def _count(self, milliseconds: int) -> tuple[int, ...]:
         """Count on; the timers that fired meanwhile."""
         if self._at_ms is None or milliseconds == 0:
             return ()
-        self._at_ms += milliseconds
+        at_ms = self._at_ms = self._at_ms + milliseconds
+        if self._next_ms is None or at_ms < self._next_ms:
+            return ()
         fired = []
         for index, period in enumerate(self._periods):
-            if period > 0:
-                rounds, self._counts[index] = divmod(self._counts[index] + milliseconds, period)
-                if rounds:
-                    fired.append(index)
+            if period > 0 and self._fires_ms[index] <= at_ms:
+                late_ms = at_ms - self._fires_ms[index]
+                self._fires_ms[index] += late_ms - late_ms % period + period
+                fired.append(index)
+        self._find_next()
         return tuple(fired)
+
+    def _find_next(self) -> None:
+        running = [fires_ms for fires_ms, period in zip(self._fires_ms, self._periods, strict=True) if period > 0]
+        self._next_ms = min(running) if running else None
