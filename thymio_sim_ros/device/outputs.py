@@ -123,7 +123,8 @@ class Outputs:
     def _words(self, output: bindings.OutputBinding) -> list[int]:
         """What the variables of an output hold."""
         assert self._vm is not None
-        memory, words = self._vm.variables.words, []
+        memory = self._vm.variables.words
+        words: list[int] = []
         for address, address_end, _, _ in output.runs:
             words += memory[address:address_end]
         return words
