@@ -46,7 +46,7 @@ def test_random_grounds_are_seen_bit_for_bit_while_they_are_drawn_on(seed: int) 
     both = grounds(dice)
     seen = set[float]()
     for step in range(8):
-        count = 40 if step % 3 else 60
+        count = 100 if step % 3 else 160
         places = np.array([(dice.uniform(-0.05, 0.65), dice.uniform(-0.05, 0.65)) for _ in range(count)]).T
         (greys, floors), (same_greys, same_floors) = (ground.sample_all(*places) for ground in both)
         assert same_greys.tolist() == greys.tolist()
