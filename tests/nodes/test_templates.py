@@ -7,12 +7,12 @@ import struct
 
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
-from std_msgs.msg import Float32
+from std_msgs.msg import Float32, Float32MultiArray
 
 from thymio_sim_ros.nodes import convert, reference
 from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.names import RobotNames
-from thymio_sim_ros.nodes.templates import Patch, Template
+from thymio_sim_ros.nodes.templates import Patch, Span, Template
 from thymio_sim_ros.sim import readings
 from thymio_sim_ros.sim.geometry import Pose, Tilt, Twist
 
@@ -32,6 +32,10 @@ def reading_of(sensor, seed):
         return readings.PoseReading(
             stamp, (), place, turn, Pose(-place.x_m, 3.0, 1.0), Twist(0.25, float(seed)), Tilt(0.1, 0.2)
         )
+    if sensor.name == "motor":
+        return readings.MotorReading(stamp, words, (0.25 * seed, -7.5), (1.5, -0.125 * seed))
+    if sensor.name == "accelerometer":
+        return readings.AccelerometerReading(stamp, words)
     return readings.PlainReading(stamp, words)
 
 
@@ -48,7 +52,14 @@ def test_a_patched_message_is_the_serialised_one(sensor, row, name, options):
         assert deserialize_message(template.fill(reading), row.type) == deserialize_message(fresh, row.type)
 
 
-def test_a_patch_in_the_wrong_place_is_no_template():
+@pytest.mark.parametrize("behind", [0, 4, 20])
+def test_a_patch_in_the_wrong_place_is_no_template(behind):
     reading = readings.PlainReading(5, (1,))
-    patch = Patch(struct.Struct("<ff"), lambda reading, options: (1.0, 2.0), has_stamp=False)
+    patch = Patch((Span(struct.Struct("<ff"), lambda reading, options: (1.0, 2.0), behind),), has_stamp=False)
     assert Template.checked(patch, Float32(data=3.0), reading, None) is None
+
+
+def test_a_patch_over_a_length_is_no_template():
+    patch = Patch((Span(struct.Struct("<I"), lambda reading, options: (1000,), behind=4),), has_stamp=False)
+    message = Float32MultiArray(data=[1.0])
+    assert Template.checked(patch, message, readings.PlainReading(5, (1,)), None) is None

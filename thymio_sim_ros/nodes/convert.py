@@ -36,6 +36,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 from thymio_sim_ros.nodes import patches, qos, senses
 from thymio_sim_ros.nodes.headers import SECOND_NS, stamped
 from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
+from thymio_sim_ros.nodes.patches import LASER_OFFSET_M, PROXIMITY_MIN_M
 from thymio_sim_ros.nodes.templates import Patch
 from thymio_sim_ros.sim import commands, readings
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt, Twist
@@ -43,9 +44,9 @@ from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.tones import VOLUME_OFF
 
 # The driver's constants of a Range (ros-interface.md section 3).
-PROXIMITY_MIN_M, PROXIMITY_MAX_M, PROXIMITY_FOV_RAD = 0.0215, 0.14, 0.3
+PROXIMITY_MAX_M, PROXIMITY_FOV_RAD = 0.14, 0.3
 GROUND_MIN_M, GROUND_MAX_M, GROUND_FOV_RAD = 0.009, 0.03, 0.3
-LASER_STEP_RAD, LASER_ANGLE_RAD, LASER_OFFSET_M = 0.32, 0.64, 0.08
+LASER_STEP_RAD, LASER_ANGLE_RAD = 0.32, 0.64
 
 JOINTS, TRUTH = "joint_states", "ground_truth/odom"
 
@@ -128,16 +129,14 @@ def _range(reading: readings.ProximityReading, names: RobotNames, options: Conve
 
 
 def _laser(reading: readings.ProximityReading, names: RobotNames, _options: ConvertOptions) -> LaserScan:
-    front = range(4, -1, -1)  # right to left, as LaserScan counts angles upwards
-    ranges = (reading.ranges_m[i] for i in front)
     message = LaserScan(
         angle_min=-LASER_ANGLE_RAD,
         angle_max=LASER_ANGLE_RAD,
         angle_increment=LASER_STEP_RAD,
         range_min=PROXIMITY_MIN_M + LASER_OFFSET_M,
         range_max=PROXIMITY_MAX_M + LASER_OFFSET_M,
-        ranges=[math.inf if math.isinf(r) else max(r, PROXIMITY_MIN_M) + LASER_OFFSET_M for r in ranges],
-        intensities=[float(reading.words[i]) for i in front],
+        ranges=patches.laser_m(reading),
+        intensities=[float(count) for count in reading.words[4::-1]],
     )
     return stamped(message, reading.stamp_ns, names.frame("laser_link"))
 
@@ -277,6 +276,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             _laser,
             "the five front sensors from right to left, m from the robot's middle; intensities are counts",
             "laser_link",
+            patch=patches.LASER,
         ),
         Row(
             "proximity/rays",
@@ -284,6 +284,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             senses.rays,
             "the seven rays as lines, as long as what they measure; red where something is met",
             "base_link",
+            patch=patches.RAYS,
         ),
     ),
     "buttons": (
@@ -298,7 +299,15 @@ ROWS: dict[str, tuple[Row, ...]] = {
             )
             for i, name in enumerate(commands.BUTTONS)
         ),
-        Row("buttons", Joy, _joy, "backward, left, center, forward, right", "base_link", every_ns=SECOND_NS // 10),
+        Row(
+            "buttons",
+            Joy,
+            _joy,
+            "backward, left, center, forward, right",
+            "base_link",
+            every_ns=SECOND_NS // 10,
+            patch=patches.JOY,
+        ),
     ),
     "motor": (
         Row(
@@ -307,6 +316,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             _joints,
             "wheel angles in rad, not wrapped, and speeds in rad/s, left then right",
             every_ns=SECOND_NS // 20,
+            patch=patches.JOINTS,
         ),
     ),
     "pose": (
@@ -331,8 +341,12 @@ ROWS: dict[str, tuple[Row, ...]] = {
             always=True,
         ),
     ),
-    "accelerometer": (Row("imu", Imu, senses.imu, "acceleration alone, m/s²; g upwards at rest", "base_link"),),
-    "temperature": (Row("temperature", Temperature, senses.temperature, "°C, in tenths", "base_link"),),
+    "accelerometer": (
+        Row("imu", Imu, senses.imu, "acceleration alone, m/s²; g upwards at rest", "base_link", patch=patches.IMU),
+    ),
+    "temperature": (
+        Row("temperature", Temperature, senses.temperature, "°C, in tenths", "base_link", patch=patches.TEMPERATURE),
+    ),
     "battery": (Row("battery", BatteryState, senses.battery, "V, charge 0…1, charging or not", "base_link"),),
     "collision": (
         Row(

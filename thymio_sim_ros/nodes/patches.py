@@ -5,14 +5,37 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Callable, Sequence
-from functools import cache
-from typing import Any
+from itertools import chain
+from typing import Any, TypeAlias
 
-from thymio_sim_ros.nodes.templates import Patch
-from thymio_sim_ros.sim import readings
+from thymio_sim_ros.nodes.templates import Patch, Span
+from thymio_sim_ros.sim import readings, thymio2
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt, Twist
 
-__all__ = ["ODOMETRY", "TRUTH", "below_m", "below_patch", "rotation", "seen_m", "seen_patch", "words_patch"]
+__all__ = [
+    "IMU",
+    "JOINTS",
+    "JOY",
+    "LASER",
+    "ODOMETRY",
+    "RAYS",
+    "TEMPERATURE",
+    "TRUTH",
+    "below_m",
+    "below_patch",
+    "laser_m",
+    "ray_lines",
+    "rotation",
+    "seen_m",
+    "seen_patch",
+    "words_patch",
+]
+
+Point: TypeAlias = tuple[float, float, float]
+Color: TypeAlias = tuple[float, float, float, float]
+
+# The driver's constants (ros-interface.md section 3).
+PROXIMITY_MIN_M, LASER_OFFSET_M = 0.0215, 0.08
 
 
 def rotation(yaw_rad: float, tilt: Tilt = LEVEL) -> tuple[float, float, float, float]:
@@ -45,53 +68,81 @@ def below_m(reading: readings.GroundReading, options: Any, index: int) -> float:
     return not_reflecting if dark else reflecting
 
 
-_RANGE_TAIL = struct.Struct("<ff")
-"""range, variance"""
-_ODOMETRY_TAIL = struct.Struct("<85d")
-"""Pose, its covariance, twist, its covariance."""
+def ray_lines(reading: readings.ProximityReading) -> tuple[list[Point], list[Color]]:
+    """Both ends of each of the seven rays, and a color for each end: red where something is met."""
+    ends: list[Point] = []
+    colors: list[Color] = []
+    for (x, y, dx, dy), range_m in zip(_RAYS, reading.ranges_m, strict=True):
+        is_free = math.isinf(range_m)
+        length = thymio2.PROXIMITY_RANGE_M if is_free else range_m
+        ends += ((x, y, thymio2.PROXIMITY_HEIGHT_M), (x + length * dx, y + length * dy, thymio2.PROXIMITY_HEIGHT_M))
+        colors += (_FREE if is_free else _HIT,) * 2
+    return ends, colors
 
 
-def _range_patch(seen_m: Callable[[Any, Any, int], float], index: int) -> Patch:
-    return Patch(_RANGE_TAIL, lambda reading, options: (seen_m(reading, options, index), 0.0))
+_RAYS = tuple((x, y, math.cos(yaw), math.sin(yaw)) for x, y, yaw in thymio2.PROXIMITY_POSES)
+_FREE: Color = (0.45, 0.75, 1.0, 0.6)
+_HIT: Color = (1.0, 0.3, 0.2, 1.0)
+"""Colors of rays that meet nothing and of those that do."""
 
 
-def _odometry_numbers(reading: readings.PoseReading, options: Any) -> Sequence[float]:
-    pose_variances, twist_variances = _square(options.pose_covariance), _square(options.twist_covariance)
-    pose, twist, turn = reading.odometry, reading.odometry_twist, rotation(reading.odometry.yaw_rad)
-    if not any(options.pose_covariance):
-        twist_variances = _square((0.0,) * 6)
-    return _numbers(pose, turn, pose_variances, twist, twist_variances)
+def laser_m(reading: readings.ProximityReading) -> list[float]:
+    """What the five front sensors see, right to left as LaserScan counts angles upwards, m from the robot's middle."""
+    return [
+        math.inf if math.isinf(range_m) else max(range_m, PROXIMITY_MIN_M) + LASER_OFFSET_M
+        for range_m in reading.ranges_m[4::-1]
+    ]
 
 
-def _truth_numbers(reading: readings.PoseReading, _options: Any) -> Sequence[float]:
-    nothing = _square((0.0,) * 6)
-    return _numbers(reading.truth, rotation(reading.truth.yaw_rad, reading.tilt), nothing, reading.truth_twist, nothing)
+def _range_patch(seen: Callable[[Any, Any, int], float], index: int) -> Patch:
+    """Range and variance end the message."""
+    return Patch((Span(struct.Struct("<ff"), lambda reading, options: (seen(reading, options, index), 0.0)),))
 
 
-def _numbers(
-    pose: Pose, turn: Sequence[float], pose_variances: Sequence[float], twist: Twist, twist_variances: Sequence[float]
-) -> Sequence[float]:
-    still = (0.0, 0.0, 0.0, 0.0)
-    return (
-        *(pose.x_m, pose.y_m, 0.0),
-        *turn,
-        *pose_variances,
-        *(twist.linear_m_s, *still, twist.angular_rad_s),
-        *twist_variances,
+def _laser_numbers(reading: readings.ProximityReading, _options: Any) -> Sequence[float]:
+    counts = reading.words[4::-1]
+    return (*laser_m(reading), len(counts), *counts)
+
+
+def _ray_numbers(reading: readings.ProximityReading, _options: Any) -> Sequence[float]:
+    ends, colors = ray_lines(reading)
+    return (*chain.from_iterable(ends), len(colors), *chain.from_iterable(colors))
+
+
+def _joint_numbers(reading: readings.MotorReading, _options: Any) -> Sequence[float]:
+    return (*reading.angles_rad, 2, *reading.velocities_rad_s)
+
+
+def _odometry_patch(
+    place: Callable[[readings.PoseReading], tuple[Pose, Sequence[float]]],
+    twist: Callable[[readings.PoseReading], Twist],
+) -> Patch:
+    """Pose, its covariance, twist, its covariance end the message; covariances stay."""
+
+    def place_numbers(reading: readings.PoseReading, _options: Any) -> Sequence[float]:
+        pose, turn = place(reading)
+        return (pose.x_m, pose.y_m, 0.0, *turn)
+
+    def twist_numbers(reading: readings.PoseReading, _options: Any) -> Sequence[float]:
+        moves = twist(reading)
+        return (moves.linear_m_s, 0.0, 0.0, 0.0, 0.0, moves.angular_rad_s)
+
+    return Patch(
+        (
+            Span(struct.Struct("<7d"), place_numbers, behind=2 * _COVARIANCE_BYTES + 6 * 8),
+            Span(struct.Struct("<6d"), twist_numbers, behind=_COVARIANCE_BYTES),
+        )
     )
 
 
-@cache
-def _square(diagonal: tuple[float, ...]) -> tuple[float, ...]:
-    """A covariance with these variances, row by row."""
-    return tuple(value if row == column else 0.0 for row, value in enumerate(diagonal) for column in range(6))
+_COVARIANCE_BYTES = 36 * 8
 
 
 def words_patch(count: int) -> Patch | None:
     """Of so many words; None for none."""
-    return (
-        Patch(struct.Struct(f"<{count}h"), lambda reading, _options: reading.words, has_stamp=False) if count else None
-    )
+    if not count:
+        return None
+    return Patch((Span(struct.Struct(f"<{count}h"), lambda reading, _options: reading.words),), has_stamp=False)
 
 
 def seen_patch(index: int) -> Patch:
@@ -104,5 +155,17 @@ def below_patch(index: int) -> Patch:
     return _range_patch(below_m, index)
 
 
-ODOMETRY = Patch(_ODOMETRY_TAIL, _odometry_numbers)
-TRUTH = Patch(_ODOMETRY_TAIL, _truth_numbers)
+ODOMETRY = _odometry_patch(
+    lambda reading: (reading.odometry, rotation(reading.odometry.yaw_rad)), lambda reading: reading.odometry_twist
+)
+TRUTH = _odometry_patch(
+    lambda reading: (reading.truth, rotation(reading.truth.yaw_rad, reading.tilt)), lambda reading: reading.truth_twist
+)
+JOINTS = Patch((Span(struct.Struct("<2dI4x2d"), _joint_numbers, behind=8),))
+"""Two positions, two velocities, and no effort, which is aligned all the same."""
+LASER = Patch((Span(struct.Struct("<5fI5f"), _laser_numbers),))
+RAYS = Patch((Span(struct.Struct("<42dI56f"), _ray_numbers, behind=69),))
+"""Points and colors; behind them a texture, texts and a mesh, all empty."""
+IMU = Patch((Span(struct.Struct("<3d"), lambda reading, _options: reading.acceleration_m_s2, behind=9 * 8),))
+JOY = Patch((Span(struct.Struct("<5i"), lambda reading, _options: reading.words),))
+TEMPERATURE = Patch((Span(struct.Struct("<d"), lambda reading, _options: (reading.words[0] / 10,), behind=8),))

@@ -9,9 +9,10 @@ from sensor_msgs.msg import BatteryState, Imu, Temperature
 from std_msgs.msg import Bool, ColorRGBA, Empty, Float32, Int8, Int16
 from visualization_msgs.msg import Marker
 
+from thymio_sim_ros.nodes import patches
 from thymio_sim_ros.nodes.headers import stamped
 from thymio_sim_ros.nodes.names import RobotNames
-from thymio_sim_ros.sim import readings, thymio2
+from thymio_sim_ros.sim import readings
 
 ACCELERATION_VARIANCE = 0.07
 TEMPERATURE_VARIANCE = 0.01
@@ -22,22 +23,15 @@ ABSENT = -1.0
 
 
 RAY_WIDTH_M = 0.003
-_FREE, _HIT = (0.45, 0.75, 1.0, 0.6), (1.0, 0.3, 0.2, 1.0)
-"""Colors of rays that meet nothing and of those that do."""
 
 
 def rays(reading: readings.ProximityReading, names: RobotNames, _options: object) -> Marker:
     """The seven rays of the proximity sensors as lines, as long as what they measure, for viewers."""
     marker = Marker(ns="rays", action=Marker.ADD, type=Marker.LINE_LIST, frame_locked=True)
     marker.scale.x = RAY_WIDTH_M
-    free, hit = (ColorRGBA(r=red, g=green, b=blue, a=alpha) for red, green, blue, alpha in (_FREE, _HIT))
-    for (x_m, y_m, yaw_rad), range_m in zip(thymio2.PROXIMITY_POSES, reading.ranges_m, strict=True):
-        is_free = math.isinf(range_m)
-        length_m = thymio2.PROXIMITY_RANGE_M if is_free else range_m
-        end = (x_m + length_m * math.cos(yaw_rad), y_m + length_m * math.sin(yaw_rad))
-        for x, y in ((x_m, y_m), end):
-            marker.points.append(Point(x=x, y=y, z=thymio2.PROXIMITY_HEIGHT_M))
-            marker.colors.append(free if is_free else hit)
+    ends, colors = patches.ray_lines(reading)
+    marker.points = [Point(x=x, y=y, z=z) for x, y, z in ends]
+    marker.colors = [ColorRGBA(r=r, g=g, b=b, a=a) for r, g, b, a in colors]
     return stamped(marker, reading.stamp_ns, names.frame("base_link"))
 
 

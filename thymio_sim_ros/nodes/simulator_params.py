@@ -9,7 +9,6 @@ from thymio_sim_ros.nodes.convert import (
     JOINTS,
     PROXIMITY_FOV_RAD,
     PROXIMITY_MAX_M,
-    PROXIMITY_MIN_M,
     TRUTH,
     ConvertOptions,
     RangeFields,
@@ -18,6 +17,7 @@ from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import StartError
 from thymio_sim_ros.nodes.names import FrameNames, Naming
 from thymio_sim_ros.nodes.params import group, param
+from thymio_sim_ros.nodes.patches import PROXIMITY_MIN_M
 from thymio_sim_ros.nodes.robot_ports import DESCRIPTION, PortOptions
 from thymio_sim_ros.nodes.transforms import TransformOptions
 from thymio_sim_ros.sim import fields

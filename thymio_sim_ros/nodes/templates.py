@@ -1,7 +1,8 @@
 """Serialised messages that are made once and patched with each reading: a third of the cost of building them anew.
 
 CDR keeps what does not change its size in place: the stamp of a header is at the beginning, numbers of fixed size are
-at the end. A row of `convert` says by a `Patch` which; a template is checked against the serialiser when it is made.
+so many bytes before the end. A row of `convert` says by a `Patch` which; a template is checked against the serialiser
+when it is made.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 
 from thymio_sim_ros.nodes.headers import SECOND_NS
 
-__all__ = ["Patch", "Template"]
+__all__ = ["Patch", "Span", "Template"]
 
 _STAMP = struct.Struct("<iI")
 _STAMP_AT = 4
@@ -23,39 +24,52 @@ _STAMP_AT = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Patch:
-    """What a reading changes: the last numbers of the message, as `tail` packs them, and its stamp if it has one."""
+class Span:
+    """Numbers side by side, as `layout` packs them, with `behind` bytes of the message after them."""
 
-    tail: struct.Struct
+    layout: struct.Struct
     numbers: Callable[[Any, Any], Sequence[float]]
+    behind: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Patch:
+    """What a reading changes: some spans of the message, and its stamp if it has one."""
+
+    spans: tuple[Span, ...]
     has_stamp: bool = True
 
 
 class Template:
     """The bytes of one topic's messages, for one choice of options."""
 
-    __slots__ = ("_at", "_data", "_patch", "options")
+    __slots__ = ("_data", "_has_stamp", "_spans", "options")
 
     def __init__(self, patch: Patch, message: Any, options: Any) -> None:
         self.options = options
-        self._patch = patch
+        self._has_stamp = patch.has_stamp
         self._data = bytearray(serialize_message(message))
-        self._at = len(self._data) - patch.tail.size
+        size = len(self._data)
+        self._spans = [
+            (span.layout.pack_into, size - span.behind - span.layout.size, span.numbers) for span in patch.spans
+        ]
 
     @classmethod
     def checked(cls, patch: Patch, message: Any, reading: Any, options: Any) -> Template | None:
         """The template of the message that this reading gave; None if patching it in does not give the same."""
         template = cls(patch, message, options)
         # Bytes between fields may be anything, hence messages are compared.
-        filled, fresh = (
-            deserialize_message(data, type(message)) for data in (template.fill(reading), serialize_message(message))
-        )
-        return template if filled == fresh else None
+        try:
+            filled = deserialize_message(template.fill(reading), type(message))
+        except (RuntimeError, struct.error):  # a length was overwritten, or there is no room
+            return None
+        return template if filled == deserialize_message(serialize_message(message), type(message)) else None
 
     def fill(self, reading: Any) -> bytes:
         """The message of a reading."""
-        data, patch = self._data, self._patch
-        if patch.has_stamp:
+        data = self._data
+        if self._has_stamp:
             _STAMP.pack_into(data, _STAMP_AT, *divmod(reading.stamp_ns, SECOND_NS))
-        patch.tail.pack_into(data, self._at, *patch.numbers(reading, self.options))
+        for pack, at, numbers in self._spans:
+            pack(data, at, *numbers(reading, self.options))
         return bytes(data)
