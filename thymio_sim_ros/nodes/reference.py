@@ -18,8 +18,9 @@ from thymio_sim_ros.nodes.aseba_node import RuntimeParams
 from thymio_sim_ros.nodes.description import fixed_frames, wheel_position
 from thymio_sim_ros.nodes.migration import migration
 from thymio_sim_ros.nodes.names import SIDES
-from thymio_sim_ros.nodes.reference_text import AFTER, BEFORE, QUALITY, RVIZ
+from thymio_sim_ros.nodes.reference_text import AFTER, BEFORE, INTERFACES, QUALITY, RVIZ
 from thymio_sim_ros.nodes.robot_inputs import RobotInput, robot_inputs
+from thymio_sim_ros.nodes.sim_interfaces import OFFERS, PACKAGE, STEPS
 from thymio_sim_ros.nodes.simulator_params import SimulatorParams
 from thymio_sim_ros.sim import sensors
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
@@ -65,6 +66,8 @@ def text() -> str:
         _topics(_of_world()),
         "## Services\n",
         table(("service", "type", "does"), _services()),
+        INTERFACES,
+        table(("service", "type", "does"), _interfaces()),
         "## Quality of service\n",
         QUALITY,
         table(("kind", "depth", "for"), ((kind, str(one.depth), about) for kind, (one, about) in qos.KINDS.items())),
@@ -156,6 +159,12 @@ def _services() -> Iterator[tuple[str, str, str]]:
         yield f"`{name}`", f"`{type_name(kind)}`", about
     for name, service in world_services.SERVICES.items():
         yield f"`{name.replace('~', '/simulator')}`", f"`{type_name(service.type)}`", service.about
+
+
+def _interfaces() -> Iterator[tuple[str, str, str]]:
+    for offer in (*OFFERS, STEPS):
+        form = "action" if offer is STEPS else "srv"
+        yield f"`/simulator/{offer.name}`", f"`{PACKAGE}/{form}/{offer.type}`", offer.about
 
 
 def _frames() -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["AFTER", "BEFORE", "QUALITY"]
+__all__ = ["AFTER", "BEFORE", "INTERFACES", "QUALITY", "RVIZ"]
 
 BEFORE = """\
 # The ROS 2 interface
@@ -64,6 +64,14 @@ Names are those of the playground (`robot` in `/simulator/state`), also of movab
 `/simulator/place`, with the name, or a robot's frame, in `child_frame_id`; or a robot's `initialpose`, as the tools of
 RViz and Foxglove do. All of it works through the Foxglove bridge too. What is moved while time stands still is there
 after the next step.
+"""
+
+INTERFACES = """\
+## Services of `simulation_interfaces`
+
+Where that package is installed (`apt install ros-jazzy-simulation-interfaces`; it is in no wheel), the simulator has its
+services, too, so that tools for other simulators of ROS work here. They answer with a code and a reason; tags, bounds
+and named poses, which the package knows besides, are refused as unsupported.
 """
 
 RVIZ = """\

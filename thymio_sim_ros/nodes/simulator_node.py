@@ -19,7 +19,7 @@ from rclpy.parameter import Parameter
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.nodes import dds_profile, params
+from thymio_sim_ros.nodes import dds_profile, params, sim_interfaces
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
@@ -73,6 +73,7 @@ class Simulator:
         self._roster = Roster(self._ports, self.params.naming)
         self._set_world(playground)
         self._services = WorldServices(self.node, self)
+        self._interfaces = sim_interfaces.offered(self.node, self)
         self._accepted: tuple[str, Playground] | None = None
         self.node.add_on_set_parameters_callback(self._check_parameters)
         self.node.add_post_set_parameters_callback(self._apply_parameters)
@@ -81,6 +82,16 @@ class Simulator:
     def names(self) -> Mapping[str, RobotNames]:
         """The names in ROS of the robots, by those in the world."""
         return self._roster.by_robot
+
+    @property
+    def map_frame(self) -> str:
+        """Name of the world's frame."""
+        return self.params.map_frame
+
+    @property
+    def playground(self) -> str:
+        """The playground as it was given: name, path or text."""
+        return self.params.playground
 
     @property
     def greeting(self) -> str:
@@ -132,9 +143,9 @@ class Simulator:
         self._world_ports.publish_clock(self.world.now_ns, last=True)
         self._publish_state()
 
-    def step(self) -> None:
-        """The ticks of one `~/step`."""
-        self._guard(lambda: self.advance(self.params.step_ticks))
+    def step(self, ticks: int | None = None) -> None:
+        """So many ticks, or those of one `~/step`."""
+        self._guard(lambda: self.advance(self.params.step_ticks if ticks is None else ticks))
         self._world_ports.publish_clock(self.world.now_ns, last=True)
         self._publish_state()
 
@@ -142,6 +153,11 @@ class Simulator:
         """World, time and noise as at the start."""
         self.world.reset()
         self._begin()
+
+    def load(self, playground: str) -> str:
+        """Another playground, as the parameter has it; the reason if it is refused."""
+        result = self.node.set_parameters_atomically([Parameter("playground", value=playground)])
+        return "" if result.successful else str(result.reason)
 
     def count_refusal(self) -> None:
         """A message was refused; the diagnostics tell how many."""
@@ -155,6 +171,8 @@ class Simulator:
         """Destroy the node; the world goes with it, and its log ends."""
         if self._log is not None:
             self._log.close()
+        if self._interfaces is not None:
+            self._interfaces.close()
         self.node.destroy_node()
 
     def _run_owed(self) -> None:

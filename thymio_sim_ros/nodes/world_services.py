@@ -75,11 +75,26 @@ class Controlled(Protocol):
     def pause(self, paused: bool) -> None:
         """Let time stand still or go on."""
 
-    def step(self) -> None:
-        """Let the ticks of one step pass."""
+    @property
+    def map_frame(self) -> str:
+        """Name of the world's frame."""
+
+    @property
+    def playground(self) -> str:
+        """The playground as it was given: name, path or text."""
+
+    @property
+    def playground_name(self) -> str:
+        """Its name."""
+
+    def step(self, ticks: int | None = None) -> None:
+        """Let so many ticks pass, or those of one step."""
 
     def reset(self) -> None:
         """World, time and noise as at the start."""
+
+    def load(self, playground: str) -> str:
+        """Another playground by name, path or text; the reason if it is refused."""
 
     def follow(self) -> None:
         """Robots have come or gone."""
