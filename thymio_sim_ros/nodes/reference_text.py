@@ -69,7 +69,7 @@ after the next step.
 INTERFACES = """\
 ## Services of `simulation_interfaces`
 
-Where that package is installed (`apt install ros-jazzy-simulation-interfaces`; it is in no wheel), the simulator has its
+Where that package is installed (`apt install ros-jazzy-simulation-interfaces`; no wheel has it), the simulator has its
 services, too, so that tools for other simulators of ROS work here. They answer with a code and a reason; tags, bounds
 and named poses, which the package knows besides, are refused as unsupported.
 """
