@@ -1,9 +1,10 @@
-"""The bridge's server beside the vendor's: python benchmarks/foxglove_latency.py [--seconds S] [--rate HZ] [--size B]
+"""The bridge's server beside the vendor's: python benchmarks/foxglove_latency.py [--rounds N] [--seconds S] [--rate HZ]
 
 Each library runs in a process of its own and sends the same stream; clients count here. Measured per scene: share of
 messages that arrived at healthy clients, latency from the call that publishes to the client's read, and CPU of the
-server's process per delivery, less what the same process needs to pace the stream for nobody. Libraries that are not
-installed are left out (foxglove-sdk, foxglove-websocket).
+server's process per delivery, less what the same process needs to pace the stream for nobody. The libraries take turns,
+and medians of the rounds are printed, so that other work on the machine meets all of them. Libraries that are not
+installed are left out (foxglove-sdk, foxglove-websocket). `foxglove_throughput.py` measures without pacing.
 """
 
 from __future__ import annotations
@@ -20,7 +21,9 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from contextlib import contextmanager
+from dataclasses import astuple, dataclass
+from pathlib import Path
 
 from websockets.asyncio.client import ClientConnection, connect
 
@@ -37,12 +40,13 @@ CHANNEL = {"topic": "/t", "encoding": "cdr", "schemaName": "t", "schema": "uint8
 
 
 def ticks(rate: float) -> Iterator[None]:
-    """One turn per message, with absolute deadlines, for ever."""
+    """One turn per message, with absolute deadlines, for ever; rate 0: as fast as it goes."""
     print("ready", flush=True)
     due = time.monotonic()
     while True:
-        due = next_due(due, rate)
-        time.sleep(max(0.0, due - time.monotonic()))
+        if rate:
+            due = next_due(due, rate)
+            time.sleep(max(0.0, due - time.monotonic()))
         yield
 
 
@@ -83,8 +87,9 @@ def serve_foxglove_websocket(port: int, rate: float, size: int) -> None:
             print("ready", flush=True)
             due = time.monotonic()
             while True:
-                due = next_due(due, rate)
-                await asyncio.sleep(max(0.0, due - time.monotonic()))
+                if rate:
+                    due = next_due(due, rate)
+                await asyncio.sleep(max(0.0, due - time.monotonic()) if rate else 0)
                 await server.send_message(number, 0, payload(size))
 
     asyncio.run(run())
@@ -113,13 +118,12 @@ SERVERS: dict[str, tuple[str, Callable[[int, float, int], None]]] = {
 
 @dataclass(frozen=True)
 class Result:
-    """One library in one scene; latencies in ms."""
+    """One library in one round of a scene; latencies in ms, CPU time of the server's process in µs per delivery."""
 
     arrived: float
     p50: float
     p99: float
-    cpu_s: float
-    deliveries: int
+    cpu_us: float
 
 
 async def subscribe(port: int) -> ClientConnection:
@@ -167,31 +171,41 @@ async def watch(port: int, seconds: float, healthy: int, stalled: int) -> list[l
     return seen
 
 
-def measure(library: str, options: argparse.Namespace, healthy: int, stalled: int) -> Result:
-    """Run one scene."""
+@contextmanager
+def running(library: str, rate: float, size: int) -> Iterator[tuple[int, int]]:
+    """A library's server in a process of its own: port and process id."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    command = [sys.executable, "-W", "ignore", __file__, "--serve", library, "--port", str(port)]
-    command += ["--rate", str(options.rate), "--size", str(options.size)]
+    command = [sys.executable, "-W", "ignore", str(Path(__file__).with_name("foxglove_latency.py"))]
+    command += ["--serve", library, "--port", str(port), "--rate", str(rate), "--size", str(size)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as server:
         assert server.stdout is not None
         try:
             if server.stdout.readline() != "ready\n":
                 raise SystemExit(f"{library} does not start")
-            before_s = cpu_s(server.pid)
-            scene = watch(port, options.seconds, healthy, stalled)
-            try:
-                seen = asyncio.run(asyncio.wait_for(scene, options.seconds + STUCK_S))
-            except TimeoutError:
-                seen = []
-            used_s = cpu_s(server.pid) - before_s
+            yield port, server.pid
         finally:
             server.kill()
+
+
+def measure(library: str, options: argparse.Namespace, healthy: int, stalled: int, idle_us: float = 0.0) -> Result:
+    """Run one scene; `idle_us`: CPU time per message that pacing takes."""
+    with running(library, options.rate, options.size) as (port, process):
+        before_s, started_s = cpu_s(process), time.monotonic()
+        scene = watch(port, options.seconds, healthy, stalled)
+        try:
+            seen = asyncio.run(asyncio.wait_for(scene, options.seconds + STUCK_S))
+        except TimeoutError:
+            seen = []
+        used_s, took_s = cpu_s(process) - before_s, time.monotonic() - started_s
     latencies = sorted(latency for one in seen for latency in one) or [float("nan")] * 2
     ranks = statistics.quantiles(latencies, n=100, method="inclusive")
     deliveries = sum(len(one) for one in seen)
+    sent = options.rate * took_s
     expected = options.rate * options.seconds * max(1, healthy)
-    return Result(deliveries / expected, ranks[49], ranks[98], used_s, deliveries)
+    return Result(
+        deliveries / expected, ranks[49], ranks[98], (used_s * 1e6 - idle_us * sent) / (deliveries or round(sent))
+    )
 
 
 def cpu_s(process: int) -> float:
@@ -204,7 +218,8 @@ def cpu_s(process: int) -> float:
 def main() -> None:
     """Print a table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--seconds", type=float, default=5.0)
     parser.add_argument("--rate", type=float, default=1000.0, help="messages per second")
     parser.add_argument("--size", type=int, default=1000, help="bytes per message")
     parser.add_argument("--serve", choices=SERVERS, help=argparse.SUPPRESS)
@@ -213,21 +228,21 @@ def main() -> None:
     if options.serve:
         SERVERS[options.serve][1](options.port, options.rate, options.size)
         return
+    libraries = [name for name, (module, _) in SERVERS.items() if importlib.util.find_spec(module) is not None]
     scenes = {"1 client": (1, 0), "10 clients": (10, 0), "1 beside a stalled one": (1, 1)}
-    print(f"{options.rate:g} messages/s of {options.size} bytes for {options.seconds:g} s")
-    print(f"{'library':20} {'scene':24} {'arrived':>8} {'p50 ms':>8} {'p99 ms':>8} {'CPU µs/delivery':>16}")
-    for library, (module, _) in SERVERS.items():
-        if importlib.util.find_spec(module) is None:
-            print(f"{library:20} not installed")
-            continue
-        idle = measure(library, options, 0, 0)
+    results: dict[tuple[str, str], list[Result]] = {}
+    for _ in range(options.rounds):
+        idle_us = {library: measure(library, options, 0, 0).cpu_us for library in libraries}
         for scene, (healthy, stalled) in scenes.items():
-            found = measure(library, options, healthy, stalled)
-            cost_us = (found.cpu_s - idle.cpu_s) * 1e6 / max(1, found.deliveries)
-            print(
-                f"{library:20} {scene:24} {found.arrived:8.1%} {found.p50:8.2f} {found.p99:8.2f} {cost_us:16.1f}",
-                flush=True,
-            )
+            for library in libraries:
+                found = measure(library, options, healthy, stalled, idle_us[library])
+                results.setdefault((scene, library), []).append(found)
+    print(f"{options.rate:g} messages/s of {options.size} bytes, medians of {options.rounds} rounds")
+    print(f"{'scene':24} {'library':20} {'arrived':>8} {'p50 ms':>8} {'p99 ms':>8} {'worst p99':>9} {'CPU µs':>8}")
+    for (scene, library), found in results.items():
+        arrived, p50, p99, cpu_us = (statistics.median(column) for column in zip(*map(astuple, found), strict=True))
+        worst = max(result.p99 for result in found)
+        print(f"{scene:24} {library:20} {arrived:8.1%} {p50:8.2f} {p99:8.2f} {worst:9.2f} {cpu_us:8.1f}")
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import gc
 import random
+import socket
 from collections import Counter
 from collections.abc import Iterator
 
@@ -16,7 +17,7 @@ from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.bridge.client_state import ClientState
 from thymio_sim_ros.bridge.outlet import Outlet
-from thymio_sim_ros.bridge.transport import SharedConnection
+from thymio_sim_ros.bridge.transport import SharedConnection, SharedTransport
 
 FRAMES = 10_000
 VISITS = 500
@@ -81,11 +82,13 @@ def test_clients_that_come_and_go_leave_nothing_behind() -> None:
         async with bridge() as server:
             await visit(server, 1)
             await server.until(lambda: server.server.client_count == 0)
-            before, tasks = census(), len(asyncio.all_tasks())
+            before, tasks, things = census(), len(asyncio.all_tasks()), len(gc.get_objects())
             for number in range(VISITS):
                 await visit(server, number)
             await server.until(lambda: server.server.client_count == 0 and len(asyncio.all_tasks()) == tasks)
             assert census() == before
+            server.sink.events.clear()
+            assert len(gc.get_objects()) < things + VISITS
 
     asyncio.run(scenario())
 
@@ -107,7 +110,7 @@ async def visit(server: Bridge, number: int) -> None:
 def census() -> Counter[type]:
     """Living objects of what a connection costs."""
     gc.collect()
-    kinds = (ClientState, Outlet, SharedConnection, asyncio.Task)
+    kinds = (ClientState, Outlet, SharedConnection, SharedTransport, asyncio.Task, socket.socket)
     return Counter(type(thing) for thing in gc.get_objects() if type(thing) in kinds)
 
 

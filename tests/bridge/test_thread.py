@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import socket
+import ssl
 import threading
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,8 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerInfo, ServerThread, wire
+from tests.bridge.certificates import make_certificate
+from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerInfo, ServerSettings, ServerThread, wire
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.bridge.thread import listen
@@ -164,6 +166,31 @@ def test_data_does_not_wait_for_a_busy_event_loop() -> None:
         assert message.time_ns == 7
         sink.may_go_on.set()
     server.close()
+
+
+def test_data_of_another_thread_arrives_by_tls_too(tmp_path: Path) -> None:
+    cert, key = make_certificate(tmp_path)
+    tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    tls.load_cert_chain(cert, key)
+    sink = Sink()
+    server = ServerThread(ServerInfo("test", ()), sink, port=0, settings=ServerSettings(tls=tls))
+    server.post(ev.AddChannels((CHANNEL,)))
+    trust = ssl.create_default_context(cafile=cert)
+    with connect(f"wss://localhost:{server.port}", subprotocols=SUBPROTOCOLS, ssl=trust) as client:  # type: ignore[arg-type]  # plain strings
+        client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+        assert sink.subscribed.wait(DEADLINE_S)
+        for number in range(100):
+            server.post(ev.Data(1, number, number.to_bytes(4, "little") * 500))
+        numbers: list[int] = []
+        while len(numbers) < 100:
+            message = wire.decode_server(client.recv(timeout=DEADLINE_S))
+            if isinstance(message, ms.MessageData):
+                assert message.payload == message.time_ns.to_bytes(4, "little") * 500
+                numbers.append(message.time_ns)
+        assert numbers == list(range(100))
+        server.close()
+        with pytest.raises(ConnectionClosed, match="1001"):
+            client.recv(timeout=DEADLINE_S)
 
 
 def test_closing_ends_the_thread_and_says_goodbye_to_clients() -> None:

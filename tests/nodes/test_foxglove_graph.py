@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
 from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.nodes import foxglove_assets
 
 
 def flip(request, response):
@@ -31,3 +33,29 @@ def test_the_connection_graph_names_publishers_subscribers_and_providers(ros, st
 def test_an_asset_that_is_not_there_is_an_error_for_its_request(studio):
     studio.send(ms.FetchAsset("package://std_msgs/no.stl", 3))
     assert studio.next(ms.AssetResponse) == ms.AssetResponse(3, b"", "package://std_msgs/no.stl does not exist")
+
+
+def test_a_node_that_leaves_is_taken_from_the_graph(ros, studio):
+    leaver = Node("leaver", context=ros.context, enable_rosout=False)
+    leaver.create_publisher(String, "/chat", 10)
+    leaver.create_service(SetBool, "/flip", flip)
+    studio.service("/flip")
+    studio.channel("/chat")
+    studio.send(ms.SubscribeConnectionGraph())
+    studio.next(
+        ms.ConnectionGraphUpdate,
+        lambda update: ms.AdvertisedService("/flip", ("/leaver",)) in update.advertised_services,
+    )
+    leaver.destroy_node()
+    gone = {"/chat", "/flip"}
+    while gone:
+        update = studio.next(ms.ConnectionGraphUpdate)
+        gone -= {*update.removed_topics, *update.removed_services}
+
+
+def test_a_mesh_of_an_installed_package_is_fetched(studio, monkeypatch, tmp_path):
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "robot" / "body.stl").write_bytes(bytes(range(256)) * 1000)
+    monkeypatch.setattr(foxglove_assets, "share_folders", lambda: [tmp_path])
+    studio.send(ms.FetchAsset("package://robot/body.stl", 4))
+    assert studio.next(ms.AssetResponse) == ms.AssetResponse(4, bytes(range(256)) * 1000)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import shutil
 import ssl
-import subprocess
 
 import pytest
 from rclpy.context import Context
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool, UInt32
+from websockets.exceptions import ConnectionClosed
 
+from tests.bridge.certificates import make_certificate
 from tests.bridge.studio import Studio
 from thymio_sim_ros.bridge import Capability
 from thymio_sim_ros.bridge import messages as ms
@@ -23,13 +23,7 @@ from thymio_sim_ros.nodes.life import StartError
 @pytest.fixture
 def certificate(tmp_path):
     """A self-signed certificate for localhost and its key."""
-    openssl = shutil.which("openssl")
-    if openssl is None:
-        pytest.skip("no openssl here")
-    cert, key = tmp_path / "cert.pem", tmp_path / "key.pem"
-    command = [openssl, "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes"]
-    names = ["-subj", "/CN=localhost", "-addext", "subjectAltName=DNS:localhost", "-days", "2"]
-    subprocess.run([*command, *names, "-keyout", key, "-out", cert], check=True, capture_output=True)
+    cert, key = make_certificate(tmp_path)
     return str(cert), str(key)
 
 
@@ -78,6 +72,16 @@ def test_what_is_not_announced_is_refused(ros, bridge):
         assert studio.next(ms.ServerInfo).capabilities == (Capability.SERVICES,)
         studio.advertise(1, "/cmd_vel", "geometry_msgs/msg/Twist")
         assert studio.next(ms.Status).message == "this server does not offer clientPublish"
+
+
+def test_a_frame_longer_than_the_user_allows_ends_its_connection(ros, bridge):
+    port = bridge(max_message_size=1024).port
+    with Studio(port, ros.until) as studio:
+        studio.send(ms.GetParameters(("x" * 1024,), "long"))
+        with pytest.raises(ConnectionClosed, match="1009"):
+            studio.next(ms.ParameterValues)
+    with Studio(port, ros.until) as studio:
+        assert studio.next(ms.ServerInfo).name == "thymio_sim_ros"
 
 
 def test_the_number_of_clients_is_published_where_it_is_wanted(ros, bridge):

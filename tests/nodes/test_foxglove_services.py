@@ -74,6 +74,21 @@ def test_a_service_that_does_not_answer_fails_in_the_end(ros, bridge, monkeypatc
     assert failure.call_id == 1
 
 
+def test_unlisted_and_hidden_services_are_not_offered(ros, bridge):
+    for name in ("/arm/flip", "/arm/_hidden", "/leg/flip"):
+        ros.node.create_service(SetBool, name, flip)
+    with Studio(bridge(service_whitelist=("/arm/.*",)).port, ros.until) as studio:
+        studio.service("/arm/flip")
+        assert set(studio.services) == {"/arm/flip"}
+
+
+def test_hidden_and_parameter_services_are_offered_on_demand(ros, bridge, peer):
+    ros.node.create_service(SetBool, "/arm/_hidden", flip)
+    with Studio(bridge(include_hidden=True).port, ros.until) as studio:
+        for name in ("/arm/_hidden", "/peer/get_parameters"):
+            assert studio.service(name).name == name
+
+
 def test_parameter_services_are_not_offered(ros, studio, peer):
     ros.node.create_service(SetBool, "/flip", flip)
     studio.service("/flip")

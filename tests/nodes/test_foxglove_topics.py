@@ -62,6 +62,22 @@ def test_a_best_effort_publisher_is_heard(ros, studio):
     assert studio.next(ms.MessageData).subscription_id == 1
 
 
+def test_the_user_decides_what_is_received_without_guarantee(ros, bridge):
+    for topic in ("/fast", "/sure"):
+        ros.node.create_publisher(String, topic, 10)
+    port = bridge(best_effort_qos_topic_whitelist=("/fast",)).port
+    with Studio(port, ros.until) as studio:
+        studio.subscribe(1, "/fast")
+        studio.subscribe(2, "/sure")
+        for topic, expected in (
+            ("/fast", ReliabilityPolicy.BEST_EFFORT),
+            ("/sure", ReliabilityPolicy.RELIABLE),
+        ):
+            ros.until(lambda topic=topic: ros.node.get_subscriptions_info_by_topic(topic))
+            (info,) = ros.node.get_subscriptions_info_by_topic(topic)
+            assert info.qos_profile.reliability == expected
+
+
 def test_a_latched_message_is_given_to_every_newcomer_once(ros, bridge):
     publisher = ros.node.create_publisher(String, "/description", LATCHED)
     publisher.publish(String(data="old"))
@@ -98,6 +114,12 @@ def test_hidden_and_unlisted_topics_are_not_offered(ros, bridge):
             ros.node.create_publisher(Bool, topic, 1)
         studio.channel("/list/shown")
         assert set(studio.channels) == {"/list/shown"}
+
+
+def test_hidden_topics_are_offered_on_demand(ros, bridge):
+    ros.node.create_publisher(Bool, "/_hidden", 1)
+    with Studio(bridge(include_hidden=True).port, ros.until) as studio:
+        assert studio.channel("/_hidden").schema_name == "std_msgs/msg/Bool"
 
 
 @pytest.mark.skipif(not tf_messages.available(), reason="no transforms here")
