@@ -222,10 +222,11 @@ class OwnRules:
             for rule in rules
             if all(name in self._addresses for name in rule.variables)
         ]
-        self._seen: list[list[Sequence[int]] | None] = [None] * len(self._rules)
+        self._blind = {rule for rule, _ in self._rules}
+        """Rules that have not shown anything."""
         self._shown: dict[str, tuple[int, ...]] = {}
         self._taken: set[str] = set()
-        self._last: list[Sequence[int]] = []
+        self._last: list[Sequence[int]] | None = None
         self.is_moving = True
         """Whether the next look may show something else though the variables stay as they are."""
         self._is_silent = False
@@ -246,22 +247,23 @@ class OwnRules:
     def look(self, memory: Sequence[int]) -> Iterable[Command]:
         """One look at the variables: what changes on lights and loudspeaker."""
         parts = [memory[begin:end] for begin, end in self._spans]
-        if parts == self._last and not self.is_moving:
+        changed = {number for number, part in enumerate(parts) if self._last is None or part != self._last[number]}
+        if not changed and not self.is_moving:
             return ()
         self._last = parts
-        commands = [*self._lights(parts), *self._sounds(memory)]
+        commands = [*self._lights(parts, changed), *self._sounds(memory)]
         self.is_moving = any(rule.is_moving for rule, _ in self._rules)
         return commands
 
-    def _lights(self, parts: Sequence[Sequence[int]]) -> Iterator[Command]:
-        for number, (rule, places) in enumerate(self._rules):
-            words = [parts[part][begin:end] for part, begin, end in places]
-            seen = self._seen[number]
-            if words == seen and not rule.is_moving:
+    def _lights(self, parts: Sequence[Sequence[int]], changed: set[int]) -> Iterator[Command]:
+        for rule, places in self._rules:
+            if not rule.is_moving and not any(part in changed for part, _, _ in places):
                 continue
-            if seen is None and places and not any(map(any, words)):
-                continue  # nothing was measured since the reset
-            self._seen[number] = words
+            words = [parts[part][begin:end] for part, begin, end in places]
+            if rule in self._blind:
+                if places and not any(map(any, words)):
+                    continue  # nothing was measured since the reset
+                self._blind.discard(rule)
             for group, levels in rule.show(words).items():
                 if group not in self._taken and levels != self._shown.get(group, (0,) * len(levels)):
                     self._shown[group] = levels

@@ -6,14 +6,19 @@ wall clock, which its caller takes (architecture section 5).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
-__all__ = ["TICK_NS", "Pacer", "Schedule", "SimClock"]
+__all__ = ["NEVER_NS", "TICK_NS", "Pacer", "Schedule", "SimClock"]
 
 TICK_NS = 10_000_000
 """One step of the world: 10 ms, the fastest event of the robot (thymio-robot.md section 3)."""
 
+NEVER_NS = 1 << 62
+"""A time that never comes."""
+
 _SECOND_NS = 1_000_000_000
+_CYCLE_TICKS = _SECOND_NS // TICK_NS
+"""After so many ticks all periods that divide a second begin anew."""
 
 
 class SimClock:
@@ -37,19 +42,34 @@ class Schedule:
     every tick in turn.
     """
 
-    __slots__ = ("_next_ns", "_periods_ns")
+    __slots__ = ("_cycle", "_next_ns", "_odd_ns", "_periods_ns")
 
     def __init__(self, periods_and_phases_ns: Iterable[tuple[int, int]]) -> None:
-        pairs = list(periods_and_phases_ns)
-        self._periods_ns = [period for period, _ in pairs]
-        self._next_ns = [phase or period for period, phase in pairs]
+        cycle: list[set[int]] = [set() for _ in range(_CYCLE_TICKS)]
+        self._periods_ns: dict[int, int] = {}
+        """What does not fit into the cycle, by number."""
+        self._next_ns: dict[int, int] = {}
+        for number, (period_ns, phase_ns) in enumerate(periods_and_phases_ns):
+            first_ns = phase_ns or period_ns
+            if _CYCLE_TICKS * TICK_NS % period_ns == 0 and first_ns <= period_ns:
+                for time_ns in range(first_ns, first_ns + _CYCLE_TICKS * TICK_NS, period_ns):
+                    cycle[-(-time_ns // TICK_NS) % _CYCLE_TICKS].add(number)
+            else:
+                self._periods_ns[number], self._next_ns[number] = period_ns, first_ns
+        self._cycle = [sorted(due) for due in cycle]
+        self._odd_ns = min(self._next_ns.values(), default=NEVER_NS)
+        """When the next thing happens that does not fit."""
 
-    def due(self, now_ns: int) -> list[int]:
-        """Numbers of the things that happen in the tick that ends now."""
-        due = [number for number, next_ns in enumerate(self._next_ns) if next_ns <= now_ns]
-        for number in due:
+    def due(self, now_ns: int) -> Sequence[int]:
+        """Numbers of the things that happen in the tick that ends now, in order."""
+        due = self._cycle[now_ns // TICK_NS % _CYCLE_TICKS]
+        if now_ns < self._odd_ns:
+            return due
+        odd = [number for number, next_ns in self._next_ns.items() if next_ns <= now_ns]
+        for number in odd:
             self._next_ns[number] += self._periods_ns[number]
-        return due
+        self._odd_ns = min(self._next_ns.values())
+        return sorted(due + odd)
 
 
 class Pacer:

@@ -70,17 +70,17 @@ class Shared:
 class _View:
     """A robot as one plug-in sees it; satisfies `SensorView` and `ActuatorView`."""
 
-    __slots__ = ("_robot", "_states", "_world", "memory", "noise", "proximity_model")
+    __slots__ = ("_clock", "_robot", "_states", "_world", "memory", "noise", "proximity_model")
 
     def __init__(self, robot: Robot, world: Shared, noise: Noise) -> None:
-        self._robot, self._world, self._states = robot, world, robot.states
+        self._robot, self._world, self._states, self._clock = robot, world, robot.states, world.clock
         self.noise = noise
         self.memory: dict[str, Any] = {}
         self.proximity_model = world.proximity_model
 
     @property
     def now_ns(self) -> int:
-        return self._world.clock.now_ns
+        return self._clock.now_ns
 
     @property
     def wheels(self) -> Wheels:
@@ -222,7 +222,10 @@ class Robot:
 
     def levels(self, now_ns: int) -> list[float]:
         """How loud is what sounds on it."""
-        levels = [SPEAKER_SHARE * speaker.sounding_level for speaker in self._speakers if speaker.sounding_level]
+        levels = []
+        for speaker in self._speakers:
+            if speaker.sounding_level:
+                levels.append(SPEAKER_SHARE * speaker.sounding_level)
         if now_ns <= self._room.clap_ends_ns:
             levels.append(self._room.clap_level)
         return levels
@@ -297,7 +300,7 @@ class Robot:
 
     def measure(self, due: Sequence[int]) -> list[tuple[str, str, Reading]]:
         """The readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""
-        woken = self.take_woken()
+        woken = self.take_woken() if self._woken else ()
         readings = []
         for number in sorted({*woken, *due}) if woken else due:
             sensor, view = self.sensors[number]

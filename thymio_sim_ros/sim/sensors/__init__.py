@@ -2,7 +2,7 @@
 
 A module exports SENSOR. `measure` reads a view and returns a reading, or None when there is nothing new. All
 sensors that are due in a tick measure in name order, so `ground` comes before `proximity`, whose `prox` event
-then finds both stored. A sensor of rare things has no period and is woken by what it `wakes_on`.
+then finds both stored. A sensor of rare things measures every `NEVER_NS` and is woken by what it `wakes_on`.
 """
 
 from __future__ import annotations
@@ -14,15 +14,12 @@ from typing import Any
 
 from thymio_sim_ros import registry
 from thymio_sim_ros.sim.aseba_face import NO_SENSOR_FACE, AsebaFace
+from thymio_sim_ros.sim.clock import NEVER_NS
 from thymio_sim_ros.sim.guards import quiet_sensor
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["NEVER_NS", "Sensor", "all_sensors"]
-
-NEVER_NS = 1 << 62
-"""Period of a sensor that only wakes."""
-
 
 @dataclass(frozen=True, slots=True)
 class Sensor:
