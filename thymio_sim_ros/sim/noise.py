@@ -55,7 +55,9 @@ class Noise:
 
     def uniform(self, low: float, high: float) -> float:
         """Even between low and high; their middle when noise is off."""
-        return low + (high - low) * self._draw() if self._enabled else (low + high) / 2
+        if not self._enabled:
+            return (low + high) / 2
+        return low + (high - low) * (self._ahead.pop() if self._ahead else self._random.random())
 
     def draw_ahead(self, count: int) -> bytes | Values:
         """The next numbers, as they are or as 8 bytes each for `evens`; to be given back unless used."""

@@ -25,7 +25,7 @@ class Wheels:
     the loops that the motors follow, if they do not follow at once.
     """
 
-    __slots__ = ("angles_rad", "commanded", "control", "ground", "odometry", "speeds_m_s")
+    __slots__ = ("angles_rad", "commanded", "control", "ground", "place", "speeds_m_s")
 
     def __init__(self) -> None:
         self.commanded = (0.0, 0.0)
@@ -33,7 +33,13 @@ class Wheels:
         self.ground = (0.0, 0.0)
         self.speeds_m_s = (0.0, 0.0)
         self.angles_rad = (0.0, 0.0)
-        self.odometry = Pose(0.0, 0.0, 0.0)
+        self.place = (0.0, 0.0, 0.0)
+        """The odometry's x, y and yaw."""
+
+    @property
+    def odometry(self) -> Pose:
+        """Where the wheels have brought the robot, by their count alone."""
+        return Pose(*self.place)
 
     @property
     def twist(self) -> Twist:
@@ -45,7 +51,10 @@ class Wheels:
         """Aim at speeds; the floor gets them times slip. Both are limited: far above, nothing of the slip is left."""
         left, right = commanded
         ground = (left * slip[0], right * slip[1])
-        if max(left, right, *ground) > limit_m_s or min(left, right, *ground) < -limit_m_s:
+        if not (
+            -limit_m_s <= left <= limit_m_s and -limit_m_s <= right <= limit_m_s
+            and -limit_m_s <= ground[0] <= limit_m_s and -limit_m_s <= ground[1] <= limit_m_s
+        ):  # fmt: skip
             commanded = (_limited(left, limit_m_s), _limited(right, limit_m_s))
             ground = (_limited(ground[0], limit_m_s), _limited(ground[1], limit_m_s))
         self.commanded, self.ground = commanded, ground
@@ -63,18 +72,16 @@ class Wheels:
         if left == 0.0 and right == 0.0:
             return
         way, turn = (left + right) / 2 * dt_s, (right - left) / WHEEL_TRACK_M * dt_s
-        start = self.odometry
-        heading = start.yaw_rad + turn / 2
-        self.odometry = Pose(
-            start.x_m + way * math.cos(heading), start.y_m + way * math.sin(heading), start.yaw_rad + turn
-        )
+        x_m, y_m, yaw_rad = self.place
+        heading = yaw_rad + turn / 2
+        self.place = (x_m + way * math.cos(heading), y_m + way * math.sin(heading), yaw_rad + turn)
         angle_left, angle_right = self.angles_rad
         per_m = dt_s / WHEEL_RADIUS_M
         self.angles_rad = (angle_left + left * per_m, angle_right + right * per_m)
 
     def reset_odometry(self) -> None:
         """Start counting from zero, here."""
-        self.odometry = Pose(0.0, 0.0, 0.0)
+        self.place = (0.0, 0.0, 0.0)
 
 
 def _limited(speed_m_s: float, limit_m_s: float) -> float:
@@ -119,7 +126,7 @@ class WheelArrays:
         pairs = zip(*(zip(*values.tolist(), strict=True) for values in columns), strict=True)
         for wheels, values, place in zip(self._wheels, pairs, zip(*self._odometry.tolist(), strict=True), strict=True):
             wheels.commanded, wheels.ground, wheels.speeds_m_s, wheels.angles_rad = values
-            wheels.odometry = Pose(*place)
+            wheels.place = place
 
     def take(self) -> None:
         """Read what the wheels are, if they may have been changed."""
@@ -130,8 +137,7 @@ class WheelArrays:
         self._ground = _rows([wheels.ground for wheels in self._wheels], 2)
         self._speeds = _rows([wheels.speeds_m_s for wheels in self._wheels], 2)
         self._angles = _rows([wheels.angles_rad for wheels in self._wheels], 2)
-        places = [wheels.odometry for wheels in self._wheels]
-        self._odometry = _rows([(place.x_m, place.y_m, place.yaw_rad) for place in places], 3)
+        self._odometry = _rows([wheels.place for wheels in self._wheels], 3)
 
     def drive(self, commanded: Values, slip: Values, limit_m_s: float) -> None:
         """As `Wheels.drive`."""

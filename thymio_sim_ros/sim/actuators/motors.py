@@ -67,11 +67,11 @@ def _update(state: MotorState, view: ActuatorView, dt_s: float) -> None:
     if state.ends_ns is not None and view.now_ns >= state.ends_ns:
         state.speeds_m_s = state.targets_m_s
         state.ends_ns = None
-    noise = view.noise
+    noise, wheels = view.noise, view.wheels
     slip = (noise.uniform(*thymio2.SLIP), noise.uniform(*thymio2.SLIP))
-    view.wheels.control = state.control
-    speeds = state.speeds_m_s if state.control is None else _controlled(state, view.wheels.speeds_m_s, dt_s)
-    view.wheels.drive(speeds, slip, thymio2.MAX_SPEED_M_S)
+    wheels.control = state.control
+    speeds = state.speeds_m_s if state.control is None else _controlled(state, wheels.speeds_m_s, dt_s)
+    wheels.drive(speeds, slip, thymio2.MAX_SPEED_M_S)
 
 
 def _controlled(state: MotorState, wheels_m_s: Sequence[float], dt_s: float) -> tuple[float, float]:
