@@ -222,10 +222,7 @@ class Robot:
 
     def levels(self, now_ns: int) -> list[float]:
         """How loud is what sounds on it."""
-        levels = []
-        for speaker in self._speakers:
-            if speaker.sounding_level:
-                levels.append(SPEAKER_SHARE * speaker.sounding_level)
+        levels = [SPEAKER_SHARE * speaker.sounding_level for speaker in self._speakers if speaker.sounding_level]
         if now_ns <= self._room.clap_ends_ns:
             levels.append(self._room.clap_level)
         return levels

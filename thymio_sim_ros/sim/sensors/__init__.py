@@ -21,6 +21,7 @@ from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["NEVER_NS", "Sensor", "all_sensors"]
 
+
 @dataclass(frozen=True, slots=True)
 class Sensor:
     """One sensor; it measures every `period_ns`, counted from `phase_ns`.
