@@ -1,9 +1,9 @@
 """The bodies of many robots at once: the sums of `RobotBody` on arrays.
 
-pymunk hands over all bodies in one call (`pymunk.batch`), and takes their speeds back in one. While a fleet drives, its
-arrays are the truth, and a body asks it to `tell` when somebody looks; before a body is changed from outside, `release`
-makes the body the truth until the next tick. Setting speeds wakes what sleeps in the same call, therefore robots are
-set one by one where there are things that sleep.
+All robots glide; those that may reach something soon (`Lookout`) are engaged: their bodies are in the space as well,
+which tells who touches anything, and moves who does. pymunk hands over all bodies in one call (`pymunk.batch`). While a
+fleet drives, its arrays are the truth, and a body asks it to `tell` when somebody looks; before a body is changed from
+outside, `release` makes the body the truth until the next tick.
 """
 
 from __future__ import annotations
@@ -18,7 +18,10 @@ from pymunk import batch
 
 from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.nearby import Mover
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS
+from thymio_sim_ros.sim.physics.doors import DoorBody
+from thymio_sim_ros.sim.physics.lookout import LOOK_ROUND_TICKS, Lookout
 from thymio_sim_ros.sim.physics.movables import MovableBody
 from thymio_sim_ros.sim.physics.one_by_one import Setter
 from thymio_sim_ros.sim.physics.robots import MOMENT_KG_M2, PUSH_N_S_M, RobotBody
@@ -32,23 +35,23 @@ _Fields = batch.BodyFields
 _SPEEDS = _Fields.VELOCITY | _Fields.ANGULAR_VELOCITY
 _FORCES = _SPEEDS | _Fields.FORCE | _Fields.TORQUE
 _STATE = _Fields.BODY_ID | _Fields.POSITION | _Fields.ANGLE | _SPEEDS
-_X, _Y, _ANGLE, _VX, _VY, _TURNING = range(6)
-"""Columns of the state."""
+"""Columns x, y, angle, vx, vy, rate of turn."""
+_NOBODY: Indices = np.zeros(0, dtype=np.intp)
 
 
 class Fleet:
     """Robots of one space, always the same. Between ticks their state lies in arrays, or in bodies, or in both."""
 
     def __init__(
-        self, space: pymunk.Space, bodies: Sequence[RobotBody], movables: Sequence[MovableBody], *, is_alone: bool
+        self,
+        space: pymunk.Space,
+        bodies: Sequence[RobotBody],
+        movables: Sequence[MovableBody],
+        doors: Sequence[DoorBody],
+        lookout: Lookout,
     ) -> None:
-        """`is_alone` when nothing but robots moves in the space."""
-        self._space, self._bodies, self._is_alone = space, tuple(bodies), is_alone
-        self._movables = tuple(movables)
-        self._loads: list[MovableBody] = []
-        self._load_slots = np.zeros(0, dtype=np.intp)
-        self._load_state = np.zeros((0, 6))
-        self._setter = Setter([])
+        self._space, self._bodies, self._lookout = space, tuple(bodies), lookout
+        self._movables, self._doors = tuple(movables), tuple(doors)
         count = len(self._bodies)
         self.driven = np.zeros((2, count))
         """Speed over ground that each wheel gives, m/s: left, then right."""
@@ -59,15 +62,35 @@ class Fleet:
         self._begun: set[RobotBody] = set()
         """Who may have a contact that is new."""
         self._index = {body: index for index, body in enumerate(self._bodies)}
-        self._touching, self._is_free = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
-        self._angle = self._speed = self._spin = self._heading = np.zeros(count)
-        self._state = np.zeros((count, 6))
-        self._stands = np.ones(count, dtype=bool)
+        self._is_touching, self._is_free = np.zeros(count, dtype=bool), np.ones(count, dtype=bool)
+        self._touching = self._held = _NOBODY
+        self._places = np.zeros((3, count))
+        """Rows x, y, yaw."""
+        self._motion = np.zeros((3, count))
+        """Rows vx, vy, rate of turn; of those who were touching when the engine was asked last."""
+        self._target = np.zeros((3, count))
+        """The same as the wheels want it."""
+        self._rolling = (np.zeros(count),) * 4
+        """Speed and rate of turn that the wheels give in this tick, and the turn in half a sub-step and in a whole."""
+        self._speed = self._spin = self._cos = self._sin = np.zeros(count)
+        self._stands, self._fallen = np.ones(count, dtype=bool), _NOBODY
+        self._engaged = _NOBODY
+        self._row = np.zeros(count, dtype=np.intp)
+        """Where in `_engaged` each of them is."""
+        self._setter = Setter([])
+        self._look_round_in = 0
+        self._was_restless = False
+        self._loads: list[MovableBody] = []
+        """Things that have not fallen."""
+        self._load_slots = np.zeros(0, dtype=np.intp)
+        self._load_state = np.zeros((0, 6))
+        self._is_load_moving = self._is_load_fast = False
         self._all = np.zeros((0, 6))
-        self._ids: npt.NDArray[np.uintp] = np.zeros(0, dtype=np.uintp)
-        self._slots = np.zeros(0, dtype=np.intp)
+        """The state of all bodies of the space, when it was asked last."""
+        self._ids = b""
+        self._slots = np.zeros(count, dtype=np.intp)
+        """Where in `_all` each engaged robot is."""
         self._read = batch.Buffer()
-        self._written = batch.Buffer()
         self._is_released = True
         self.is_told = True
         """Whether the bodies know what the last tick has made of them."""
@@ -82,24 +105,29 @@ class Fleet:
 
     @property
     def poses(self) -> Values:
-        """Where the robots are: rows x, y, yaw."""
+        """Where the robots are: rows x, y, yaw. Not to be changed; the next tick makes a new one."""
         if self._is_released:
             self._take()
-        return self._state[:, :3]
+        return self._places.T
 
     @property
     def fallen(self) -> Indices:
         """The numbers of those who have fallen."""
         if self._is_released:
             self._take()
-        return np.flatnonzero(~self._stands)
+        return self._fallen
+
+    @property
+    def needs_engine(self) -> bool:
+        """Whether there is anything for the engine to do in this tick."""
+        return len(self._engaged) > 0 or self._is_load_moving or self._was_restless
 
     def tell(self) -> None:
         """Write to the bodies what the last tick has made of them."""
         if self.is_told:
             return
         self.is_told = True
-        columns = (self._state[:, :3], self._speed, self._spin, self._is_free)
+        columns = (self._places.T, self._speed, self._spin, self._is_free)
         values = zip(self._bodies, *(column.tolist() for column in columns), strict=True)
         for body, (x_m, y_m, angle), speed, spin, is_free in values:
             body.take_over(Pose(x_m, y_m, angle), speed, spin, is_free=is_free)
@@ -110,127 +138,176 @@ class Fleet:
         self._is_released = True
         self.changed.update(self._bodies)
 
-    def begin_tick(self) -> None:
+    def begin_tick(self, *, do_doors_move: bool) -> None:
         """As `RobotBody.begin_tick`."""
         if self._is_released:
             self._take()
         self._look_at_contacts()
-        self._is_free = ~self._touching
+        is_restless = do_doors_move or self._is_load_fast
+        if self._look_round_in == 0 or is_restless != self._was_restless:
+            self._look_round(is_restless=is_restless)
+        self._look_round_in -= 1
+        self._is_free = ~self._is_touching
+        self._held = self._touching
         self.covered = self.driven.copy()
-        touching = np.flatnonzero(self._touching)
-        self.covered[:, touching] = 0.0
+        if len(self._touching):
+            self.covered[:, self._touching] = 0.0
         for body in self._begun:
             for key, contact in body.touching.items():
                 if contact.is_new:
                     body.touching[key] = replace(contact, is_new=False)
         self._begun.clear()
-
-    def push(self) -> None:
-        """As `RobotBody.push`."""
         left, right = self.driven
         speed, spin = (left + right) / 2, (right - left) / thymio2.WHEEL_TRACK_M
-        if not self._stands.all():
-            speed, spin = speed * self._stands, spin * self._stands
-        heading = self._angle + spin * (SUB_STEP_S / 2)
-        touching = np.flatnonzero(self._touching)
-        if len(touching) == 0:
-            self._heading, self._speed, self._spin = heading, speed, spin
-            self._set(_SPEEDS, np.stack((speed * np.cos(heading), speed * np.sin(heading), spin), axis=1))
+        if len(self._fallen):
+            speed[self._fallen] = spin[self._fallen] = 0.0
+        self._rolling = speed, spin, spin * (SUB_STEP_S / 2), spin * SUB_STEP_S
+        self.is_told = False
+
+    def push(self) -> None:
+        """As `RobotBody.push`; and let all glide."""
+        x, y, angle = self._places
+        speed, spin, half_turn, turn = self._rolling
+        heading = angle + half_turn
+        touching = self._touching
+        if len(touching):
+            heading[touching] += self._motion[2, touching] * SUB_STEP_S
+        self._cos, self._sin = np.cos(heading), np.sin(heading)
+        target = self._target
+        np.multiply(speed, self._cos, out=target[0])
+        np.multiply(speed, self._sin, out=target[1])
+        target[2] = spin
+        self._places = places = np.empty_like(self._places)
+        np.add(x, target[0] * SUB_STEP_S, out=places[0])
+        np.add(y, target[1] * SUB_STEP_S, out=places[1])
+        np.add(angle, turn, out=places[2])
+        if len(self._engaged) == 0:
             return
-        state = self._state[touching]
-        turning = state[:, _TURNING]
-        heading[touching] += turning * SUB_STEP_S
-        cos, sin = np.cos(heading), np.sin(heading)
-        motion = np.zeros((len(self._bodies), 6))
-        motion[:, 0], motion[:, 1], motion[:, 2] = speed * cos, speed * sin, spin
-        push = (motion[touching, :2] - state[:, _VX:_TURNING]) * PUSH_N_S_M
-        force = np.hypot(push[:, 0], push[:, 1])
-        push *= (thymio2.DRIVE_FORCE_N / np.maximum(thymio2.DRIVE_FORCE_N, force))[:, None]
-        motion[touching, 3:5] = push
-        motion[touching, 5] = (spin[touching] - turning) * (MOMENT_KG_M2 / SUB_STEP_S)
-        motion[touching, :3] = state[:, _VX:]
-        speed[touching], spin[touching] = self._speed[touching], self._spin[touching]
-        self._heading, self._speed, self._spin = heading, speed, spin
-        self._set(_FORCES, motion)
+        if len(touching) == 0:
+            self._setter.set(_SPEEDS, target[:, self._engaged].T)
+            return
+        rows = np.zeros((6, len(self._engaged)))
+        rows[:3] = target[:, self._engaged]
+        motion = self._motion[:, touching]
+        lack = target[:, touching] - motion
+        push = lack[:2] * PUSH_N_S_M
+        push *= thymio2.DRIVE_FORCE_N / np.maximum(thymio2.DRIVE_FORCE_N, np.hypot(push[0], push[1]))
+        lack[2] *= MOMENT_KG_M2 / SUB_STEP_S
+        where = self._row[touching]
+        rows[:3, where], rows[3:5, where], rows[5, where] = motion, push, lack[2]
+        self._setter.set(_FORCES, rows.T)
 
     def settle(self, earlier: int) -> None:
         """As `RobotBody.settle`."""
-        self._look_at_contacts()
-        self._angle = self._angle + self._spin * SUB_STEP_S
-        held = np.flatnonzero(self._touching | ~self._is_free)
+        if self.changed:
+            self._look_at_contacts()
+            self._held = np.flatnonzero(self._is_touching | ~self._is_free)
+        if earlier == 0:
+            self._speed, self._spin = self._rolling[:2]
+            if len(self._held):
+                self._speed, self._spin = self._speed.copy(), self._spin.copy()
+        held = self._held
         if len(held) == 0:
-            if earlier == SUB_STEPS - 1:
-                self._get()
             return
         self._get()
         begun = held[self._is_free[held]]
-        self.covered[:, begun] = self.driven[:, begun] * (earlier / SUB_STEPS)
-        self._is_free[held] = False
-        state, heading = self._state[held], self._heading[held]
-        self._angle[held] = state[:, _ANGLE]
-        self._spin[held] = spin = state[:, _TURNING]
-        self._speed[held] = speed = state[:, _VX] * np.cos(heading) + state[:, _VY] * np.sin(heading)
+        if len(begun):
+            self.covered[:, begun] = self.driven[:, begun] * (earlier / SUB_STEPS)
+            self._is_free[begun] = False
+        state = self._all[self._slots[held]].T
+        self._places[:, held] = state[:3]
+        self._motion[:, held] = state[3:]
+        spin = state[5]
+        speed = state[3] * self._cos[held] + state[4] * self._sin[held]
+        self._speed[held], self._spin[held] = speed, spin
         half = spin * (thymio2.WHEEL_TRACK_M / 2)
         self.covered[0, held] += (speed - half) / SUB_STEPS
         self.covered[1, held] += (speed + half) / SUB_STEPS
 
     def end_tick(self) -> None:
-        """As `RobotBody.end_tick`."""
-        self._angle = self._state[:, _ANGLE].copy()
-        self.is_told = False
+        """As `RobotBody.end_tick`, and of everything that was pushed or slides."""
+        if not self._loads:
+            return
+        if len(self._held) == 0:
+            if not (self._is_load_moving or self._was_restless):
+                return
+            self._get()
         loads = self._all[self._load_slots]
+        self._is_load_moving = self._is_load_fast = False
         for index in np.flatnonzero((loads != self._load_state).any(axis=1)).tolist():
-            self._loads[index].settle(*loads[index].tolist())
+            load = self._loads[index]
+            load.settle(*loads[index].tolist())
+            self._is_load_moving |= load.is_moving
+            self._is_load_fast |= load.is_fast
         self._load_state = loads
 
     def touching(self) -> list[RobotBody]:
         """Robots that touch something."""
-        return [self._bodies[index] for index in np.flatnonzero(self._touching).tolist()]
+        return [self._bodies[index] for index in self._touching.tolist()]
 
     def _look_at_contacts(self) -> None:
-        self._begun.update(self.changed)
-        for body in self.changed:
-            self._touching[self._index[body]] = bool(body.touching)
-        self.changed.clear()
+        if self.changed:
+            self._begun.update(self.changed)
+            for body in self.changed:
+                self._is_touching[self._index[body]] = bool(body.touching)
+            self.changed.clear()
+            self._touching = np.flatnonzero(self._is_touching)
+
+    def _look_round(self, *, is_restless: bool) -> None:
+        """Engage those who may reach something, and nobody else; all when there is no telling."""
+        self._was_restless = is_restless
+        self._look_round_in = LOOK_ROUND_TICKS
+        if is_restless:
+            is_engaged = self._stands.copy()
+        else:
+            movers: tuple[Mover, ...] = (*self._loads, *self._doors)
+            things = [(mover.pose.x_m, mover.pose.y_m, mover.reach_m) for mover in movers]
+            is_engaged = self._lookout.near(self._places, self._stands, np.array(things).reshape(-1, 3).T)
+            is_engaged |= self._is_touching
+        engaged = np.flatnonzero(is_engaged)
+        if np.array_equal(engaged, self._engaged):
+            return
+        self.tell()
+        for body, is_wanted in zip(self._bodies, is_engaged.tolist(), strict=True):
+            if is_wanted:
+                body.engage(self._space)
+            else:
+                body.disengage(self._space)
+        self._list_engaged(engaged)
+
+    def _list_engaged(self, engaged: Indices) -> None:
+        self._engaged = engaged
+        self._row[engaged] = np.arange(len(engaged))
+        self._setter = Setter([self._bodies[index].body for index in engaged.tolist()])
+        self._ids = b""
 
     def _take(self) -> None:
         """Read what the bodies are."""
         self._is_released = False
+        self._look_round_in = 0
         self._stands = np.array([not body.is_fallen for body in self._bodies], dtype=bool)
+        self._fallen = np.flatnonzero(~self._stands)
         self._speed = np.array([body.speed_m_s for body in self._bodies])
         self._spin = np.array([body.spin_rad_s for body in self._bodies])
-        poses = [(body.pose.x_m, body.pose.y_m, body.pose.yaw_rad) for body in self._bodies]
-        self._state[:, :3] = np.array(poses).reshape(-1, 3)
-        self._angle = self._state[:, _ANGLE].copy()
-        self._get()
+        places = [(body.pose.x_m, body.pose.y_m, body.pose.yaw_rad) for body in self._bodies]
+        self._places = np.ascontiguousarray(np.array(places).reshape(-1, 3).T)
+        motion = [(*body.body.velocity, body.body.angular_velocity) for body in self._bodies]
+        self._motion = np.ascontiguousarray(np.array(motion).reshape(-1, 3).T)
+        self._list_engaged(np.flatnonzero([body.is_engaged for body in self._bodies]))
+        self._loads = [movable for movable in self._movables if not movable.is_fallen]
+        self._load_state = np.full((len(self._loads), 6), np.nan)
+        self._is_load_moving = any(load.is_moving for load in self._loads)
+        self._is_load_fast = any(load.is_fast for load in self._loads)
 
     def _get(self) -> None:
-        """The state of all that stand, from the space."""
+        """The state of all bodies in the space."""
         self._read.clear()
         batch.get_space_bodies(self._space, _STATE, self._read)
-        ids = np.frombuffer(self._read.int_buf(), dtype=np.uintp)
-        if not np.array_equal(ids, self._ids):
-            self._ids = ids.copy()
-            slots = {number: slot for slot, number in enumerate(ids.tolist())}
-            bodies = [body.body for body in self._bodies if not body.is_fallen]
-            self._slots = np.array([slots[body.id] for body in bodies], dtype=np.intp)
-            self._setter = Setter(bodies)
-            self._loads = [movable for movable in self._movables if not movable.is_fallen]
+        ids = bytes(self._read.int_buf())
+        if ids != self._ids:
+            self._ids = ids
+            slots = {number: slot for slot, number in enumerate(np.frombuffer(ids, dtype=np.uintp).tolist())}
+            bodies = [self._bodies[index].body for index in self._engaged.tolist()]
+            self._slots[self._engaged] = [slots[body.id] for body in bodies]
             self._load_slots = np.array([slots[movable.body.id] for movable in self._loads], dtype=np.intp)
-            self._load_state = np.full((len(self._loads), 6), np.nan)
-        self._all = state = np.frombuffer(self._read.float_buf()).reshape(-1, 6)
-        if len(self._slots) == len(self._bodies):
-            self._state = state[self._slots]
-        else:
-            self._state[self._stands] = state[self._slots]
-
-    def _set(self, fields: batch.BodyFields, motion: Values) -> None:
-        """Write speeds, and forces if the fields have them, of all that stand."""
-        motion = motion if self._stands.all() else motion[self._stands]
-        if not self._is_alone:
-            self._setter.set(fields, motion)
-            return
-        rows = np.zeros((len(self._ids), motion.shape[1]))
-        rows[self._slots] = motion
-        self._written.set_float_buf(rows)
-        batch.set_space_bodies(self._space, fields, self._written)
+        self._all = np.frombuffer(self._read.float_buf()).reshape(-1, 6)

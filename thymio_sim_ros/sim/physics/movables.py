@@ -11,6 +11,7 @@ import math
 
 import pymunk
 
+from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE
 from thymio_sim_ros.sim.physics.outlines import shape_of
@@ -22,18 +23,34 @@ __all__ = ["AT_REST_M_S", "MovableBody"]
 _GRAVITY_M_S2 = 9.81
 AT_REST_M_S = 1e-6
 """Slower than this, at its rim too, is at rest."""
+_FAST_M_S = 2.0 * thymio2.MAX_SPEED_M_S
+"""Faster than this, robots must not rely on it."""
 
 
 class MovableBody:
-    """One movable solid. Invariant: `pose` is the body's after the last tick; it changes only when it moves."""
+    """One movable solid. Invariant: `pose` is the body's after the last tick; it changes only when it moves.
 
-    __slots__ = ("_obstacle", "_solid", "body", "is_fallen", "is_moving", "joints", "pose", "reach_m", "shape")
+    `is_fast` when it may hit a robot that has not looked round for a while (`quiet.THING_SHARE`).
+    """
+
+    __slots__ = (
+        "_obstacle",
+        "_solid",
+        "body",
+        "is_fallen",
+        "is_fast",
+        "is_moving",
+        "joints",
+        "pose",
+        "reach_m",
+        "shape",
+    )
 
     def __init__(self, solid: Solid, floor: pymunk.Body) -> None:
         load = solid.load
         assert load is not None
         self._solid = solid
-        self.is_moving = self.is_fallen = False
+        self.is_moving = self.is_fast = self.is_fallen = False
         self._obstacle: Obstacle | None = None
         outline = solid.outline
         self.reach_m = outline.reach_m
@@ -80,7 +97,7 @@ class MovableBody:
 
     def fall(self) -> None:
         """Be gone, until it is placed."""
-        self.is_fallen, self.is_moving = True, False
+        self.is_fallen, self.is_moving, self.is_fast = True, False, False
 
     def end_tick(self) -> None:
         """Tell the new pose, if it has moved."""
@@ -90,7 +107,9 @@ class MovableBody:
 
     def settle(self, x_m: float, y_m: float, angle: float, vx: float, vy: float, spin: float) -> None:
         """Be where the body is, with its speeds; slower than `AT_REST_M_S` it rests."""
-        speed = math.hypot(vx, vy) + abs(spin) * self.reach_m
+        speed = math.hypot(vx, vy)
+        self.is_fast = speed > _FAST_M_S
+        speed += abs(spin) * self.reach_m
         self.is_moving = speed > AT_REST_M_S
         if not self.is_moving and speed > 0.0:
             self._rest()
@@ -98,7 +117,7 @@ class MovableBody:
             self._show(Pose(x_m, y_m, angle))
 
     def _rest(self) -> None:
-        self.is_moving = False
+        self.is_moving = self.is_fast = False
         self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
 
     def _show(self, pose: Pose) -> None:

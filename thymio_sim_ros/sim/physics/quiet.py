@@ -1,38 +1,46 @@
-"""For how long nothing can happen: while no robot is in reach of anything, the engine may rest."""
+"""For how long a robot can reach nothing: so long it glides, and the engine need not know where it is."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 
 from thymio_sim_ros.sim import thymio2
-from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.nearby import Nearby
+from thymio_sim_ros.sim.physics.contact import TICK_S
+from thymio_sim_ros.sim.physics.movables import MovableBody
 from thymio_sim_ros.sim.physics.robots import RobotBody
 
-__all__ = ["LOOK_ROUND_TICKS", "quiet_ticks"]
+__all__ = ["LONGEST_WAY_M", "SAFE_M", "THING_SHARE", "quiet_ticks"]
 
-LOOK_ROUND_TICKS = 10
-"""How often it is worth while to look round."""
-_LONGEST_WAY_M = thymio2.MAX_SPEED_M_S * TICK_NS * 1e-9
-_SAFE_M = 0.005
+LONGEST_WAY_M = thymio2.MAX_SPEED_M_S * TICK_S
+"""Of a robot in a tick."""
+SAFE_M = 0.005
+"""So much farther than it may be, nothing is near."""
+THING_SHARE = 2.0
+"""A thing that is pushed goes at most so many times as far as a robot; else it is fast (`MovableBody.is_fast`)."""
 _MOST_TICKS = 100
-_FAR_M = thymio2.HULL_RADIUS_M + _SAFE_M + _MOST_TICKS * _LONGEST_WAY_M
+_FAR_M = thymio2.HULL_RADIUS_M + SAFE_M + _MOST_TICKS * LONGEST_WAY_M
 """What is farther away does not shorten the quiet."""
 
 
-def quiet_ticks(robots: Iterable[RobotBody], nearby: Nearby) -> int:
-    """For how many ticks no robot can reach anything, however it drives; things and doors being at rest."""
-    free_m = _FAR_M
-    for robot in robots:
-        x, y = robot.pose.x_m, robot.pose.y_m
-        for obstacle in nearby.fixed(x, y, _FAR_M):
-            left, bottom, right, top = obstacle.bounds
-            free_m = min(free_m, math.hypot(max(left - x, 0.0, x - right), max(bottom - y, 0.0, y - top)))
-        for mover in nearby.movers(x, y, 2 * _FAR_M):
-            away_m = math.hypot(mover.pose.x_m - x, mover.pose.y_m - y)
-            if not isinstance(mover, RobotBody):
-                free_m = min(free_m, away_m - mover.reach_m)
-            elif mover is not robot:
-                free_m = min(free_m, away_m / 2)
-    return max(0, int((free_m - thymio2.HULL_RADIUS_M - _SAFE_M) / _LONGEST_WAY_M))
+def quiet_ticks(robot: RobotBody, nearby: Nearby, *, is_alone: bool) -> int:
+    """For how many ticks it can reach nothing, however it and all others drive, while doors rest and nothing is fast.
+
+    `is_alone` when nothing else moves, or could be moved by anybody else.
+    """
+    reach_m = thymio2.HULL_RADIUS_M + SAFE_M
+    x, y = robot.pose.x_m, robot.pose.y_m
+    free_m = _FAR_M - reach_m
+    for obstacle in nearby.fixed(x, y, _FAR_M):
+        left, bottom, right, top = obstacle.bounds
+        free_m = min(free_m, math.hypot(max(left - x, 0.0, x - right), max(bottom - y, 0.0, y - top)) - reach_m)
+    for mover in nearby.movers(x, y, (1.0 + THING_SHARE) * _FAR_M):
+        if mover is robot:
+            continue
+        away_m = math.hypot(mover.pose.x_m - x, mover.pose.y_m - y) - mover.reach_m - reach_m
+        if isinstance(mover, RobotBody):
+            free_m = min(free_m, away_m / 2)
+        else:
+            share = THING_SHARE if isinstance(mover, MovableBody) and not is_alone else 0.0
+            free_m = min(free_m, away_m / (1.0 + share))
+    return max(0, int(free_m / LONGEST_WAY_M))

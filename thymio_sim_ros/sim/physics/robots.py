@@ -68,6 +68,7 @@ class RobotBody:
         "_spin_rad_s",
         "body",
         "fleet",
+        "is_engaged",
         "is_fallen",
         "name",
         "shape",
@@ -81,6 +82,8 @@ class RobotBody:
         self._speed_m_s = self._spin_rad_s = 0.0
         self.fleet: Teller | None = None
         """The robots with which it moves."""
+        self.is_engaged = False
+        """Whether the engine moves it; else its body is in no space."""
         self.is_fallen = False
         """Whether it lies below the floor, out of everybody's reach, until it is placed."""
         self._driven = self._covered = (0.0, 0.0)
@@ -156,7 +159,8 @@ class RobotBody:
         self._speed_m_s = self._spin_rad_s = 0.0
         self._angle = pose.yaw_rad
         self._pose = pose
-        if body.space is not None:
+        if self.is_engaged:
+            assert body.space is not None
             body.space.reindex_shapes_for_body(body)
 
     def take_over(self, pose: Pose, speed_m_s: float, spin_rad_s: float, *, is_free: bool) -> None:
@@ -186,10 +190,19 @@ class RobotBody:
         self._angle = angle
         self._pose = Pose(x_m, y_m, angle)
 
-    def wake(self) -> None:
-        """Hand the pose over to the engine after gliding."""
-        self.body.position = (self._pose.x_m, self._pose.y_m)
-        self.body.angle = self._angle
+    def engage(self, space: pymunk.Space) -> None:
+        """Let the engine move it from where it is."""
+        if not self.is_engaged:
+            self.is_engaged = True
+            self.body.position = (self._pose.x_m, self._pose.y_m)
+            self.body.angle = self._angle
+            space.add(self.body, self.shape)
+
+    def disengage(self, space: pymunk.Space) -> None:
+        """Leave the engine."""
+        if self.is_engaged:
+            self.is_engaged = False
+            space.remove(self.shape, self.body)
 
     def begin_tick(self) -> None:
         """Forget what the last tick covered; contacts are no longer new."""

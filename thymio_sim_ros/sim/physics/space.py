@@ -1,12 +1,13 @@
 """The space of all bodies: it lets them move and collide, and knows what rays may meet.
 
-While nothing is in anybody's reach and nothing moves by itself, pymunk rests and the robots glide by the same sums.
+Robots that can reach nothing are not in pymunk's space: they glide by the same sums, and as long as all do and nothing
+moves by itself, pymunk rests.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
 import pymunk
@@ -17,9 +18,10 @@ from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, Contact
 from thymio_sim_ros.sim.physics.doors import DoorBody
 from thymio_sim_ros.sim.physics.fleet import Fleet
 from thymio_sim_ros.sim.physics.gates import Gates
+from thymio_sim_ros.sim.physics.lookout import Lookout
 from thymio_sim_ros.sim.physics.movables import AT_REST_M_S, MovableBody
-from thymio_sim_ros.sim.physics.quiet import LOOK_ROUND_TICKS, quiet_ticks
 from thymio_sim_ros.sim.physics.robots import RobotBody
+from thymio_sim_ros.sim.physics.singles import Singles
 from thymio_sim_ros.sim.physics.touches import Touches
 from thymio_sim_ros.sim.primitives import Disc, Solid, Trigger
 from thymio_sim_ros.sim.rays import Obstacle, Surroundings, obstacle_of
@@ -53,8 +55,6 @@ class Physics:
         self._movables: dict[str, MovableBody] = {}
         self._gates = Gates(solids, triggers)
         self._fleet: Fleet | None = None
-        self._quiet_ticks = 0
-        self._engine_ticks = 0
         for solid in solids:
             if solid.load is not None:
                 self._movables[solid.name] = movable = MovableBody(solid, self._space.static_body)
@@ -68,6 +68,7 @@ class Physics:
         """What rays see of everything that never moves."""
         self._nearby = Nearby(self.fixed)
         self._list_movers()
+        self._singles = Singles(self._space, self._robots, self._movables, self._nearby)
 
     @property
     def movables(self) -> Mapping[str, MovableBody]:
@@ -90,7 +91,7 @@ class Physics:
         self._interrupt()
         robot = RobotBody(name, pose)
         self._robots[robot] = None
-        self._add(robot, robot.shape, robot.body)
+        self._touches.watch(robot.shape, robot)
         self._list_movers()
         return robot
 
@@ -98,8 +99,7 @@ class Physics:
         """Take a robot's body away; nobody touches it any more."""
         self.disband()
         self._interrupt()
-        if not robot.is_fallen:
-            self._space.remove(robot.shape, robot.body)
+        robot.disengage(self._space)
         self._touches.unwatch(robot.shape)
         del self._robots[robot]
         self._list_movers()
@@ -107,7 +107,7 @@ class Physics:
     def drop_robot(self, robot: RobotBody) -> None:
         """Let a robot fall below the floor, where nothing touches or sees it."""
         self._interrupt()
-        self._space.remove(robot.shape, robot.body)
+        robot.disengage(self._space)
         self._touches.forget(robot.shape)
         robot.fall()
         self._list_movers()
@@ -126,9 +126,8 @@ class Physics:
         was_fallen = body.is_fallen
         body.place(pose)
         if was_fallen:
-            self._space.add(body.body, body.shape)
             if isinstance(body, MovableBody):
-                self._space.add(*body.joints)
+                self._space.add(body.body, body.shape, *body.joints)
             self._list_movers()
         self._nearby.stir()
 
@@ -140,8 +139,8 @@ class Physics:
     def gather(self) -> Fleet:
         """All robots move as one from now on, until one is added or removed or they disband."""
         self._interrupt()
-        is_alone = not self._movables and not self.doors
-        self._fleet = Fleet(self._space, tuple(self._robots), tuple(self._movables.values()), is_alone=is_alone)
+        movables, doors = tuple(self._movables.values()), tuple(self.doors.values())
+        self._fleet = Fleet(self._space, tuple(self._robots), movables, doors, Lookout(self.fixed))
         return self._fleet
 
     def disband(self) -> None:
@@ -149,36 +148,24 @@ class Physics:
         if self._fleet is not None:
             self._fleet.disband()
             self._fleet = None
+            self._singles.interrupt()
 
     def step(self) -> tuple[Contact, ...]:
         """One tick; the contacts at its end, by robot and in the order in which they began."""
         self._nearby.stir()
         self._gates.begin_tick(self._nearby)
-        if not self._gates.are_still:
-            self._stop_gliding()
-        if self._quiet_ticks > 0:
-            self._glide()
-            return ()
-        drivers: Sequence[RobotBody | Fleet] = (self._fleet,) if self._fleet is not None else self._standing()
-        for driver in drivers:
-            driver.begin_tick()
+        driver = self._fleet or self._singles
+        driver.begin_tick(do_doors_move=not self._gates.are_still)
+        needs_engine = driver.needs_engine
         for earlier in range(SUB_STEPS):
-            for driver in drivers:
-                driver.push()
-            self._space.step(SUB_STEP_S)
-            for driver in drivers:
-                driver.settle(earlier)
-        for driver in drivers:
+            driver.push()
+            if needs_engine:
+                self._space.step(SUB_STEP_S)
+            driver.settle(earlier)
+        if needs_engine:
             driver.end_tick()
-        if self._fleet is None:
-            for movable in self._movables.values():
-                movable.end_tick()
         self._gates.end_tick()
-        self._engine_ticks += 1
-        if self._engine_ticks % LOOK_ROUND_TICKS == 0:
-            self._quiet_ticks = self._count_quiet_ticks()
-        touching = self._standing() if self._fleet is None else self._fleet.touching()
-        return tuple(contact for robot in touching for contact in robot.touching.values())
+        return tuple(contact for robot in driver.touching() for contact in robot.touching.values())
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
         """What a robot's rays may meet within `reach_m` of its origin, at least `height_m` high."""
@@ -205,40 +192,11 @@ class Physics:
         """Robots that have not fallen."""
         return [robot for robot in self._robots if not robot.is_fallen]
 
-    def _glide(self) -> None:
-        """A tick in which nothing can be touched."""
-        for robot in self._robots:
-            if not robot.is_fallen:
-                robot.glide()
-        self._quiet_ticks -= 1
-        if self._quiet_ticks == 0:
-            self._quiet_ticks = self._count_quiet_ticks()
-            if self._quiet_ticks == 0:
-                self._wake()
-
     def _interrupt(self) -> None:
         """Before a body is changed from outside."""
-        self._stop_gliding()
+        self._singles.interrupt()
         if self._fleet is not None:
             self._fleet.release()
-
-    def _stop_gliding(self) -> None:
-        if self._quiet_ticks > 0:
-            self._quiet_ticks = 0
-            self._wake()
-
-    def _wake(self) -> None:
-        """Let the engine take over."""
-        for robot in self._robots:
-            robot.wake()
-
-    def _count_quiet_ticks(self) -> int:
-        """For how many ticks no robot can reach anything, however it drives."""
-        robots = self._standing()
-        is_still = self._gates.are_still and not any(movable.is_moving for movable in self._movables.values())
-        if self._fleet is not None or not is_still or any(robot.touching for robot in robots):
-            return 0
-        return quiet_ticks(robots, self._nearby)
 
     def _list_movers(self) -> None:
         """Tell `nearby` who moves now."""
@@ -246,7 +204,7 @@ class Physics:
         movers += [movable for movable in self._movables.values() if not movable.is_fallen]
         self._nearby.replace_movers([*movers, *self.doors.values()])
 
-    def _add(self, owner: RobotBody | str, shape: pymunk.Shape, *parts: pymunk.Body | pymunk.Constraint) -> None:
+    def _add(self, owner: str, shape: pymunk.Shape, *parts: pymunk.Body | pymunk.Constraint) -> None:
         self._touches.watch(shape, owner)
         self._space.add(*parts, shape)
 
