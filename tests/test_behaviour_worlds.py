@@ -83,6 +83,17 @@ def test_explorer_drives_about_for_a_minute_and_touches_nothing(seed: int) -> No
     assert len(quarters) == 4
 
 
+@pytest.mark.parametrize("seed", [0, 3])
+def test_explorer_leaves_a_wall_that_it_met_head_on(seed: int) -> None:
+    wall = box(0.4, 0.0, size_x_m=0.05, size_y_m=2.0)
+    runner = alone("explorer", hall({ROBOT: (0.0, 0.0, 0.0)}, wall), seed=seed)
+    robot = runner.world.robots[ROBOT]
+    runner.run(4.0)
+    assert robot.pose.x_m == pytest.approx(0.155, abs=0.01)
+    assert robot.pose.yaw_rad == pytest.approx(0.0, abs=0.05)
+    assert runner.until(lambda: abs(robot.pose.yaw_rad) > 1.2, 60.0)
+
+
 def test_explorer_drives_backwards_as_carefully() -> None:
     runner = alone("explorer")
     for _ in range(6):
@@ -139,6 +150,11 @@ def test_fearful_stands_still_while_nothing_is_near() -> None:
 @pytest.mark.parametrize("seed", range(2))
 def test_investigator_follows_the_line_for_three_laps(seed: int) -> None:
     assert farthest_in_laps(alone("investigator", "line", seed=seed), 3) < 0.025
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_line_follower_goes_on_behind_every_gap(seed: int) -> None:
+    assert farthest_in_laps(alone("line_follower", "line_gaps", seed=seed), 2, "line_gaps", "line") < 0.025
 
 
 def test_obedient_obeys_the_buttons() -> None:

@@ -13,13 +13,13 @@ def distance_to(points: list[Point], point: Point) -> float:
     return Line(points, closed=True).distance(point)
 
 
-def farthest_in_laps(runner: Runner, laps: float) -> float:
+def farthest_in_laps(runner: Runner, laps: float, playground: str = "line", track: str = "") -> float:
     """Largest distance in m of the ground sensors' middle from the line's middle during so many laps of the line."""
     robot = runner.world.robots["thymio"]
-    line, _ = Line.of(load_playground("line")[1])
+    line, _ = Line.of(load_playground(playground)[1], track)
     _, last = line.locate(robot.pose.place(EYES))
     driven, farthest = 0.0, 0.0
-    while abs(driven) < laps * line.length_m:
+    while driven < laps * line.length_m:
         assert runner.now_ns < laps * 60e9
         runner.run(0.1)
         distance, along = line.locate(robot.pose.place(EYES), last)

@@ -9,7 +9,7 @@ import math
 import pytest
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist, TwistStamped, Vector3
 from nav_msgs.msg import Odometry
-from rcl_interfaces.srv import SetParameters
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, LaserScan, Range
@@ -18,10 +18,12 @@ from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import Marker, MarkerArray
 
+from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import tf_messages
 from thymio_sim_ros.nodes.convert import yaw_of
 from thymio_sim_ros.nodes.life import make_executor
 from thymio_sim_ros.sim.commands import BUTTONS, LED_GROUPS, BodyTwist
+from thymio_sim_ros.sim.world import World
 
 WALL_AHEAD = json.dumps(
     {
@@ -234,6 +236,21 @@ def test_the_playground_can_be_changed_and_a_bad_one_is_refused(ros, simulation)
     assert markers[-1].markers[0].action == Marker.DELETEALL
     sim.step(0.1)
     assert len(sim.world.robots) == 1
+
+
+def test_a_change_of_playground_and_seed_builds_one_world_of_both(ros, simulation, monkeypatch):
+    sim = simulation(playground="base")
+    built = []
+    monkeypatch.setattr(
+        "thymio_sim_ros.nodes.simulator_node.World",
+        lambda *args, **options: built.append(World(*args, **options)) or built[-1],
+    )
+    wanted = [Parameter("seed", value=7), Parameter("playground", value="obstacle")]
+    request = SetParametersAtomically.Request(parameters=[parameter.to_parameter_msg() for parameter in wanted])
+    assert ros.call(SetParametersAtomically, "/simulator/set_parameters_atomically", request).result.successful
+    assert built == [sim.world]
+    assert sim.world.options.seed == 7
+    assert sim.world.playground.title == load_playground("obstacle")[1].title
 
 
 def test_a_command_to_a_robot_that_has_gone_with_its_playground_is_dropped(ros, simulation):

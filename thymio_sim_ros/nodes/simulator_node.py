@@ -71,10 +71,10 @@ class Simulator:
         self._transforms = Transforms(self.node, self.params.transform_options)
         self._port_options = self.params.port_options
         self._roster = Roster(self._ports, self.params.naming)
-        self._set_world(playground)
+        self._set_world(self._new_world(playground, self.params))
         self._services = WorldServices(self.node, self)
         self._interfaces = sim_interfaces.offered(self.node, self)
-        self._accepted: tuple[str, Playground] | None = None
+        self._accepted: tuple[str, World] | None = None
         self.node.add_on_set_parameters_callback(self._check_parameters)
         self.node.add_post_set_parameters_callback(self._apply_parameters)
 
@@ -200,10 +200,10 @@ class Simulator:
         name, loaded = load_playground(playground)
         return name, self.params.renamed(loaded)
 
-    def _set_world(self, playground: Playground) -> None:
-        for note in playground.notes:
+    def _set_world(self, world: World) -> None:
+        for note in world.playground.notes:
             self.node.get_logger().warning(f"playground {self.playground_name}: {note}")
-        self.world = self._new_world(playground)
+        self.world = world
         if self._log is not None:
             self._log.begin(self.playground_name, self.world)
         self._begin()
@@ -231,8 +231,8 @@ class Simulator:
             on_limit=self.count_limited,
         )
 
-    def _new_world(self, playground: Playground) -> World:
-        chosen = self.params
+    @staticmethod
+    def _new_world(playground: Playground, chosen: SimulatorParams) -> World:
         return World(
             playground,
             seed=chosen.seed,
@@ -298,8 +298,8 @@ class Simulator:
         value = params.changes(parameters).get("playground")
         if value is not None:
             try:
-                self._accepted = self._load(value)
-                self._new_world(self._accepted[1])
+                name, playground = self._load(value)
+                self._accepted = name, self._new_world(playground, params.updated(self.params, parameters))
             except (PlaygroundError, resources.ResourceError, StartError, OSError) as error:
                 return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
@@ -311,11 +311,11 @@ class Simulator:
         if "real_time_factor" in changed:
             self._set_pace()
         if "playground" in changed and self._accepted is not None:
-            self.playground_name, playground = self._accepted
+            self.playground_name, world = self._accepted
             self._accepted = None
-            self._set_world(playground)
+            self._set_world(world)
         elif "seed" in changed:
-            self._set_world(self.world.playground)
+            self._set_world(self._new_world(self.world.playground, self.params))
         self._publish_state()
 
 
