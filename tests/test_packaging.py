@@ -56,6 +56,11 @@ def test_version_is_written_in_the_package_and_repeated_for_ros_alone() -> None:
     assert _pyproject()["project"]["dynamic"] == ["version"]
 
 
+def test_the_maintainers_are_the_same_everywhere() -> None:
+    (maintainer,) = _manifest().findall("maintainer")
+    assert _pyproject()["project"]["maintainers"] == [{"name": maintainer.text, "email": maintainer.get("email")}]
+
+
 def test_description_and_licence_agree() -> None:
     assert _manifest().findtext("description") == _pyproject()["project"]["description"]
     assert _manifest().findtext("license") == _pyproject()["project"]["license"]["text"] == "Apache-2.0"

@@ -24,7 +24,7 @@ def run(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> Run:
     (installed / "METADATA").write_text("Metadata-Version: 2.1\nName: thymio_sim_ros\nVersion: 0\n")
     (installed / "entry_points.txt").write_text(f"[pytest11]\n{PLUGIN} = {PLUGIN}\n")
     monkeypatch.setenv("PYTHONPATH", f"{installed.parent}:{ROOT}")
-    return lambda *arguments: pytester.runpytest_subprocess("-p", "no:cacheprovider", *arguments, timeout=120)
+    return lambda *arguments: pytester.runpytest_subprocess("-p", "no:cacheprovider", *arguments, timeout=600)
 
 
 def test_the_fixtures_are_there_without_a_line_in_conftest(pytester: pytest.Pytester, run: Run) -> None:

@@ -85,7 +85,7 @@ def test_the_test_of_the_readme_passes(pytester, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))
     pytester.makepyfile(wanderer=node, test_wanderer=test)
     assert len([line for line in test.splitlines() if line.strip()]) <= 10
-    result = pytester.runpytest_subprocess("-p", "thymio_sim_ros.pytest_plugin", "test_wanderer.py", timeout=120)
+    result = pytester.runpytest_subprocess("-p", "thymio_sim_ros.pytest_plugin", "test_wanderer.py", timeout=600)
     result.assert_outcomes(passed=1)
 
 

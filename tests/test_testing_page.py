@@ -35,7 +35,7 @@ def folder(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> Path:
 def run(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
     """pytest in that folder, in a process of its own."""
     plugin = ["-p", "thymio_sim_ros.pytest_plugin", "-p", "no:cacheprovider"]
-    return pytester.runpytest_subprocess(*plugin, *arguments, timeout=120)
+    return pytester.runpytest_subprocess(*plugin, *arguments, timeout=600)
 
 
 def test_the_page_has_its_examples() -> None:

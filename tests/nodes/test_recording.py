@@ -5,8 +5,10 @@ from __future__ import annotations
 import importlib
 from functools import partial
 
+from geometry_msgs.msg import Twist, Vector3
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message
+from std_msgs.msg import Int16MultiArray
 
 from thymio_sim_ros.nodes import tf_messages
 
@@ -51,3 +53,36 @@ def test_everything_can_be_recorded_and_read_back(ros, simulation, runtime):
     for topic, message in recorded.items():
         if kinds[topic] is not tf_messages.TFMessage:
             assert isinstance(deserialize_message(message, kinds[topic]), kinds[topic])
+
+
+def test_a_robot_that_is_driven_by_a_recording_drives_the_same_way(ros, simulation):
+    recorded, sent = [], []
+    ros.node.create_subscription(Twist, "/cmd_vel", recorded.append, 10, raw=True)
+    first = simulation()
+    wheels = ros.publisher(Twist, "/cmd_vel")
+    for speed in (0.1, -0.05, 0.08):
+        sent.append(first.now)
+        wheels.publish(Twist(linear=Vector3(x=speed), angular=Vector3(z=speed * 5)))
+        first.step(0.5)
+    ros.end(first.simulator)
+    again = simulation()
+    for moment, data in zip(sent, recorded[:], strict=True):
+        again.until(lambda moment=moment: again.now >= moment)
+        wheels.publish(bytes(data))
+    again.until(lambda: again.now >= first.now)
+    assert again.thymio.pose == first.thymio.pose
+
+
+def test_a_program_runs_on_recorded_readings(ros, simulation, runtime):
+    sim = simulation(playground="obstacle")
+    recorded = []
+    ros.node.create_subscription(Int16MultiArray, "/raw/proximity", recorded.append, 10, raw=True)
+    ros.settle()
+    sim.step(0.5)
+    seen = list(deserialize_message(recorded[-1], Int16MultiArray).data)
+    ros.end(sim.simulator)
+    ros.simulation = None
+    runtime("var kept[7]\nonevent prox\nkept = prox.horizontal", watch=["kept"])
+    told = ros.collect(Int16MultiArray, "/aseba/variables/kept", latched=True)
+    ros.publisher(Int16MultiArray, "/raw/proximity").publish(bytes(recorded[-1]))
+    ros.until(lambda: told and list(told[-1].data) == seen)
