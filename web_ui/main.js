@@ -1,6 +1,7 @@
 // The page's start: connects protocol, state, scene and panels, and lets each do its own work.
 
 import { Actions, isProgram } from "./actions.js";
+import { CreatorHost } from "./creator_host.js";
 import { watchDrops } from "./drop.js";
 import { EditorHost } from "./editor_host.js";
 import { Shelf } from "./gallery/shelf.js";
@@ -45,6 +46,10 @@ async function main() {
     client: () => client,
     changed: () => scene.invalidate(),
   });
+  const creator = new CreatorHost({
+    slot: (name) => element(`[data-slot="${name}"]`),
+    scene: () => scene,
+  });
   const client = new Client({
     address,
     emit: (event) => {
@@ -85,8 +90,12 @@ async function main() {
     canvas,
     flatCanvas: /** @type {HTMLCanvasElement} */ (element("#flat")),
     labels: element("#labels"),
-    state: () => store.state,
-    beforeDraw: () => panels.forEach((panel) => panel.render?.(store.state)),
+    state: () => creator.world ?? store.state,
+    sketch: () => creator.sketch,
+    beforeDraw: () => {
+      creator.render();
+      panels.forEach((panel) => panel.render?.(store.state));
+    },
     press: ({ robot, button }, pressed) => {
       store.dispatch({ type: "select", robot });
       actions.press(robot, button, pressed);
@@ -113,10 +122,11 @@ async function main() {
     showTrouble();
     document.querySelectorAll(".banner, .hint").forEach((banner) => banner.remove());
     for (const panel of panels) panel.element.remove();
-    const context = { t, language, setLanguage, actions, store, scene, mover, speaker, editor, shelf, address, announce };
+    const context = { t, language, setLanguage, actions, store, scene, mover, speaker, editor, creator, shelf, address, announce };
     panels = PANELS.map((create) => create(context));
     for (const panel of panels) element(`[data-slot="${panel.slot}"]`).append(panel.element);
     editor.dress(context);
+    creator.dress(context);
     scene.invalidate();
   };
   /** @param {string} chosen */
@@ -133,7 +143,8 @@ async function main() {
   for (const gesture of ["pointerup", "keydown"]) window.addEventListener(gesture, () => speaker.unlock());
   watchKeyboard(canvas, scene, mover, (button, pressed) => actions.press(store.state.selected, button, pressed));
   watchDrops(element("#drop"), (file) => {
-    if (editor.isOpen && isProgram(file)) editor.editor?.open(file);
+    if (creator.isOpen && !isProgram(file)) creator.openFile(file);
+    else if (editor.isOpen && isProgram(file)) editor.editor?.open(file);
     else actions.loadFile(file);
   });
   window.addEventListener("keydown", ({ key }) => {
@@ -149,6 +160,7 @@ async function main() {
       screenPosition: (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ z) =>
         scene.screenPosition(x, y, z),
       held: () => mover.held,
+      built: () => creator.snapshot(),
       /** @param {string} part @param {string} [robot] */
       partPosition: (part, robot) => scene.partPosition(part, robot),
       get connected() {

@@ -5,8 +5,10 @@ import { fileButton, h, icon, ICONS, setAttribute, setText } from "../panels/dom
 
 /** @typedef {import("../state/index.js").PlaygroundInfo} PlaygroundInfo */
 
+const PENCIL = "M3 17.500V21h3.500L17 10.500 13.500 7zM15 5.500 18.500 9l2-2L17 3.500z";
+
 /** @param {import("../panels/index.js").Context} context */
-export function galleryDialog({ t, language, actions, shelf, store }) {
+export function galleryDialog({ t, language, actions, shelf, store, creator }) {
   const fault = h("div", { class: "fault", role: "alert", hidden: true });
   const list = h("ul", { class: "samples" });
   const close = h("button", { type: "button", class: "plain", "aria-label": t("gallery.close") }, icon(ICONS.close));
@@ -57,14 +59,24 @@ export function galleryDialog({ t, language, actions, shelf, store }) {
       void actions.loadPlayground(info.name);
     });
     cards.push({ name: info.name, button });
+    const change = h(
+      "button",
+      { type: "button", class: "change", hidden: true, title: t("gallery.change"), "aria-label": t("gallery.changeOf", { title }) },
+      icon(PENCIL),
+    );
     void shelf.sample(info.name).then((sample) => {
       if (sample === null) return;
       const count = sample.playground.items.filter(({ kind }) => kind === "robot").length;
       setText(robots, t(count === 1 ? "gallery.robot" : "gallery.robots", { count }));
       picture.src = sample.picture;
       picture.hidden = false;
+      change.hidden = false;
+      change.addEventListener("click", () => {
+        dialog.close();
+        void creator.open({ ...sample.playground, ...(info.translations[language] ?? {}), translations: {} });
+      });
     });
-    return h("li", {}, button);
+    return h("li", {}, button, change);
   };
 
   return {

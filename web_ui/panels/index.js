@@ -1,6 +1,7 @@
 // The panels, in the order in which they stand on the page. To add one: a file, and a line here.
 
 import { connectionPanel } from "./connection.js";
+import { creatorSwitchPanel } from "./creator_switch.js";
 import { displayPanel } from "./display.js";
 import { dpadPanel } from "./dpad.js";
 import { editorSwitchPanel } from "./editor_switch.js";
@@ -29,6 +30,7 @@ import { viewsPanel } from "./views.js";
  * @property {import("../move/mover.js").Mover} mover
  * @property {import("../sound/speaker.js").Speaker} speaker
  * @property {import("../editor_host.js").EditorHost} editor
+ * @property {import("../creator_host.js").CreatorHost} creator
  * @property {import("../gallery/shelf.js").Shelf} shelf   shipped playgrounds with their pictures
  * @property {string} address   of the simulator, for people
  * @property {(text: string) => void} announce   to the live region
@@ -44,6 +46,7 @@ import { viewsPanel } from "./views.js";
 export const PANELS = [
   connectionPanel,
   editorSwitchPanel,
+  creatorSwitchPanel,
   languagePanel,
   soundPanel,
   stopPanel,

@@ -4,7 +4,7 @@
 import { holds, overlap } from "./geometry.js";
 import { kindNamed } from "./kinds/index.js";
 import { partsOf, valuesOf } from "./parts.js";
-import { check, Fault } from "./rules.js";
+import { check, Fault, needed, RULES } from "./rules.js";
 
 /** @typedef {import("./parts.js").Item} Item */
 /** @typedef {import("./document.js").Playground} Playground */
@@ -24,8 +24,8 @@ export function objection(others, item) {
   const kind = kindNamed(item.kind);
   if (kind === undefined) return null;
   try {
-    const { kind: _kind, name, ...values } = item;
-    check(kind.fields, item.kind === "robot" ? { name, ...values } : values, "");
+    const { kind: _kind, ...values } = item;
+    check({ ...kind.fields, name: needed(RULES.name) }, values, "");
     partsOf(item);
   } catch (error) {
     if (error instanceof Fault) return { word: "problem.value", values: { key: error.key, found: error.found } };

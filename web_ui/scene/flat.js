@@ -8,6 +8,7 @@ import { placed, ROBOT_OUTLINE } from "../move/things.js";
 import { poseAt } from "./motion.js";
 import { BUTTON_PLACES, LIGHTS, PROXIMITY_PLACES } from "./parts.js";
 import { MAX_RANGE_M } from "./rays.js";
+import { drawSketch } from "./sketch.js";
 
 /** @typedef {import("../state/index.js").State} State */
 /** @typedef {import("../state/markers.js").Marker} Marker */
@@ -57,10 +58,11 @@ export class FlatView {
    * @param {number} options.nowMs
    * @param {boolean} options.sensors
    * @param {import("../move/mover.js").Held | null} options.held
+   * @param {import("../creator/sketch.js").Sketch | null} options.sketch
    * @param {(name: string) => string} options.colour
    * @param {() => void} options.changed   called when a picture has arrived
    */
-  draw(state, { nowMs, sensors, held, colour, changed }) {
+  draw(state, { nowMs, sensors, held, sketch, colour, changed }) {
     const { context, canvas, camera } = this;
     if (context === null) return;
     Object.assign(canvas, this.#size);
@@ -88,6 +90,7 @@ export class FlatView {
       context.fillStyle = held.blocker === null ? "rgb(23 105 209 / 50%)" : "rgb(209 26 26 / 60%)";
       for (const polygon of placed(held.thing.outline, held.pose)) fill(context, polygon);
     }
+    if (sketch !== null) drawSketch(context, sketch, 1 / scale);
     context.setTransform(1, 0, 0, 1, 0, 0);
   }
 

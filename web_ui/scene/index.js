@@ -14,6 +14,7 @@ import { PlaygroundModel } from "./playground.js";
 import { watchPointer } from "./pointer.js";
 import { Quality } from "./quality.js";
 import { RobotModel } from "./robot.js";
+import { SketchModel } from "./sketch.js";
 
 /** @typedef {import("../state/index.js").State} State */
 /** @typedef {import("./camera.js").ViewName} ViewName */
@@ -36,9 +37,10 @@ export class SceneView {
    * @param {(target: Target, pressed: boolean) => void} options.press
    * @param {import("../move/mover.js").Mover} options.mover   what a hand carries
    * @param {(name: string) => string} options.robotTitle
+   * @param {() => import("../creator/sketch.js").Sketch | null} options.sketch   what a builder sees over it; null while nobody builds
    * @param {(trouble: "lost" | "gone" | null) => void} options.contextLost   gone: for good, drawn in 2D
    */
-  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, mover, robotTitle, contextLost }) {
+  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, mover, robotTitle, sketch, contextLost }) {
     this.canvas = canvas;
     this.labels = labels;
     this.state = state;
@@ -46,6 +48,9 @@ export class SceneView {
     this.robotTitle = robotTitle;
     this.mover = mover;
     this.ghost = new Ghost();
+    this.sketch = sketch;
+    this.sketchModel = new SketchModel();
+    this.framed = false;
     this.frames = 0;
     this.requested = false;
     this.showSensors = true;
@@ -60,7 +65,7 @@ export class SceneView {
     this.scene = litScene();
     this.playground = new PlaygroundModel(() => this.invalidate());
     this.objects = new PlaygroundModel(() => this.invalidate());
-    this.scene.add(this.playground.group, this.objects.group, this.ghost.group);
+    this.scene.add(this.playground.group, this.objects.group, this.ghost.group, this.sketchModel.group);
     this.camera = new Camera(canvas, () => this.invalidate());
     this.renderer = createRenderer(canvas);
     const software = this.renderer !== null && SOFTWARE.test(graphicsName(this.renderer));
@@ -80,12 +85,14 @@ export class SceneView {
       contextLost(null);
       this.invalidate();
     });
-    watchDrags({ element: canvas, rayOf: (event) => this.#rayOf(event), mover });
+    watchDrags({ element: canvas, rayOf: (event) => (this.sketch() === null ? this.rayOf(event) : null), mover });
     watchPointer({
       element: canvas,
       camera: () => this.eye,
       targets: () =>
-        [...this.robots.values()].flatMap(({ model }) => (model.group.visible ? model.buttons.targets : [])),
+        this.sketch() !== null
+          ? [] // a robot that is placed has no buttons
+          : [...this.robots.values()].flatMap(({ model }) => (model.group.visible ? model.buttons.targets : [])),
       press,
       hover: (target) => {
         if (target?.robot === this.hovered?.robot && target?.button === this.hovered?.button) return;
@@ -183,13 +190,28 @@ export class SceneView {
     return place == null ? null : this.#toWindow(place);
   }
 
-  /** The line of sight through a pointer. @param {PointerEvent} event */
-  #rayOf({ clientX, clientY }) {
+  /** The line of sight through a pointer. @param {{ clientX: number, clientY: number }} event */
+  rayOf({ clientX, clientY }) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const place = new THREE.Vector2(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2);
     const caster = new THREE.Raycaster();
     caster.setFromCamera(place, this.eye);
     return caster.ray;
+  }
+
+  /** How much of the ground one CSS pixel shows, about where the camera looks; metres. */
+  get pixelSize() {
+    const { clientHeight } = this.canvas;
+    if (this.isFlat) return (this.flat.camera.top - this.flat.camera.bottom) / Math.max(1, clientHeight);
+    const { camera, controls } = this.camera;
+    const far = camera.position.distanceTo(controls.target);
+    return (2 * far * Math.tan((camera.fov * Math.PI) / 360)) / Math.max(1, clientHeight);
+  }
+
+  /** Let the next playground that is built fill the view. */
+  reframe() {
+    this.framed = false;
+    this.invalidate();
   }
 
   /** Where a point of the world is in CSS pixels of the window. @param {number} x @param {number} y @param {number} z */
@@ -202,10 +224,14 @@ export class SceneView {
     this.requested = false;
     const state = this.state();
     this.beforeDraw(nowMs);
-    if (this.playground.update(state.markers)) this.camera.frame(this.playground.corners());
+    const sketch = this.sketch();
+    const grown = this.playground.update(state.markers);
+    if (grown) this.camera.frame(this.playground.corners(), sketch !== null && this.framed);
+    this.framed = sketch !== null;
     this.objects.update(state.objects);
     this.mover.refresh();
     this.ghost.update(this.mover.held, this.mover.mode);
+    this.sketchModel.update(sketch);
     const moving = this.#updateRobots(state, nowMs);
     const pose = this.#selectedPose();
     if (pose !== null) this.camera.follow(pose);
@@ -232,8 +258,9 @@ export class SceneView {
     const names = Object.keys(state.robots);
     this.flat.draw(state, {
       nowMs,
-      sensors: this.showSensors,
+      sensors: this.showSensors && !this.framed,
       held: this.mover.held,
+      sketch: this.sketch(),
       colour: (name) => robotColour(names, name),
       changed: () => this.invalidate(),
     });
@@ -263,7 +290,7 @@ export class SceneView {
       entry.trail.update(robot.trail);
       const hovered = this.hovered?.robot === name ? this.hovered.button : null;
       moving = entry.model.update(robot, hovered, nowMs) || moving;
-      for (const { group } of entry.model.sensing) group.visible = this.showSensors;
+      for (const { group } of entry.model.sensing) group.visible = this.showSensors && !this.framed;
       const title = `${robot.sound[0] > 0 || robot.sound[1] > 0 ? "♪ " : ""}${this.robotTitle(name)}`;
       if (entry.label.textContent !== title) entry.label.textContent = title;
       if (names.length > 1) entry.label.style.setProperty("--colour", robotColour(names, name));

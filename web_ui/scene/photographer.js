@@ -70,6 +70,7 @@ function fromAbove(world) {
     nowMs: 0,
     sensors: false,
     held: null,
+    sketch: null,
     colour: (name) => robotColour(names, name),
     changed: () => {},
   });

@@ -1,0 +1,67 @@
+// Builds playgrounds by chance through the creator, and prints each as JSON with whether the page would open it:
+// `node build_random.js COUNT`. Both kinds come out: built ones, and ones with robots dropped anywhere.
+
+import { Builder } from "../../web_ui/creator/builder.js";
+import { newPlayground } from "../../web_ui/creator/commands.js";
+import { parse, write } from "../../web_ui/playground/document.js";
+import { SHAPES } from "../../web_ui/playground/kinds/index.js";
+
+const PIXEL =
+  "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
+const TOOLS = [...SHAPES.map(({ name }) => name), "robot"];
+let seed = 1;
+
+/** A number from 0 to 1, the same in every run. */
+function chance() {
+  seed = (seed * 48271) % 2147483647;
+  return seed / 2147483647;
+}
+
+/** @param {number} reach */
+const somewhere = (reach) => (chance() * 2 - 1) * reach;
+
+function built() {
+  const builder = new Builder({ playground: newPlayground("By chance"), tell: () => {}, changed: () => {} });
+  for (let step = 0; step < 25; step++) {
+    const kind = TOOLS[Math.floor(chance() * TOOLS.length)];
+    builder.choose(kind, kind === "picture" ? { image: PIXEL } : {});
+    for (let point = 0; point < 4; point++) {
+      builder.placing?.turn(Math.round(somewhere(12)) * (Math.PI / 12));
+      builder.placing?.hover([somewhere(0.6), somewhere(0.6)], chance() < 0.5);
+      builder.placing?.put();
+    }
+    builder.placing?.finish(chance() < 0.5);
+    builder.choose(null);
+    builder.selectNext(1 + Math.floor(chance() * 5));
+    builder.nudge(Math.round(somewhere(3)), Math.round(somewhere(3)), { fine: chance() < 0.5 });
+    builder.turn(Math.round(somewhere(4)));
+    builder.edit({ height_m: chance() * 0.2, radius_m: chance() * 0.1, mass_kg: chance() });
+    if (chance() < 0.3) builder.duplicate();
+    if (chance() < 0.1) builder.remove();
+    if (chance() < 0.2) builder.undo();
+  }
+  return write(builder.playground);
+}
+
+/** With one more robot anywhere, perhaps in the way of something. @param {string} text */
+function crowded(text) {
+  const data = JSON.parse(text);
+  data.robots.push({ name: "intruder", x_m: somewhere(0.55), y_m: somewhere(0.55), yaw_rad: somewhere(3) });
+  return JSON.stringify(data);
+}
+
+/** @param {string} text */
+function opens(text) {
+  try {
+    parse(text);
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+const cases = Array.from({ length: Number(process.argv[2]) }, () => {
+  const text = built();
+  return [{ text, opens: opens(text) }, ...[1, 2, 3].map(() => crowded(text)).map((other) => ({ text: other, opens: opens(other) }))];
+}).flat();
+process.stdout.write(JSON.stringify(cases));

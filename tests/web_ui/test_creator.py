@@ -1,0 +1,330 @@
+"""The playground creator in a real browser: built by pointer, by keys and by touch, kept, saved, opened, tried."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+from tests.web_ui.conftest import DEADLINE_MS, LOCAL
+from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.test_page_access import AXE, FINDINGS
+from thymio_sim_ros.sim import playground as playgrounds
+
+pytestmark = MARKS
+
+ONE_LOOP = """() => {
+    window.drawn = {most: 0};
+    const request = window.requestAnimationFrame.bind(window);
+    let frame = -1, count = 0;
+    window.requestAnimationFrame = (callback) => request((now) => {
+        count = now === frame ? count + 1 : 1;
+        frame = now;
+        window.drawn.most = Math.max(window.drawn.most, count);
+        callback(now);
+    });
+}"""
+MOVES = """async (moves) => {
+    const canvas = document.querySelector("#view");
+    const {left, top, width, height} = canvas.getBoundingClientRect();
+    for (let move = 0; move < moves; move++) {
+        const clientX = left + width * (0.3 + 0.4 * ((move * 7) % 100) / 100);
+        const clientY = top + height * (0.3 + 0.4 * ((move * 13) % 100) / 100);
+        canvas.dispatchEvent(new PointerEvent("pointermove", {clientX, clientY, pointerId: 1, bubbles: true}));
+        if (move % 500 === 0) await new Promise((settle) => setTimeout(settle));
+    }
+}"""
+CONTROLS = ".palette button, .creator-bar button, .creator-bar select, header button"
+OUT_OF_SIGHT = """(controls) => [...document.querySelectorAll(controls)]
+    .filter((one) => {
+        const {left, top, right, bottom} = one.getBoundingClientRect();
+        const hit = document.elementFromPoint((left + right) / 2, (top + bottom) / 2);
+        return left < 0 || top < 0 || right > innerWidth || bottom > innerHeight || !one.contains(hit);
+    }).map((one) => one.outerHTML.slice(0, 120))"""
+
+
+def open_creator(page, suite, *arguments):
+    open_page(page, suite("--playground", "base", "--program", "none", *arguments))
+    page.click("#creator-switch")
+    page.locator(".palette").wait_for()
+    settle(page)
+
+
+def settle(page):
+    """Wait until the camera stands still."""
+    page.wait_for_function(
+        "() => { const now = JSON.stringify(window.thymio.screenPosition(0.1, 0.1, 0)); const last = window.lastSpot;"
+        " window.lastSpot = now; return now === last; }",
+        polling=200,
+    )
+
+
+def built(page):
+    return page.evaluate("window.thymio.built()")
+
+
+def items(page):
+    return {item["name"]: item for item in built(page)["playground"]["items"]}
+
+
+def spot(page, x, y, z=0.0):
+    place = page.evaluate("([x, y, z]) => window.thymio.screenPosition(x, y, z)", [x, y, z])
+    return place["x"], place["y"]
+
+
+def click(page, x, y, z=0.0):
+    page.mouse.click(*spot(page, x, y, z))
+
+
+def wait_for_items(page, count):
+    page.wait_for_function("(count) => window.thymio.built().playground.items.length === count", arg=count)
+
+
+def test_a_playground_is_built_with_undo_saved_found_again_opened_and_tried(suite, page, tmp_path):
+    open_creator(page, suite)
+    page.click("[data-tool=box]")
+    click(page, 0.3, 0.3)
+    click(page, 0.3, -0.3)
+    wait_for_items(page, 4)
+    page.keyboard.press("Control+z")
+    wait_for_items(page, 3)
+    page.keyboard.press("Control+z")
+    page.keyboard.press("Control+y")
+    page.keyboard.press("Control+Shift+Z")
+    wait_for_items(page, 4)
+    page.keyboard.press("Control+z")
+    page.click("[data-tool=track]")
+    for x, y in ((-0.4, -0.4), (0.4, -0.4), (0.4, 0.1)):
+        click(page, x, y)
+    page.click(".finish")
+    wait_for_items(page, 4)
+    assert items(page)["track_1"]["points_m"] == [[-0.4, -0.4], [0.4, -0.4], [0.4, 0.1]]
+    page.keyboard.press("Escape")
+    page.locator("[data-field=title]").fill("A way out")
+    page.locator("[data-field=title]").press("Enter")
+    with page.expect_download() as saving:
+        page.click("#creator-save")
+    assert saving.value.suggested_filename == "A_way_out.json"
+    saved = tmp_path / "A_way_out.json"
+    saving.value.save_as(saved)
+    loaded = playgrounds.load(saved)
+    assert [shape.name for shape in loaded.shapes] == ["ground", "box_1", "track_1"]
+
+    page.reload()
+    page.wait_for_function("window.thymio && window.thymio.connected")
+    page.click("#creator-switch")
+    page.wait_for_function("window.thymio.built()?.playground.title === 'A way out'")
+    page.click("#creator-new")
+    wait_for_items(page, 2)
+    page.set_input_files("#creator-file", str(saved))
+    wait_for_items(page, 4)
+    page.click("#creator-try")
+    page.wait_for_function("window.thymio.state().simulator.title === 'A way out'")
+    assert built(page)["isOpen"] is False
+    page.wait_for_function("window.thymio.state().robot?.latest")
+    page.locator("#view").focus()
+    page.keyboard.press("t")
+    start = page.evaluate("window.thymio.state().robot.latest.pose")
+    page.select_option(".behaviour select", "thesis_basic")
+    page.wait_for_function(
+        "window.thymio.state().program?.state === 'running' && window.thymio.state().program.name.includes('basic')"
+    )
+    page.locator("[data-button=forward]").hover()
+    page.mouse.down()
+    page.wait_for_function(
+        "(start) => { const {x, y} = window.thymio.state().robot.latest.pose;"
+        " return Math.hypot(x - start.x, y - start.y) > 0.03; }",
+        arg=start,
+    )
+
+
+def test_everything_is_built_by_keys_alone(suite, page):
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.locator("#creator-switch").press("Enter")
+    page.locator("[data-tool=box]").press("Enter")
+    assert page.evaluate("document.activeElement.id") == "view"
+    for key in ("Shift+ArrowRight", "ArrowUp", ".", "Enter"):
+        page.keyboard.press(key)
+    page.keyboard.press("Escape")
+    wait_for_items(page, 3)
+    box = items(page)["box_1"]
+    assert (box["x_m"], box["y_m"]) == (0.25, 0.05)
+    assert box["yaw_rad"] == pytest.approx(-0.2618, abs=1e-3)
+    page.locator("[data-tool=track]").press("Enter")
+    for key in ("Shift+ArrowDown", " ", "Shift+ArrowRight", " ", "ArrowUp", " ", "Backspace", "Enter", "Escape"):
+        page.keyboard.press(key)
+    wait_for_items(page, 4)
+    assert items(page)["track_1"]["points_m"] == [[0, -0.25], [0.25, -0.25]]
+    page.keyboard.press("n")
+    page.keyboard.press("n")
+    assert built(page)["selected"] == "box_1"
+    page.keyboard.press("Alt+ArrowLeft")
+    assert items(page)["box_1"]["x_m"] == 0.249
+    page.keyboard.press("Control+d")
+    wait_for_items(page, 5)
+    page.keyboard.press("Delete")
+    wait_for_items(page, 4)
+    page.keyboard.press("n")
+    page.keyboard.press("n")
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.dataset.field") == "name"
+    width = page.locator(".item-form [data-field=size_x_m]")
+    width.fill("12.5")
+    width.press("Enter")
+    page.wait_for_function("window.thymio.built().playground.items.some(({size_x_m}) => size_x_m === 0.125)")
+    page.locator("#view").focus()
+    page.keyboard.press("Escape")
+    assert built(page)["selected"] is None
+    page.locator("#creator-try").press("Enter")
+    page.wait_for_function("window.thymio.state().simulator.playground === 'My_playground.json'")
+
+
+def test_the_ghost_is_red_where_nothing_can_be_put_and_says_why(suite, page):
+    open_creator(page, suite)
+    page.click("[data-tool=cylinder]")
+    page.mouse.move(*spot(page, 0.0, 0.0))
+    page.wait_for_function("window.thymio.built().problem === 'problem.taken'")
+    playwright.expect(page.locator(".building-hint")).to_have_text("thymio is in the way")
+    click(page, 0.0, 0.0)
+    page.mouse.move(*spot(page, 0.3, 0.2))
+    page.wait_for_function("window.thymio.built().problem === null")
+    assert len(items(page)) == 2
+
+
+def test_things_are_carried_turned_and_changed_by_numbers(suite, page):
+    open_creator(page, suite)
+    page.click("[data-tool=box]")
+    click(page, 0.3, 0.2)
+    page.keyboard.press("Escape")
+    page.mouse.move(*spot(page, 0.3, 0.2, 0.05))
+    page.mouse.down()
+    page.mouse.move(*spot(page, 0.2, 0.1, 0.05), steps=4)
+    page.mouse.move(*spot(page, -0.2, 0.2, 0.05), steps=4)
+    page.mouse.up()
+    page.wait_for_function("window.thymio.built().playground.items[1].x_m === -0.2")
+    assert built(page)["selected"] == "box_1"
+    ring = 0.05 * 2**0.5 + 0.03
+    page.mouse.move(*spot(page, -0.2 + ring, 0.2))
+    page.mouse.down()
+    page.mouse.move(*spot(page, -0.2, 0.2 + ring), steps=6)
+    page.mouse.up()
+    page.wait_for_function("Math.abs(window.thymio.built().playground.items[1].yaw_rad - Math.PI / 2) < 0.001")
+    height = page.locator(".item-form [data-field=height_m]")
+    height.fill("0.05")
+    height.press("Enter")
+    playwright.expect(page.locator(".item-form .problem:visible")).to_have_text("from 0.1 to 10000 cm")
+    height.fill("0.5")
+    height.press("Enter")
+    page.wait_for_function("window.thymio.built().playground.items[1].height_m === 0.005")
+    page.locator("[data-field=movable]").check()
+    page.wait_for_function("window.thymio.built().playground.items[1].mass_kg === 0.1")
+    name = page.locator(".item-form [data-field=name]")
+    name.fill("z")
+    name.press("Control+z")
+    name.press("Delete")
+    assert len(items(page)) == 3, "keys in a field act on the field only"
+
+
+def test_shift_switches_the_camera_off_and_on_and_clicks_place_either_way(suite, page):
+    open_creator(page, suite)
+    page.click("[data-tool=cylinder]")
+    page.keyboard.press("Shift")
+    assert built(page)["cameraOn"] is False
+    before = built(page)["camera"]
+    drag(page)
+    click(page, 0.3, 0.2)
+    wait_for_items(page, 3)
+    assert built(page)["camera"] == before
+    page.keyboard.press("Shift")
+    drag(page)
+    page.wait_for_function("(before) => window.thymio.built().camera[0] !== before[0]", arg=before)
+    assert len(items(page)) == 3, "a drag places nothing"
+
+
+def drag(page):
+    x, y = spot(page, -0.3, -0.2)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 60, y + 10, steps=5)
+    page.mouse.up()
+
+
+def test_ten_thousand_moves_leave_one_animation_loop(suite, page):
+    page.add_init_script(f"({ONE_LOOP})()")
+    open_creator(page, suite)
+    page.click("[data-tool=u_figure]")
+    page.evaluate(MOVES, 10_000)
+    frames = page.evaluate("window.thymio.frames()")
+    page.evaluate("window.drawn.most = 0")
+    page.wait_for_function("(frames) => window.thymio.frames() > frames + 3", arg=frames, polling=100)
+    assert page.evaluate("window.drawn.most") == 1
+    assert frames < 2_000, "moves do not draw, frames do"
+
+
+def test_a_broken_file_is_refused_with_its_place_and_what_was_built_stays(suite, page, tmp_path):
+    broken = tmp_path / "broken.json"
+    broken.write_text(json.dumps({"format": 1, "title": "x", "shapes": [{"kind": "box", "x_m": "far"}]}))
+    open_creator(page, suite)
+    page.set_input_files("#creator-file", str(broken))
+    playwright.expect(page.locator(".creator .fault dd")).to_contain_text(
+        ["shapes[0].x_m", '"far"', "from -100 to 100"]
+    )
+    assert sorted(items(page)) == ["ground", "thymio"]
+
+
+def test_a_copy_of_a_shipped_playground_is_changed(suite, page):
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.wait_for_function("window.thymio.state().playgrounds.length > 3")
+    page.click("#gallery-open")
+    page.locator("li:has([data-playground=gate]) .change").click()
+    page.wait_for_function("window.thymio.built()?.playground.title === 'Gate'")
+    page.click("[data-verb=undo]")
+    page.wait_for_function("window.thymio.built().playground.title === 'My playground'")
+
+
+def test_it_is_in_sight_in_every_language_at_800_by_600_and_without_a_finding_of_axe(suite, page):
+    open_creator(page, suite)
+    for language in ("de", "fr", "it", "en"):
+        page.select_option("select.language", language)
+        page.wait_for_function("(language) => document.documentElement.lang === language", arg=language)
+        assert page.evaluate(OUT_OF_SIGHT, CONTROLS) == []
+    if not AXE.exists():
+        return
+    page.add_script_tag(path=str(AXE))
+    assert page.evaluate(FINDINGS) == []
+    page.click("[data-tool=box]")
+    click(page, 0.3, 0.2)
+    page.keyboard.press("Escape")
+    page.keyboard.press("n")
+    page.locator(".things-list summary").click()
+    assert page.evaluate(FINDINGS) == []
+
+
+def test_fingers_place_and_carry(suite, browser):
+    page = browser.new_page(viewport={"width": 800, "height": 600}, bypass_csp=True, has_touch=True)
+    page.set_default_timeout(DEADLINE_MS)
+    page.on("request", lambda request: None if request.url.startswith(LOCAL) else pytest.fail(request.url))
+    open_creator(page, suite)
+    page.locator("[data-tool=robot]").tap()
+    page.touchscreen.tap(*spot(page, 0.25, 0.2))
+    wait_for_items(page, 3)
+    assert items(page)["thymio_1"]["x_m"] == 0.25
+    page.locator(".cancel").tap()
+    assert built(page)["placing"] is None
+    page.close()
+
+
+def test_a_picture_lies_on_the_ground(suite, page, tmp_path):
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 10"><circle r="5" cx="8" cy="5"/></svg>'
+    )
+    open_creator(page, suite)
+    page.set_input_files("#creator-picture", str(drawing))
+    page.wait_for_function("window.thymio.built().placing?.kind === 'picture'")
+    click(page, 0.2, 0.2)
+    wait_for_items(page, 3)
+    page.click("#creator-try")
+    page.wait_for_function("window.thymio.state().simulator.playground === 'My_playground.json'")

@@ -1,0 +1,62 @@
+"""What the creator writes is what the simulator reads: by the published schema, by its loader, and by its checks."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from thymio_sim_ros import webbuild
+from thymio_sim_ros.sim import playground as playgrounds
+from thymio_sim_ros.sim import playground_text
+from thymio_sim_ros.sim.playground import PlaygroundError
+
+jsonschema = pytest.importorskip("jsonschema")
+
+SCRIPT = Path(__file__).with_name("build_random.js")
+PLAYGROUNDS = 40
+SCHEMA = Path(__file__).parents[2] / "playgrounds" / "playground.schema.json"
+
+
+@cache
+def cases() -> list[dict[str, Any]]:
+    """Playgrounds built by chance with the creator's own modules, and what the page says of each."""
+    node = webbuild.find_node()
+    if node is None:
+        pytest.skip("no Node on this machine")
+    done = subprocess.run([node.folder / "node", SCRIPT, str(PLAYGROUNDS)], capture_output=True, text=True, check=True)
+    found: list[dict[str, Any]] = json.loads(done.stdout)
+    return found
+
+
+def read(text: str) -> playgrounds.Playground | None:
+    try:
+        return playgrounds.loads(text, "built.json")
+    except PlaygroundError:
+        return None
+
+
+def test_what_is_built_is_taken_and_stays_the_same_when_it_is_written_again():
+    for case in cases()[::4]:
+        built = playgrounds.loads(case["text"], "built.json")
+        again = playgrounds.loads(playground_text.dumps(built), "built.json")
+        assert (again.shapes, again.robots) == (built.shapes, built.robots)
+        names = [item["name"] for key in ("shapes", "robots") for item in json.loads(case["text"])[key]]
+        assert [item.name for item in (*built.shapes, *built.robots)] == names
+        assert not built.notes, "a robot was put beside the ground"
+
+
+def test_what_is_built_fits_the_published_schema():
+    validator = jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text()))
+    for case in cases()[::4]:
+        validator.validate(json.loads(case["text"]))
+
+
+def test_page_and_simulator_judge_alike_who_stands_in_whom():
+    verdicts = [(case["opens"], read(case["text"]) is not None) for case in cases()]
+    assert [page for page, _ in verdicts] == [simulator for _, simulator in verdicts]
+    assert {page for page, _ in verdicts} == {True, False}, "both must come up"

@@ -1,0 +1,80 @@
+// The form of what is in hand or selected: all of its values, by numbers.
+
+import { h, icon, setText } from "../panels/dom.js";
+import { kindNamed } from "../playground/kinds/index.js";
+import { needed, RULES } from "../playground/rules.js";
+import { valuesOf } from "../playground/parts.js";
+import { canTurn } from "./place.js";
+import { control, loadControl } from "./fields.js";
+import { CREATOR_ICONS } from "./icons.js";
+
+/** @typedef {import("./fields.js").Setting} Setting */
+/** @typedef {import("./fields.js").Control} Control */
+
+const LOAD_KEYS = ["mass_kg", "friction", "restitution"];
+
+/** @param {Omit<Setting, "commit">} setting @param {import("./builder.js").Builder} builder */
+export function itemForm(setting, builder) {
+  const { t } = setting;
+  const title = h("h3");
+  const fields = h("div", { class: "fields" });
+  const verbs = [
+    { icon: "turnLeft", word: "verb.turnLeft", act: () => builder.turn(1) },
+    { icon: "turnRight", word: "verb.turnRight", act: () => builder.turn(-1) },
+    { icon: "copy", word: "verb.copy", act: () => builder.duplicate() },
+    { icon: "over", word: "verb.over", act: () => builder.raise(1) },
+    { icon: "under", word: "verb.under", act: () => builder.raise(-1) },
+    { icon: "remove", word: "verb.remove", act: () => builder.remove() },
+  ].map((verb) => ({
+    ...verb,
+    button: h(
+      "button",
+      { type: "button", class: "tool", title: t(verb.word), "aria-label": t(verb.word), onclick: verb.act, "data-verb": verb.icon },
+      icon(CREATOR_ICONS[verb.icon]),
+    ),
+  }));
+  const element = h("section", { class: "item-form" }, title, h("div", { class: "row verbs-row" }, ...verbs.map(({ button }) => button)), fields); // prettier-ignore
+  /** @type {Control[]} */ let controls = [];
+  let shownKind = "";
+
+  /** @param {string} kind @param {boolean} placing */
+  const build = (kind, placing) => {
+    const own = kindNamed(kind)?.fields ?? {};
+    const all = { ...(placing ? {} : { name: needed(RULES.name) }), ...own };
+    const full = { ...setting, commit: builder.edit.bind(builder) };
+    controls = Object.entries(all).flatMap(([key, field]) => {
+      if (LOAD_KEYS.includes(key) || (placing && (key === "points_m" || key === "name" || isEnd(key)))) return [];
+      return control(full, key, field) ?? [];
+    });
+    if ("mass_kg" in own) controls.push(loadControl(full, own));
+    fields.replaceChildren(...controls.map((one) => one.element));
+  };
+
+  return {
+    element,
+    focus: () => /** @type {HTMLElement | null} */ (fields.querySelector("input, select"))?.focus(),
+    render() {
+      const { placing, item } = builder;
+      const shown = placing === null ? item : (placing.isPath ? placing.pattern : (placing.ghost?.item ?? placing.pattern));
+      element.hidden = shown === null;
+      if (shown === null) return;
+      const kind = `${placing === null ? item?.name : "new"} ${shown.kind}`;
+      if (kind !== shownKind) {
+        shownKind = kind;
+        build(shown.kind, placing !== null);
+      }
+      setText(title, placing === null ? `${t(`kind.${shown.kind}`)} – ${shown.name}` : t("form.new", { kind: t(`kind.${shown.kind}`) }));
+      const values = valuesOf(shown);
+      for (const one of controls) one.update(values);
+      for (const { icon: verb, button } of verbs) {
+        const turns = verb === "turnLeft" || verb === "turnRight";
+        button.hidden = turns ? !canTurn(shown) || placing?.isPath === true : placing !== null;
+      }
+    },
+  };
+}
+
+/** Places of a wall or door come from the pointer while it is placed. @param {string} key */
+function isEnd(key) {
+  return /^(start|end|opened|closed)_/.test(key);
+}

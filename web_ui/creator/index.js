@@ -1,0 +1,191 @@
+// The playground creator's panels: tools on the view, the form beside it, the bar below. All of it acts on the workshop.
+
+import "./creator.css";
+
+import { translator } from "../i18n/index.js";
+import { download } from "../editor/download.js";
+import { faultView } from "../panels/fault.js";
+import { fileButton, h, icon, setText } from "../panels/dom.js";
+import { parse } from "../playground/document.js";
+import { kindNamed } from "../playground/kinds/index.js";
+import { Fault } from "../playground/rules.js";
+import { bar } from "./bar.js";
+import { newPlayground } from "./commands.js";
+import { itemForm } from "./form.js";
+import { CREATOR_ICONS } from "./icons.js";
+import { watchBuildingKeys } from "./keys.js";
+import { palette } from "./palette.js";
+import { watchBuilding } from "./pointer.js";
+import { readPicture } from "./read_picture.js";
+import { sheetForm } from "./sheet.js";
+import { thingsList } from "./things.js";
+import { WORDS } from "./words/index.js";
+import { Workshop } from "./workshop.js";
+
+export { Workshop, WORDS };
+
+/** @typedef {import("../playground/rules.js").Phrase} Phrase */
+/**
+ * @typedef {object} Creator
+ * @property {{ stage: HTMLElement, side: HTMLElement, footer: HTMLElement }} elements
+ * @property {() => void} render   once a frame: takes over what pointers did, and shows it
+ * @property {(phrase: Phrase) => void} tell
+ * @property {(fault: HTMLElement[] | null) => void} refuse   what is wrong with a file; null: nothing
+ * @property {(file: File) => void} open   another playground from a file of ours
+ * @property {() => void} destroy
+ */
+
+/** A phrase in words: kinds by their names, and what was done inside it. @param {import("../i18n/index.js").Translate} t @param {Phrase} phrase */
+export function inWords(t, { word, values = {} }) {
+  const filled = { ...values };
+  if (typeof values.kind === "string" && kindNamed(values.kind) !== undefined) filled.kind = t(`kind.${values.kind}`);
+  if (typeof values.did === "string") filled.did = t(values.did, values);
+  return t(word, filled);
+}
+
+/**
+ * @param {object} options
+ * @param {Workshop} options.workshop
+ * @param {string} options.language
+ * @param {import("../i18n/index.js").Translate} options.pageText
+ * @param {import("../scene/index.js").SceneView} options.scene
+ * @param {(text: string) => void} options.announce
+ * @param {() => void} options.tryIt
+ * @param {() => void} options.close
+ * @returns {Creator}
+ */
+export function createCreator({ workshop, language, pageText, scene, announce, tryIt, close }) {
+  const t = translator(language, WORDS);
+  const { builder } = workshop;
+  const { canvas } = scene;
+  const stage = /** @type {HTMLElement} */ (canvas.parentElement);
+  /** @param {Phrase} phrase */
+  const say = (phrase) => inWords(t, phrase);
+  const setting = {
+    t,
+    say,
+    doors: () => builder.playground.items.filter(({ kind }) => kind === "door").map(({ name }) => name),
+    readPicture,
+  };
+  const tools = palette({ t, builder, canvas });
+  const below = bar(t, builder);
+  const form = itemForm(setting, builder);
+  const sheet = sheetForm(setting, builder);
+  const list = thingsList(t, builder);
+  const fault = h("div", { class: "fault", role: "alert", hidden: true });
+  const unsaved = h("span", { class: "unsaved", title: t("file.unsaved") });
+  const name = h("strong", { class: "name" });
+  const hint = h("p", { class: "hint building-hint" });
+  /** Then keys go on in the view. @param {() => void} act */
+  const andBack = (act) => () => {
+    act();
+    canvas.focus();
+  };
+  const finish = h("button", { type: "button", class: "finish", onclick: andBack(() => builder.placing?.finish()) }, icon(CREATOR_ICONS.done), t("hint.finish")); // prettier-ignore
+  const cancel = h("button", { type: "button", class: "cancel", onclick: andBack(() => builder.cancel()) }, t("hint.cancel"));
+  const hints = h("div", { class: "building-hints" }, hint, finish, cancel);
+
+  /** @param {HTMLElement[] | null} told */
+  const refuse = (told) => {
+    fault.hidden = told === null;
+    fault.replaceChildren(...(told ?? []));
+    if (told !== null) announce(fault.textContent ?? "");
+  };
+  /** @param {File} file */
+  const open = async (file) => {
+    try {
+      workshop.take(parse(await file.text()), { word: "did.opened", values: { name: file.name } });
+      refuse(null);
+      scene.reframe();
+      scene.look("home");
+      tell({ word: "did.opened", values: { name: file.name } });
+    } catch (error) {
+      if (!(error instanceof Fault)) throw error;
+      const text = `${error.key === "" ? "" : `${error.key}: `}found ${error.found}, expected ${say(error.expected)}`;
+      refuse(faultView(pageText, t("file.refused", { name: file.name }), { text, line: null, column: null }));
+    }
+  };
+  const save = () => {
+    download(workshop.fileName, workshop.text, "application/json");
+    workshop.noteSaved();
+    tell({ word: "tell.saved", values: { name: workshop.fileName } });
+  };
+  const fresh = () => {
+    workshop.take(newPlayground(t("new.title")), { word: "did.new" });
+    refuse(null);
+    scene.reframe();
+    scene.look("home");
+    tell({ word: "did.new" });
+  };
+  const side = h(
+    "div",
+    { class: "creator", role: "region", "aria-label": t("creator") },
+    h("div", { class: "creator-head" }, name, unsaved, h("button", { type: "button", class: "leave", onclick: close }, t("file.close"))),
+    h(
+      "div",
+      { class: "row" },
+      h("button", { type: "button", class: "primary", id: "creator-try", title: t("file.tryHelp"), onclick: tryIt }, t("file.try")),
+      h("button", { type: "button", id: "creator-save", title: t("file.saveHelp"), onclick: save }, icon(CREATOR_ICONS.save), t("file.save")),
+      fileButton({ id: "creator-file", label: t("file.open"), help: t("file.openHelp"), accept: ".json", open: (file) => void open(file) }),
+      h("button", { type: "button", id: "creator-new", title: t("file.newHelp"), onclick: fresh }, icon(CREATOR_ICONS.fresh), t("file.new")),
+    ),
+    fault,
+    form.element,
+    sheet.element,
+    list.element,
+    h("p", { class: "keys" }, t("keys")),
+  ); // prettier-ignore
+
+  /** @param {Phrase} phrase */
+  function tell(phrase) {
+    const text = say(phrase);
+    below.tell(text);
+    announce(text);
+  }
+
+  const pointers = watchBuilding({ stage, canvas, builder, scene });
+  const endKeys = watchBuildingKeys({
+    stage,
+    canvas,
+    around: [side, tools.element, below.element],
+    builder,
+    editFields: () => {
+      form.render();
+      form.focus();
+    },
+  });
+  const label = canvas.getAttribute("aria-label") ?? "";
+  canvas.setAttribute("aria-label", t("canvas"));
+  const onStage = h("div", { class: "creator-stage" }, tools.element, hints);
+
+  return {
+    elements: { stage: onStage, side, footer: below.element },
+    tell,
+    refuse,
+    open: (file) => void open(file),
+    render() {
+      pointers.flush();
+      scene.camera.controls.enabled = builder.cameraOn;
+      setText(name, builder.playground.title || t("new.title"));
+      unsaved.hidden = !workshop.isUnsaved;
+      const { placing } = builder;
+      const problem = builder.ghost?.problem ?? null;
+      const word = placing === null ? "" : placing.isPath ? `hint.${placing.kind}` : "hint.placing";
+      setText(hint, problem !== null ? say(problem) : word === "" ? "" : say({ word, values: { kind: placing?.kind ?? "" } }));
+      hint.classList.toggle("taken", problem !== null);
+      hints.hidden = hint.textContent === "";
+      finish.hidden = placing?.kind !== "track" || placing.points.length < 2;
+      cancel.hidden = placing === null;
+      for (const part of [tools, below, form, sheet, list]) part.render();
+    },
+    destroy() {
+      pointers.destroy();
+      endKeys();
+      scene.camera.controls.enabled = true;
+      canvas.setAttribute("aria-label", label);
+      onStage.remove();
+      side.remove();
+      below.element.remove();
+    },
+  };
+}

@@ -1,0 +1,54 @@
+// The tools: select, or put something down.
+
+import { h, icon, setAttribute } from "../panels/dom.js";
+import { CREATOR_ICONS } from "./icons.js";
+import { readPicture } from "./read_picture.js";
+
+/** In their order on the page. */
+const TOOLS = ["select", "rectangle", "octagon", "picture", "track", "box", "cylinder", "wall", "u_figure", "door", "activation", "robot"];
+
+/**
+ * @param {object} options
+ * @param {import("../i18n/index.js").Translate} options.t
+ * @param {import("./builder.js").Builder} options.builder
+ * @param {HTMLElement} options.canvas   which gets the focus, so that keys go on there
+ */
+export function palette({ t, builder, canvas }) {
+  const file = h("input", { type: "file", accept: "image/png,image/jpeg,image/svg+xml", hidden: true, id: "creator-picture", "aria-label": t("field.image") }); // prettier-ignore
+  file.addEventListener("change", async () => {
+    const chosen = file.files?.[0];
+    file.value = "";
+    if (chosen === undefined) return;
+    const image = await readPicture(chosen);
+    if (image === null) return builder.tell({ word: "problem.picture", values: { name: chosen.name } });
+    builder.choose("picture", { image });
+    canvas.focus();
+  });
+  const buttons = TOOLS.map((tool) => ({
+    tool,
+    button: h(
+      "button",
+      { type: "button", title: t(`tool.${tool}`), "aria-label": t(`tool.${tool}`), "data-tool": tool, onclick: () => choose(tool) },
+      icon(CREATOR_ICONS[tool]),
+    ),
+  }));
+  /** @param {string} tool */
+  function choose(tool) {
+    if (tool === "picture") return file.click();
+    builder.choose(tool === "select" ? null : tool);
+    canvas.focus();
+  }
+  const element = h(
+    "div",
+    { class: "palette", role: "toolbar", "aria-label": t("palette"), "aria-orientation": "vertical" },
+    ...buttons.map(({ button }) => button),
+    file,
+  );
+  return {
+    element,
+    render() {
+      const now = builder.placing?.kind ?? "select";
+      for (const { tool, button } of buttons) setAttribute(button, "aria-pressed", String(tool === now));
+    },
+  };
+}

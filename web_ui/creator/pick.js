@@ -1,0 +1,64 @@
+// What a pointer is on: handles of what is selected, and items. Pure.
+
+import { atHeight, hit } from "../move/things.js";
+import { distance, holds } from "../playground/geometry.js";
+import { kindNamed } from "../playground/kinds/index.js";
+import { outlinesOf } from "../playground/parts.js";
+import { canTurn, middleOf, pointsOf, reachOf } from "./place.js";
+
+/** @typedef {Parameters<typeof hit>[0]} Ray */
+/** @typedef {import("../playground/parts.js").Item} Item */
+/** @typedef {import("../playground/geometry.js").Point} Point */
+/** @typedef {{ type: "point", index: number } | { type: "ring" } | { type: "middle" }} Handle */
+
+/** The ring by which things are turned: so far beyond their outline. */
+export const RING_BEYOND_M = 0.03;
+const HANDLE_PX = 14;
+const TINY_M = 0.006;
+
+/** The item under a pointer: what stands, else what lies on top. @param {readonly Item[]} items @param {Ray} ray */
+export function itemAt(items, ray) {
+  const standing = items.flatMap((item) =>
+    outlinesOf(item)
+      .filter(({ height }) => height > 0)
+      .map(({ outline, height }) => ({ name: item.name, robot: null, pose: { x: 0, y: 0, yaw: 0 }, outline: [/** @type {[number, number][]} */ ([...outline])], height })),
+  ); // prettier-ignore
+  const found = hit(ray, standing);
+  if (found !== null) return items.find(({ name }) => name === found.thing.name) ?? null;
+  const place = atHeight(ray, 0);
+  if (place === null) return null;
+  const point = /** @type {Point} */ ([place.x, place.y]);
+  return [...items].reverse().find((item) => outlinesOf(item).some(({ outline, height }) => height === 0 && holds(outline, point))) ?? null;
+}
+
+/**
+ * The handle of an item under a pointer.
+ *
+ * @param {Item} item
+ * @param {Ray} ray
+ * @param {number} pixel  metres on the ground
+ * @returns {Handle | null}
+ */
+export function handleAt(item, ray, pixel) {
+  const ground = atHeight(ray, 0);
+  if (ground === null) return null;
+  const place = /** @type {Point} */ ([ground.x, ground.y]);
+  const near = Math.max(TINY_M, HANDLE_PX * pixel);
+  const index = pointsOf(item).findIndex((point) => distance(point, place) < near);
+  if (index >= 0) return { type: "point", index };
+  if (hasKnob(item) && distance(middleOf(item), place) < near) return { type: "middle" };
+  const radius = reachOf(item) + RING_BEYOND_M;
+  if (hasRing(item) && Math.abs(distance(middleOf(item), place) - radius) < near) return { type: "ring" };
+  return null;
+}
+
+/** Whether it is moved by a knob in its middle, as a pointer on the ground means the camera. @param {Item} item */
+export function hasKnob(item) {
+  const group = kindNamed(item.kind)?.group;
+  return group === "ground" || item.kind === "picture";
+}
+
+/** @param {Item} item */
+export function hasRing(item) {
+  return canTurn(item);
+}

@@ -1,0 +1,180 @@
+// Something new in hand: it follows the pointer or the keys, is put down again and again, and goes with Escape.
+
+import { kindNamed } from "../playground/kinds/index.js";
+import { distance } from "../playground/geometry.js";
+import { added, freeName, groundOf } from "./commands.js";
+import { canTurn, changed, middleOf, movedTo, turned } from "./place.js";
+import { snapped } from "./snap.js";
+
+/** @typedef {import("../playground/parts.js").Item} Item */
+/** @typedef {import("../playground/geometry.js").Point} Point */
+/** @typedef {import("../playground/rules.js").Phrase} Phrase */
+
+/** Nearer than this, a point is the same. */
+const SAME_M = 0.0005;
+
+export class Placing {
+  /** @param {import("./builder.js").Builder} builder @param {string} kind @param {Record<string, any>} values */
+  constructor(builder, kind, values) {
+    this.builder = builder;
+    this.kind = kind;
+    const { playground } = builder;
+    const ground = groundOf(playground);
+    /** @type {Point} where it would be put */
+    this.place = builder.pointer ?? snapped(ground === null ? [0, 0] : middleOf(ground), builder.grid);
+    /** @type {Point[]} of a path, so far */ this.points = [];
+    /** @type {Point[]} taken back */ this.takenBack = [];
+    /** @type {Item} how the next one looks; its place does not matter */
+    this.pattern = Object.freeze({ kind, ...kindNamed(kind)?.fresh, ...this.#own(kind), ...values, name: this.#name() });
+  }
+
+  /** Whether several places are asked for. */
+  get isPath() {
+    return (kindNamed(this.kind)?.clicks ?? 1) > 1;
+  }
+
+  /** Where it would stand; null for a path without its first point. @returns {import("./builder.js").Ghost | null} */
+  get ghost() {
+    const item = this.isPath ? this.#pathTo(this.place) : movedTo(this.#whole(), this.place);
+    return item === null ? null : { item, problem: this.builder.problemOf(item, item.name) };
+  }
+
+  /** The pointer is there. @param {Point} place @param {boolean} free  of the grid */
+  hover(place, free) {
+    this.place = snapped(place, this.builder.gridFor(free));
+  }
+
+  /** Put it down, or one point of it. */
+  put() {
+    const { builder } = this;
+    if (this.isPath) return this.#putPoint();
+    const { ghost } = this;
+    if (ghost === null) return;
+    if (ghost.problem !== null) return builder.tell(ghost.problem);
+    this.#add(ghost.item);
+  }
+
+  /** The path is complete. @param {boolean} [closed] */
+  finish(closed = false) {
+    if (this.kind !== "track") return;
+    if (this.points.length < 2) return this.builder.tell({ word: "problem.twoPoints" });
+    const item = changed(this.pattern, { points_m: this.points, ...(closed ? { closed: true } : {}) });
+    const problem = this.builder.problemOf(item, item.name);
+    if (problem !== null) return this.builder.tell(problem);
+    this.points = [];
+    this.#add(item);
+  }
+
+  /** Take back the last point; whether there was one. */
+  undoPoint() {
+    const point = this.points.pop();
+    if (point === undefined) return false;
+    this.takenBack.push(point);
+    this.builder.tell({ word: "tell.pointBack", values: { count: this.points.length } });
+    this.builder.changed();
+    return true;
+  }
+
+  /** @returns {boolean} */
+  redoPoint() {
+    const point = this.takenBack.pop();
+    if (point === undefined) return false;
+    this.points.push(point);
+    this.builder.changed();
+    return true;
+  }
+
+  /** @param {number} dx @param {number} dy */
+  nudge(dx, dy) {
+    this.place = snapped([this.place[0] + dx, this.place[1] + dy], null);
+    const { ghost } = this;
+    const at = ghost === null || this.isPath ? { kind: "robot", name: "", x_m: this.place[0], y_m: this.place[1] } : ghost.item;
+    this.builder.tellPlace(at, ghost?.problem);
+    this.builder.changed();
+  }
+
+  /** @param {number} angle */
+  turn(angle) {
+    if (this.isPath || !canTurn(this.pattern)) return;
+    this.pattern = turned(this.#whole(), angle);
+    this.builder.tellPlace(movedTo(this.pattern, this.place), this.ghost?.problem);
+    this.builder.changed();
+  }
+
+  /** Other values for those to come. @param {Record<string, any>} values @returns {Phrase | null} */
+  edit(values) {
+    const { builder } = this;
+    const next = changed(this.pattern, values);
+    if (this.isPath) this.pattern = next;
+    else {
+      const item = "x_m" in values || "y_m" in values ? movedTo({ ...this.#whole(), ...next }, middleOf({ ...this.#whole(), ...values })) : movedTo({ ...this.#whole(), ...next }, this.place); // prettier-ignore
+      const problem = builder.problemOf(item, item.name);
+      if (problem?.word === "problem.value") return problem;
+      this.pattern = next;
+      this.place = middleOf(item);
+    }
+    builder.changed();
+    return null;
+  }
+
+  /** The playground has changed under it. */
+  refresh() {
+    this.pattern = changed(this.pattern, { name: this.#name() });
+  }
+
+  #putPoint() {
+    const { builder, points, place } = this;
+    const last = points.at(-1);
+    if (last !== undefined && distance(last, place) < SAME_M) return this.finish();
+    if (this.kind === "track" && points.length > 2 && distance(points[0], place) < SAME_M) return this.finish(true);
+    const item = this.#pathTo(place);
+    const problem = item === null ? null : builder.problemOf(item, item.name);
+    if (problem !== null) return builder.tell(problem);
+    if (this.kind === "wall" && item !== null) {
+      this.points = [place]; // the next wall begins where this one ends
+      return this.#add(item);
+    }
+    points.push(place);
+    this.takenBack = [];
+    builder.tell({ word: "tell.point", values: { count: points.length } });
+    builder.changed();
+  }
+
+  /** What it would be if the pointer were its last point; null when there is not enough of it. @param {Point} place @returns {Item | null} */
+  #pathTo(place) {
+    const last = this.points.at(-1);
+    if (last === undefined) return null;
+    const all = distance(last, place) < SAME_M ? this.points : [...this.points, place];
+    if (all.length < 2) return null;
+    if (this.kind === "track") return changed(this.pattern, { points_m: all });
+    return changed(this.pattern, { start_x_m: last[0], start_y_m: last[1], end_x_m: place[0], end_y_m: place[1] });
+  }
+
+  /** @param {Item} item */
+  #add(item) {
+    const { builder } = this;
+    const did = { word: "did.added", values: { name: item.name } };
+    builder.do(added(builder.playground, item), did);
+    this.takenBack = [];
+    this.refresh();
+    builder.tell(did);
+  }
+
+  /** The pattern with a place, as places are needed. */
+  #whole() {
+    const points = kindNamed(this.kind)?.points ?? [];
+    const [first] = points;
+    const zero = first === undefined ? {} : { [first[0]]: 0, [first[1]]: 0 };
+    return /** @type {Item} */ ({ ...zero, ...this.pattern });
+  }
+
+  #name() {
+    return freeName(this.builder.playground, this.kind === "robot" ? "thymio" : this.kind);
+  }
+
+  /** What a new one takes from the playground. @param {string} kind @returns {Record<string, any>} */
+  #own(kind) {
+    const door = [...this.builder.playground.items].reverse().find((item) => item.kind === "door");
+    return kind === "activation" && door !== undefined ? { door: door.name } : {};
+  }
+}

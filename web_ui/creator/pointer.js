@@ -1,0 +1,98 @@
+// Pointer and wheel while one builds. Handlers only note what happened and ask for a frame; places are taken over once a
+// frame (`flush`), however many moves there were. They come before the camera's, which gets what is not ours.
+
+import { atHeight } from "../move/things.js";
+
+/** @typedef {import("./builder.js").Builder} Builder */
+/** @typedef {{ clientX: number, clientY: number, altKey: boolean }} Spot */
+
+/** A pointer that went up nearer than this has clicked. */
+const CLICK_PX = 6;
+const WHEEL_STEP = 60;
+
+/**
+ * @param {object} options
+ * @param {HTMLElement} options.stage    that holds the canvas
+ * @param {HTMLElement} options.canvas
+ * @param {Builder} options.builder
+ * @param {import("../scene/index.js").SceneView} options.scene
+ * @returns {{ flush: () => void, destroy: () => void }}
+ */
+export function watchBuilding({ stage, canvas, builder, scene }) {
+  const ending = new AbortController();
+  /** @type {Spot | null} */ let latest = null;
+  /** @type {{ id: number, x: number, y: number, ours: boolean, click: boolean } | null} */ let down = null;
+  let wheeled = 0;
+
+  const flush = () => {
+    builder.pixel = scene.pixelSize;
+    if (latest === null) return;
+    const spot = latest;
+    latest = null;
+    const ray = scene.rayOf(spot);
+    const place = atHeight(ray, 0);
+    builder.pointer = place === null ? null : [place.x, place.y];
+    if (down?.ours) builder.selecting.drag(ray, spot.altKey);
+    else if (builder.placing !== null && place !== null) {
+      builder.placing.hover([place.x, place.y], spot.altKey);
+      builder.changed();
+    }
+  };
+  /** @param {Event} event */
+  const isHere = (event) => event.target === canvas;
+  /** @param {keyof HTMLElementEventMap} name @param {(event: any) => void} handle */
+  const on = (name, handle) =>
+    stage.addEventListener(name, (event) => isHere(event) && handle(event), { capture: true, passive: false, signal: ending.signal });
+
+  on("pointerdown", (/** @type {PointerEvent} */ event) => {
+    canvas.focus();
+    if (down !== null) {
+      down.click = false; // a second finger is the camera's
+      return;
+    }
+    if (event.button !== 0) return;
+    const ours = builder.placing === null && builder.selecting.grab(scene.rayOf(event));
+    down = { id: event.pointerId, x: event.clientX, y: event.clientY, ours, click: true };
+    latest = event;
+    if (ours) canvas.setPointerCapture(event.pointerId);
+    if (ours || !builder.cameraOn) event.stopPropagation();
+    scene.invalidate();
+  });
+  on("pointermove", (/** @type {PointerEvent} */ event) => {
+    if (down?.ours) event.stopPropagation();
+    if (down !== null && Math.hypot(event.clientX - down.x, event.clientY - down.y) > CLICK_PX) down.click = false;
+    if (down !== null && !down.ours && !down.click) return; // the camera turns
+    latest = event;
+    scene.invalidate();
+  });
+  on("pointerup", (/** @type {PointerEvent} */ event) => {
+    if (event.pointerId !== down?.id) return;
+    const { ours, click } = down;
+    if (ours) event.stopPropagation();
+    if (!ours && !click) {
+      down = null;
+      return;
+    }
+    latest = event;
+    flush();
+    down = null;
+    if (ours) builder.selecting.drop();
+    else if (builder.placing !== null) builder.placing.put();
+    else builder.selecting.click(scene.rayOf(event));
+  });
+  on("pointercancel", () => {
+    down = null;
+    builder.selecting.cancel();
+  });
+  on("wheel", (/** @type {WheelEvent} */ event) => {
+    const turns = builder.placing !== null && !builder.placing.isPath;
+    if (!turns && builder.cameraOn) return;
+    event.stopPropagation();
+    event.preventDefault();
+    wheeled += event.deltaY;
+    const steps = Math.trunc(wheeled / WHEEL_STEP);
+    wheeled -= steps * WHEEL_STEP;
+    if (steps !== 0) builder.turn(-steps, event.altKey);
+  });
+  return { flush, destroy: () => ending.abort() };
+}

@@ -1,0 +1,43 @@
+// A picture file as a data URI that a playground can hold: not too large, and of a form that the simulator reads.
+
+/** A file up to this size is taken as it is; as text it grows by a third. */
+const KEPT_BYTES = 1_000_000;
+const MOST_PIXELS = 2048;
+/** An SVG has no size in pixels of its own. */
+const DRAWN_PIXELS = 1600;
+const QUALITY = 0.88;
+
+/** Null for what is no picture. @param {File} file @returns {Promise<string | null>} */
+export async function readPicture(file) {
+  const image = new Image();
+  const address = URL.createObjectURL(file);
+  image.src = address;
+  try {
+    await image.decode();
+  } catch {
+    return null;
+  } finally {
+    URL.revokeObjectURL(address);
+  }
+  const isVector = file.type === "image/svg+xml";
+  const isPlain = file.type === "image/png" || file.type === "image/jpeg";
+  const [width, height] = [image.naturalWidth || DRAWN_PIXELS, image.naturalHeight || DRAWN_PIXELS];
+  if (isPlain && file.size <= KEPT_BYTES && Math.max(width, height) <= MOST_PIXELS) return uriOf(file);
+  const wanted = isVector ? DRAWN_PIXELS : MOST_PIXELS;
+  const scale = isVector ? wanted / Math.max(width, height) : Math.min(1, wanted / Math.max(width, height));
+  const canvas = document.createElement("canvas");
+  canvas.width = Math.round(width * scale);
+  canvas.height = Math.round(height * scale);
+  canvas.getContext("2d")?.drawImage(image, 0, 0, canvas.width, canvas.height);
+  return file.type === "image/jpeg" ? canvas.toDataURL("image/jpeg", QUALITY) : canvas.toDataURL("image/png");
+}
+
+/** @param {File} file @returns {Promise<string>} */
+function uriOf(file) {
+  return new Promise((settle, fail) => {
+    const reader = new FileReader();
+    reader.onload = () => settle(String(reader.result));
+    reader.onerror = () => fail(reader.error);
+    reader.readAsDataURL(file);
+  });
+}

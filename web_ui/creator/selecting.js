@@ -1,0 +1,108 @@
+// Taking what stands there: select it, carry it, turn it by its ring, move its points. Until it is let go, it is a ghost.
+
+import { atHeight } from "../move/things.js";
+import { kindNamed } from "../playground/kinds/index.js";
+import { valuesOf } from "../playground/parts.js";
+import { replaced } from "./commands.js";
+import { handleAt, hasKnob, itemAt } from "./pick.js";
+import { middleOf, movedTo, pointsOf, turned, withPoint } from "./place.js";
+import { snapped } from "./snap.js";
+
+/** @typedef {import("../playground/parts.js").Item} Item */
+/** @typedef {import("../playground/geometry.js").Point} Point */
+/** @typedef {import("./pick.js").Ray} Ray */
+/** @typedef {import("./pick.js").Handle} Handle */
+
+const TURN_STEP = Math.PI / 12;
+
+export class Selecting {
+  /** @param {import("./builder.js").Builder} builder */
+  constructor(builder) {
+    this.builder = builder;
+    /** @type {{ item: Item, handle: Handle, from: Point, z: number } | null} */ this.grip = null;
+    /** @type {import("./builder.js").Ghost | null} */ this.ghost = null;
+  }
+
+  /** A pointer goes down; whether it took something. @param {Ray} ray */
+  grab(ray) {
+    const { builder } = this;
+    const ground = pointOn(ray, 0);
+    if (ground === null) return false;
+    const { item } = builder;
+    const handle = item === null ? null : handleAt(item, ray, builder.pixel);
+    if (item !== null && handle !== null) {
+      this.grip = { item, handle, from: ground, z: 0 };
+      return true;
+    }
+    const found = itemAt(builder.playground.items, ray);
+    if (found === null || hasKnob(found)) return false; // the ground is the camera's, and a click selects it
+    builder.select(found.name);
+    const z = heightOf(found) / 2;
+    this.grip = { item: found, handle: { type: "middle" }, from: pointOn(ray, z) ?? ground, z };
+    return true;
+  }
+
+  /** A pointer went down and up on nothing that can be taken. @param {Ray} ray */
+  click(ray) {
+    this.builder.select(itemAt(this.builder.playground.items, ray)?.name ?? null);
+  }
+
+  /** @param {Ray} ray @param {boolean} free  of the grid */
+  drag(ray, free) {
+    const { builder, grip } = this;
+    if (grip === null) return;
+    const place = pointOn(ray, grip.z);
+    if (place === null) return;
+    const item = carried(grip, place, builder.gridFor(free));
+    this.ghost = item === grip.item ? null : { item, problem: builder.problemOf(item, item.name) };
+    builder.changed();
+  }
+
+  /** Let go: it is there now, or where it was. */
+  drop() {
+    const { builder, ghost, grip } = this;
+    this.cancel();
+    if (ghost === null || grip === null) return;
+    if (ghost.problem !== null) return builder.tell(ghost.problem);
+    const word = grip.handle.type === "ring" ? "did.turned" : grip.handle.type === "point" ? "did.changed" : "did.moved";
+    builder.do(replaced(builder.playground, ghost.item.name, ghost.item), { word, values: { name: ghost.item.name } });
+    builder.tellPlace(ghost.item);
+  }
+
+  cancel() {
+    this.grip = null;
+    this.ghost = null;
+    this.builder.changed();
+  }
+}
+
+/** @param {NonNullable<Selecting["grip"]>} grip @param {Point} place @param {import("./snap.js").Grid | null} grid */
+function carried({ item, handle, from }, place, grid) {
+  const [x, y] = middleOf(item);
+  if (handle.type === "ring") {
+    const turn = Math.atan2(place[1] - y, place[0] - x) - Math.atan2(from[1] - y, from[0] - x);
+    return turned(item, grid === null ? turn : Math.round(turn / TURN_STEP) * TURN_STEP);
+  }
+  const [dx, dy] = [place[0] - from[0], place[1] - from[1]];
+  if (handle.type === "point") {
+    const [px, py] = pointsOf(item)[handle.index];
+    return withPoint(item, handle.index, snapped([px + dx, py + dy], grid));
+  }
+  if (Math.hypot(dx, dy) < 1e-4) return item;
+  const isPath = kindNamed(item.kind)?.points.length === 0 || item.kind === "wall";
+  if (!isPath) return movedTo(item, snapped([x + dx, y + dy], grid));
+  const [[firstX, firstY]] = pointsOf(item); // a path keeps its first point on the grid, not its middle
+  const [toX, toY] = snapped([firstX + dx, firstY + dy], grid);
+  return movedTo(item, [x + toX - firstX, y + toY - firstY]);
+}
+
+/** @param {Ray} ray @param {number} z @returns {Point | null} */
+function pointOn(ray, z) {
+  const place = atHeight(ray, z);
+  return place === null ? null : [place.x, place.y];
+}
+
+/** @param {Item} item */
+function heightOf(item) {
+  return item.kind === "robot" ? 0.05 : (valuesOf(item).height_m ?? 0);
+}

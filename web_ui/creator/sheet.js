@@ -1,0 +1,69 @@
+// The playground as a whole: title, description, what it stands on.
+
+import { h } from "../panels/dom.js";
+import { grounded, groundOf, titled } from "./commands.js";
+import { control } from "./fields.js";
+import { kindNamed } from "../playground/kinds/index.js";
+import { needed, RULES } from "../playground/rules.js";
+import { valuesOf } from "../playground/parts.js";
+
+/** @typedef {import("./fields.js").Control} Control */
+
+const GROUNDS = ["rectangle", "octagon", "none"];
+/** What is asked about the ground here; the rest when it is selected. */
+const GROUND_KEYS = ["size_x_m", "size_y_m", "side_m", "color", "walls"];
+
+/** @param {Omit<import("./fields.js").Setting, "commit">} setting @param {import("./builder.js").Builder} builder */
+export function sheetForm(setting, builder) {
+  const { t } = setting;
+  /** @param {Record<string, any>} values */
+  const title = (values) => {
+    if (!RULES.line.pattern?.test(values.title ?? values.description ?? "")) return { word: "problem.line" };
+    return builder.become(titled(builder.playground, values), { word: "did.titled" });
+  };
+  const titles = ["title", "description"].map((key) => control({ ...setting, commit: title }, key, needed(RULES.line)));
+  const select = h("select", { id: "creator-ground", "data-field": "ground" });
+  select.append(...GROUNDS.map((kind) => h("option", { value: kind }, t(`ground.${kind}`))));
+  select.addEventListener("change", () => builder.become(grounded(builder.playground, select.value), { word: "did.ground" }));
+  const fields = h("div", { class: "fields" });
+  const element = h(
+    "section",
+    { class: "sheet" },
+    h("div", { class: "fields wide" }, ...titles.flatMap((one) => (one === null ? [] : [one.element]))),
+    h("div", { class: "field" }, h("label", { for: "creator-ground" }, t("ground")), select),
+    fields,
+  );
+  /** @type {Control[]} */ let controls = [];
+  let shownKind = "";
+
+  /** @param {Record<string, any>} values */
+  const change = (values) => {
+    const ground = groundOf(builder.playground);
+    if (ground === null) return null;
+    const before = builder.selected;
+    builder.selected = ground.name;
+    const problem = builder.edit(values);
+    builder.selected = before;
+    builder.changed();
+    return problem;
+  };
+
+  return {
+    element,
+    render() {
+      element.hidden = builder.placing !== null || builder.item !== null;
+      if (element.hidden) return;
+      for (const one of titles) one?.update(builder.playground);
+      const ground = groundOf(builder.playground);
+      select.value = ground?.kind ?? "none";
+      const kind = `${ground?.name} ${ground?.kind}`;
+      if (kind !== shownKind) {
+        shownKind = kind;
+        const own = Object.entries(kindNamed(ground?.kind ?? "")?.fields ?? {}).filter(([key]) => GROUND_KEYS.includes(key));
+        controls = own.flatMap(([key, field]) => control({ ...setting, commit: change }, key, field) ?? []);
+        fields.replaceChildren(...controls.map((one) => one.element));
+      }
+      if (ground !== null) for (const one of controls) one.update(valuesOf(ground));
+    },
+  };
+}

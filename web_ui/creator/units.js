@@ -1,0 +1,29 @@
+// Numbers as people write them: centimetres, degrees, grams. Pure.
+
+/** One row per unit of the file: the one that is shown, how many of it make one, and the step of its arrows. */
+export const UNITS = /** @type {Record<string, { unit: string, factor: number, step: number }>} */ ({
+  m: { unit: "cm", factor: 100, step: 1 },
+  rad: { unit: "°", factor: 180 / Math.PI, step: 15 },
+  kg: { unit: "g", factor: 1000, step: 10 },
+  s: { unit: "s", factor: 1, step: 0.5 },
+});
+const PLAIN = { unit: "", factor: 1, step: 0.05 };
+/** So fine are numbers shown, and taken. */
+const SHOWN = 1e4;
+const EXACT = 1e9;
+
+/** @param {string | undefined} unit  of the file */
+export function unitOf(unit = "") {
+  return UNITS[unit] ?? PLAIN;
+}
+
+/** A number of the file as it is shown. @param {number} value @param {string} [unit] */
+export function shown(value, unit) {
+  return Math.round(value * unitOf(unit).factor * SHOWN) / SHOWN + 0;
+}
+
+/** A number that was written as the file has it. @param {number} value @param {string} [unit] */
+export function taken(value, unit) {
+  const { factor } = unitOf(unit);
+  return unit === "rad" ? value / factor : Math.round((value / factor) * EXACT) / EXACT + 0;
+}

@@ -1,0 +1,115 @@
+// The bench on which a playground is built: the builder, what the scene draws of it, and the draft that the browser keeps.
+// It outlives the panels, which are made anew for another language.
+
+import { Markers } from "../playground/markers.js";
+import { parse, write } from "../playground/document.js";
+import { Pictures } from "../playground/pictures.js";
+import { worldOf } from "../playground/world.js";
+import { Builder } from "./builder.js";
+import { newPlayground } from "./commands.js";
+import { sketchOf } from "./sketch.js";
+
+/** @typedef {import("../playground/document.js").Playground} Playground */
+/** @typedef {import("../playground/rules.js").Phrase} Phrase */
+/** @typedef {Pick<Storage, "getItem" | "setItem" | "removeItem">} Shelf */
+
+const DRAFT_KEY = "creator.draft";
+const KEEP_AFTER_MS = 400;
+
+export class Workshop {
+  /**
+   * @param {object} options
+   * @param {Shelf} options.shelf
+   * @param {string} options.title      of a new playground
+   * @param {(phrase: Phrase) => void} options.tell
+   * @param {() => void} options.changed   something is to be drawn
+   */
+  constructor({ shelf, title, tell, changed }) {
+    this.shelf = shelf;
+    this.told = changed;
+    const draft = this.#draft();
+    this.builder = new Builder({ playground: draft ?? newPlayground(title), tell, changed: () => this.#changed() });
+    this.pictures = new Pictures(() => this.#changed());
+    this.markers = new Markers((uri) => this.pictures.get(uri));
+    /** @type {Playground | null} as it was saved last */ this.saved = draft === null ? this.builder.playground : null;
+    this.kept = this.builder.playground;
+    this.timer = 0;
+    /** @type {import("../state/index.js").State | null} */ this.drawn = null;
+    /** @type {import("./sketch.js").Sketch | null} */ this.sketched = null;
+  }
+
+  /** Whether it is in no file yet. */
+  get isUnsaved() {
+    return this.builder.playground !== this.saved;
+  }
+
+  /** The playground as the scene draws it: without what is carried. */
+  get world() {
+    const { playground, selecting } = this.builder;
+    const carried = selecting.ghost?.item.name;
+    const items = carried === undefined ? playground.items : playground.items.filter(({ name }) => name !== carried);
+    this.drawn ??= worldOf(items, this.markers);
+    return this.drawn;
+  }
+
+  get sketch() {
+    this.sketched ??= sketchOf(this.builder);
+    return this.sketched;
+  }
+
+  /** The file. */
+  get text() {
+    return write(this.builder.playground);
+  }
+
+  /** Its name as a file: the title's letters and digits. */
+  get fileName() {
+    const stem = this.builder.playground.title.normalize("NFKD").replace(/\p{M}/gu, "").replace(/[^\w]+/g, "_").replace(/^_+|_+$/g, "");
+    return `${stem.slice(0, 60) || "playground"}.json`;
+  }
+
+  noteSaved() {
+    this.saved = this.builder.playground;
+    this.#changed();
+  }
+
+  /** Another playground on the bench; the one before comes back by undoing. @param {Playground} playground @param {Phrase} did */
+  take(playground, did) {
+    this.builder.selected = null;
+    this.builder.placing = null;
+    this.builder.become(playground, did);
+    this.saved = playground;
+  }
+
+  /** Let the browser keep the draft now. */
+  keep() {
+    clearTimeout(this.timer);
+    if (this.kept === this.builder.playground) return;
+    this.kept = this.builder.playground;
+    try {
+      this.shelf.setItem(DRAFT_KEY, this.text);
+    } catch {
+      this.shelf.removeItem(DRAFT_KEY); // too large: rather nothing than an old one
+      this.builder.tell({ word: "tell.noDraft" });
+    }
+  }
+
+  #changed() {
+    this.drawn = null;
+    this.sketched = null;
+    if (this.builder.playground !== this.kept) {
+      clearTimeout(this.timer);
+      this.timer = Number(setTimeout(() => this.keep(), KEEP_AFTER_MS));
+    }
+    this.told();
+  }
+
+  /** @returns {Playground | null} */
+  #draft() {
+    try {
+      return parse(this.shelf.getItem(DRAFT_KEY) ?? "");
+    } catch {
+      return null; // none, or of another version
+    }
+  }
+}

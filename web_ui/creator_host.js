@@ -1,0 +1,137 @@
+// The place of the playground creator on the page: loads it when it is first opened, and lets it be tried in the simulator.
+
+import { faultView } from "./panels/fault.js";
+
+/** @typedef {import("./creator/index.js").Creator} Creator */
+/** @typedef {import("./creator/workshop.js").Workshop} Workshop */
+/** @typedef {import("./panels/index.js").Context} Context */
+
+export class CreatorHost {
+  /**
+   * @param {object} options
+   * @param {(slot: "stage" | "creator" | "footer") => HTMLElement} options.slot
+   * @param {() => import("./scene/index.js").SceneView} options.scene
+   */
+  constructor({ slot, scene }) {
+    this.slot = slot;
+    this.scene = scene;
+    this.isOpen = false;
+    /** @type {typeof import("./creator/index.js") | null} */ this.module = null;
+    /** @type {Workshop | null} */ this.workshop = null;
+    /** @type {Creator | null} */ this.creator = null;
+    /** @type {Context | null} */ this.context = null;
+  }
+
+  /** What the scene draws instead of the simulator's world; null while nobody builds. */
+  get world() {
+    return this.isOpen ? (this.workshop?.world ?? null) : null;
+  }
+
+  /** What is drawn over it. */
+  get sketch() {
+    return this.isOpen ? (this.workshop?.sketch ?? null) : null;
+  }
+
+  /** Once a frame, before it is drawn. */
+  render() {
+    if (this.isOpen) this.creator?.render();
+  }
+
+  /** The page has other words, or is new. @param {Context} context */
+  dress(context) {
+    this.context = context;
+    if (this.isOpen) this.#build();
+  }
+
+  /** Go on building, or with this playground. @param {import("./playground/document.js").Playground} [playground] */
+  async open(playground) {
+    const { context } = this;
+    if (context === null) return;
+    this.module ??= await import("./creator/index.js");
+    const title = this.module.WORDS[context.language]["new.title"];
+    this.workshop ??= new this.module.Workshop({
+      shelf: localStorage,
+      title,
+      tell: (phrase) => this.creator?.tell(phrase),
+      changed: () => this.scene().invalidate(),
+    });
+    if (playground !== undefined) {
+      this.workshop.take(playground, { word: "did.opened", values: { name: playground.title } });
+      this.scene().reframe();
+    }
+    if (!this.isOpen) {
+      this.isOpen = true;
+      window.addEventListener("pagehide", this.#keep);
+      document.body.classList.add("building");
+      this.slot("creator").hidden = false;
+      context.mover.setMode(false);
+      this.#build();
+    }
+    this.scene().look("home");
+  }
+
+  /** A file dropped on the page while one builds. @param {File} file */
+  openFile(file) {
+    this.creator?.open(file);
+  }
+
+  close() {
+    this.workshop?.keep();
+    this.isOpen = false;
+    window.removeEventListener("pagehide", this.#keep);
+    this.creator?.destroy();
+    this.creator = null;
+    document.body.classList.remove("building");
+    this.slot("creator").hidden = true;
+    this.scene().look("home");
+  }
+
+  /** What tests see of it: plain data; null before it is first opened. */
+  snapshot() {
+    if (this.workshop === null) return null;
+    const { playground, selected, placing, ghost, cameraOn, history } = this.workshop.builder;
+    return {
+      isOpen: this.isOpen,
+      playground,
+      selected,
+      placing: placing === null ? null : { kind: placing.kind, place: placing.place, points: placing.points.length },
+      problem: ghost?.problem?.word ?? null,
+      cameraOn,
+      steps: history.past.length,
+      camera: this.scene().camera.camera.position.toArray(),
+    };
+  }
+
+  #keep = () => this.workshop?.keep();
+
+  /** Give it to the simulator; what it refuses stays here, with its reason. */
+  async #tryIt() {
+    const { context, workshop, creator } = this;
+    if (context === null || workshop === null || creator === null) return;
+    const { actions, store, t } = context;
+    await actions.loadPlayground(workshop.fileName, new TextEncoder().encode(workshop.text));
+    const upload = store.state.uploads.playground;
+    if (upload?.phase === "accepted") this.close();
+    else creator.refuse(faultView(t, t("playground.refused", { name: workshop.fileName }), upload?.fault ?? null));
+  }
+
+  #build() {
+    const { module, workshop, context } = this;
+    if (module === null || workshop === null || context === null) return;
+    this.creator?.destroy();
+    this.creator = module.createCreator({
+      workshop,
+      language: context.language,
+      pageText: context.t,
+      scene: this.scene(),
+      announce: context.announce,
+      tryIt: () => void this.#tryIt(),
+      close: () => this.close(),
+    });
+    const { stage, side, footer } = this.creator.elements;
+    this.slot("stage").append(stage);
+    this.slot("creator").append(side);
+    this.slot("footer").append(footer);
+    this.scene().invalidate();
+  }
+}
