@@ -85,7 +85,7 @@ class SimulatorParams:
         choices=MOTOR_MODELS,
     )
     proximity_model: str = param(
-        PROXIMITY_MODELS[0], "How proximity sensors see: docs/world.md", fixed=True, choices=PROXIMITY_MODELS
+        PROXIMITY_MODELS[0], "How proximity sensors see: docs/robot.md", fixed=True, choices=PROXIMITY_MODELS
     )
     real_time_factor: float = param(1.0, "Simulated seconds per second; 0 is as fast as possible", low=0.0, high=1000.0)
     start_paused: bool = param(False, "Whether the world waits for ~/pause or ~/step", fixed=True)

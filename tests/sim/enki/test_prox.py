@@ -8,7 +8,7 @@ from tests.sim.builders import sense
 from tests.sim.enki.scenes import Scene, world_of
 
 GRAZE_M = 1e-9
-"""A ray that grazes a cylinder meets it or not, as rounding has it: with so much more or less of it, either will do."""
+"""Rounding decides whether a ray meets what it grazes, or what is just in range: with so much more of it, either does."""
 
 
 @pytest.mark.enki("prox")
@@ -21,9 +21,9 @@ def test_a_scene_reads_as_measured_in_enki_mode(monkeypatch: pytest.MonkeyPatch,
 
 
 def _read(scene: Scene, grown_m: float) -> tuple[int, ...]:
-    """The counts without noise, all cylinders grown by a little."""
+    """The counts without noise, all things grown by a little."""
     things = [
-        {**thing, "radius": thing["radius"] + grown_m} if thing["kind"] == "cylinder" else thing
+        {**thing, **{size: thing[size] + grown_m for size in ("radius", "size_x", "size_y") if size in thing}}
         for thing in scene["objects"]
     ]
     options = {"proximity_model": "enki", "periods_ns": {"proximity": 10_000_000}}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import statistics
 
@@ -14,6 +15,7 @@ from thymio_sim_ros.sim.noise import Noise
 from thymio_sim_ros.sim.rays import ConvexObstacle, DiscObstacle
 from thymio_sim_ros.sim.readings import ProximityReading
 from thymio_sim_ros.sim.sensors.proximity import SENSOR, response
+from thymio_sim_ros.sim.units import PROXIMITY_FULL
 from thymio_sim_ros.sim.world import World
 
 FRONT = 2
@@ -106,3 +108,42 @@ def test_a_near_thing_hides_a_far_one() -> None:
     far, near = post_wall(0.1), box(0.0795 + 0.05 + 0.01, 0.0, 0.02, 0.5)
     world = World(make([FLOOR, {**far, "name": "far"}, {**near, "name": "near"}]), noise=False)
     assert sense(world, "proximity").ranges_m[FRONT] == pytest.approx(0.05, abs=1e-4)
+
+
+STEP_M = 0.0005
+SWEEPS = {
+    "a wall comes": [(wall_ahead(0.2 - STEP_M * step),) for step in range(390)],
+    "the end of a wall passes": [
+        (ConvexObstacle(((0.13, y), (0.2, y), (0.2, y + 1.0), (0.13, y + 1.0)), 0.1),)
+        for y in (STEP_M * step - 0.15 for step in range(600))
+    ],
+    "a post passes": [(DiscObstacle(0.14, STEP_M * step - 0.1, 0.01, 0.1),) for step in range(400)],
+    "a stick passes": [(DiscObstacle(0.14, STEP_M * step - 0.1, 0.003, 0.1),) for step in range(400)],
+}
+
+
+def swept(obstacles: list[tuple[ConvexObstacle | DiscObstacle]], model: str) -> list[int]:
+    """What the front sensor counts, one after the other."""
+    return [measure(FakeView(obstacles=seen, proximity_model=model)).words[FRONT] for seen in obstacles]
+
+
+@pytest.mark.parametrize("sweep", SWEEPS)
+def test_a_cone_reads_without_jumps_and_without_gaps(sweep: str) -> None:
+    """Each of its nine rays is a ninth of the count; in the other models one ray is all of it."""
+    counts = swept(SWEEPS[sweep], "cone")
+    assert max(abs(after - before) for before, after in itertools.pairwise(counts)) < PROXIMITY_FULL / 9
+    seen = [step for step, count in enumerate(counts) if count]
+    assert seen == list(range(seen[0], seen[-1] + 1))
+
+
+def test_with_three_rays_a_stick_that_passes_comes_and_goes() -> None:
+    counts = swept(SWEEPS["a stick passes"], "default")
+    appeared = sum(before == 0 < after for before, after in itertools.pairwise(counts))
+    assert appeared == 3
+    assert max(counts) > 3000
+
+
+@pytest.mark.parametrize("distance_cm", [1, 3, 6, 10, 12])
+def test_a_wall_reads_in_a_cone_as_in_the_other_models(distance_cm: float) -> None:
+    at_once = [(wall_ahead(distance_cm / 100),)]
+    assert swept(at_once, "cone") == pytest.approx(swept(at_once, "default"), abs=1)
