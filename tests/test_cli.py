@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from thymio_sim_ros import cli
+from thymio_sim_ros import cli, runlog
 
 
 def refused(capsys, *arguments):
@@ -130,7 +130,7 @@ def test_a_log_in_no_folder_is_one_line(capsys, tmp_path):
     assert refused(capsys, "--log", str(path)).endswith("run.jsonl: expected a file in a folder that exists")
 
 
-@pytest.mark.parametrize("option", ["--layout", "--events", "--motors"])
+@pytest.mark.parametrize("option", ["--layout", "--events", "--motors", "--proximity"])
 def test_a_choice_that_does_not_exist_lists_the_others(capsys, option):
     with pytest.raises(SystemExit, match="2"):
         cli.main(["runner", option, "other"])
@@ -144,6 +144,13 @@ def test_the_runner_gives_the_robot_its_card(capsys, tmp_path):
     arguments = ("--program", str(program), "--card", str(card), "--layout", "playground", "--motors", "firmware")
     assert cli.main(["runner", "--seconds", "0.1", *arguments]) == 0
     assert (card / "u7.dat").read_bytes() == b"\x01\x00\x02\x00\x03\x00"
+
+
+def test_the_runner_lets_sensors_see_as_wanted(tmp_path):
+    log = tmp_path / "run.jsonl"
+    assert cli.main(["runner", "--seconds", "0.1", "--proximity", "enki", "--log", str(log)]) == 0
+    ((_, begun), *_) = runlog.read(log)
+    assert begun.options.proximity_model == "enki"
 
 
 def test_the_runner_stores_what_was_to_be_heard(capsys, tmp_path):

@@ -26,6 +26,7 @@ from thymio_sim_ros.device.settings import Settings, SettingsError
 from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_program
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
+from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
 from thymio_sim_ros.suite import ADDRESS, Suite
 
 EXAMPLE = """\
@@ -73,6 +74,7 @@ def start_suite(argv: Sequence[str]) -> int:
         behaviour=options.behaviour,
         device=_device(options),
         motor_model=options.motors,
+        proximity_model=options.proximity,
         port=options.port,
         foxglove_port=options.foxglove_port,
         web=not (options.no_web or options.headless),
@@ -122,6 +124,7 @@ def run_without_ros(argv: Sequence[str]) -> int:
             behaviour=options.behaviour,
             options=device,
             motor_model=options.motors,
+            proximity_model=options.proximity,
             seed=options.seed,
             log=log,
         )
@@ -266,6 +269,12 @@ def _add_world_options(parser: argparse.ArgumentParser) -> None:
         choices=MOTOR_MODELS,
         default=Suite.motor_model,
         help="whether motors follow at once, or as the robot's control loop moves them (default: %(default)s)",
+    )
+    robot.add_argument(
+        "--proximity",
+        choices=PROXIMITY_MODELS,
+        default=Suite.proximity_model,
+        help="how proximity sensors see thin things: see docs/robot.md (default: %(default)s)",
     )
 
 

@@ -19,6 +19,7 @@ from thymio_sim_ros.runlog import RunLog
 from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, PressButton
 from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
 from thymio_sim_ros.sim.world import StepResult, World
 
 __all__ = ["Runner"]
@@ -46,6 +47,7 @@ class Runner:
         behaviour: str = "",
         options: DeviceOptions = DEFAULTS,
         motor_model: str = MOTOR_MODELS[0],
+        proximity_model: str = PROXIMITY_MODELS[0],
         seed: int = 0,
         noise: bool = True,
         log: RunLog | None = None,
@@ -55,7 +57,7 @@ class Runner:
         With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu.
         CardError, SettingsError: a folder of the options cannot be used. A `log` follows the world from the start.
         """
-        self.world = World(playground, seed=seed, noise=noise, motor_model=motor_model)
+        self.world = World(playground, seed=seed, noise=noise, motor_model=motor_model, proximity_model=proximity_model)
         if log is not None:
             log.begin(playground.name, self.world)
         if isinstance(programs, ThymioProgram):

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
+from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
 
 HTTP_PORT = 8080
 FOXGLOVE_PORT = 8765
@@ -27,6 +28,7 @@ class Suite:
     behaviour: str = ""
     device: DeviceOptions = DEFAULTS
     motor_model: str = MOTOR_MODELS[0]
+    proximity_model: str = PROXIMITY_MODELS[0]
     port: int = HTTP_PORT
     foxglove_port: int = FOXGLOVE_PORT
     web: bool = True

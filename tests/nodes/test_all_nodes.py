@@ -9,9 +9,11 @@ from thymio_sim_ros.suite import Suite
 
 def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):
     device = DeviceOptions("playground", "playground", tmp_path / "card", tmp_path / "flash")
-    suite = Suite(playground="base", program="none", device=device, motor_model="firmware", web=False, foxglove=False)
+    models = {"motor_model": "firmware", "proximity_model": "cone"}
+    suite = Suite(playground="base", program="none", device=device, **models, web=False, foxglove=False)
     simulator, runtime = (ros.live(life) for life in all_nodes.lives(ros.context, suite))
     assert simulator.params.motor_model == "firmware"
+    assert simulator.params.proximity_model == "cone"
     assert runtime.params.options == device
     (robot,) = runtime.robots
     assert robot.device.layout == "playground"

@@ -111,7 +111,8 @@ def test_every_argument_has_a_text_and_is_used(description: Call) -> None:
 def test_an_argument_that_is_one_of_few_words_lists_those_of_its_parameter(description: Call) -> None:
     listed = {item.args[0]: item.kwargs["choices"] for item in _actions(description, "DeclareLaunchArgument")}
     parameters = {item.name: item for item in params.declared(simulator_params.SimulatorParams())}
-    assert listed["motor_model"] == list(parameters["motor_model"].metadata["choices"])
+    for name in ("motor_model", "proximity_model"):
+        assert listed[name] == list(parameters[name].metadata["choices"])
     assert listed["layout"] == list(LAYOUTS)
     assert listed["events"] == list(POLICIES)
     assert listed["playground"] is None

@@ -28,6 +28,7 @@ ARGUMENTS = {
     "layout": ("thymio", "order of variables and natives"),
     "events": ("firmware", "how events meet"),
     "motor_model": ("ideal", "how motors follow"),
+    "proximity_model": ("default", "how proximity sensors see thin things"),
     "seed": ("0", "seed of all noise"),
     "log": ("", "file of a run log for thymio-sim replay; '' is none"),
     "real_time_factor": ("1.0", "simulated seconds per second; 0: as fast as possible"),
@@ -43,6 +44,7 @@ CHOICES = {
     "layout": ["thymio", "playground"],
     "events": ["firmware", "playground"],
     "motor_model": ["ideal", "firmware"],
+    "proximity_model": ["default", "enki", "cone"],
 }
 
 
@@ -59,6 +61,7 @@ def generate_launch_description() -> LaunchDescription:
         "real_time_factor": ParameterValue(value["real_time_factor"], value_type=float),
         "cmd_vel_timeout": ParameterValue(value["cmd_vel_timeout"], value_type=float),
         "motor_model": ParameterValue(value["motor_model"], value_type=str),
+        "proximity_model": ParameterValue(value["proximity_model"], value_type=str),
         "out_of_range": ParameterValue(range_convention, value_type=str),
     }
     runtime = {

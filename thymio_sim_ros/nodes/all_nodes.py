@@ -23,6 +23,7 @@ def lives(context: Context, suite: Suite) -> Iterator[Host]:
         playground=suite.playground,
         seed=suite.seed,
         motor_model=suite.motor_model,
+        proximity_model=suite.proximity_model,
         log=suite.log,
         real_time_factor=suite.real_time_factor,
         cmd_vel_timeout=suite.cmd_vel_timeout_s,

@@ -26,7 +26,7 @@ from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.fields import FieldError
 from thymio_sim_ros.sim.playground import Playground, RobotStart
 from thymio_sim_ros.sim.sensors import NEVER_NS, all_sensors
-from thymio_sim_ros.sim.world import PROXIMITY_MODELS
+from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
 
 __all__ = ["SimulatorParams"]
 

@@ -48,6 +48,9 @@ PROXIMITY_POSES: tuple[tuple[float, float, float], ...] = (
     (-0.0295, -0.0295, math.pi),
 )
 """x, y, heading of the proximity sensors in Thymio's order 0…6: left to right, then rear left, rear right (TR 7.1)."""
+PROXIMITY_MODELS = ("default", "enki", "cone")
+"""How they may see: `sensors.proximity` tells the equations apart."""
+
 PROXIMITY_HEIGHT_M = 0.034
 """Lower things are not seen (TR 7.1)."""
 PROXIMITY_RANGE_M = 0.14

@@ -27,11 +27,11 @@ from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.robot import Robot, Shared
 from thymio_sim_ros.sim.scene import ObjectSnapshot, Scene, Snapshot
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
+from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
 
 __all__ = ["TICK_NS", "StepResult", "World"]
 
 _TICK_S = TICK_NS * 1e-9
-PROXIMITY_MODELS = ("default", "enki", "cone")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class World:
         *,
         seed: int = 0,
         noise: bool = True,
-        proximity_model: str = "default",
+        proximity_model: str = PROXIMITY_MODELS[0],
         motor_model: str = MOTOR_MODELS[0],
         periods_ns: Mapping[str, int] | None = None,
     ) -> None:

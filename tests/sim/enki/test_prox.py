@@ -8,7 +8,7 @@ from tests.sim.builders import sense
 from tests.sim.enki.scenes import Scene, world_of
 
 GRAZE_M = 1e-9
-"""Rounding decides whether a ray meets what it grazes, or what is just in range: with so much more of it, either does."""
+"""Rounding decides if a ray meets what it grazes, or what is just in range; with so much more or less, it is clear."""
 
 
 @pytest.mark.enki("prox")
