@@ -134,9 +134,8 @@ class NormalBank:
             return np.zeros(len(users))
         before = np.arange(len(users)) - np.searchsorted(users, users)
         counts = np.bincount(users, minlength=len(self._noises))
-        wanting = np.flatnonzero(self._used + counts > 2 * _BLOCK)
-        if len(wanting):
-            self._refill(wanting)
+        if (self._used + counts).max() > 2 * _BLOCK:
+            self._refill(np.flatnonzero(self._used >= _BLOCK))
         drawn: Values = self._numbers[users, self._used[users] + before] * sigma
         self._used += counts
         return drawn
@@ -149,7 +148,10 @@ class NormalBank:
         self._used[:] = 2 * _BLOCK
 
     def _refill(self, rows: npt.NDArray[np.intp]) -> None:
-        """A new block behind the last one of each of these users; the one before it is used."""
+        """A new block behind the last one of each of these users; the one before it is used.
+
+        Whoever can take one gets it, wanting or not: filling many at once costs little more than filling one.
+        """
         fresh = evens([self._noises[row].draw_ahead(_BLOCK) for row in rows.tolist()])
         turn, length = fresh[:, 0::2] * math.tau, np.sqrt(-2.0 * np.log(1.0 - fresh[:, 1::2]))
         for values in (self._evens, self._numbers):

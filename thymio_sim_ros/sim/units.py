@@ -86,14 +86,6 @@ def proximity_distance(count: float) -> float:
     return min(PROXIMITY_RANGE_M, _PROXIMITY_X0_M + math.sqrt(max(0.0, square)))
 
 
-def proximity_distances(counts: Values) -> Values:
-    """`proximity_distance` of many counts."""
-    square = _PROXIMITY_X0_M**2 - _PROXIMITY_C_M2 + _PROXIMITY_SCALE / counts
-    found: Values = np.minimum(PROXIMITY_RANGE_M, _PROXIMITY_X0_M + np.sqrt(np.maximum(0.0, square)))
-    found[counts >= PROXIMITY_FULL] = 0.0
-    return found
-
-
 def ground_response(reflectance: float) -> float:
     """Count of a ground sensor over a grey 0…1: 60 + 884 / (1 + exp(-9 (g - 0.44)))."""
     return _GROUND_BLACK + _GROUND_SPAN / (1.0 + math.exp(-_GROUND_SLOPE * (reflectance - _GROUND_MIDDLE)))

@@ -97,7 +97,7 @@ def _measure(view: SensorView) -> ProximityReading:
         return ProximityReading(view.now_ns, *_NOTHING)
     pose, noise = view.pose, view.noise
     x, y, cos, sin = pose.x_m, pose.y_m, math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
-    counts, ranges = [], []
+    counts = []
     for (mount_x, mount_y), rays in zip(_PLACES, _DIRECTIONS[model], strict=True):
         origin_x, origin_y = x + cos * mount_x - sin * mount_y, y + sin * mount_x + cos * mount_y
         near = around.near(origin_x, origin_y, PROXIMITY_RANGE_M)
@@ -109,23 +109,25 @@ def _measure(view: SensorView) -> ProximityReading:
                 value = response(distances, model) + noise.gauss(PROXIMITY_NOISE)
                 count = round(max(0.0, min(float(units.PROXIMITY_FULL), value)))
         counts.append(count)
-        ranges.append(units.proximity_distance(count) if count else math.inf)
-    return ProximityReading(view.now_ns, tuple(counts), tuple(ranges))
+    return ProximityReading(view.now_ns, tuple(counts), _ranges(counts))
+
+
+def _ranges(counts: Sequence[int]) -> tuple[float, ...]:
+    """Distances in m for counts; inf for 0."""
+    return tuple([units.proximity_distance(count) if count else math.inf for count in counts])
 
 
 def _measure_all(group: GroupView) -> Later:
     now_ns, model = group.now_ns, group.proximity_model
     sensors, distances = group.cast(_FANS[model])
-    counts, ranges = np.zeros(len(group) * _COUNT, dtype=int), np.full(len(group) * _COUNT, math.inf)
+    counts = np.zeros((len(group), _COUNT), dtype=int)
     if len(sensors):
         values = responses(distances, model) + group.noise.draw(sensors // _COUNT, PROXIMITY_NOISE)
-        counts[sensors] = np.rint(np.clip(values, 0.0, units.PROXIMITY_FULL))
-        seen = np.flatnonzero(counts)
-        ranges[seen] = units.proximity_distances(counts[seen])
+        counts.ravel()[sensors] = np.rint(np.minimum(np.maximum(values, 0.0), units.PROXIMITY_FULL))
 
     def make(robot: int) -> ProximityReading:
-        part = slice(robot * _COUNT, (robot + 1) * _COUNT)
-        return ProximityReading(now_ns, tuple(counts[part].tolist()), tuple(ranges[part].tolist()))
+        words = counts[robot].tolist()
+        return ProximityReading(now_ns, tuple(words), _ranges(words))
 
     return Later(len(group), make)
 
