@@ -14,7 +14,7 @@ import { Client } from "./protocol/client.js";
 import { SceneView } from "./scene/index.js";
 import { Speaker } from "./sound/speaker.js";
 import { snapshot } from "./state/index.js";
-import { PARAMETERS, splitTopic } from "./state/names.js";
+import { CROWD, isWatched, PARAMETERS } from "./state/names.js";
 import { Store } from "./state/store.js";
 
 const DEFAULT_PORT = 8765;
@@ -56,7 +56,7 @@ async function main() {
       store.dispatch(event.type === "message" ? { ...event, nowMs: performance.now() } : event);
       editor.receive(event, store.state.selected);
     },
-    wants: (topic) => splitTopic(topic) !== null || editor.wants(topic),
+    wants: (topic) => isWatched(store.state, topic) || editor.wants(topic),
     parameters: [PARAMETERS.playground, PARAMETERS.factor],
   });
   const actions = new Actions({ client, store, t: (key, values) => t(key, values) });
@@ -139,6 +139,14 @@ async function main() {
   build();
   store.subscribe(() => scene.invalidate());
   store.subscribe(() => editor.redraw());
+  let watched = "";
+  store.subscribe(() => {
+    const { robots, selected } = store.state;
+    const now = Object.keys(robots).length > CROWD ? selected : "*";
+    if (now === watched) return;
+    watched = now;
+    client.refresh();
+  });
   store.subscribe(() => speaker.update(store.state));
   for (const gesture of ["pointerup", "keydown"]) window.addEventListener(gesture, () => speaker.unlock());
   watchKeyboard(canvas, scene, mover, (button, pressed) => actions.press(store.state.selected, button, pressed));

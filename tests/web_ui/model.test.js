@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { Fleet } from "../../web_ui/scene/fleet.js";
 import { PlaygroundModel } from "../../web_ui/scene/playground.js";
 import { RobotModel } from "../../web_ui/scene/robot.js";
 import { applyMarkers } from "../../web_ui/state/markers.js";
@@ -8,28 +9,116 @@ import { NEW_ROBOT } from "../../web_ui/state/robot.js";
 import { captured } from "./support.js";
 
 const TRIANGLES = 4000;
+/** However many robots: shadow, two of the body, wheels, two of the buttons, three of the lights, three of the beams, two of the ground. */
+const MOST_DRAW_CALLS = 14;
 
-/** @param {any} root */
-function triangles(root) {
-  let total = 0;
-  root.traverse((/** @type {any} */ object) => {
-    if (!object.isMesh) return;
-    const { index, attributes } = object.geometry;
-    total += ((index?.count ?? attributes.position.count) / 3) * (object.isInstancedMesh ? object.count : 1);
+/** @param {number} count @param {Partial<import("../../web_ui/state/robot.js").Robot>} [state] */
+function standing(count, state = {}) {
+  return Array.from({ length: count }, (_, x) => ({
+    look: { robot: { ...NEW_ROBOT, ...state }, hovered: null, sensing: true },
+    frame: frameAt(x),
+  }));
+}
+
+/** @param {number} x */
+function frameAt(x) {
+  const { group } = new RobotModel("");
+  group.position.set(x, 0, 0);
+  group.updateMatrix();
+  return group.matrix;
+}
+
+/** @param {Fleet} fleet */
+function drawn(fleet) {
+  return /** @type {import("three").InstancedMesh[]} */ (fleet.group.children.filter(({ visible }) => visible));
+}
+
+/** @param {Fleet} fleet */
+function triangles(fleet) {
+  const sizes = drawn(fleet).map(({ geometry: { index, attributes }, count }) => {
+    return ((index?.count ?? attributes.position.count) / 3) * count;
   });
-  return total;
+  return sizes.reduce((sum, size) => sum + size, 0);
 }
 
 test(`a robot has fewer than ${TRIANGLES} triangles`, () => {
-  const count = triangles(new RobotModel("").group);
-  assert.ok(count < TRIANGLES, `${count}`);
+  const fleet = new Fleet({ fine: true });
+  fleet.update(standing(1));
+  assert.ok(triangles(fleet) < TRIANGLES, `${triangles(fleet)}`);
 });
+
+test("twenty robots take as many draw calls as one", () => {
+  const fleet = new Fleet({ fine: true });
+  for (const count of [1, 20, 3]) {
+    fleet.update(standing(count));
+    assert.equal(drawn(fleet).length, MOST_DRAW_CALLS);
+    assert.ok(triangles(fleet) < count * TRIANGLES);
+  }
+});
+
+test("a robot seen from far is a fifth of one that is near", () => {
+  const [fine, coarse] = [true, false].map((detail) => {
+    const fleet = new Fleet({ fine: detail });
+    fleet.update(standing(1));
+    return triangles(fleet);
+  });
+  assert.ok(coarse < fine / 5, `${coarse} of ${fine}`);
+});
+
+test("a robot that did not change costs nothing, one that moved is drawn where it is", () => {
+  const fleet = new Fleet({ fine: true });
+  const robots = standing(2);
+  fleet.update(robots);
+  const versions = () => drawn(fleet).map(({ instanceMatrix }) => instanceMatrix.version);
+  const before = versions();
+  fleet.update(robots);
+  assert.deepEqual(versions(), before);
+  fleet.update([robots[0], { ...robots[1], frame: frameAt(7) }]);
+  const [, body] = drawn(fleet);
+  assert.equal(placeOf(body, 1)[12], 7);
+  assert.ok(versions().every((version, index) => version > before[index]));
+});
+
+test("a robot that comes after others have gone has nothing of theirs", () => {
+  const fleet = new Fleet({ fine: true });
+  const lit = { circle: [1, 0, 0, 0, 0, 0, 0, 0] };
+  fleet.update(standing(2, { leds: lit, proximity: { center: 0.05 } }));
+  fleet.update(standing(1));
+  fleet.update(standing(2));
+  const fresh = new Fleet({ fine: true });
+  fresh.update(standing(2));
+  /** @param {Fleet} one */
+  const all = (one) =>
+    drawn(one).map(({ instanceMatrix, instanceColor, count }) => [
+      ...instanceMatrix.array.slice(0, count * 16),
+      ...(instanceColor?.array.slice(0, count * 3) ?? []),
+    ]);
+  assert.deepEqual(all(fleet), all(fresh));
+});
+
+test("beams and patches are shown only where they are wanted", () => {
+  const fleet = new Fleet({ fine: true });
+  const seeing = { proximity: { center: 0.05, left: Infinity }, raw: { ground: [0, 0, 0, 0, 500, 500] } };
+  const [robot] = standing(1, seeing);
+  /** @param {import("three").InstancedMesh} mesh */
+  const visible = (mesh) => Array.from({ length: mesh.count }, (_, index) => placeOf(mesh, index)[0] !== 0).filter(Boolean).length;
+  const sensed = () => drawn(fleet).slice(-7, -2).map(visible);
+  fleet.update([robot]);
+  assert.deepEqual(sensed(), [1, 1, 1, 2, 2]);
+  fleet.update([{ ...robot, look: { ...robot.look, sensing: false } }]);
+  assert.deepEqual(sensed(), [0, 0, 0, 0, 0]);
+});
+
+/** The matrix of a copy, column by column. @param {import("three").InstancedMesh} mesh @param {number} index */
+function placeOf(mesh, index) {
+  return mesh.instanceMatrix.array.slice(16 * index, 16 * index + 16);
+}
 
 test("a robot stands where it is said to, and its parts with it", () => {
   const model = new RobotModel("");
   const pose = { x: 1, y: 2, z: 0, yaw: Math.PI / 2, roll: 0, pitch: 0 };
   const latest = { pose, stampNs: 0, arrivedMs: 0 };
-  assert.equal(model.update({ ...NEW_ROBOT, latest }, null, 0), false);
+  assert.equal(model.update({ ...NEW_ROBOT, latest }, 0), false);
   const place = model.partPosition("button.center");
   assert.ok(place !== null && Math.abs(place.x - 1) < 1e-9 && Math.abs(place.y - 2.048) < 1e-9);
   assert.equal(model.partPosition("no such part"), null);
@@ -38,7 +127,7 @@ test("a robot stands where it is said to, and its parts with it", () => {
 test("a robot that leans on its nose has its front below", () => {
   const model = new RobotModel("");
   const pose = { x: 0, y: 0, z: 0, yaw: Math.PI / 2, roll: 0, pitch: 0.8 };
-  model.update({ ...NEW_ROBOT, latest: { pose, stampNs: 0, arrivedMs: 0 } }, null, 0);
+  model.update({ ...NEW_ROBOT, latest: { pose, stampNs: 0, arrivedMs: 0 } }, 0);
   const front = model.partPosition("button.forward");
   const back = model.partPosition("button.backward");
   assert.ok(front !== null && back !== null && front.z < back.z && front.y > back.y);
@@ -46,7 +135,7 @@ test("a robot that leans on its nose has its front below", () => {
 
 test("a robot nobody has placed is not drawn", () => {
   const model = new RobotModel("");
-  model.update(NEW_ROBOT, null, 0);
+  model.update(NEW_ROBOT, 0);
   assert.equal(model.group.visible, false);
 });
 

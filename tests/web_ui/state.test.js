@@ -3,7 +3,8 @@ import { test } from "node:test";
 
 import { INITIAL, locate, programOf, reduce, snapshot } from "../../web_ui/state/index.js";
 import { applyMarkers } from "../../web_ui/state/markers.js";
-import { splitTopic } from "../../web_ui/state/names.js";
+import { isWatched, splitTopic } from "../../web_ui/state/names.js";
+import { NEW_ROBOT } from "../../web_ui/state/robot.js";
 import { captured } from "./support.js";
 
 /** @typedef {import("../../web_ui/state/index.js").Message} Message */
@@ -285,4 +286,23 @@ test("a robot that has gone with its playground is gone, even while its topics l
   const { robots, selected } = after(/** @type {any} */ ([channels, told("a"), told(""), odometry, channels]));
   assert.deepEqual([Object.keys(robots), selected], [[""], ""]);
   assert.deepEqual(Object.keys(after(/** @type {any} */ ([told(""), channels, told("a")])).robots), ["a"]);
+});
+
+test("of a crowd, beams and values are asked of the selected robot only", () => {
+  /** @param {number} count */
+  const state = (count) => ({
+    selected: "r1",
+    robots: Object.fromEntries(Array.from({ length: count }, (_, number) => [`r${number}`, NEW_ROBOT])),
+  });
+  const topics = ["/r0/ground_truth/odom", "/r0/led/state", "/r0/raw/proximity", "/r1/raw/proximity", "/markers"];
+  /** @param {number} count */
+  const watched = (count) => topics.filter((topic) => isWatched(state(count), topic));
+  assert.deepEqual(watched(2), topics);
+  assert.deepEqual(watched(20), topics.filter((topic) => topic !== "/r0/raw/proximity"));
+  assert.equal(isWatched(state(20), "/r1/no/such"), false);
+});
+
+test("robots stand in the order of their numbers", () => {
+  const topics = ["/thymio_10/ground_truth/odom", "/thymio_2/ground_truth/odom", "/anna/ground_truth/odom"];
+  assert.deepEqual(Object.keys(after([{ type: "channels", topics }]).robots), ["anna", "thymio_2", "thymio_10"]);
 });

@@ -2,22 +2,25 @@
 
 import * as THREE from "three";
 
-export function createBlob() {
-  const size = 48;
-  const data = new Uint8Array(size * size * 4);
-  for (let row = 0; row < size; row++) {
-    for (let column = 0; column < size; column++) {
-      const distance = Math.hypot(row - size / 2 + 0.5, column - size / 2 + 0.5) / (size / 2);
-      data[(row * size + column) * 4 + 3] = 150 * Math.min(1, Math.max(0, 1 - distance) * 1.8) ** 1.5;
-    }
-  }
-  const texture = new THREE.DataTexture(data, size, size);
-  texture.magFilter = THREE.LinearFilter;
-  texture.needsUpdate = true;
-  const geometry = new THREE.PlaneGeometry(0.17, 0.17);
+import { spot } from "./glow.js";
+import { Instances, placeOf } from "./instances.js";
+
+const SIZE_M = 0.17;
+const DARKEST = 150 / 255;
+const PLACE = placeOf({ x: 0.022, y: 0, z: 0.0006 });
+
+/** @param {import("./fleet.js").Room} room */
+export function createBlob({ robots }) {
+  const texture = spot(48, [0, 0, 0], (share) => DARKEST * Math.min(1, share * 1.8) ** 1.5);
   const material = new THREE.MeshBasicMaterial({ map: texture, transparent: true, depthWrite: false });
-  const group = new THREE.Mesh(geometry, material);
-  group.position.set(0.022, 0, 0.0006);
-  group.renderOrder = 1;
-  return { group, update() {}, dispose: () => [texture, geometry, material].forEach((thing) => thing.dispose()) };
+  const blob = new Instances(new THREE.PlaneGeometry(SIZE_M, SIZE_M), material, { each: 1, robots });
+  blob.mesh.renderOrder = 1;
+  return {
+    parts: [blob],
+    /** @param {number} slot */
+    show(slot) {
+      blob.put(slot, 0, PLACE);
+    },
+    dispose: () => texture.dispose(),
+  };
 }

@@ -2,6 +2,9 @@
 
 import * as THREE from "three";
 
+import { glow } from "./glow.js";
+import { Instances } from "./instances.js";
+import { merged } from "./merged.js";
 import { HEIGHT_M } from "./parts.js";
 
 const HALF_WIDTH_M = 0.056;
@@ -16,32 +19,45 @@ const WHITE = 0xf7f8fa;
 const LOWER = 0xe7ebef;
 const DARK = 0x2b333c;
 
-/** @typedef {{ group: THREE.Group, top: THREE.MeshLambertMaterial, dispose: () => void }} Body */
+/** @typedef {import("./fleet.js").Look} Look */
 
-/** @returns {Body} */
-export function createBody() {
-  const materials = {
-    top: new THREE.MeshLambertMaterial({ color: WHITE }),
-    lower: new THREE.MeshLambertMaterial({ color: LOWER }),
-    dark: new THREE.MeshLambertMaterial({ color: DARK }),
-  };
-  const lower = extruded(outline(true), FLOOR_M, BELT_M - 0.0012, 0);
-  const gap = extruded(outline(false, 0.0018), BELT_M - 0.0025, BELT_M + 0.001, 0);
-  const shell = extruded(outline(false), BELT_M, HEIGHT_M, 0.0025);
+const TINT = 0.72; // share of the top light's colour in the shell when it is full
+const SHINE = 0.12; // how much brighter the shell is then
+const SHELL = new THREE.Color(WHITE);
+const HERE = new THREE.Matrix4();
+
+/** @param {import("./fleet.js").Room} room */
+export function createBody({ robots, fine }) {
+  const counts = { each: 1, robots };
   const hole = new THREE.CircleGeometry(0.0062, 24).translate(0, 0, HEIGHT_M + 0.0003);
   const rim = new THREE.RingGeometry(0.0062, 0.0082, 24).translate(0, 0, HEIGHT_M + 0.0003);
-  const studs = studGeometry();
-  const group = new THREE.Group();
-  group.add(
-    new THREE.Mesh(lower, materials.lower),
-    new THREE.Mesh(gap, materials.dark),
-    new THREE.Mesh(shell, materials.top),
-    new THREE.Mesh(hole, materials.dark),
-    new THREE.Mesh(rim, materials.lower),
-    new THREE.Mesh(studs, materials.top),
-  );
-  const owned = [lower, gap, shell, hole, rim, studs, ...Object.values(materials)];
-  return { group, top: materials.top, dispose: () => owned.forEach((thing) => thing.dispose()) };
+  const lower = fine
+    ? merged([
+        [extruded(outline(true), FLOOR_M, BELT_M - 0.0012), LOWER],
+        [extruded(outline(false, 0.0018), BELT_M - 0.0025, BELT_M + 0.001), DARK],
+        [hole, DARK],
+        [rim, LOWER],
+      ])
+    : merged([[extruded(outline(true), FLOOR_M, BELT_M, { corners: 2 }), LOWER]]);
+  const upper = fine
+    ? merged([
+        [extruded(outline(false), BELT_M, HEIGHT_M, { bevel: 0.0025 }), 0xffffff],
+        [studGeometry(), 0xffffff],
+      ])
+    : merged([[extruded(outline(false), BELT_M, HEIGHT_M, { corners: 2 }), 0xffffff]]);
+  const base = new Instances(lower, new THREE.MeshLambertMaterial({ vertexColors: true }), counts);
+  const shell = new Instances(upper, new THREE.MeshLambertMaterial(), counts);
+  const colour = new THREE.Color();
+  return {
+    parts: [base, shell],
+    /** @param {number} slot @param {Look} look */
+    show(slot, { robot }) {
+      base.put(slot, 0, HERE);
+      shell.put(slot, 0, HERE);
+      glow(colour, SHELL, robot.leds.top, TINT);
+      shell.tint(slot, 0, colour.multiplyScalar(1 + SHINE * Math.max(0, ...(robot.leds.top ?? []))));
+    },
+  };
 }
 
 /**
@@ -83,8 +99,13 @@ function notch(shape, outer, inner, from, to) {
   shape.lineTo(to, outer);
 }
 
-/** @param {THREE.Shape} shape @param {number} bottom @param {number} top @param {number} bevel */
-function extruded(shape, bottom, top, bevel) {
+/**
+ * @param {THREE.Shape} shape
+ * @param {number} bottom
+ * @param {number} top
+ * @param {{ bevel?: number, corners?: number }} [how]  metres; corners of a round edge
+ */
+function extruded(shape, bottom, top, { bevel = 0, corners = 10 } = {}) {
   const geometry = new THREE.ExtrudeGeometry(shape, {
     depth: top - bottom - 2 * bevel,
     bevelEnabled: bevel > 0,
@@ -92,7 +113,7 @@ function extruded(shape, bottom, top, bevel) {
     bevelSize: bevel,
     bevelOffset: -bevel,
     bevelSegments: 2,
-    curveSegments: 10,
+    curveSegments: corners,
   });
   return geometry.translate(0, 0, bottom + bevel);
 }

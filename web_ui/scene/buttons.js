@@ -3,16 +3,23 @@
 
 import * as THREE from "three";
 
+import { Instances, placeOf } from "./instances.js";
 import { BUTTON_PLACES } from "./parts.js";
 
-/** @typedef {import("../state/robot.js").Robot} Robot */
+/** @typedef {import("./fleet.js").Look} Look */
 
 const TOUCH_RADIUS_M = 0.0078;
 const RAISED_M = 0.0014;
-const COLOURS = { idle: 0x8794a3, hover: 0x1769d1, pressed: 0x0b2f66 };
+const COLOURS = {
+  idle: new THREE.Color(0x8794a3),
+  hover: new THREE.Color(0x1769d1),
+  pressed: new THREE.Color(0x0b2f66),
+};
+/** Degrees from ahead; the centre has none. */
 const HEADINGS = /** @type {Record<string, number>} */ ({ forward: 0, left: 90, backward: 180, right: -90 });
 
-export function createButtons() {
+/** @param {import("./fleet.js").Room} room */
+export function createButtons({ robots }) {
   const round = new THREE.CylinderGeometry(0.0044, 0.0044, RAISED_M, 22).rotateX(Math.PI / 2);
   const arrow = new THREE.ExtrudeGeometry(
     new THREE.Shape([
@@ -22,35 +29,43 @@ export function createButtons() {
     ]),
     { depth: RAISED_M, bevelEnabled: false },
   ).translate(0, 0, -RAISED_M / 2);
-  const touch = new THREE.CircleGeometry(TOUCH_RADIUS_M, 16);
-  const unseen = new THREE.MeshBasicMaterial({ visible: false });
-  const group = new THREE.Group();
-  /** @type {THREE.Mesh[]} */ const targets = [];
-  const buttons = Object.entries(BUTTON_PLACES).map(([name, place]) => {
-    const material = new THREE.MeshLambertMaterial({ color: COLOURS.idle });
-    const mesh = new THREE.Mesh(name === "center" ? round : arrow, material);
-    mesh.rotation.z = ((HEADINGS[name] ?? 0) * Math.PI) / 180;
-    mesh.position.set(place.x, place.y, place.z + RAISED_M / 2);
-    const target = new THREE.Mesh(touch, unseen);
-    target.position.set(place.x, place.y, place.z + RAISED_M);
-    target.userData.button = name;
-    targets.push(target);
-    group.add(mesh, target);
-    return { name, place, mesh, material };
+  const headings = Object.entries(HEADINGS);
+  const rounds = new Instances(round, new THREE.MeshLambertMaterial(), { each: 1, robots });
+  const arrows = new Instances(arrow, new THREE.MeshLambertMaterial(), { each: headings.length, robots });
+  /** @param {Instances} part @param {number} slot @param {number} index @param {string} name @param {Look} look */
+  const draw = (part, slot, index, name, { robot, hovered }) => {
+    const pressed = robot.buttons[name];
+    const { x, y, z } = BUTTON_PLACES[name];
+    const angle = ((HEADINGS[name] ?? 0) * Math.PI) / 180;
+    part.put(slot, index, placeOf({ x, y, z: z + (pressed ? 0.0001 : RAISED_M / 2) }, { angle }));
+    part.tint(slot, index, COLOURS[pressed ? "pressed" : name === hovered ? "hover" : "idle"]);
+  };
+  return {
+    parts: [rounds, arrows],
+    /** @param {number} slot @param {Look} look @param {Look | null} before */
+    show(slot, look, before) {
+      if (before !== null && before.robot.buttons === look.robot.buttons && before.hovered === look.hovered) return;
+      draw(rounds, slot, 0, "center", look);
+      headings.forEach(([name], index) => draw(arrows, slot, index, name, look));
+    },
+  };
+}
+
+/** What pointers hit, in the robot's frame. @param {string} robot */
+export function createTargets(robot) {
+  const geometry = new THREE.CircleGeometry(TOUCH_RADIUS_M, 16);
+  const material = new THREE.MeshBasicMaterial({ visible: false });
+  const meshes = Object.entries(BUTTON_PLACES).map(([button, { x, y, z }]) => {
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.position.set(x, y, z + RAISED_M);
+    mesh.userData = { robot, button };
+    return mesh;
   });
   return {
-    group,
-    targets,
-    /** @param {Robot} robot @param {string | null} hovered */
-    update(robot, hovered) {
-      for (const { name, place, mesh, material } of buttons) {
-        const pressed = robot.buttons[name];
-        material.color.set(pressed ? COLOURS.pressed : name === hovered ? COLOURS.hover : COLOURS.idle);
-        mesh.position.z = place.z + (pressed ? 0.0001 : RAISED_M / 2);
-      }
-    },
+    meshes,
     dispose() {
-      for (const thing of [round, arrow, touch, unseen, ...buttons.map(({ material }) => material)]) thing.dispose();
+      geometry.dispose();
+      material.dispose();
     },
   };
 }

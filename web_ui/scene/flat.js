@@ -56,13 +56,13 @@ export class FlatView {
    * @param {State} state
    * @param {object} options
    * @param {number} options.nowMs
-   * @param {boolean} options.sensors
+   * @param {(name: string) => boolean} options.senses  whether beams are drawn
    * @param {import("../move/mover.js").Held | null} options.held
    * @param {import("../creator/sketch.js").Sketch | null} options.sketch
    * @param {(name: string) => string} options.colour
    * @param {() => void} options.changed   called when a picture has arrived
    */
-  draw(state, { nowMs, sensors, held, sketch, colour, changed }) {
+  draw(state, { nowMs, senses, held, sketch, colour, changed }) {
     const { context, canvas, camera } = this;
     if (context === null) return;
     Object.assign(canvas, this.#size);
@@ -83,7 +83,7 @@ export class FlatView {
       context.save();
       context.translate(pose.x, pose.y);
       context.rotate(pose.yaw);
-      drawRobot(context, robot, sensors, colour(name));
+      drawRobot(context, robot, senses(name), colour(name));
       context.restore();
     }
     if (held !== null) {

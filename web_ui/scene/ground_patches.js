@@ -4,9 +4,10 @@
 import * as THREE from "three";
 
 import { GROUND } from "../state/names.js";
+import { Instances, placeOf } from "./instances.js";
 import { GROUND_PLACES } from "./parts.js";
 
-/** @typedef {import("../state/robot.js").Robot} Robot */
+/** @typedef {import("./fleet.js").Look} Look */
 
 const FULL = 1023;
 const LENGTH_M = 0.026;
@@ -14,33 +15,30 @@ const WIDTH_M = 0.011;
 const RIM_M = 0.0014;
 const AHEAD_M = 0.006;
 const HEIGHT_M = 0.003; // above every layer of paint
+const EDGE = 0x1769d1;
 
-export function createGroundPatches() {
-  const inner = new THREE.PlaneGeometry(LENGTH_M, WIDTH_M);
+/** @param {import("./fleet.js").Room} room */
+export function createGroundPatches({ robots }) {
+  const counts = { each: GROUND.length, robots };
   const outer = new THREE.PlaneGeometry(LENGTH_M + 2 * RIM_M, WIDTH_M + 2 * RIM_M);
-  const edge = new THREE.MeshBasicMaterial({ color: 0x1769d1 });
-  const group = new THREE.Group();
-  const patches = GROUND.map((name) => {
-    const material = new THREE.MeshBasicMaterial();
-    const fill = new THREE.Mesh(inner, material);
-    const rim = new THREE.Mesh(outer, edge);
-    const { x, y } = GROUND_PLACES[name];
-    rim.position.set(x + AHEAD_M, y, HEIGHT_M);
-    fill.position.set(x + AHEAD_M, y, HEIGHT_M + 0.0004);
-    group.add(rim, fill);
-    return { fill, rim, material };
-  });
+  const rims = new Instances(outer, new THREE.MeshBasicMaterial({ color: EDGE }), counts);
+  const fills = new Instances(new THREE.PlaneGeometry(LENGTH_M, WIDTH_M), new THREE.MeshBasicMaterial(), counts);
+  /** @param {number} z */
+  const places = (z) => GROUND.map((name) => placeOf({ x: GROUND_PLACES[name].x + AHEAD_M, y: GROUND_PLACES[name].y, z }));
+  const [below, above] = [places(HEIGHT_M), places(HEIGHT_M + 0.0004)];
+  const colour = new THREE.Color();
   return {
-    group,
-    /** @param {Robot} robot */
-    update(robot) {
+    parts: [rims, fills],
+    /** @param {number} slot @param {Look} look */
+    show(slot, { robot, sensing }) {
       const deltas = (robot.raw.ground ?? []).slice(4, 6);
-      patches.forEach(({ fill, rim, material }, side) => {
-        fill.visible = rim.visible = deltas[side] !== undefined;
+      GROUND.forEach((_, side) => {
+        const shown = sensing && deltas[side] !== undefined;
         const grey = Math.min(1, Math.max(0, (deltas[side] ?? 0) / FULL));
-        material.color.setRGB(grey, grey, grey, THREE.SRGBColorSpace);
+        rims.put(slot, side, shown ? below[side] : null);
+        fills.put(slot, side, shown ? above[side] : null);
+        fills.tint(slot, side, colour.setRGB(grey, grey, grey, THREE.SRGBColorSpace));
       });
     },
-    dispose: () => [inner, outer, edge, ...patches.map(({ material }) => material)].forEach((thing) => thing.dispose()),
   };
 }

@@ -6,6 +6,7 @@ import { watchDrags } from "../move/drag.js";
 import { Camera } from "./camera.js";
 import { robotColour } from "../state/colours.js";
 import { FlatView } from "./flat.js";
+import { Fleet } from "./fleet.js";
 import { Ghost } from "./ghost.js";
 import { litScene } from "./lights.js";
 import { Numbers, numbersOf } from "./numbers.js";
@@ -15,6 +16,7 @@ import { watchPointer } from "./pointer.js";
 import { Quality } from "./quality.js";
 import { RobotModel } from "./robot.js";
 import { SketchModel } from "./sketch.js";
+import { isSensed } from "../state/names.js";
 
 /** @typedef {import("../state/index.js").State} State */
 /** @typedef {import("./camera.js").ViewName} ViewName */
@@ -24,6 +26,9 @@ import { SketchModel } from "./sketch.js";
 const LOST_FOR_GOOD_MS = 4000;
 /** From above, a name stands this far over its robot. */
 const FLAT_LABEL_PX = 24;
+/** A robot that looks smaller than this is drawn coarsely. */
+const SMALL_PX = 36;
+const SIZE_M = 0.11;
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 
 export class SceneView {
@@ -65,7 +70,10 @@ export class SceneView {
     this.scene = litScene();
     this.playground = new PlaygroundModel(() => this.invalidate());
     this.objects = new PlaygroundModel(() => this.invalidate());
+    this.near = new Fleet({ fine: true });
+    this.far = new Fleet({ fine: false });
     this.scene.add(this.playground.group, this.objects.group, this.ghost.group, this.sketchModel.group);
+    this.scene.add(this.near.group, this.far.group);
     this.camera = new Camera(canvas, () => this.invalidate());
     this.renderer = createRenderer(canvas);
     const software = this.renderer !== null && SOFTWARE.test(graphicsName(this.renderer));
@@ -92,7 +100,7 @@ export class SceneView {
       targets: () =>
         this.sketch() !== null
           ? [] // a robot that is placed has no buttons
-          : [...this.robots.values()].flatMap(({ model }) => (model.group.visible ? model.buttons.targets : [])),
+          : [...this.robots.values()].flatMap(({ model }) => (model.group.visible ? model.targets.meshes : [])),
       press,
       hover: (target) => {
         if (target?.robot === this.hovered?.robot && target?.button === this.hovered?.button) return;
@@ -258,7 +266,7 @@ export class SceneView {
     const names = Object.keys(state.robots);
     this.flat.draw(state, {
       nowMs,
-      sensors: this.showSensors && !this.framed,
+      senses: (name) => this.#isSensing(name),
       held: this.mover.held,
       sketch: this.sketch(),
       colour: (name) => robotColour(names, name),
@@ -288,14 +296,38 @@ export class SceneView {
         this.robots.set(name, entry);
       }
       entry.trail.update(robot.trail);
-      const hovered = this.hovered?.robot === name ? this.hovered.button : null;
-      moving = entry.model.update(robot, hovered, nowMs) || moving;
-      for (const { group } of entry.model.sensing) group.visible = this.showSensors && !this.framed;
+      moving = entry.model.update(robot, nowMs) || moving;
       const title = `${robot.sound[0] > 0 || robot.sound[1] > 0 ? "♪ " : ""}${this.robotTitle(name)}`;
       if (entry.label.textContent !== title) entry.label.textContent = title;
       if (names.length > 1) entry.label.style.setProperty("--colour", robotColour(names, name));
     }
+    const standing = this.#standing(state, names);
+    this.near.update(standing.filter(({ frame }) => !this.#isSmall(frame)));
+    this.far.update(standing.filter(({ frame }) => this.#isSmall(frame)));
     return moving;
+  }
+
+  /** Whether beams and ground patches of a robot are drawn. @param {string} name */
+  #isSensing(name) {
+    return this.showSensors && !this.framed && isSensed(this.state(), name);
+  }
+
+  /** The robots that are drawn. @param {State} state @param {string[]} names */
+  #standing({ robots }, names) {
+    return names.flatMap((name) => {
+      const group = this.robots.get(name)?.model.group;
+      if (!group?.visible) return [];
+      const hovered = this.hovered?.robot === name ? this.hovered.button : null;
+      return [{ look: { robot: robots[name], hovered, sensing: this.#isSensing(name) }, frame: group.matrix }];
+    });
+  }
+
+  /** Whether a robot there is too small on the screen for fine detail. @param {THREE.Matrix4} frame */
+  #isSmall(frame) {
+    const { camera } = this.camera;
+    const away = camera.position.distanceTo(new THREE.Vector3().setFromMatrixPosition(frame));
+    const pixelsPerRadian = this.canvas.clientHeight / (2 * Math.tan((camera.fov * Math.PI) / 360));
+    return (SIZE_M / away) * pixelsPerRadian < SMALL_PX;
   }
 
   #placeLabels() {

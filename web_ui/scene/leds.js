@@ -1,116 +1,64 @@
-// All lights: one instanced disc each with a soft glow, and the three coloured ones on the shell.
+// All lights: a disc each with a soft glow, and the two coloured strips; the top light colours the shell (body.js).
 
 import * as THREE from "three";
 
+import { glow, spot } from "./glow.js";
+import { Instances, placeOf } from "./instances.js";
 import { LIGHTS, RGB_LIGHTS } from "./parts.js";
 
-/** @typedef {import("../state/robot.js").Robot} Robot */
+/** @typedef {import("./fleet.js").Look} Look */
 
 const OFF = new THREE.Color(0xc3cad2);
-const SHELL = new THREE.Color(0xf7f8fa);
 const STRIP_OFF = new THREE.Color(0xcfd6dd);
+const STRIPS = /** @type {const} */ (["bottom_left", "bottom_right"]);
 const GLOW = 4.2; // size of the halo of a full light, in radii
+const BEFORE_M = 0.0004; // of the halo before its disc
 
-/** @param {THREE.MeshLambertMaterial} shell  the top's material, which the top light tints */
-export function createLeds(shell) {
-  const disc = new THREE.CircleGeometry(1, 14);
-  const square = new THREE.PlaneGeometry(2, 2);
-  const plain = new THREE.MeshBasicMaterial({ color: 0xffffff });
-  const texture = glowTexture();
-  const halo = new THREE.MeshBasicMaterial({ map: texture, transparent: true, depthWrite: false, opacity: 0.75 });
-  const discs = new THREE.InstancedMesh(disc, plain, LIGHTS.length);
-  const halos = new THREE.InstancedMesh(square, halo, LIGHTS.length);
-  halos.renderOrder = 2;
-  discs.frustumCulled = halos.frustumCulled = false;
+const UP = new THREE.Vector3(0, 0, 1);
 
-  const strip = new THREE.BoxGeometry(0.022, 0.0016, 0.004);
-  const strips = /** @type {const} */ (["bottom_left", "bottom_right"]).map((group) => {
-    const material = new THREE.MeshBasicMaterial({ color: STRIP_OFF });
-    const mesh = new THREE.Mesh(strip, material);
-    const { x, y, z } = RGB_LIGHTS[group];
-    mesh.position.set(x, y, z);
-    return { group, mesh, material };
-  });
-  const group = new THREE.Group();
-  group.add(discs, halos, ...strips.map(({ mesh }) => mesh));
-
-  const turns = LIGHTS.map(({ normal }) =>
-    new THREE.Quaternion().setFromUnitVectors(
-      new THREE.Vector3(0, 0, 1),
-      new THREE.Vector3(normal.x, normal.y, normal.z),
-    ),
+/** A disc of this size where a light is. @param {import("./parts.js").Light} light @param {number} radius @param {number} before  metres */
+function facing({ place, normal }, radius, before) {
+  const direction = new THREE.Vector3(normal.x, normal.y, normal.z);
+  return new THREE.Matrix4().compose(
+    new THREE.Vector3(place.x, place.y, place.z).addScaledVector(direction, before),
+    new THREE.Quaternion().setFromUnitVectors(UP, direction),
+    new THREE.Vector3().setScalar(radius),
   );
-  const matrix = new THREE.Matrix4();
-  const place = new THREE.Vector3();
-  const size = new THREE.Vector3();
+}
+
+/** @param {import("./fleet.js").Room} room */
+export function createLeds({ robots, fine }) {
+  const each = LIGHTS.length;
+  const texture = spot(64, [255, 255, 255], (share) => share ** 2);
+  const halo = new THREE.MeshBasicMaterial({ map: texture, transparent: true, depthWrite: false, opacity: 0.75 });
+  const discs = new Instances(new THREE.CircleGeometry(1, fine ? 14 : 5), new THREE.MeshBasicMaterial(), { each, robots });
+  const halos = new Instances(new THREE.PlaneGeometry(2, 2), halo, { each, robots });
+  halos.mesh.renderOrder = 2;
+  const strip = new THREE.BoxGeometry(0.022, 0.0016, 0.004);
+  const strips = new Instances(strip, new THREE.MeshBasicMaterial(), { each: STRIPS.length, robots });
+  const places = LIGHTS.map((light) => facing(light, light.radius, 0));
+  const stripPlaces = STRIPS.map((name) => placeOf(RGB_LIGHTS[name]));
+  const full = LIGHTS.map(({ colour }) => new THREE.Color(colour));
   const colour = new THREE.Color();
-  /** @type {Robot["leds"] | null} */ let shown = null;
-
-  /** @param {number} index @param {number} level */
-  const light = (index, level) => {
-    const { place: at, normal, radius, colour: full } = LIGHTS[index];
-    place.set(at.x, at.y, at.z);
-    matrix.compose(place, turns[index], size.setScalar(radius));
-    discs.setMatrixAt(index, matrix);
-    colour.set(full);
-    halos.setColorAt(index, colour);
-    discs.setColorAt(index, colour.copy(OFF).lerp(new THREE.Color(full), Math.sqrt(level)));
-    place.addScaledVector(new THREE.Vector3(normal.x, normal.y, normal.z), 0.0004);
-    matrix.compose(place, turns[index], size.setScalar(level > 0 ? radius * (1.4 + GLOW * Math.sqrt(level)) : 0));
-    halos.setMatrixAt(index, matrix);
-  };
-
-  const owned = [disc, square, plain, texture, halo, strip, ...strips.map(({ material }) => material)];
   return {
-    group,
-    /** @param {Robot} robot */
-    update(robot) {
-      if (shown === robot.leds) return;
-      shown = robot.leds;
-      LIGHTS.forEach(({ group: name, index }, number) => light(number, robot.leds[name]?.[index] ?? 0));
-      for (const mesh of [discs, halos]) {
-        mesh.instanceMatrix.needsUpdate = true;
-        if (mesh.instanceColor !== null) mesh.instanceColor.needsUpdate = true;
-      }
-      tint(shell.color, SHELL, robot.leds.top, 0.72);
-      shell.emissive.copy(shell.color).multiplyScalar(0.12 * Math.max(0, ...(robot.leds.top ?? [0])));
-      for (const { group: name, material } of strips) tint(material.color, STRIP_OFF, robot.leds[name], 1);
+    parts: [discs, halos, strips],
+    /** @param {number} slot @param {Look} look @param {Look | null} before */
+    show(slot, { robot }, before) {
+      if (before?.robot.leds === robot.leds) return;
+      LIGHTS.forEach((light, index) => {
+        const level = robot.leds[light.group]?.[light.index] ?? 0;
+        const size = light.radius * (1.4 + GLOW * Math.sqrt(level));
+        discs.put(slot, index, places[index]);
+        discs.tint(slot, index, colour.copy(OFF).lerp(full[index], Math.sqrt(level)));
+        halos.put(slot, index, level > 0 ? facing(light, size, BEFORE_M) : null);
+        halos.tint(slot, index, full[index]);
+      });
+      STRIPS.forEach((name, index) => {
+        strips.put(slot, index, stripPlaces[index]);
+        glow(colour, STRIP_OFF, robot.leds[name], 1);
+        strips.tint(slot, index, colour);
+      });
     },
-    dispose: () => {
-      discs.dispose();
-      halos.dispose();
-      owned.forEach((thing) => thing.dispose());
-    },
+    dispose: () => texture.dispose(),
   };
-}
-
-/**
- * Colour = levels divided by the largest, opacity = the largest (thymio-robot.md section 8.1).
- *
- * @param {THREE.Color} target
- * @param {THREE.Color} off
- * @param {number[] | undefined} levels
- * @param {number} most  share of the light's colour when full
- */
-function tint(target, off, levels = [0, 0, 0], most) {
-  const largest = Math.max(...levels);
-  target.copy(off);
-  if (largest <= 0) return;
-  const [r, g, b] = levels.map((level) => level / largest);
-  target.lerp(new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace), most * Math.min(1, 0.25 + 0.75 * largest));
-}
-
-function glowTexture() {
-  const size = 64;
-  const data = new Uint8Array(size * size * 4);
-  for (let row = 0; row < size; row++) {
-    for (let column = 0; column < size; column++) {
-      const distance = Math.hypot(row - size / 2 + 0.5, column - size / 2 + 0.5) / (size / 2);
-      data.set([255, 255, 255, 255 * Math.max(0, 1 - distance) ** 2], (row * size + column) * 4);
-    }
-  }
-  const texture = new THREE.DataTexture(data, size, size);
-  texture.magFilter = THREE.LinearFilter;
-  texture.needsUpdate = true;
-  return texture;
 }

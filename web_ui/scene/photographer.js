@@ -6,6 +6,7 @@ import * as THREE from "three";
 import { robotColour } from "../state/colours.js";
 import { fit } from "./fit.js";
 import { FlatView } from "./flat.js";
+import { Fleet } from "./fleet.js";
 import { litScene } from "./lights.js";
 import { PlaygroundModel } from "./playground.js";
 import { RobotModel } from "./robot.js";
@@ -28,11 +29,17 @@ function inSpace(world, renderer) {
   playground.update(world.markers);
   const robots = Object.entries(world.robots).map(([name, robot]) => {
     const model = new RobotModel(name);
-    model.update(robot, null, 0);
-    for (const { group } of model.sensing) group.visible = false;
+    model.update(robot, 0);
     return model;
   });
-  scene.add(playground.group, ...robots.map(({ group }) => group));
+  const fleet = new Fleet({ fine: true });
+  fleet.update(
+    robots.map(({ name, group }) => ({
+      look: { robot: world.robots[name], hovered: null, sensing: false },
+      frame: group.matrix,
+    })),
+  );
+  scene.add(playground.group, fleet.group);
   const target = renderer.domElement;
   const [width, height] = [Math.min(SIZE.width, target.width), Math.min(SIZE.height, target.height)];
   const camera = new THREE.PerspectiveCamera(30, width / height, 0.02, 400);
@@ -54,6 +61,7 @@ function inSpace(world, renderer) {
   const context = canvas.getContext("2d");
   context?.drawImage(target, 0, target.height - height, width, height, 0, 0, canvas.width, canvas.height);
   playground.dispose();
+  fleet.dispose();
   for (const robot of robots) robot.dispose();
   return canvas;
 }
@@ -68,7 +76,7 @@ function fromAbove(world) {
   const names = Object.keys(world.robots);
   view.draw(world, {
     nowMs: 0,
-    sensors: false,
+    senses: () => false,
     held: null,
     sketch: null,
     colour: (name) => robotColour(names, name),

@@ -4,66 +4,58 @@
 import * as THREE from "three";
 
 import { PROXIMITY } from "../state/names.js";
+import { Instances, placeOf } from "./instances.js";
 import { PROXIMITY_PLACES } from "./parts.js";
 
-/** @typedef {import("../state/robot.js").Robot} Robot */
+/** @typedef {import("./fleet.js").Look} Look */
 
 export const MAX_RANGE_M = 0.14;
+const SHORTEST_M = 0.002;
 const HALF_ANGLE = 0.15; // rad, field of view 0.3 (ros-interface.md section 3)
+const OPACITY = { seen: 0.4, empty: 0.13 };
 const FAR = new THREE.Color(0x3b82d0);
 const MIDDLE = new THREE.Color(0xf0a202);
 const NEAR = new THREE.Color(0xe02d1b);
 
-export function createRays() {
-  // A flat fan of length 1 along x: scaled, it is the beam.
-  const fan = new THREE.BufferGeometry();
-  const width = Math.tan(HALF_ANGLE);
-  fan.setAttribute(
-    "position",
-    new THREE.Float32BufferAttribute([0, -0.01, 0, 1, -width, 0, 1, width, 0, 0, -0.01, 0, 1, width, 0, 0, 0.01, 0], 3),
-  );
-  const dot = new THREE.SphereGeometry(0.0032, 8, 5);
-  const group = new THREE.Group();
-  const rays = PROXIMITY.map((name) => {
-    const { x, y, z, yaw } = PROXIMITY_PLACES[name];
-    const beam = new THREE.Mesh(
-      fan,
-      new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false, side: THREE.DoubleSide }),
-    );
-    const hit = new THREE.Mesh(dot, new THREE.MeshBasicMaterial());
-    const mount = new THREE.Group();
-    mount.position.set(x, y, z);
-    mount.rotation.z = yaw;
-    mount.add(beam, hit);
-    group.add(mount);
-    return { name, beam, hit };
-  });
+/** @param {import("./fleet.js").Room} room */
+export function createRays({ robots, fine }) {
+  const counts = { each: PROXIMITY.length, robots };
+  const beams = new Instances(fan(), beam(OPACITY.seen), counts);
+  const empties = new Instances(fan(), beam(OPACITY.empty), counts);
+  const dots = new Instances(new THREE.SphereGeometry(0.0032, fine ? 8 : 4, fine ? 5 : 2), new THREE.MeshBasicMaterial(), counts);
+  const mounts = PROXIMITY.map((name) => placeOf(PROXIMITY_PLACES[name], { angle: PROXIMITY_PLACES[name].yaw }));
+  const colour = new THREE.Color();
   return {
-    group,
-    /** @param {Robot} robot */
-    update(robot) {
-      for (const { name, beam, hit } of rays) {
+    parts: [beams, empties, dots],
+    /** @param {number} slot @param {Look} look */
+    show(slot, { robot, sensing }) {
+      PROXIMITY.forEach((name, index) => {
         const range = robot.proximity[name];
         const seen = Number.isFinite(range) || range === -Infinity;
-        const length = seen ? Math.max(range, 0.002) : MAX_RANGE_M;
-        beam.visible = range !== undefined;
-        beam.scale.set(length, length, 1);
-        beam.material.opacity = seen ? 0.4 : 0.13;
-        hit.visible = seen;
-        hit.position.x = length;
-        colourOf(seen ? length / MAX_RANGE_M : 1, beam.material.color);
-        hit.material.color.copy(beam.material.color);
-      }
-    },
-    dispose() {
-      fan.dispose();
-      dot.dispose();
-      for (const { beam, hit } of rays) {
-        beam.material.dispose();
-        hit.material.dispose();
-      }
+        const shown = sensing && range !== undefined;
+        const length = seen ? Math.max(range, SHORTEST_M) : MAX_RANGE_M;
+        const fitted = shown ? mounts[index].clone().scale(new THREE.Vector3(length, length, 1)) : null;
+        const end = new THREE.Matrix4().makeTranslation(length, 0, 0).premultiply(mounts[index]);
+        colourOf(seen ? length / MAX_RANGE_M : 1, colour);
+        beams.put(slot, index, seen ? fitted : null);
+        empties.put(slot, index, seen ? null : fitted);
+        dots.put(slot, index, shown && seen ? end : null);
+        for (const part of [beams, empties, dots]) part.tint(slot, index, colour);
+      });
     },
   };
+}
+
+/** @param {number} opacity */
+function beam(opacity) {
+  return new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false, side: THREE.DoubleSide, opacity });
+}
+
+/** A flat fan of length 1 along x: scaled, it is the beam. */
+function fan() {
+  const width = Math.tan(HALF_ANGLE);
+  const corners = [0, -0.01, 0, 1, -width, 0, 1, width, 0, 0, -0.01, 0, 1, width, 0, 0, 0.01, 0];
+  return new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(corners, 3));
 }
 
 /** @param {number} share  of the maximum range @param {THREE.Color} target */

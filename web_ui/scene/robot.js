@@ -1,16 +1,10 @@
-// One robot: a group at its pose with all its parts. The list below is where a new part is added.
+// One robot: its frame at its pose, what pointers hit in it, and where its parts are. `fleet.js` draws it.
 
 import * as THREE from "three";
 
-import { createBlob } from "./blob.js";
-import { createBody } from "./body.js";
-import { createButtons } from "./buttons.js";
-import { createGroundPatches } from "./ground_patches.js";
-import { createLeds } from "./leds.js";
+import { createTargets } from "./buttons.js";
 import { poseAt } from "./motion.js";
 import { PARTS } from "./parts.js";
-import { createRays } from "./rays.js";
-import { createWheels } from "./wheels.js";
 
 /** @typedef {import("../state/robot.js").Robot} Robot */
 
@@ -19,34 +13,23 @@ export class RobotModel {
   constructor(name) {
     this.name = name;
     this.group = new THREE.Group();
-    const body = createBody();
-    this.buttons = createButtons();
-    this.sensing = [createRays(), createGroundPatches()];
-    this.drawables = [createBlob(), createWheels(), createLeds(body.top), ...this.sensing];
-    this.group.add(body.group, this.buttons.group, ...this.drawables.map(({ group }) => group));
-    for (const target of this.buttons.targets) target.userData.robot = name;
-    this.disposables = [body, this.buttons, ...this.drawables];
-    /** @type {Robot | null} */ this.shown = null;
-    /** @type {string | null} */ this.hovered = null;
+    this.targets = createTargets(name);
+    this.group.add(...this.targets.meshes);
   }
 
   /**
-   * Take over the robot's state; true while it is still on its way to its last pose.
+   * Take over where the robot is; true while it is still on its way to its last pose.
    *
    * @param {Robot} robot
-   * @param {string | null} hovered  button under the pointer
    * @param {number} nowMs
    */
-  update(robot, hovered, nowMs) {
+  update(robot, nowMs) {
     this.group.visible = robot.latest !== null;
     if (robot.latest === null) return false;
-    if (robot !== this.shown) for (const drawable of this.drawables) drawable.update(robot);
-    if (robot !== this.shown || hovered !== this.hovered) this.buttons.update(robot, hovered);
-    this.shown = robot;
-    this.hovered = hovered;
     const { pose, arrived } = poseAt(robot.previous, robot.latest, nowMs);
     this.group.position.set(pose.x, pose.y, pose.z);
     this.group.rotation.set(pose.roll, pose.pitch, pose.yaw, "ZYX");
+    this.group.updateMatrix();
     return !arrived;
   }
 
@@ -59,6 +42,6 @@ export class RobotModel {
   }
 
   dispose() {
-    for (const thing of this.disposables) thing.dispose();
+    this.targets.dispose();
   }
 }

@@ -2,38 +2,39 @@
 
 import * as THREE from "three";
 
+import { Instances, placeOf } from "./instances.js";
+import { merged } from "./merged.js";
 import { WHEEL } from "./parts.js";
 
-/** @typedef {import("../state/robot.js").Robot} Robot */
+/** @typedef {import("./fleet.js").Look} Look */
 
-export function createWheels() {
-  const tyre = new THREE.CylinderGeometry(WHEEL.radius, WHEEL.radius, WHEEL.width, 28);
-  const hub = new THREE.CylinderGeometry(0.0135, 0.0135, WHEEL.width + 0.0012, 20);
-  const spoke = new THREE.BoxGeometry(0.003, WHEEL.width + 0.0024, 0.024);
-  const materials = {
-    tyre: new THREE.MeshLambertMaterial({ color: 0x343b44 }),
-    hub: new THREE.MeshLambertMaterial({ color: 0xd5dbe2 }),
-    spoke: new THREE.MeshLambertMaterial({ color: 0x6b7684 }),
-  };
-  const group = new THREE.Group();
-  const [left, right] = [1, -1].map((side) => {
-    const wheel = new THREE.Group();
-    const cross = new THREE.Mesh(spoke, materials.spoke);
-    const other = new THREE.Mesh(spoke, materials.spoke);
-    other.rotation.y = Math.PI / 2;
-    wheel.add(new THREE.Mesh(tyre, materials.tyre), new THREE.Mesh(hub, materials.hub), cross, other);
-    wheel.position.set(0, (side * WHEEL.track) / 2, WHEEL.radius);
-    group.add(wheel);
-    return wheel;
-  });
-  const owned = [tyre, hub, spoke, ...Object.values(materials)];
+const SIDES = /** @type {const} */ (["left", "right"]);
+const COLOURS = { tyre: 0x343b44, hub: 0xd5dbe2, spoke: 0x6b7684 };
+
+/** @param {import("./fleet.js").Room} room */
+export function createWheels({ robots, fine }) {
+  const spoke = () => new THREE.BoxGeometry(0.003, WHEEL.width + 0.0024, 0.024);
+  /** @param {number} radius @param {number} width @param {number} corners */
+  const disc = (radius, width, corners) => new THREE.CylinderGeometry(radius, radius, width, corners);
+  const tyre = disc(WHEEL.radius, WHEEL.width, fine ? 28 : 10);
+  const geometry = fine
+    ? merged([
+        [tyre, COLOURS.tyre],
+        [disc(0.0135, WHEEL.width + 0.0012, 20), COLOURS.hub],
+        [spoke(), COLOURS.spoke],
+        [spoke().rotateY(Math.PI / 2), COLOURS.spoke],
+      ])
+    : merged([[tyre, COLOURS.tyre]]);
+  const material = new THREE.MeshLambertMaterial({ vertexColors: true });
+  const wheels = new Instances(geometry, material, { each: 2, robots });
   return {
-    group,
-    /** @param {Robot} robot */
-    update(robot) {
-      left.rotation.y = robot.wheels.left;
-      right.rotation.y = robot.wheels.right;
+    parts: [wheels],
+    /** @param {number} slot @param {Look} look */
+    show(slot, { robot }) {
+      SIDES.forEach((side, index) => {
+        const place = { x: 0, y: ((1 - 2 * index) * WHEEL.track) / 2, z: WHEEL.radius };
+        wheels.put(slot, index, placeOf(place, { axis: "Y", angle: robot.wheels[side] }));
+      });
     },
-    dispose: () => owned.forEach((thing) => thing.dispose()),
   };
 }

@@ -162,9 +162,14 @@ function withChannels(state, { topics }) {
     const part = splitTopic(topic);
     if (part?.name === "ground_truth/odom") names.add(part.robot);
   }
-  const there = [...names].filter((name) => isThere(state, name));
+  const there = [...names].filter((name) => isThere(state, name)).sort(byName);
   const robots = Object.fromEntries(there.map((name) => [name, state.robots[name] ?? NEW_ROBOT]));
   return { ...state, topics, robots, selected: selection(state.selected, robots) };
+}
+
+/** thymio_2 before thymio_10. @param {string} one @param {string} other */
+function byName(one, other) {
+  return one.localeCompare(other, "en", { numeric: true });
 }
 
 /**

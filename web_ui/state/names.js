@@ -38,6 +38,33 @@ export const ROBOT_TOPICS = [
   ...BUTTONS.map((name) => `buttons/${name}`),
 ];
 
+/** Of more robots than these, what only panels and beams show is asked of the selected one alone. */
+export const CROWD = 4;
+
+/** What every robot is drawn by. */
+const DRAWN = /^(?:ground_truth|joint_states|led|buttons|pen|sound|aseba)\b/;
+
+/**
+ * Whether beams and values of a robot are followed.
+ *
+ * @param {{ robots: Readonly<Record<string, unknown>>, selected: string }} state
+ * @param {string} robot
+ */
+export function isSensed({ robots, selected }, robot) {
+  return robot === selected || Object.keys(robots).length <= CROWD;
+}
+
+/**
+ * Whether the page wants to hear a topic now.
+ *
+ * @param {{ robots: Readonly<Record<string, unknown>>, selected: string }} state
+ * @param {string} topic
+ */
+export function isWatched(state, topic) {
+  const part = splitTopic(topic);
+  return part !== null && (part.robot === null || DRAWN.test(part.name) || isSensed(state, part.robot));
+}
+
 export const PARAMETERS = /** @type {const} */ ({
   playground: "/simulator.playground",
   factor: "/simulator.real_time_factor",

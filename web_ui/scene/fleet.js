@@ -1,0 +1,88 @@
+// Many robots at once: each piece of the model is one draw call, however many robots there are. Robots that are near
+// are one fleet, those that are small on the screen another. The list below is where a new piece is added.
+
+import * as THREE from "three";
+
+import { createBlob } from "./blob.js";
+import { createBody } from "./body.js";
+import { createButtons } from "./buttons.js";
+import { createGroundPatches } from "./ground_patches.js";
+import { createLeds } from "./leds.js";
+import { createRays } from "./rays.js";
+import { createWheels } from "./wheels.js";
+
+/** @typedef {import("../state/robot.js").Robot} Robot */
+/** @typedef {import("./instances.js").Instances} Instances */
+/** @typedef {{ robot: Robot, hovered: string | null, sensing: boolean }} Look  button under the pointer; beams and patches shown */
+/** @typedef {{ look: Look, frame: THREE.Matrix4 }} Standing   a robot as it looks, in its frame */
+/**
+ * @typedef {object} Piece
+ * @property {Instances[]} parts
+ * @property {(slot: number, look: Look, before: Look | null) => void} show  before: what was shown there, null: nothing
+ * @property {() => void} [dispose]
+ */
+
+/** @typedef {{ robots: number, fine: boolean }} Room   for robots at most, drawn finely or as seen from far */
+
+const PIECES = /** @type {((room: Room) => Piece)[]} */ ([
+  createBlob,
+  createBody,
+  createWheels,
+  createLeds,
+  createRays,
+  createGroundPatches,
+]);
+/** What cannot be told apart from far. */
+const FINE_PIECES = [...PIECES, createButtons];
+
+export class Fleet {
+  /** @param {{ fine: boolean }} how */
+  constructor({ fine }) {
+    this.fine = fine;
+    this.group = new THREE.Group();
+    this.capacity = 0;
+    /** @type {Piece[]} */ this.pieces = [];
+    /** @type {Standing[]} */ this.shown = [];
+  }
+
+  /** Show these robots and no others. @param {Standing[]} robots */
+  update(robots) {
+    if (robots.length > this.capacity) this.#grow(robots.length);
+    robots.forEach(({ look, frame }, slot) => {
+      const before = this.shown[slot] ?? null;
+      const same = before !== null && isSame(before.look, look);
+      if (same && before.frame.equals(frame)) return;
+      for (const { parts, show } of this.pieces) {
+        if (!same) show(slot, look, before?.look ?? null);
+        for (const part of parts) part.place(slot, frame);
+      }
+      this.shown[slot] = { look, frame: frame.clone() };
+    });
+    if (this.shown.length > robots.length) this.shown.length = robots.length;
+    for (const { parts } of this.pieces) for (const part of parts) part.show(robots.length);
+  }
+
+  /** Room for twice as many as are needed now. @param {number} robots */
+  #grow(robots) {
+    this.dispose();
+    this.capacity = robots === 1 ? 1 : 2 * robots;
+    const room = { robots: this.capacity, fine: this.fine };
+    this.pieces = (this.fine ? FINE_PIECES : PIECES).map((create) => create(room));
+    for (const { parts } of this.pieces) this.group.add(...parts.map(({ mesh }) => mesh));
+  }
+
+  dispose() {
+    for (const { parts, dispose } of this.pieces) {
+      for (const part of parts) part.dispose();
+      dispose?.();
+    }
+    this.group.clear();
+    this.pieces = [];
+    this.shown = [];
+  }
+}
+
+/** @param {Look} one @param {Look} other */
+function isSame(one, other) {
+  return one.robot === other.robot && one.hovered === other.hovered && one.sensing === other.sensing;
+}
