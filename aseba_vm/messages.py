@@ -1,5 +1,6 @@
-"""The wording of every error and warning, in one place: translate this table and nothing else.
+"""The wording of every error and warning, in one table for each language.
 
+Kinds and arguments belong to the errors; other languages are `messages_<language>.py`.
 In a template ``{0}`` is an argument, ``{t0}`` a token, ``{l0}`` a list of tokens, ``{v0}`` a token with its value.
 """
 
@@ -7,7 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from aseba_vm.messages_de import GERMAN
+from aseba_vm.messages_fr import FRENCH
+from aseba_vm.messages_it import ITALIAN
+
 MESSAGES: Mapping[str, str] = {
+    # kinds of tokens, without and with their value
+    "token-identifier": "a name",
+    "token-integer": "a number",
+    "token-end-of-input": "the end of the program",
+    "valued-identifier": "name '{0}'",
+    "valued-integer": "number {0}",
+    # errors
     "target-too-small": "the target has less memory than its own variables need",
     "stack-overflow": "the program could use more stack than the target has;"
     " look for recursion or very long expressions",
@@ -142,16 +154,8 @@ MESSAGES: Mapping[str, str] = {
     " as its last statement does not always return",
 }
 
-LANGUAGES: Mapping[str, Mapping[str, str]] = {"en": MESSAGES}
+LANGUAGES: Mapping[str, Mapping[str, str]] = {"en": MESSAGES, "de": GERMAN, "fr": FRENCH, "it": ITALIAN}
 """Language → its sentences; a table that lacks one leaves it to English."""
-
-TOKENS: Mapping[str, str] = {
-    "identifier": "a name",
-    "integer": "a number",
-    "end-of-input": "the end of the program",
-}
-
-VALUED_TOKENS: Mapping[str, str] = {"identifier": "name '{0}'", "integer": "number {0}"}
 
 _LONGEST = 60
 """Letters of a name that are shown; the rest of a longer one is cut."""
@@ -166,10 +170,10 @@ def wording(kind: str, arguments: Sequence[object], messages: Mapping[str, str] 
     arguments = [_shortened(argument) for argument in arguments]
     for index, argument in enumerate(arguments):
         if isinstance(argument, tuple):
-            words[f"l{index}"] = ", ".join(map(_token, argument))
-            words[f"v{index}"] = _valued_token(*argument)
+            words[f"l{index}"] = ", ".join(_token(messages, kind) for kind in argument)
+            words[f"v{index}"] = _valued_token(messages, *argument)
         else:
-            words[f"t{index}"] = _token(argument)
+            words[f"t{index}"] = _token(messages, argument)
     return template.format(*arguments, **words)
 
 
@@ -179,10 +183,12 @@ def _shortened(argument: object) -> object:
     return f"{argument[:_LONGEST]}…" if isinstance(argument, str) and len(argument) > _LONGEST else argument
 
 
-def _token(kind: object) -> str:
-    return TOKENS.get(str(kind), f"'{kind}'")
+def _token(messages: Mapping[str, str], kind: object) -> str:
+    known = f"token-{kind}"
+    return messages.get(known, MESSAGES.get(known, f"'{kind}'"))
 
 
-def _valued_token(kind: object, value: object = None, *_: object) -> str:
-    template = VALUED_TOKENS.get(str(kind))
-    return _token(kind) if value is None or template is None else template.format(value)
+def _valued_token(messages: Mapping[str, str], kind: object, value: object = None, *_: object) -> str:
+    known = f"valued-{kind}"
+    template = messages.get(known, MESSAGES.get(known))
+    return _token(messages, kind) if value is None or template is None else template.format(value)

@@ -1,6 +1,8 @@
 import string
 
-from aseba_vm.messages import MESSAGES, wording
+import pytest
+
+from aseba_vm.messages import LANGUAGES, MESSAGES, wording
 from tests.aseba_vm.vectors import as_tuple, load
 
 
@@ -38,3 +40,32 @@ def test_very_long_names_are_cut():
 
 def test_an_unknown_kind_is_shown_as_it_is():
     assert wording("new-kind", (1, "a")) == "new-kind 1 a"
+
+
+@pytest.mark.parametrize("language", sorted(LANGUAGES))
+def test_a_language_says_everything_and_of_every_sentence_all_that_english_says(language):
+    table = LANGUAGES[language]
+    assert table.keys() == MESSAGES.keys()
+    told = {kind: arguments(text) for kind, text in table.items()}
+    assert told == {kind: arguments(text) for kind, text in MESSAGES.items()}
+
+
+@pytest.mark.parametrize("language", sorted(LANGUAGES.keys() - {"en"}))
+def test_nothing_is_left_in_english(language):
+    assert [kind for kind, text in LANGUAGES[language].items() if text == MESSAGES[kind]] == []
+
+
+def test_tokens_are_told_in_the_language_of_the_sentence():
+    german = LANGUAGES["de"]
+    assert wording("expected-token", ("identifier", "end-of-input"), german) == (
+        "erwartet wird ein Name, hier steht das Ende des Programms"
+    )
+    assert wording("expected-identifier", (("integer", 5),), german) == "erwartet wird ein Name, hier steht die Zahl 5"
+    assert wording("expected-one-of", (("integer", "("), ")"), german) == (
+        "erwartet wird eins davon: eine Zahl, '('; hier steht ')'"
+    )
+
+
+def arguments(text: str) -> set[str]:
+    """What a template names."""
+    return {name for _, name, _, _ in string.Formatter().parse(text) if name}

@@ -1,26 +1,19 @@
 """One line of help for each variable, native and local event of the Thymio, in one table per language.
 
-Translate a table by adding it to `TABLES`; what it lacks is given in English (facts: thymio-robot.md sections 4 to 6).
+Other languages are `help_<language>.py`; what they lack is given in English (facts: thymio-robot.md sections 4 to 6).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from aseba_vm.targets import THYMIO_II
+from thymio_sim_ros.device.help_de import GERMAN
+from thymio_sim_ros.device.help_fr import FRENCH
+from thymio_sim_ros.device.help_it import ITALIAN
+from thymio_sim_ros.device.help_table import HelpTable
 
 __all__ = ["ENGLISH", "TABLES", "HelpTable", "help_of"]
-
-
-@dataclass(frozen=True, slots=True)
-class HelpTable:
-    """The help of one language: name → one line."""
-
-    variables: Mapping[str, str]
-    natives: Mapping[str, str]
-    events: Mapping[str, str]
-
 
 _VARIABLES = {
     "_id": "number of the robot on its network",
@@ -134,7 +127,7 @@ _NATIVES = {
 
 ENGLISH = HelpTable(_VARIABLES, _NATIVES, {event.name: event.description for event in THYMIO_II.local_events})
 
-TABLES: Mapping[str, HelpTable] = {"en": ENGLISH}
+TABLES: Mapping[str, HelpTable] = {"en": ENGLISH, "de": GERMAN, "fr": FRENCH, "it": ITALIAN}
 """Language → its table."""
 
 
