@@ -123,7 +123,7 @@ def test_commands_of_another_thread_arrive_in_order() -> None:
     server.close()
 
 
-def test_data_overtakes_no_command_and_no_command_data() -> None:
+def test_data_and_other_commands_do_not_overtake_each_other() -> None:
     server, sink = start()
     server.post(ev.AddChannels((CHANNEL,)))
     with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:  # type: ignore[arg-type]  # plain strings
@@ -144,7 +144,7 @@ def test_data_overtakes_no_command_and_no_command_data() -> None:
     server.close()
 
 
-def test_data_does_not_wait_for_a_busy_event_loop() -> None:
+def test_commands_do_not_wait_for_a_busy_event_loop() -> None:
     class Busy(Sink):
         def __init__(self) -> None:
             super().__init__()
@@ -161,9 +161,11 @@ def test_data_does_not_wait_for_a_busy_event_loop() -> None:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         server.post(ev.Data(1, 7, b"x"))
+        server.post(ev.Tell(1, ms.Status(StatusLevel.INFO, "told")))
         while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
             pass
         assert message.time_ns == 7
+        assert wire.decode_server(client.recv(timeout=DEADLINE_S)) == ms.Status(StatusLevel.INFO, "told")
         sink.may_go_on.set()
     server.close()
 
@@ -191,6 +193,23 @@ def test_data_of_another_thread_arrives_by_tls_too(tmp_path: Path) -> None:
         server.close()
         with pytest.raises(ConnectionClosed, match="1001"):
             client.recv(timeout=DEADLINE_S)
+
+
+def test_a_command_that_cannot_be_told_harms_neither_its_sender_nor_later_ones(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    server, sink = start()
+    server.post(ev.AddChannels((CHANNEL,)))
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:  # type: ignore[arg-type]  # plain strings
+        client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+        assert sink.subscribed.wait(DEADLINE_S)
+        server.post(ev.Tell(1, ms.ParameterValues((ms.Parameter("/n.p", float("nan")),))))
+        server.post(ev.Data(1, 7, b"x"))
+        while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
+            pass
+        assert message.time_ns == 7
+    server.close()
+    assert caplog.messages == ["Tell failed"]
 
 
 def test_closing_ends_the_thread_and_says_goodbye_to_clients() -> None:

@@ -1,9 +1,9 @@
 """The asyncio side: sockets around the switchboard, on the current API of `websockets`.
 
-Everything here runs in one event loop, but for data, which may be published from another thread (`publish_now`).
+Everything here runs in one event loop, but for commands, which another thread may carry out itself (`apply_now`).
 Switchboard and outlets therefore belong to whoever has the turn: the loop while it handles something, else the thread
-that publishes. Nothing waits for a client: each has its `Outlet`; reading pauses for a client while the owner of the
-data is behind, which slows that client only.
+that has a command. Nothing waits for a client: each has its `Outlet`; reading pauses for a client while the owner of
+the data is behind, which slows that client only.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class ServerSettings:
 
 
 class BridgeServer:
-    """A Foxglove server on its listening sockets. Methods belong to the event loop's thread, but for `publish_now`."""
+    """A Foxglove server on its listening sockets. Methods belong to the event loop's thread, but for `apply_now`."""
 
     def __init__(self, board: Switchboard, sink: EventSink, settings: ServerSettings | None = None) -> None:
         self._board = board
@@ -132,20 +132,27 @@ class BridgeServer:
         """Carry out commands in order; they are taken while it is the loop's turn."""
         with self._turn:
             for command in commands:
-                if isinstance(command, Data):
-                    self._publish(command)
-                else:
-                    self._deliver(self._board.apply(command))
+                self._apply(command)
 
-    def publish_now(self, data: Data) -> bool:
-        """Send data from the calling thread, unless the loop is at work; returns whether it was done."""
+    def apply_now(self, command: Command) -> bool:
+        """Carry out a command in the calling thread, unless the loop is at work; returns whether it was done."""
         if not self._turn.acquire(blocking=False):
             return False
         try:
-            self._publish(data)
+            self._apply(command)
         finally:
             self._turn.release()
         return True
+
+    def _apply(self, command: Command) -> None:
+        try:
+            if isinstance(command, Data):
+                self._publish(command)
+            else:
+                self._deliver(self._board.apply(command))
+        except Exception:
+            # Our own mistake must not end the owner's thread: what clients have not been told of it is lost.
+            self._log.exception("%s failed", type(command).__name__)
 
     def _publish(self, data: Data) -> None:
         """Hot path: one frame per distinct subscription id."""

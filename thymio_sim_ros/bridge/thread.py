@@ -1,4 +1,4 @@
-"""The event loop's thread: data is sent by who has it, other commands come in in batches with one wake-up each."""
+"""The event loop's thread. Whoever has a command carries it out; while the loop is at work, it waits for the loop."""
 
 from __future__ import annotations
 
@@ -114,14 +114,13 @@ class ServerThread:
         return self._server.client_count
 
     def post(self, command: Command) -> None:
-        """Send data, hand anything else to the loop; order is kept. Any one thread at a time."""
-        if isinstance(command, Data):
-            if not self._waiting and not self._is_closed and self._server.publish_now(command):
-                return
-            if len(self._waiting) >= _MAX_WAITING:
-                return
+        """Carry out a command, or hand it to the loop; order is kept. Any one thread at a time."""
+        if self._is_closed or (not self._waiting and self._server.apply_now(command)):
+            return
+        if isinstance(command, Data) and len(self._waiting) >= _MAX_WAITING:
+            return
         self._waiting.append(command)
-        if not self._wake_is_due and not self._is_closed:
+        if not self._wake_is_due:
             self._wake_is_due = True
             self._loop.call_soon_threadsafe(self._drain)
 
