@@ -31,6 +31,9 @@ class Later(Sequence[Reading | None]):
         numbers = range(self._count)[index]
         return self._make(numbers) if isinstance(numbers, int) else [self._make(number) for number in numbers]
 
+    def __iter__(self) -> Iterator[Reading | None]:
+        return map(self._make, range(self._count))
+
 
 class Columns(Sequence[Row]):
     """Readings as (robot, sensor, reading), by robot and then by sensor; equal to a tuple of the same."""
@@ -65,11 +68,15 @@ class Columns(Sequence[Row]):
 
     def _all(self) -> tuple[Row, ...]:
         if self._rows is None:
+            names = [sensor for sensor, _ in self._columns]
+            made = zip(*(column for _, column in self._columns), strict=True) if names else ()
             self._rows = tuple(
-                (robot, sensor, reading)
-                for index, robot in enumerate(self._robots)
-                for sensor, column in self._columns
-                if (reading := column[index]) is not None
+                [
+                    (robot, name, reading)
+                    for robot, readings in zip(self._robots, made, strict=False)
+                    for name, reading in zip(names, readings, strict=True)
+                    if reading is not None
+                ]
             )
             self._columns = ()
         return self._rows

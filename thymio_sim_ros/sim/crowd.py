@@ -14,7 +14,8 @@ import numpy as np
 
 from thymio_sim_ros.sim.columns import Columns
 from thymio_sim_ros.sim.footing import Footing
-from thymio_sim_ros.sim.noise import NormalBank, UniformBank
+from thymio_sim_ros.sim.group import Group
+from thymio_sim_ros.sim.noise import UniformBank
 from thymio_sim_ros.sim.raycaster import Fan, Indices, Raycaster, Values
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.robot import Robot, Shared
@@ -31,40 +32,6 @@ CROWD = 14
 """From so many robots on, all at once is quicker (measured, docs/performance.md)."""
 
 _NOWHERE_M = -1e6
-
-
-class _Group:
-    """The robots as one sensor sees them; satisfies `GroupView`."""
-
-    __slots__ = ("_crowd", "noise")
-
-    def __init__(self, crowd: Crowd, noise: NormalBank) -> None:
-        self._crowd, self.noise = crowd, noise
-
-    def __len__(self) -> int:
-        return len(self._crowd)
-
-    @property
-    def now_ns(self) -> int:
-        return self._crowd.shared.clock.now_ns
-
-    @property
-    def proximity_model(self) -> str:
-        return self._crowd.shared.proximity_model
-
-    def states(self, kind: type[S]) -> list[S]:
-        return self._crowd.states(kind)
-
-    def cast(self, fan: Fan) -> tuple[Indices, Values]:
-        return self._crowd.cast(fan)
-
-    def ground_at(self, places: Values) -> tuple[Values, Values]:
-        x, y, yaw = self._crowd.poses.T[:, :, None]
-        cos, sin = np.cos(yaw), np.sin(yaw)
-        xs = x + cos * places[:, 0] - sin * places[:, 1]
-        ys = y + sin * places[:, 0] + cos * places[:, 1]
-        reflectances, floors = self._crowd.shared.ground.sample_all(xs.ravel(), ys.ravel())
-        return reflectances.reshape(xs.shape), floors.reshape(xs.shape)
 
 
 class _Actors:
@@ -91,17 +58,20 @@ class Crowd:
         self._names = tuple(robot.name for robot in self._robots)
         self._states: dict[type[Any], list[Any]] = {}
         self._order = {robot: index for index, robot in enumerate(self._robots)}
-        self._banks: list[NormalBank | UniformBank] = []
-        self._groups: dict[int, _Group] = {}
-        for number, column in enumerate(zip(*(robot.sensors for robot in self._robots), strict=True)):
-            if column[0][0].measure_all is not None:
-                normal = NormalBank([view.noise for _, view in column])
-                self._banks.append(normal)
-                self._groups[number] = _Group(self, normal)
-        self._fleet = shared.physics.gather()
-        self._wheels = WheelArrays([robot.wheels for robot in self._robots])
+        self._banks: list[UniformBank] = []
+        self._sensors = [sensor for sensor, _ in self._robots[0].sensors]
+        self._views = [
+            [view for _, view in column] for column in zip(*(robot.sensors for robot in self._robots), strict=True)
+        ]
+        self._groups = {
+            number: Group(self, self._robots, self._views[number])
+            for number, sensor in enumerate(self._sensors)
+            if sensor.measure_all is not None
+        }
+        self.fleet = shared.physics.gather()
+        self.wheels = WheelArrays([robot.wheels for robot in self._robots])
         for robot in self._robots:
-            robot.shared_wheels = self._wheels
+            robot.shared_wheels = self.wheels
         self._sure = np.zeros((3, len(self._robots)))
         """Where each robot has looked for an edge, and how far away that may be at least."""
         self._acts: list[tuple[Act, list[Any], _Actors]] = []
@@ -109,7 +79,7 @@ class Crowd:
             if (update_all := tasks[0].update_all) is not None:
                 even = UniformBank([task.view.noise for task in tasks])
                 self._banks.append(even)
-                self._acts.append((update_all, [task.state for task in tasks], _Actors(shared, self._wheels, even)))
+                self._acts.append((update_all, [task.state for task in tasks], _Actors(shared, self.wheels, even)))
 
     def __len__(self) -> int:
         return len(self._robots)
@@ -117,17 +87,19 @@ class Crowd:
     def disband(self) -> None:
         """Every robot acts and moves alone again."""
         self.shared.physics.disband()
-        self._wheels.tell()
+        self.wheels.tell()
         for robot in self._robots:
             robot.shared_wheels = None
         for bank in self._banks:
             bank.give_back()
+        for group in self._groups.values():
+            group.give_back()
 
     @property
     def poses(self) -> Values:
         """Where they really are now: rows x, y, yaw; who has fallen is far from any floor."""
-        poses = self._fleet.poses
-        fallen = self._fleet.fallen
+        poses = self.fleet.poses
+        fallen = self.fleet.fallen
         if len(fallen):
             poses = poses.copy()
             poses[fallen] = [(_NOWHERE_M, index, 0.0) for index in fallen]
@@ -146,15 +118,15 @@ class Crowd:
             robot.act(dt_s, is_in_crowd=True)
         for update_all, states, group in self._acts:
             update_all(states, group, dt_s)
-        self._fleet.driven = self._wheels.ground
+        self.fleet.driven = self.wheels.ground
 
     def roll(self, dt_s: float) -> None:
         """Count on the wheels what the bodies have moved."""
-        self._wheels.roll(self._fleet.covered, dt_s)
+        self.wheels.roll(self.fleet.covered, dt_s)
 
     def look_down(self, footing: Footing) -> None:
         """Let those fall who have no floor under their origins; the others look again when they have gone that far."""
-        x, y = self._fleet.poses[:, :2].T
+        x, y = self.fleet.poses[:, :2].T
         sure_x, sure_y, sure_m = self._sure
         for index in np.flatnonzero(np.hypot(x - sure_x, y - sure_y) >= sure_m).tolist():
             sure_x[index], sure_y[index] = x[index], y[index]
@@ -162,7 +134,7 @@ class Crowd:
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
         """What the rays of all robots meet now (`Raycaster.cast`)."""
-        self._caster.move(self.shared.physics.loose(), frozenset(self._fleet.fallen.tolist()))
+        self._caster.move(self.shared.physics.loose(), frozenset(self.fleet.fallen.tolist()))
         return self._caster.cast(self.poses, fan)
 
     def measure(self, due: Sequence[int]) -> Columns:
@@ -171,18 +143,28 @@ class Crowd:
         awake: Sequence[int] = sorted({*due, *chain.from_iterable(woken.values())}) if woken else due
         columns: list[tuple[str, Sequence[Reading | None]]] = []
         for number in awake:
-            sensor = self._robots[0].sensors[number][0]
+            sensor = self._sensors[number]
             if number not in due:
-                column: Sequence[Reading | None] = [
-                    robot.sense(number) if number in woken.get(index, ()) else None
-                    for index, robot in enumerate(self._robots)
-                ]
+                some = [index for index, numbers in woken.items() if number in numbers]
+                column: Sequence[Reading | None] = self._sense(number, some)
             elif sensor.measure_all is not None:
                 column = sensor.measure_all(self._groups[number])
             else:
-                column = [robot.sense(number) for robot in self._robots]
+                column = [sensor.measure(view) for view in self._views[number]]
             columns.append((sensor.name, column))
         return Columns(self._names, columns)
+
+    def _sense(self, number: int, some: Sequence[int]) -> Sequence[Reading | None]:
+        """The readings of one sensor of some robots."""
+        column: list[Reading | None] = [None] * len(self._robots)
+        group = self._groups.get(number)
+        for index in some:
+            if group is not None:
+                group.notes.lend(index)
+            column[index] = self._robots[index].sense(number)
+            if group is not None:
+                group.notes.take_back(index)
+        return column
 
     def _in_order(self, some: Collection[Robot]) -> list[Robot]:
         """Some robots in the order of all."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol, TypeVar
 
 from thymio_sim_ros.sim.geometry import Point, Pose, Tilt, Twist
 from thymio_sim_ros.sim.ground import GroundSample
 from thymio_sim_ros.sim.noise import Noise, NormalBank, UniformBank
+from thymio_sim_ros.sim.notes import Notes
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.primitives import Color
 from thymio_sim_ros.sim.raycaster import Fan, Indices, Values
@@ -138,12 +139,62 @@ class GroupView(Protocol):
 
     @property
     def noise(self) -> NormalBank:
-        """The sensor's own generators; users are robots."""
+        """The sensor's own generators for normal numbers; users are robots. A sensor uses this or `evens`, not both."""
+        ...
+
+    @property
+    def evens(self) -> UniformBank:
+        """The sensor's own generators for even numbers."""
+        ...
+
+    @property
+    def notes(self) -> Notes:
+        """The sensor's own notes on all robots."""
         ...
 
     @property
     def proximity_model(self) -> str:
         """As in `SensorView`."""
+        ...
+
+    @property
+    def poses(self) -> Values:
+        """Where the robots really are now: rows x, y, yaw."""
+        ...
+
+    @property
+    def motion(self) -> tuple[Values, Values]:
+        """How their bodies really move now: speeds along the headings, m/s, and rates of turn, rad/s."""
+        ...
+
+    @property
+    def tilts(self) -> Sequence[Tilt]:
+        """How they lean."""
+        ...
+
+    @property
+    def fallen(self) -> Sequence[int]:
+        """Who has fallen off an edge, falling still or not."""
+        ...
+
+    @property
+    def falling(self) -> Sequence[int]:
+        """Who is in the air, on the way down from an edge."""
+        ...
+
+    @property
+    def wheels(self) -> WheelArrays:
+        """Angles and speeds of the wheels, and the odometry."""
+        ...
+
+    @property
+    def contacts(self) -> Mapping[int, tuple[Contact, ...]]:
+        """What those touch that touch anything."""
+        ...
+
+    @property
+    def sounds(self) -> Sequence[Sound]:
+        """All that sounds in the world now."""
         ...
 
     def states(self, kind: type[S]) -> Sequence[S]:

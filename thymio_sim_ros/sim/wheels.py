@@ -112,6 +112,29 @@ class WheelArrays:
         self.take()
         return self._speeds
 
+    @property
+    def commanded(self) -> Values:
+        """Speeds that the motors aim at, m/s."""
+        self.take()
+        return self._commanded
+
+    @property
+    def angles(self) -> Values:
+        """How far they have turned, rad."""
+        self.take()
+        return self._angles
+
+    @property
+    def odometry(self) -> Values:
+        """Where they have brought the robots by their count: rows x, y, yaw."""
+        self.take()
+        return self._odometry
+
+    @property
+    def controls(self) -> dict[int, tuple[WheelControl, WheelControl]]:
+        """The loops that motors follow, by robot; those that follow at once have none."""
+        return {number: wheels.control for number, wheels in enumerate(self._wheels) if wheels.control is not None}
+
     def set_controls(self, controls: Sequence[tuple[WheelControl, WheelControl] | None]) -> None:
         """The loops that each robot's motors follow."""
         for wheels, control in zip(self._wheels, controls, strict=True):

@@ -111,6 +111,13 @@ class Fleet:
         return self._places.T
 
     @property
+    def motion(self) -> tuple[Values, Values]:
+        """Speeds along the headings, m/s, and rates of turn, rad/s."""
+        if self._is_released:
+            self._take()
+        return self._speed, self._spin
+
+    @property
     def fallen(self) -> Indices:
         """The numbers of those who have fallen."""
         if self._is_released:
