@@ -13,7 +13,17 @@ import pytest
 from tests.sim.builders import FLOOR, box, make, run, shipped
 from thymio_sim_ros.sim import playground
 from thymio_sim_ros.sim.actuators import all_actuators
-from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot, PlayTone, PressButton, SetPen
+from thymio_sim_ros.sim.commands import (
+    Clap,
+    MotorTargets,
+    MoveRobot,
+    PlayTone,
+    PressButton,
+    SetMotorModel,
+    SetPen,
+    Tap,
+    Tilt,
+)
 from thymio_sim_ros.sim.playground import Playground, RobotStart
 from thymio_sim_ros.sim.sensors import NEVER_NS
 from thymio_sim_ros.sim.world import StepResult, World
@@ -125,6 +135,39 @@ def test_readings_may_be_looked_at_much_later(monkeypatch: pytest.MonkeyPatch) -
             world.post("robot_0", MoveRobot(0.02, 0.95, 1.0))
             world.post("robot_1", PressButton("left", True))
         assert list(world.step().readings) == list(step.readings)
+
+
+@pytest.mark.parametrize("crowd", [AT_ONCE, 12])
+def test_robots_that_come_and_go_take_along_what_their_sensors_remember(
+    monkeypatch: pytest.MonkeyPatch, crowd: int
+) -> None:
+    """With 12 as the limit they are now a crowd and now each alone."""
+    runs = [come_and_go(monkeypatch, limit, busy(random.Random(5), 12)) for limit in (ONE_BY_ONE, crowd)]
+    assert_same(*runs)
+    told = {name for step in runs[0] for _, name, _ in step.readings}
+    assert {"tap", "current", "collision", "accelerometer", "sound", "buttons"} <= told
+
+
+def come_and_go(monkeypatch: pytest.MonkeyPatch, crowd: int, scene: Playground) -> list[StepResult]:
+    """Three seconds in which robots are taken away and put back, tapped, tilted, clapped at and driven in two ways."""
+    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+    world = World(scene, seed=3)
+    dice, steps, away = random.Random(2), [], list[RobotStart]()
+    for tick in range(300):
+        for start in scene.robots:
+            if start.name in world.robots and dice.random() < 0.03:
+                targets = MotorTargets(dice.choice((0, 200, 500)), dice.choice((0, 200, 500)))
+                command = dice.choice((Tap(), Tilt(0.1, 0.2), Clap(200), SetMotorModel("firmware"), targets, targets))
+                world.post(start.name, command)
+        if tick % 41 == 20:
+            away.append(next(start for start in scene.robots if start.name in world.robots))
+            world.remove(away[-1].name)
+        if tick % 41 == 40 and away:
+            world.spawn(dataclasses.replace(away.pop(), x_m=4.0 + tick * 0.01, y_m=0.0))
+        if tick == 150:
+            world.post("robot_5", MoveRobot(0.02, 0.95, 1.0))
+        steps.append(world.step())
+    return steps
 
 
 def test_a_sensor_that_is_woken_measures_on_its_robot_alone() -> None:

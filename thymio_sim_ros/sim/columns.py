@@ -68,8 +68,9 @@ class Columns(Sequence[Row]):
 
     def _all(self) -> tuple[Row, ...]:
         if self._rows is None:
-            names = [sensor for sensor, _ in self._columns]
-            made = zip(*(column for _, column in self._columns), strict=True) if names else ()
+            full = [(sensor, column) for sensor, column in self._columns if isinstance(column, Later) or any(column)]
+            names = [sensor for sensor, _ in full]
+            made = zip(*(column for _, column in full), strict=True) if names else ()
             self._rows = tuple(
                 [
                     (robot, name, reading)

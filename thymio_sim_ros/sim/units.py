@@ -23,6 +23,7 @@ from thymio_sim_ros.sim.thymio2 import (
 )
 
 Values = npt.NDArray[np.float64]
+Counts = npt.NDArray[np.int64]
 
 _UNITS_PER_M_S = FULL_TARGET / MAX_SPEED_M_S * (1 + 1e-9)
 """A hair more, so that a target does not lose one when it comes back as a speed."""
@@ -46,6 +47,11 @@ def speed_to_units(speed_m_s: float) -> int:
     return int(speed_m_s * _UNITS_PER_M_S)
 
 
+def speeds_to_units(speeds_m_s: Values) -> Counts:
+    """`speed_to_units` of many speeds."""
+    return (speeds_m_s * _UNITS_PER_M_S).astype(np.int64)
+
+
 def units_to_speed(target: int) -> float:
     """motor.*.target as ground speed in m/s; the wheels are limited, not the target (thymio-robot.md section 2)."""
     return target * (MAX_SPEED_M_S / FULL_TARGET)
@@ -55,6 +61,12 @@ def units_to_pwm(speed: int) -> int:
     """motor.*.pwm for a speed in units."""
     pwm = int(PWM_PER_SPEED_UNIT * speed)
     return pwm if -PWM_LIMIT <= pwm <= PWM_LIMIT else PWM_LIMIT if pwm > 0 else -PWM_LIMIT
+
+
+def units_to_pwms(speeds: Counts) -> Counts:
+    """`units_to_pwm` of many speeds."""
+    pwms: Counts = np.maximum(-PWM_LIMIT, np.minimum(PWM_LIMIT, (PWM_PER_SPEED_UNIT * speeds).astype(np.int64)))
+    return pwms
 
 
 def proximity_response(distance_m: float) -> float:
@@ -100,6 +112,12 @@ def ground_responses(reflectances: Values) -> Values:
 def acceleration_to_units(acceleration_m_s2: float) -> int:
     """One axis of acc: 23 for each g, within ±32 (section 7.3)."""
     return round(max(-ACC_LIMIT, min(ACC_LIMIT, acceleration_m_s2 * (ACC_PER_G / GRAVITY_M_S2))))
+
+
+def accelerations_to_units(accelerations_m_s2: Values) -> Counts:
+    """`acceleration_to_units` of many."""
+    counts = accelerations_m_s2 * (ACC_PER_G / GRAVITY_M_S2)
+    return np.rint(np.maximum(-ACC_LIMIT, np.minimum(ACC_LIMIT, counts))).astype(np.int64)
 
 
 def units_to_acceleration(count: int) -> float:

@@ -12,7 +12,7 @@ from thymio_sim_ros.sim.geometry import Pose, Twist
 from thymio_sim_ros.sim.motor_control import WheelControl
 from thymio_sim_ros.sim.thymio2 import WHEEL_RADIUS_M, WHEEL_TRACK_M
 
-__all__ = ["WheelArrays", "Wheels"]
+__all__ = ["WheelArrays", "Wheels", "twist_of"]
 
 Values = npt.NDArray[np.float64]
 
@@ -44,8 +44,7 @@ class Wheels:
     @property
     def twist(self) -> Twist:
         """The body's motion as the wheels tell it."""
-        left, right = self.speeds_m_s
-        return Twist((left + right) / 2, (right - left) / WHEEL_TRACK_M)
+        return twist_of(*self.speeds_m_s)
 
     def drive(self, commanded: tuple[float, float], slip: tuple[float, float], limit_m_s: float) -> None:
         """Aim at speeds; the floor gets them times slip. Both are limited: far above, nothing of the slip is left."""
@@ -82,6 +81,11 @@ class Wheels:
     def reset_odometry(self) -> None:
         """Start counting from zero, here."""
         self.place = (0.0, 0.0, 0.0)
+
+
+def twist_of(left_m_s: float, right_m_s: float) -> Twist:
+    """The motion of a body whose wheels roll at these speeds."""
+    return Twist((left_m_s + right_m_s) / 2, (right_m_s - left_m_s) / WHEEL_TRACK_M)
 
 
 def _limited(speed_m_s: float, limit_m_s: float) -> float:

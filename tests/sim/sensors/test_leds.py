@@ -25,7 +25,7 @@ def test_lights_are_told_once_at_the_start_and_then_on_change() -> None:
     state = LedState()
     view = FakeView(states=(state,))
     first, second = leds.SENSOR.measure(view), leds.SENSOR.measure(view)
-    state.levels["top"] = (1, 2, 3)
+    state.show("top", (1, 2, 3))
     third = leds.SENSOR.measure(view)
     assert isinstance(first, LedReading)
     assert first.groups == tuple((group, (0,) * size) for group, size in LED_GROUPS.items())

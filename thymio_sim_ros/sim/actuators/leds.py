@@ -71,17 +71,28 @@ LED_NUMBERS = _numbers()
 
 @dataclass(slots=True)
 class LedState:
-    """Levels 0…32 of every group, in the order of `LED_GROUPS`; groups that the robot's own rules lost; a gesture."""
+    """Levels 0…32 of every group, in the order of `LED_GROUPS`; groups that the robot's own rules lost; a gesture.
+
+    `changes` counts how often lights were set to something else.
+    """
 
     levels: dict[str, tuple[int, ...]] = field(
         default_factory=lambda: {group: (0,) * size for group, size in LED_GROUPS.items()}
     )
     taken: set[str] = field(default_factory=set)
     gesture: Gesture | None = None
+    changes: int = 0
+
+    def show(self, group: str, levels: tuple[int, ...]) -> None:
+        """Let lights shine, whoever they belong to."""
+        levels = _limited(group, levels)
+        if levels != self.levels[group]:
+            self.levels[group] = levels
+            self.changes += 1
 
     def set(self, group: str, levels: tuple[int, ...]) -> None:
         """Take a group over; what moved it ends."""
-        self.levels[group] = _limited(group, levels)
+        self.show(group, levels)
         self.taken.add(group)
         if self.gesture is not None and self.gesture.group == group:
             self.gesture = None
@@ -102,13 +113,13 @@ def _apply(
             state.set(group, levels)
         case ShowOnLeds(group, levels):
             if group not in state.taken:
-                state.levels[group] = _limited(group, levels)
+                state.show(group, levels)
         case SetLed(number, level):
             place = LED_NUMBERS[number] if 0 <= number < len(LED_NUMBERS) else None
             if place is not None:
                 group, index = place
                 levels = state.levels[group]
-                state.levels[group] = _limited(group, (*levels[:index], level, *levels[index + 1 :]))
+                state.show(group, (*levels[:index], level, *levels[index + 1 :]))
         case ReleaseLeds(group):
             state.release(group)
         case PlayGesture(name, period_s):
@@ -124,7 +135,7 @@ def _apply(
 
 def _update(state: LedState, view: ActuatorView, _dt_s: float) -> None:
     if state.gesture is not None:
-        state.levels[state.gesture.group] = state.gesture.levels(view.now_ns)
+        state.show(state.gesture.group, state.gesture.levels(view.now_ns))
 
 
 def _limited(group: str, levels: tuple[int, ...]) -> tuple[int, ...]:

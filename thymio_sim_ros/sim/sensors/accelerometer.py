@@ -12,15 +12,18 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from thymio_sim_ros.sim.aseba_face import AsebaFace
+from thymio_sim_ros.sim.columns import Later
 from thymio_sim_ros.sim.fall import FALL_NS
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.readings import AccelerometerReading
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.thymio2 import ACC_NOISE, ACC_PER_G, GRAVITY_M_S2
-from thymio_sim_ros.sim.units import acceleration_to_units
-from thymio_sim_ros.sim.view import SensorView
+from thymio_sim_ros.sim.units import acceleration_to_units, accelerations_to_units
+from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR", "gravity"]
 
@@ -72,10 +75,35 @@ def _measure(view: SensorView) -> AccelerometerReading:
     return AccelerometerReading(view.now_ns, words)
 
 
+def _measure_all(group: GroupView) -> Later:
+    now_ns, notes, (speeds, turns) = group.now_ns, group.notes, group.motion
+    since_ns, before = notes.column("since_ns", now_ns - _PERIOD_NS), notes.column("speed_m_s", 0.0)
+    was_falling, falling = notes.column("is_falling", first=False), group.falling
+    dt_s = (now_ns - since_ns) * 1e-9
+    forward, left, up = np.array([gravity(tilt) for tilt in group.tilts]).T
+    hits = np.array(
+        [0.0 if robot in falling else memory.pop("hit_m_s", 0.0) for robot, memory in enumerate(notes.memories)]
+    )
+    forward = forward + (speeds - before) / dt_s
+    left = left + (speeds * turns + hits / dt_s)
+    for robot in group.fallen:
+        if was_falling[robot]:
+            up[robot] += _LANDING_M_S / dt_s[robot]
+    for robot in falling:
+        forward[robot] = left[robot] = up[robot] = 0.0
+    was_falling[:] = False
+    was_falling[falling] = True
+    since_ns[:], before[:] = now_ns, speeds
+    noise = group.evens.draw(-_NOISE_M_S2, _NOISE_M_S2, 3)
+    words = accelerations_to_units(noise + np.stack((-left, forward, up))).T.tolist()
+    return Later(len(group), lambda robot: AccelerometerReading(now_ns, tuple(words[robot])))
+
+
 SENSOR = Sensor(
     name="accelerometer",
     period_ns=_PERIOD_NS,
     measure=_measure,
+    measure_all=_measure_all,
     wakes_on=(Contact,),
     feel=_feel,
     aseba=AsebaFace(variables=(("acc", 3),), event="acc"),

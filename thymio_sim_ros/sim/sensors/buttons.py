@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from thymio_sim_ros.sim.actuators.buttons import ButtonState
 from thymio_sim_ros.sim.aseba_face import AsebaFace
+from thymio_sim_ros.sim.columns import Later
 from thymio_sim_ros.sim.commands import BUTTONS
 from thymio_sim_ros.sim.readings import ButtonsReading
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.view import SensorView
+from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR"]
 
@@ -16,9 +17,15 @@ def _measure(view: SensorView) -> ButtonsReading:
     return ButtonsReading(view.now_ns, view.state(ButtonState).words)
 
 
+def _measure_all(group: GroupView) -> Later:
+    now_ns, words = group.now_ns, [state.words for state in group.states(ButtonState)]
+    return Later(len(group), lambda robot: ButtonsReading(now_ns, words[robot]))
+
+
 SENSOR = Sensor(
     name="buttons",
     period_ns=20_000_000,
     measure=_measure,
+    measure_all=_measure_all,
     aseba=AsebaFace(variables=tuple((f"button.{button}", 1) for button in BUTTONS), event="buttons", edge_events=True),
 )

@@ -2,20 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.readings import CollisionReading
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.view import SensorView
+from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR"]
+
+_UNKNOWN = -1
+"""Neither: nothing was told yet."""
 
 
 def _measure(view: SensorView) -> CollisionReading | None:
     is_touching = bool(view.contacts)
-    if is_touching == view.memory.get("is_touching"):
+    if is_touching == view.memory.get("is_touching", _UNKNOWN):
         return None
     view.memory["is_touching"] = is_touching
     return CollisionReading(view.now_ns, (), is_touching)
 
 
-SENSOR = Sensor(name="collision", period_ns=50_000_000, measure=_measure, phase_ns=10_000_000, wakes_on=(Contact,))
+def _measure_all(group: GroupView) -> Sequence[CollisionReading | None]:
+    told, are_touching = group.notes.column("is_touching", _UNKNOWN), np.zeros(len(group), dtype=int)
+    are_touching[list(group.contacts)] = True
+    readings: list[CollisionReading | None] = [None] * len(group)
+    for robot in np.flatnonzero(told != are_touching).tolist():
+        readings[robot] = CollisionReading(group.now_ns, (), bool(are_touching[robot]))
+    told[:] = are_touching
+    return readings
+
+
+SENSOR = Sensor(
+    name="collision",
+    period_ns=50_000_000,
+    measure=_measure,
+    measure_all=_measure_all,
+    phase_ns=10_000_000,
+    wakes_on=(Contact,),
+)

@@ -9,13 +9,18 @@ loop of their own tell what is in it.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
 from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.readings import CurrentReading
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sensors._change import is_news
+from thymio_sim_ros.sim.sensors._change import are_news, is_news
 from thymio_sim_ros.sim.thymio2 import FULL_TARGET, INTEGRATOR_LIMIT, MAX_SPEED_M_S, PWM_PER_SPEED_UNIT
-from thymio_sim_ros.sim.view import SensorView
+from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR"]
 
@@ -24,6 +29,9 @@ _INTEGRAL_PER_PWM = 3
 _LOAD_PER_M_S = -PWM_PER_SPEED_UNIT * FULL_TARGET / MAX_SPEED_M_S
 _NOTHING = 0.5
 """A current below rounds to none."""
+_REST = (0.0, 0.0)
+_NOWHERE = (math.nan, math.nan)
+"""What no wheel aims at."""
 
 
 def _measure(view: SensorView) -> CurrentReading | None:
@@ -31,15 +39,15 @@ def _measure(view: SensorView) -> CurrentReading | None:
     if wheels.control is not None:
         left, right = wheels.control
         words = (round(left.current), round(right.current), round(left.integral), round(right.integral))
+        memory["aimed"] = _NOWHERE
         return CurrentReading(view.now_ns, words) if is_news(view, words) else None
     aimed, reached = wheels.commanded, wheels.speeds_m_s
-    if aimed == reached == memory.get("settled") and view.now_ns < memory["refresh_ns"]:
+    one, other = currents = memory.get("currents", _REST)
+    if aimed == reached == memory.get("aimed") and currents == _REST and view.now_ns < memory["refresh_ns"]:
         return None  # the rule on a free way, and cheap
-    one, other = memory.get("currents", (0.0, 0.0))
     one = _filtered(one, abs(aimed[0] - reached[0]) * _LOAD_PER_M_S)
     other = _filtered(other, abs(aimed[1] - reached[1]) * _LOAD_PER_M_S)
     memory["currents"] = (one, other)
-    memory["settled"] = None if one or other else aimed
     if memory.get("aimed") != aimed:
         memory["aimed"], memory["integrals"] = aimed, (_integral(aimed[0]), _integral(aimed[1]))
     words = (round(one), round(other), *memory["integrals"])
@@ -58,9 +66,36 @@ def _integral(speed_m_s: float) -> int:
     return max(-INTEGRATOR_LIMIT, min(INTEGRATOR_LIMIT, _INTEGRAL_PER_PWM * pwm))
 
 
+def _measure_all(group: GroupView) -> Sequence[CurrentReading | None]:
+    wheels, notes, now_ns = group.wheels, group.notes, group.now_ns
+    currents, loops = notes.column("currents", _REST), wheels.controls
+    commanded = wheels.commanded.T
+    loads = np.abs(commanded - wheels.speeds.T) * _LOAD_PER_M_S
+    filtered = currents + (loads - currents) / _FILTER_TICKS
+    filtered[(filtered < _NOTHING) & (loads < _NOTHING)] = 0.0
+    aimed, integrals = notes.column("aimed", _NOWHERE), notes.column("integrals", (0, 0))
+    new = (aimed != commanded).any(axis=1)
+    if new.any():
+        pwms = units.units_to_pwms(units.speeds_to_units(commanded[new]))
+        integrals[new] = np.maximum(-INTEGRATOR_LIMIT, np.minimum(INTEGRATOR_LIMIT, _INTEGRAL_PER_PWM * pwms))
+        aimed[new] = commanded[new]
+    controlled = list(loops)
+    filtered[controlled] = currents[controlled]
+    words = np.concatenate((np.rint(filtered).astype(np.int64), integrals), axis=1)
+    for robot, (left, right) in loops.items():
+        words[robot] = (round(left.current), round(right.current), round(left.integral), round(right.integral))
+    currents[:] = filtered
+    aimed[controlled] = _NOWHERE
+    readings: list[CurrentReading | None] = [None] * len(group)
+    for robot in np.flatnonzero(are_news(group, words)).tolist():
+        readings[robot] = CurrentReading(now_ns, tuple(words[robot].tolist()))
+    return readings
+
+
 SENSOR = Sensor(
     name="current",
     period_ns=10_000_000,
     measure=_measure,
+    measure_all=_measure_all,
     aseba=AsebaFace(variables=(("_imot", 2), ("_integrator", 2))),
 )

@@ -2,20 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.readings import LedReading
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.view import SensorView
+from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR"]
 
 
 def _measure(view: SensorView) -> LedReading | None:
-    groups = tuple(view.state(LedState).levels.items())
-    if groups == view.memory.get("groups"):
+    state, memory = view.state(LedState), view.memory
+    return None if state.changes == memory.get("changes") else _changed(state, memory, view.now_ns)
+
+
+def _measure_all(group: GroupView) -> Sequence[LedReading | None]:
+    now_ns, pairs = group.now_ns, zip(group.states(LedState), group.notes.memories, strict=True)
+    return [
+        None if state.changes == memory.get("changes") else _changed(state, memory, now_ns) for state, memory in pairs
+    ]
+
+
+def _changed(state: LedState, memory: dict[str, Any], now_ns: int) -> LedReading | None:
+    """A reading, unless what was set meanwhile has come back to what was told."""
+    memory["changes"], groups = state.changes, tuple(state.levels.items())
+    if groups == memory.get("groups"):
         return None
-    view.memory["groups"] = groups
-    return LedReading(view.now_ns, (), groups)
+    memory["groups"] = groups
+    return LedReading(now_ns, (), groups)
 
 
-SENSOR = Sensor(name="leds", period_ns=40_000_000, measure=_measure, phase_ns=10_000_000)
+SENSOR = Sensor(name="leds", period_ns=40_000_000, measure=_measure, measure_all=_measure_all, phase_ns=10_000_000)

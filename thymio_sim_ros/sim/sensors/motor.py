@@ -5,12 +5,15 @@ The pwm is that of the speed, or of the control loop where motors have one (sect
 
 from __future__ import annotations
 
+import numpy as np
+
 from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.aseba_face import AsebaFace
+from thymio_sim_ros.sim.columns import Later
 from thymio_sim_ros.sim.readings import MotorReading
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.thymio2 import WHEEL_RADIUS_M
-from thymio_sim_ros.sim.view import SensorView
+from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR"]
 
@@ -33,10 +36,22 @@ def _faces(left_m_s: float, right_m_s: float) -> tuple[tuple[int, int, int, int]
     return words, (left_m_s / WHEEL_RADIUS_M, right_m_s / WHEEL_RADIUS_M)
 
 
+def _measure_all(group: GroupView) -> Later:
+    now_ns, wheels = group.now_ns, group.wheels
+    speeds = units.speeds_to_units(wheels.speeds)
+    words = list(zip(*np.concatenate((speeds, units.units_to_pwms(speeds))).tolist(), strict=True))
+    for robot, loops in wheels.controls.items():
+        words[robot] = (*words[robot][:2], *(round(loop.output) for loop in loops))
+    angles = list(zip(*wheels.angles.tolist(), strict=True))
+    velocities = list(zip(*(wheels.speeds / WHEEL_RADIUS_M).tolist(), strict=True))
+    return Later(len(group), lambda robot: MotorReading(now_ns, words[robot], angles[robot], velocities[robot]))
+
+
 SENSOR = Sensor(
     name="motor",
     period_ns=10_000_000,
     measure=_measure,
+    measure_all=_measure_all,
     aseba=AsebaFace(
         variables=(
             ("motor.left.speed", 1),

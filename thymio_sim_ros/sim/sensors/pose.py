@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from thymio_sim_ros.sim.columns import Later
+from thymio_sim_ros.sim.geometry import Pose, Twist
 from thymio_sim_ros.sim.readings import PoseReading
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.view import SensorView
+from thymio_sim_ros.sim.view import GroupView, SensorView
+from thymio_sim_ros.sim.wheels import twist_of
 
 __all__ = ["SENSOR"]
 
@@ -14,4 +17,16 @@ def _measure(view: SensorView) -> PoseReading:
     return PoseReading(view.now_ns, (), wheels.odometry, wheels.twist, view.pose, view.twist, view.tilt)
 
 
-SENSOR = Sensor(name="pose", period_ns=50_000_000, measure=_measure)
+def _measure_all(group: GroupView) -> Later:
+    now_ns, wheels, tilts = group.now_ns, group.wheels, group.tilts
+    odometry, speeds = wheels.odometry.T.tolist(), wheels.speeds.T.tolist()
+    poses, (linear, angular) = group.poses.tolist(), (values.tolist() for values in group.motion)
+
+    def make(robot: int) -> PoseReading:
+        moving, truth = Twist(linear[robot], angular[robot]), Pose(*poses[robot])
+        return PoseReading(now_ns, (), Pose(*odometry[robot]), twist_of(*speeds[robot]), truth, moving, tilts[robot])
+
+    return Later(len(group), make)
+
+
+SENSOR = Sensor(name="pose", period_ns=50_000_000, measure=_measure, measure_all=_measure_all)

@@ -9,15 +9,18 @@ told when they differ from the last one told, and once a second.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+
+import numpy as np
 
 from thymio_sim_ros.sim.actuators.microphone import MicrophoneState
 from thymio_sim_ros.sim.actuators.room import RoomState
 from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.readings import SoundReading
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sensors._change import is_news
+from thymio_sim_ros.sim.sensors._change import are_news, is_news
 from thymio_sim_ros.sim.sound import FULL_LEVEL, heard
-from thymio_sim_ros.sim.view import SensorView
+from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["BLOCK_NS", "SENSOR"]
 
@@ -36,13 +39,32 @@ def _measure(view: SensorView) -> SoundReading | None:
     is_loud = view.state(MicrophoneState).is_exceeded(intensity)
     if not is_news(view, intensity) and not is_loud:
         return None
+    return _reading(view.now_ns, intensity, is_loud=is_loud)
+
+
+def _reading(now_ns: int, intensity: int, *, is_loud: bool) -> SoundReading:
     smallest = _SILENCE - (intensity + 1) // 2
-    return SoundReading(view.now_ns, (intensity, 2 * smallest + intensity), is_loud)
+    return SoundReading(now_ns, (intensity, 2 * smallest + intensity), is_loud)
+
+
+def _measure_all(group: GroupView) -> Sequence[SoundReading | None]:
+    levels = [float(room.noise_level) for room in group.states(RoomState)]
+    if sounds := group.sounds:
+        places = zip(levels, group.poses.tolist(), strict=True)
+        levels = [math.hypot(level, heard(sounds, x, y)) for level, (x, y, _) in places]
+    intensities = [min(FULL_LEVEL, round(level)) for level in levels]
+    microphones = zip(group.states(MicrophoneState), intensities, strict=True)
+    loud = [microphone.is_exceeded(intensity) for microphone, intensity in microphones]
+    readings: list[SoundReading | None] = [None] * len(group)
+    for robot in np.flatnonzero(are_news(group, np.array(intensities)) | loud).tolist():
+        readings[robot] = _reading(group.now_ns, intensities[robot], is_loud=loud[robot])
+    return readings
 
 
 SENSOR = Sensor(
     name="sound",
     period_ns=BLOCK_NS,
     measure=_measure,
+    measure_all=_measure_all,
     aseba=AsebaFace(variables=(("mic.intensity", 1), ("mic._mean", 1)), event="mic", above="mic.threshold"),
 )

@@ -6,6 +6,10 @@ clears it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
 from thymio_sim_ros.sim.actuators.hand import HandState
 from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.commands import Tap
@@ -13,7 +17,7 @@ from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.readings import TapReading
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.thymio2 import TAP_SPEED_M_S
-from thymio_sim_ros.sim.view import SensorView
+from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR"]
 
@@ -32,10 +36,25 @@ def _is_knock(contact: Contact) -> bool:
     return contact.is_new and contact.speed_m_s > TAP_SPEED_M_S
 
 
+def _measure_all(group: GroupView) -> Sequence[TapReading | None]:
+    told, was_falling = group.notes.column("taps", 0), group.notes.column("is_falling", first=False)
+    taps, is_falling = [hand.taps for hand in group.states(HandState)], np.zeros(len(group), dtype=bool)
+    is_falling[group.falling] = True
+    is_tapped = told != taps
+    for robot in group.fallen:
+        is_tapped[robot] |= was_falling[robot] and not is_falling[robot]
+    for robot, contacts in group.contacts.items():
+        is_tapped[robot] |= any(map(_is_knock, contacts))
+    told[:], was_falling[:] = taps, is_falling
+    reading = TapReading(group.now_ns, (1,))
+    return [reading if tapped else None for tapped in is_tapped.tolist()]
+
+
 SENSOR = Sensor(
     name="tap",
     period_ns=62_500_000,
     measure=_measure,
+    measure_all=_measure_all,
     wakes_on=(Tap, Contact),
     aseba=AsebaFace(variables=(("acc._tap", 1),), event="tap"),
 )
