@@ -81,7 +81,7 @@ class LedState:
     )
     taken: set[str] = field(default_factory=set)
     gesture: Gesture | None = None
-    changes: int = 0
+    changes: int = field(default=0, compare=False)
 
     def show(self, group: str, levels: tuple[int, ...]) -> None:
         """Let lights shine, whoever they belong to."""
