@@ -1,6 +1,6 @@
 """Topics of the actuators that a plug-in adds: one per type of command, its numbers in one labelled array.
 
-A command that is none of `sim/commands.py` travels as std_msgs/Float64MultiArray on `actuator/<actuator>`, or on
+A command that is none of `sim/commands/` travels as std_msgs/Float64MultiArray on `actuator/<actuator>`, or on
 `actuator/<actuator>/<command>` where an actuator takes several; programs speak on it, and so may people and nodes.
 """
 
@@ -45,7 +45,7 @@ def topic_of(command: object) -> str | None:
 
 
 def _topics(actuator: Actuator) -> dict[type[Any], str]:
-    own = [kind for kind in actuator.accepts if kind.__module__ != commands.__name__ and _has_only_numbers(kind)]
+    own = [kind for kind in actuator.accepts if issubclass(kind, commands.PluginCommand) and _has_only_numbers(kind)]
     if len(own) == 1:
         return {own[0]: f"actuator/{actuator.name}"}
     return {kind: f"actuator/{actuator.name}/{_word(kind.__name__)}" for kind in own}

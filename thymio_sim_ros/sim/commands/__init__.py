@@ -1,0 +1,111 @@
+"""Everything that goes into the world: one frozen value per thing a robot can be told.
+
+Commands are posted at any time and take effect at the next tick, in the order of arrival
+(`World.post`). They carry SI units, except where a field is a Thymio integer by name.
+"""
+
+from __future__ import annotations
+
+from thymio_sim_ros.sim.commands.driving import (
+    MOTOR_MODELS,
+    BodyTwist,
+    Driving,
+    MotorTargets,
+    ResetOdometry,
+    SetMotorModel,
+    WheelVelocities,
+)
+from thymio_sim_ros.sim.commands.lights import (
+    LED_FULL,
+    LED_GESTURES,
+    LED_GROUPS,
+    Lighting,
+    PlayGesture,
+    ReleaseLeds,
+    SetLed,
+    SetLeds,
+    ShowOnLeds,
+    StopGesture,
+)
+from thymio_sim_ros.sim.commands.operator import (
+    BUTTONS,
+    Clap,
+    ConnectCharger,
+    MoveObject,
+    MoveRobot,
+    Operating,
+    PressButton,
+    RemoteKey,
+    SetAmbientLight,
+    SetBattery,
+    SetNoiseLevel,
+    SetPen,
+    SetTemperature,
+    Tap,
+    Tilt,
+)
+from thymio_sim_ros.sim.commands.senses import EnableComm, Sensing, SetCommPayload, SetSoundThreshold
+from thymio_sim_ros.sim.commands.sounds import (
+    PlaySamples,
+    PlaySystemSound,
+    PlayTone,
+    SetAlarm,
+    SetVolume,
+    SetWave,
+    Sounding,
+    StopSound,
+)
+
+__all__ = [
+    "BUTTONS",
+    "LED_FULL",
+    "LED_GESTURES",
+    "LED_GROUPS",
+    "MOTOR_MODELS",
+    "BodyTwist",
+    "Clap",
+    "Command",
+    "ConnectCharger",
+    "EnableComm",
+    "MotorTargets",
+    "MoveObject",
+    "MoveRobot",
+    "PlayGesture",
+    "PlaySamples",
+    "PlaySystemSound",
+    "PlayTone",
+    "PluginCommand",
+    "PressButton",
+    "ReleaseLeds",
+    "RemoteKey",
+    "ResetOdometry",
+    "SetAlarm",
+    "SetAmbientLight",
+    "SetBattery",
+    "SetCommPayload",
+    "SetLed",
+    "SetLeds",
+    "SetMotorModel",
+    "SetNoiseLevel",
+    "SetPen",
+    "SetSoundThreshold",
+    "SetTemperature",
+    "SetVolume",
+    "SetWave",
+    "ShowOnLeds",
+    "StopGesture",
+    "StopSound",
+    "Tap",
+    "Tilt",
+    "WheelVelocities",
+]
+
+
+class PluginCommand:
+    """Base of the commands that a plug-in brings along (docs/plugins.md)."""
+
+    __slots__ = ()
+
+
+Command = Driving | Lighting | Sounding | Operating | Sensing | PluginCommand
+"""Anything that a world takes."""

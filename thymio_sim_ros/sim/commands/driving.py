@@ -1,0 +1,63 @@
+"""Wheels: what they are to do, how their motors follow, and where they count from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = [
+    "MOTOR_MODELS",
+    "BodyTwist",
+    "Driving",
+    "MotorTargets",
+    "ResetOdometry",
+    "SetMotorModel",
+    "WheelVelocities",
+]
+
+MOTOR_MODELS = ("ideal", "firmware")
+"""Without delay, or as the robot's own control loop moves them (thymio-robot.md sections 2 and 2.1)."""
+
+
+@dataclass(frozen=True, slots=True)
+class MotorTargets:
+    """Wheel targets of an Aseba program, in Thymio units (int16; ±500 is full speed). They persist."""
+
+    left: int
+    right: int
+
+
+@dataclass(frozen=True, slots=True)
+class WheelVelocities:
+    """Wheel speeds in rad/s, forward positive; they end after `timeout_ns` (0: never)."""
+
+    left_rad_s: float
+    right_rad_s: float
+    timeout_ns: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class BodyTwist:
+    """Speed of the body in m/s and rad/s (REP 103); it ends after `timeout_ns` (0: never)."""
+
+    linear_m_s: float
+    angular_rad_s: float
+    timeout_ns: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class SetMotorModel:
+    """How the motors follow from now on: one of `MOTOR_MODELS`."""
+
+    model: str
+
+    def __post_init__(self) -> None:
+        if self.model not in MOTOR_MODELS:
+            raise ValueError(f"motor model {self.model!r} found, expected one of {', '.join(MOTOR_MODELS)}")
+
+
+@dataclass(frozen=True, slots=True)
+class ResetOdometry:
+    """Let the wheel odometry start again from zero, here."""
+
+
+Driving = MotorTargets | WheelVelocities | BodyTwist | SetMotorModel | ResetOdometry

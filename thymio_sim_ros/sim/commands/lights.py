@@ -1,0 +1,93 @@
+"""The lights of the robot: who sets them, and what moves them by itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = [
+    "LED_FULL",
+    "LED_GESTURES",
+    "LED_GROUPS",
+    "Lighting",
+    "PlayGesture",
+    "ReleaseLeds",
+    "SetLed",
+    "SetLeds",
+    "ShowOnLeds",
+    "StopGesture",
+]
+
+LED_GROUPS: dict[str, int] = {
+    "top": 3,
+    "bottom_left": 3,
+    "bottom_right": 3,
+    "circle": 8,
+    "buttons": 4,
+    "proximity": 8,
+    "ground": 2,
+    "temperature": 2,
+    "microphone": 1,
+    "remote": 1,
+    "battery": 3,
+    "sd": 1,
+}
+"""LED groups and their number of lights (thymio-robot.md sections 6.3 and 8)."""
+
+LED_GESTURES = ("circle", "blink", "kit", "alive")
+"""Lights that move by themselves (ros-interface.md section 4.2)."""
+
+LED_FULL = 32
+"""Brightness of a fully lit LED (thymio-robot.md section 8.1)."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetLeds:
+    """Brightness 0…32 of every light of one group of `LED_GROUPS`; the robot's own rules no longer touch the group."""
+
+    group: str
+    levels: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SetLed:
+    """Brightness 0…32 of one light by its number (thymio-robot.md section 8.2)."""
+
+    number: int
+    level: int
+
+
+@dataclass(frozen=True, slots=True)
+class ShowOnLeds:
+    """What the robot's own rules show on one group (section 8.4): as `SetLeds`, unless somebody has taken it over."""
+
+    group: str
+    levels: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ReleaseLeds:
+    """The lights of one group go off and back to the robot's own rules."""
+
+    group: str
+
+
+@dataclass(frozen=True, slots=True)
+class PlayGesture:
+    """Lights that move by themselves: one of `LED_GESTURES`, with a period of 0.1…60 s, negative for backwards."""
+
+    name: str
+    period_s: float
+
+    def __post_init__(self) -> None:
+        if self.name not in LED_GESTURES:
+            raise ValueError(f"PlayGesture: {self.name!r} found, expected one of {', '.join(LED_GESTURES)}")
+        if not 0.1 <= abs(self.period_s) <= 60.0:
+            raise ValueError(f"PlayGesture: period {self.period_s:g} s found, expected 0.1 to 60, either sign")
+
+
+@dataclass(frozen=True, slots=True)
+class StopGesture:
+    """The lights of a gesture go back to the robot's own rules."""
+
+
+Lighting = SetLeds | SetLed | ShowOnLeds | ReleaseLeds | PlayGesture | StopGesture
