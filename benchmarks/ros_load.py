@@ -1,8 +1,13 @@
 """CPU time of the simulator node while robots drive in circles: a process of its own, subscribers in another.
 
-Run: PYTHONPATH=. python benchmarks/ros_load.py [--seconds S] [--only WORD] [--profile FILE] [--json FILE].
-Percentages are CPU seconds of the node's process for each second of wall time, of one core; the factor is what
-`/diagnostics` tells as achieved. The machine may be busy with other things: the CPU time hardly changes by that.
+Run: PYTHONPATH=. python benchmarks/ros_load.py [--seconds S] [--rounds N] [--only WORD] [--profile FILE] [--json FILE].
+Percentages are CPU seconds of the node's process, with all threads of DDS, for each second of wall time, of one core:
+the median of the rounds, and the best. The factor is the worst that `/diagnostics` told as achieved. "Start" is the
+CPU time until all robots listen. Other work on the machine makes everything dearer, by caches alone two to three
+times: the load is printed too.
+
+"All topics" are those of `topics`: all of every robot, /tf and /clock; "13 topics" those that performance.md section 7
+counts: nine Range, odometry, transforms, joints, Imu. All that is regular is sent at the scene's rate, the clock too.
 """
 
 from __future__ import annotations
@@ -13,6 +18,7 @@ import cProfile
 import json
 import os
 import signal
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -28,8 +34,10 @@ from geometry_msgs.msg import Twist, Vector3
 from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import Range
 
-from thymio_sim_ros.nodes import convert, qos, reference
+from thymio_sim_ros.nodes import convert, dds_profile, qos, reference, tf_messages
 from thymio_sim_ros.nodes.life import drive, make_executor
 from thymio_sim_ros.nodes.simulator_node import Simulator
 
@@ -44,25 +52,37 @@ LISTENER = "import sys; from benchmarks.ros_load import listen; listen(sys.argv[
 
 @dataclass(frozen=True)
 class Scene:
-    """How many robots, how often all that is regular is sent (0: as the robot), who listens, and what is allowed."""
+    """How many robots, how often all that is regular is sent (0: as the robot), what is heard, and what is allowed."""
 
-    name: str
     robots: int
     rate_hz: float
-    is_heard: bool
+    heard: str
     most_percent: float | None = None
 
+    @property
+    def name(self) -> str:
+        """For a table."""
+        rate = f"{self.rate_hz:g} Hz" if self.rate_hz else "as on the robot"
+        return f"{self.robots} robot{'s' * (self.robots > 1)}, {rate}, {self.heard}"
+
+
+NOTHING, THIRTEEN, ALL = "nobody listens", "13 topics", "all topics"
 
 SCENES = (
-    Scene("1 robot, 10 Hz, all topics", 1, 10.0, True, 1.5),
-    Scene("20 robots, 10 Hz, nobody listens", 20, 10.0, False, 6.0),
-    Scene("20 robots, 10 Hz, all topics", 20, 10.0, True, 10.0),
-    Scene("20 robots, 50 Hz, all topics", 20, 50.0, True, 40.0),
-    Scene("100 robots, 10 Hz, nobody listens", 100, 10.0, False, 30.0),
-    Scene("1 robot, as it is, nobody listens", 1, 0.0, False),
-    Scene("1 robot, as it is, all topics", 1, 0.0, True),
-    Scene("20 robots, as they are, nobody listens", 20, 0.0, False),
-    Scene("100 robots, as they are, nobody listens", 100, 0.0, False),
+    Scene(1, 10.0, ALL, 1.5),
+    Scene(1, 10.0, THIRTEEN, 1.5),
+    Scene(20, 10.0, NOTHING, 6.0),
+    Scene(20, 10.0, ALL, 10.0),
+    Scene(20, 10.0, THIRTEEN, 10.0),
+    Scene(20, 50.0, ALL, 40.0),
+    Scene(20, 50.0, THIRTEEN, 40.0),
+    Scene(100, 10.0, NOTHING, 30.0),
+    Scene(100, 10.0, THIRTEEN),
+    Scene(1, 0.0, NOTHING),
+    Scene(1, 0.0, ALL),
+    Scene(20, 0.0, NOTHING),
+    Scene(20, 0.0, ALL),
+    Scene(100, 0.0, NOTHING),
 )
 
 
@@ -79,21 +99,25 @@ def playground(robots: int) -> str:
     return json.dumps({"format": 1, "title": "Load", "shapes": [floor], "robots": starts})
 
 
-def topics(robots: int) -> Iterator[tuple[type, str]]:
-    """Every topic that these robots publish."""
+def topics(robots: int, heard: str) -> Iterator[tuple[type, str]]:
+    """Every topic that is listened to."""
     spaces = [""] if robots == 1 else [f"/r{index}" for index in range(robots)]
     for space in spaces:
         for sensor in reference.own_sensors():
             for row in convert.rows_of(sensor):
-                yield row.type, f"{space}/{row.topic}"
+                if heard == ALL or row.type is Range or row.topic in ("odom", "joint_states", "imu"):
+                    yield row.type, f"{space}/{row.topic}"
+    yield tf_messages.TFMessage, "/tf"
+    if heard == ALL:
+        yield Clock, "/clock"
 
 
 def listen(arguments: list[str]) -> None:
-    """Subscribe to all topics of so many robots, and take what comes."""
+    """Subscribe to topics of so many robots, and take what comes."""
     context = Context()
     rclpy.init(args=[], context=context)
     node = Node("listener", context=context, enable_rosout=False, start_parameter_services=False)
-    for kind, topic in topics(int(arguments[0])):
+    for kind, topic in topics(int(arguments[0]), arguments[1]):
         node.create_subscription(kind, topic, lambda _data: None, qos.SENSOR, raw=True)
     executor = make_executor(context)
     executor.add_node(node)
@@ -108,7 +132,9 @@ def profiled(path: str, arguments: list[str]) -> None:
     rclpy.init(args=arguments, context=context, signal_handler_options=SignalHandlerOptions.NO)
     ended: list[int] = []
     signal.signal(signal.SIGINT, lambda number, _frame: ended.append(number))
-    simulator, profile = Simulator(context), cProfile.Profile(time.thread_time)
+    with dds_profile.alone():
+        simulator = Simulator(context)
+    profile = cProfile.Profile(time.thread_time)
     profile.runcall(drive, simulator, context, lambda: bool(ended))
     profile.dump_stats(path)
     simulator.close()
@@ -133,6 +159,12 @@ def cpu_s(pid: int) -> float:
     """CPU seconds that a process has used."""
     fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def memory_mb(pid: int) -> float:
+    """Resident memory of a process."""
+    pages = int(Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
 class Driver:
@@ -186,56 +218,87 @@ class Driver:
         self.context.try_shutdown()
 
 
-def measure(scene: Scene, seconds: float, profile: str | None) -> dict[str, object]:
-    """One scene's figures."""
+@dataclass(frozen=True)
+class Figures:
+    """Of one round: CPU in percent of a core, real-time factor, resident memory, CPU time of the start."""
+
+    cpu_percent: float
+    factor: float
+    memory_mb: float
+    start_s: float
+
+
+def measure(scene: Scene, seconds: float, profile: str | None) -> Figures:
+    """One round of a scene."""
     with tempfile.TemporaryDirectory() as folder:
         world = Path(folder) / "load.json"
         world.write_text(playground(scene.robots), encoding="utf-8")
         values = [f"playground:={world}"]
         if scene.rate_hz:
-            values += [f"sensor_rate:={scene.rate_hz}", f"odom_max_rate:={scene.rate_hz}"]
+            rates = ("sensor_rate", "odom_max_rate", "clock_rate")
+            values += [f"{name}:={scene.rate_hz}" for name in rates]
         arguments = ["--ros-args", *(part for value in values for part in ("-p", value))]
         start = [PROFILED, profile] if profile else [NODE]
         with process(*start, *arguments) as pid:
             driver = Driver(scene.robots)
             driver.go()
-            if scene.is_heard:
-                with process(LISTENER, str(scene.robots)):
-                    driver.until_heard([topic for _, topic in topics(scene.robots)])
-                    figures = _watch(driver, pid, seconds)
-            else:
+            start_s = cpu_s(pid)
+            with contextlib.ExitStack() as listening:
+                if scene.heard != NOTHING:
+                    listening.enter_context(process(LISTENER, str(scene.robots), scene.heard))
+                    driver.until_heard([topic for _, topic in topics(scene.robots, scene.heard)])
                 figures = _watch(driver, pid, seconds)
             driver.close()
-    return {"scene": scene.name, **figures, "most_percent": scene.most_percent}
+    return Figures(**figures, start_s=start_s)
 
 
-def _watch(driver: Driver, pid: int, seconds: float) -> dict[str, object]:
+def _watch(driver: Driver, pid: int, seconds: float) -> dict[str, float]:
     driver.spin(WARM_UP_S)
     driver.factors.clear()
     begin, before = time.monotonic(), cpu_s(pid)
     driver.spin(seconds)
     used, passed = cpu_s(pid) - before, time.monotonic() - begin
-    factor = sum(driver.factors) / len(driver.factors) if driver.factors else 0.0
-    return {"cpu_percent": round(100 * used / passed, 2), "factor": round(factor, 3)}
+    return {
+        "cpu_percent": 100 * used / passed,
+        "factor": min(driver.factors, default=0.0),
+        "memory_mb": memory_mb(pid),
+    }
+
+
+def summary(scene: Scene, rounds: list[Figures]) -> dict[str, object]:
+    """What the rounds of a scene say together."""
+    percents = [one.cpu_percent for one in rounds]
+    return {
+        "scene": scene.name,
+        "median": round(statistics.median(percents), 2),
+        "best": round(min(percents), 2),
+        "most": scene.most_percent,
+        "factor": round(statistics.median(one.factor for one in rounds), 3),
+        "memory_mb": round(max(one.memory_mb for one in rounds)),
+        "start_s": round(statistics.median(one.start_s for one in rounds), 1),
+        "load": round(os.getloadavg()[0], 1),
+    }
 
 
 def main() -> None:
     """Print a table, and all figures as JSON."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--only", default="", help="scenes with this in their names")
     parser.add_argument("--profile", help="file for a profile of the node (the CPU time then tells nothing)")
     parser.add_argument("--json", type=Path)
     chosen = parser.parse_args()
     os.environ.update(ROS_DOMAIN_ID=str(DOMAIN), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
     found = []
-    print("| scene | CPU % | at most | factor |\n|---|---:|---:|---:|")
+    print("| scene | CPU %, median | best | at most | factor | MB | start, CPU s | load |")
+    print("|---|---:|---:|---:|---:|---:|---:|---:|")
     for scene in SCENES:
         if chosen.only in scene.name:
-            one = measure(scene, chosen.seconds, chosen.profile)
+            rounds = [measure(scene, chosen.seconds, chosen.profile) for _ in range(chosen.rounds)]
+            one = summary(scene, rounds)
             found.append(one)
-            most = "" if scene.most_percent is None else f"{scene.most_percent:g}"
-            print(f"| {scene.name} | {one['cpu_percent']} | {most} | {one['factor']} |", flush=True)
+            print("|", " | ".join("" if value is None else str(value) for value in one.values()), "|", flush=True)
     print(json.dumps(found))
     if chosen.json is not None:
         chosen.json.write_text(json.dumps(found, indent=2), encoding="utf-8")

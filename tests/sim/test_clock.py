@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.sim.clock import TICK_NS, Pacer, Schedule, SimClock
+from thymio_sim_ros.sim.clock import TICK_NS, Pacer, Schedule, SimClock, next_due_ns
 
 SECOND_NS = 1_000_000_000
 
@@ -35,6 +35,14 @@ def test_a_period_that_is_no_whole_number_of_ticks_keeps_its_rate() -> None:
 def test_a_schedule_tells_all_that_is_due_in_order() -> None:
     schedule = Schedule([(20_000_000, 0), (10_000_000, 0), (1 << 62, 0)])
     assert [schedule.due(tick * TICK_NS) for tick in (1, 2, 3)] == [[1], [0, 1], [1]]
+
+
+@pytest.mark.parametrize("period_ns", [10_000_000, 16_384_000, 50_000_000, 62_500_000, 7_000_000])
+@pytest.mark.parametrize("phase_ns", [0, 10_000_000, 25_000_000])
+def test_the_next_time_is_told_without_asking_every_tick(period_ns: int, phase_ns: int) -> None:
+    ticks = times_due(period_ns, 200, phase_ns)
+    for tick in range(150):
+        assert next_due_ns(period_ns, phase_ns, tick * TICK_NS) == next(due for due in ticks if due > tick) * TICK_NS
 
 
 def test_the_pacer_owes_one_tick_for_each_period_of_wall_time() -> None:
@@ -73,6 +81,22 @@ def test_the_wait_ends_when_a_tick_is_owed() -> None:
     pacer.owed(0)
     wait = pacer.wait_ns(4_000_000)
     assert pacer.owed(4_000_000 + wait) == 1
+
+
+def test_the_wait_for_some_ticks_ends_when_they_are_owed() -> None:
+    pacer = Pacer(2.0)
+    assert pacer.wait_ns(0, 5) == 0
+    pacer.owed(0)
+    wait = pacer.wait_ns(1_000_000, 5)
+    assert pacer.owed(wait + 1_000_000 - 2) == 4
+    assert pacer.owed(wait + 1_000_000) == 1
+
+
+def test_the_ticks_until_a_moment_are_at_least_one() -> None:
+    pacer = Pacer(1.0)
+    assert pacer.ticks_until(SECOND_NS) == 1
+    pacer.owed(0)
+    assert [pacer.ticks_until(at * 1_000_000) for at in (0, 10, 11, 20, 21)] == [1, 1, 2, 2, 3]
 
 
 @pytest.mark.parametrize("factor", [-1.0, float("inf"), float("nan")])

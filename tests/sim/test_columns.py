@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.sim.columns import Columns, Later
+from thymio_sim_ros.sim.columns import Columns, Later, rows_of
 from thymio_sim_ros.sim.readings import GroundReading
 
 ROBOTS = ("a", "b")
@@ -50,3 +50,23 @@ def test_later_ones_are_a_sequence() -> None:
     assert later[1:] == [ground(1), ground(2)]
     with pytest.raises(IndexError):
         later[3]
+
+
+def test_rows_of_some_sensors_leave_the_others_unmade() -> None:
+    made: list[int] = []
+
+    def make(robot: int) -> GroundReading:
+        made.append(robot)
+        return ground(robot)
+
+    columns = Columns(ROBOTS, [("ground", [ground(1), ground(2)]), ("later", Later(2, make))])
+    assert list(rows_of(columns, {"ground"})) == [("a", "ground", ground(1)), ("b", "ground", ground(2))]
+    assert list(rows_of(columns, {"nothing"})) == []
+    assert made == []
+    assert len(columns) == 4
+    assert list(rows_of(columns, {"later"})) == [("a", "later", ground(0)), ("b", "later", ground(1))]
+
+
+def test_rows_of_some_sensors_come_from_a_plain_tuple_too() -> None:
+    rows = (("a", "ground", ground(1)), ("a", "rare", ground(3)))
+    assert list(rows_of(rows, {"rare"})) == [rows[1]]

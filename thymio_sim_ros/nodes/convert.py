@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from operator import attrgetter
 from typing import Any
 
 from geometry_msgs.msg import Point, Quaternion, TwistWithCovariance
@@ -87,7 +88,7 @@ class Row:
 
     `about`: its content and units, for the reference; `frame`: the usual name of its header's frame, if it has one.
     `every_ns`: not more often than that; 0 all. `always`: published also when nobody listens. `on_change`: only when
-    the message differs from the last one.
+    this part of a reading differs from what it was.
     """
 
     topic: str
@@ -98,7 +99,7 @@ class Row:
     profile: QoSProfile = field(default_factory=lambda: qos.SENSOR)
     every_ns: int = 0
     always: bool = False
-    on_change: bool = False
+    on_change: Callable[[Any], Any] | None = None
     is_event: bool = False
     """Whether `encode` gives nothing for most readings."""
     patch: Patch | None = None
@@ -153,7 +154,11 @@ def _ground(reading: readings.GroundReading, names: RobotNames, options: Convert
 
 
 def _button(reading: readings.ButtonsReading, _names: RobotNames, _options: ConvertOptions, *, index: int) -> Bool:
-    return Bool(data=bool(reading.words[index]))
+    return Bool(data=_pressed(reading, index=index))
+
+
+def _pressed(reading: readings.ButtonsReading, *, index: int) -> bool:
+    return bool(reading.words[index])
 
 
 def _joy(reading: readings.ButtonsReading, names: RobotNames, _options: ConvertOptions) -> Joy:
@@ -294,7 +299,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
                 Bool,
                 partial(_button, index=i),
                 "true while it is pressed",
-                on_change=True,
+                on_change=partial(_pressed, index=i),
                 always=True,
             )
             for i, name in enumerate(commands.BUTTONS)
@@ -326,7 +331,6 @@ ROWS: dict[str, tuple[Row, ...]] = {
             _odometry,
             "by the wheels, from zero; they slip",
             "odom",
-            always=True,
             patch=patches.ODOMETRY,
         ),
         Row(TRUTH, Odometry, _truth, "where the robot really is", MAP_FRAME, patch=patches.TRUTH),
@@ -354,7 +358,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             Bool,
             senses.collision,
             "whether anything but the floor is touched",
-            on_change=True,
+            on_change=attrgetter("is_touching"),
             always=True,
         ),
     ),
@@ -380,7 +384,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             "the period that tones are made of, 142 samples",
             profile=qos.LATCHED,
             always=True,
-            on_change=True,
+            on_change=attrgetter("wave"),
         ),
         Row(
             "sound/state/samples",
@@ -430,9 +434,14 @@ RARE: Mapping[str, str] = {
 """When sensors give readings that look for something now and then."""
 
 
+def is_regular(sensor: Sensor, row: Row) -> bool:
+    """Whether a row of a sensor is sent again and again, and not when something happens."""
+    return not (row.is_event or row.on_change or sensor.name in RARE)
+
+
 def often(sensor: Sensor, row: Row) -> str:
     """How often a row of a sensor is sent: in Hz, on a change, or when something happens."""
-    if row.is_event or row.on_change or sensor.name in RARE:
+    if not is_regular(sensor, row):
         return "event" if row.is_event else RARE.get(sensor.name, "change")
     return f"{SECOND_NS / max(sensor.period_ns, row.every_ns):.3g}"
 

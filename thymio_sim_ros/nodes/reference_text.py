@@ -11,8 +11,9 @@ This page is written from the declarations that the nodes use: `python -m thymio
 
 Only standard message types. Units are SI, frames follow REP 103 and 105, ranges REP 117. Names of a robot's topics and
 services are relative to its namespace: a robot alone has none (`/odom`, frame `base_link`), of several each has its
-name (`/anna/odom`, frame `anna/base_link`). One node, `/simulator`, serves all robots. Sensors' topics cost nothing
-until somebody subscribes, but for odometry, transforms, clock and what is sent on a change.
+name (`/anna/odom`, frame `anna/base_link`). One node, `/simulator`, serves all robots. Topics cost nothing until
+somebody subscribes, but for what is sent on a change. While nobody hears what is regular, a change may be told up to
+0.1 s late; its stamp is right, if it has one.
 
 Numbers that are not finite and arrays of a wrong size are refused with a warning, at most one every five seconds for
 each topic, and counted in `/diagnostics`. Speeds, colors, intensities and loudness beyond the robot are limited, with a

@@ -1,21 +1,24 @@
 """The topics and services of one robot: made with it, destroyed with it.
 
-Publishing turns readings into messages by the rows of `convert`; subscribing turns messages into
-commands and posts them. Topics that nobody listens to cost a count, nothing more.
+Publishing turns readings into messages by the rows of `convert`; subscribing turns messages into commands and posts
+them. Publishers are told who listens: topics that nobody hears cost nothing.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import Trigger
 
 from thymio_sim_ros.nodes import convert, qos
+from thymio_sim_ros.nodes.audience import Audience, Heard
 from thymio_sim_ros.nodes.convert import CommandError, ConvertOptions, Row
 from thymio_sim_ros.nodes.description import urdf
 from thymio_sim_ros.nodes.names import RobotNames
@@ -33,9 +36,6 @@ __all__ = ["DESCRIBED", "DESCRIPTION", "SERVICES", "WARN_EVERY_S", "PortOptions"
 Post = Callable[[Command], None]
 
 WARN_EVERY_S = 5.0
-
-ASK_EVERY_NS = 50_000_000
-"""A topic that nobody listens to asks again after so much simulated time."""
 
 DESCRIPTION = "robot_description"
 DESCRIBED = (String, "the robot as URDF, made of primitives, with turning wheels")
@@ -58,14 +58,14 @@ class PortOptions:
 
 @dataclass(slots=True)
 class _Outlet:
-    """The publisher of a row, what it sent last, when it may send again; until when it is sure that nobody listens."""
+    """The publisher of a row, how the audience counts it, when it may send again; what it told last of what changes."""
 
     row: Row
-    publisher: Any
-    every_ns: int
+    heard: Heard
+    next_ns: int
+    publisher: Any = None
+    is_sent: bool = False
     last: Any = None
-    next_ns: int = 0
-    idle_ns: int = 0
     template: Template | None = None
 
 
@@ -81,10 +81,11 @@ class RobotPorts:
         content: Callable[[], ConvertOptions],
         moment: Callable[[], Moment],
         options: PortOptions,
+        audience: Audience,
         on_refusal: Callable[[], None] = lambda: None,
         on_limit: Callable[[], None] = lambda: None,
     ) -> None:
-        """`content` and `moment` are asked with every message.
+        """`content` and `moment` are asked with every message; `audience` is told which topics are sent.
 
         `on_refusal` is called for each that is refused, `on_limit` for each with something beyond the robot's limits.
         """
@@ -94,14 +95,15 @@ class RobotPorts:
         self._content, self._moment = content, moment
         self._on_refusal, self._on_limit = on_refusal, on_limit
         self._limited: set[str] = set()
-        self._outlets: dict[str, list[_Outlet]] = {
-            sensor.name: [
-                self._outlet(row, options.every_ns.get(row.topic, row.every_ns))
-                for row in convert.rows_of(sensor)
-                if row.topic not in options.left_out
-            ]
-            for sensor in all_sensors()
-        }
+        self._audience = audience
+        self._outlets: dict[str, list[_Outlet]] = {sensor.name: [] for sensor in all_sensors()}
+        self._sent: dict[str, tuple[_Outlet, ...]] = {}
+        """By sensor, what somebody hears or what is always sent."""
+        for sensor in all_sensors():
+            for row in convert.rows_of(sensor):
+                if row.topic not in options.left_out:
+                    every_ns = options.every_ns.get(row.topic, row.every_ns)
+                    self._open(row, Heard(sensor.name, every_ns, convert.is_regular(sensor, row)))
         self._description: Any = None
         if DESCRIPTION not in options.left_out:
             self._description = node.create_publisher(DESCRIBED[0], names.topic(DESCRIPTION), qos.LATCHED)
@@ -117,29 +119,25 @@ class RobotPorts:
 
     def publish(self, sensor: str, reading: Reading) -> None:
         """Send one reading on every topic made from it."""
-        stamp_ns = reading.stamp_ns
-        for outlet in self._outlets[sensor]:
-            if stamp_ns < outlet.idle_ns:
-                continue
-            row = outlet.row
-            if outlet.every_ns:
+        stamp_ns, content = reading.stamp_ns, self._content()
+        for outlet in self._sent.get(sensor, ()):
+            every_ns = outlet.heard.every_ns
+            if every_ns:
                 if stamp_ns < outlet.next_ns:
                     continue
-                outlet.next_ns = (stamp_ns // outlet.every_ns + 1) * outlet.every_ns
-            if not row.always and not outlet.publisher.get_subscription_count():
-                outlet.idle_ns = stamp_ns + ASK_EVERY_NS
-                continue
-            content = self._content()
+                outlet.next_ns = (stamp_ns // every_ns + 1) * every_ns
             if outlet.template is not None and outlet.template.options is content:
                 outlet.publisher.publish(outlet.template.fill(reading))
                 continue
+            row = outlet.row
+            if row.on_change is not None:
+                value = row.on_change(reading)
+                if outlet.last == value:
+                    continue
+                outlet.last = value
             message = row.encode(reading, self.names, content)
             if message is None:
                 continue
-            if row.on_change:
-                if outlet.last == message:
-                    continue
-                outlet.last = message
             if row.patch is not None:
                 outlet.template = Template.checked(row.patch, message, reading, content)
             outlet.publisher.publish(message)
@@ -156,7 +154,7 @@ class RobotPorts:
         """Send the next reading of every kind, also an unchanged one: the world was reset."""
         for outlets in self._outlets.values():
             for outlet in outlets:
-                outlet.last, outlet.next_ns, outlet.idle_ns = None, outlet.every_ns, 0
+                outlet.last, outlet.next_ns = None, outlet.heard.every_ns
 
     def close(self) -> None:
         """Take all topics and services of this robot out of the graph."""
@@ -166,14 +164,30 @@ class RobotPorts:
             self._node.destroy_subscription(subscription)
         for outlets in self._outlets.values():
             for outlet in outlets:
+                self._send(outlet, wanted=False)
                 self._node.destroy_publisher(outlet.publisher)
         if self._description is not None:
             self._node.destroy_publisher(self._description)
 
-    def _outlet(self, row: Row, every_ns: int) -> _Outlet:
-        topic = self.names.topic(row.topic)
-        publisher = self._node.create_publisher(row.type, topic, **qos.overridable(self._node, topic, row.profile))
-        return _Outlet(row, publisher, every_ns, next_ns=every_ns)
+    def _open(self, row: Row, heard: Heard) -> None:
+        topic, outlet = self.names.topic(row.topic), _Outlet(row, heard, next_ns=heard.every_ns)
+        events = PublisherEventCallbacks(matched=partial(self._matched, outlet))
+        profile = qos.overridable(self._node, topic, row.profile)
+        outlet.publisher = self._node.create_publisher(row.type, topic, event_callbacks=events, **profile)
+        self._outlets[heard.sensor].append(outlet)
+        self._send(outlet, wanted=row.always)
+
+    def _matched(self, outlet: _Outlet, matched: Any) -> None:
+        """A subscription has come or gone."""
+        self._send(outlet, wanted=outlet.row.always or matched.current_count > 0)
+
+    def _send(self, outlet: _Outlet, *, wanted: bool) -> None:
+        if outlet.is_sent == wanted:
+            return
+        outlet.is_sent = wanted
+        (self._audience.join if wanted else self._audience.leave)(outlet.heard)
+        sensor = outlet.heard.sensor
+        self._sent[sensor] = tuple(one for one in self._outlets[sensor] if one.is_sent)
 
     def _taker(self, one: RobotInput) -> Callable[[Any], None]:
         def take(message: Any) -> None:

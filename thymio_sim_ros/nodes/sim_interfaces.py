@@ -14,7 +14,7 @@ from rclpy.node import Node
 from thymio_sim_ros import resources
 from thymio_sim_ros.nodes.sim_answers import FAILED, UNSUPPORTED, Act, Offer, RefusedError, answering, resource
 from thymio_sim_ros.nodes.sim_entities import SPAWNABLE, Entities
-from thymio_sim_ros.nodes.world_services import Controlled
+from thymio_sim_ros.nodes.world_services import Controlled, presently
 from thymio_sim_ros.sim import playground as playgrounds
 from thymio_sim_ros.sim.playground import PlaygroundError
 
@@ -85,7 +85,8 @@ class SimInterfaces:
         self._features = [feature for offer in offers for feature in offer.features]
         for offer in offers:
             answer = self._get_features if offer.name == "get_simulator_features" else answering(acts[offer.name])
-            node.create_service(getattr(interfaces.srv, offer.type), f"~/{offer.name}", answer)
+            kind = getattr(interfaces.srv, offer.type)
+            node.create_service(kind, f"~/{offer.name}", presently(simulator, answer))
         self._close: Callable[[], None] = lambda: None
         actions = getattr(interfaces, "action", None)
         if actions is not None:

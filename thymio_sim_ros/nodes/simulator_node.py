@@ -1,8 +1,10 @@
 """The simulator as a ROS node: owns the world, steps it, publishes readings, posts commands.
 
 One thread does all of it: between ticks the executor delivers messages, whose callbacks only convert and
-post. The world is paced by absolute deadlines, never by a ROS timer (architecture section 15). Topics,
-services and parameters: ros-interface.md sections 4, 5 and 10.
+post. The world is paced by absolute deadlines, never by a ROS timer (architecture section 15). While nobody would
+hear what they give, ticks are put off and done together, at the latest when a message comes in: what it asks for takes
+effect in the tick that follows, as if no tick had been put off. Topics, services and parameters: ros-interface.md
+sections 4, 5 and 10.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from rclpy.parameter import Parameter
 from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import dds_profile, params, sim_interfaces
+from thymio_sim_ros.nodes.audience import Audience
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
@@ -31,7 +34,8 @@ from thymio_sim_ros.nodes.transforms import TRANSFORMING, Transforms
 from thymio_sim_ros.nodes.world_ports import Pace, WorldPorts, WorldState
 from thymio_sim_ros.nodes.world_services import WorldServices
 from thymio_sim_ros.runlog import RunLog
-from thymio_sim_ros.sim.clock import Pacer
+from thymio_sim_ros.sim.clock import TICK_NS, Pacer
+from thymio_sim_ros.sim.columns import rows_of
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
 from thymio_sim_ros.sim.world import World
@@ -43,6 +47,13 @@ MOST_NOTES = 20
 
 HEARTBEAT_NS = SECOND_NS
 """While paused the clock is repeated at 1 Hz, so that late nodes get it."""
+
+
+MOST_PUT_OFF = 10
+"""Ticks that are put off at most, and tenths of a second of wall time: what happens meanwhile is told so much later."""
+
+MOST_AT_ONCE = 2 * MOST_PUT_OFF
+"""Ticks done at once at most, when the machine was busy with other things; what is owed beyond is dropped."""
 
 
 class Simulator:
@@ -59,16 +70,21 @@ class Simulator:
             self.node.destroy_node()
             raise StartError(str(error)) from error
         self.paused = self.params.start_paused
+        self._is_asleep = False
+        self._soon_ns = 0
+        """No tick is put off until this simulated time: something has come in."""
         self._set_pace()
         self._refused = self._limited = self._last_beat_ns = 0
         self._content = self.params.convert_options
         self._world_ports = WorldPorts(
             self.node,
             publish_clock=self.params.publish_clock,
+            clock_rate_hz=self.params.clock_rate,
             publish_map=self.params.publish_map,
             map_frame=self.params.map_frame,
         )
-        self._transforms = Transforms(self.node, self.params.transform_options)
+        self._audience = Audience(self.params.periods_ns)
+        self._transforms = Transforms(self.node, self._audience, self.params.transform_options)
         self._port_options = self.params.port_options
         self._roster = Roster(self._ports, self.params.naming)
         self._set_world(self._new_world(playground, self.params))
@@ -100,19 +116,22 @@ class Simulator:
         return f"Playground {self.playground_name}, robots in {robots or 'none'}"
 
     def turn(self, executor: Executor) -> None:
-        """Ticks that are owed, then messages until the next tick is due."""
+        """Ticks that are owed, then messages until the next one is due that anybody hears."""
         now = time.monotonic_ns()
         if self.paused:
             if now - self._last_beat_ns >= HEARTBEAT_NS:
                 self._beat(now)
             executor.spin_once(timeout_sec=SPIN_SLICE_S)
             return
-        self._guard(self._run_owed)
+        if not self._pacer.wait_ns(now, self._wanted_ticks()):
+            self._guard(self._run_owed)
         if now - self._last_beat_ns >= HEARTBEAT_NS:
             self._beat(now)
-        wait_s = self._pacer.wait_ns(time.monotonic_ns()) / SECOND_NS
+        wait_s = self._pacer.wait_ns(time.monotonic_ns(), self._wanted_ticks()) / SECOND_NS
         if wait_s > 0.0:
+            self._is_asleep = True
             executor.spin_once(timeout_sec=min(wait_s, SPIN_SLICE_S))
+            self._is_asleep = False
         else:
             deliver(executor)
 
@@ -121,14 +140,23 @@ class Simulator:
         self.follow()
         for _ in range(ticks):
             result = self.world.step()
-            for robot, sensor, reading in result.readings:
+            for robot, sensor, reading in rows_of(result.readings, self._audience.sensors):
                 ports = self._roster[robot]
                 ports.publish(sensor, reading)
-                if sensor in TRANSFORMING:
-                    self._transforms.take(ports.names, reading)
+                if sensor == TRANSFORMING:
+                    self._transforms.take(ports.names, reading, self.world.robots[robot].wheels.angles_rad)
             self._transforms.flush()
-            self._world_ports.publish_clock(result.now_ns, last=self.paused)
+            if self.paused:
+                self._world_ports.publish_clock(result.now_ns, last=True)
+        if not self.paused:
+            self._world_ports.publish_clock(self.world.now_ns, last=False)
         self._world_ports.publish_objects(self.world, last=self.paused)
+
+    def catch_up(self) -> None:
+        """Do the ticks that were put off: somebody asks, or something has come in that the next tick shall see."""
+        if self._is_asleep and not self.paused:
+            self._guard(self._run_owed)
+        self._soon_ns = self.world.now_ns + TICK_NS
 
     def follow(self) -> None:
         """Robots may have come or gone: so do their topics and frames."""
@@ -176,10 +204,21 @@ class Simulator:
         self.node.destroy_node()
 
     def _run_owed(self) -> None:
+        expected = max(self._usual_ticks, self._wanted_ticks())
         ticks = self._pacer.owed(time.monotonic_ns())
         if self.params.real_time_factor > 0.0:
-            self._late_ticks += max(0, ticks - self._usual_ticks)
-        self.advance(ticks)
+            self._late_ticks += max(0, ticks - expected)
+        if ticks:
+            self.advance(ticks)
+
+    def _wanted_ticks(self) -> int:
+        """Ticks to the next that gives something that is heard, or that was asked for."""
+        now_ns = self.world.now_ns
+        if now_ns < self._soon_ns:
+            return 1
+        ticks = min(self._most_put_off, (self._audience.due_ns(now_ns) - now_ns) // TICK_NS)
+        clock_ns = self._world_ports.clock_due_ns
+        return ticks if clock_ns is None else min(ticks, self._pacer.ticks_until(clock_ns))
 
     def _guard(self, act: Callable[[], None]) -> None:
         """Our own bug in the core: log it, pause, stay alive for inspection (architecture section 12)."""
@@ -191,9 +230,11 @@ class Simulator:
             self._publish_state()
 
     def _set_pace(self) -> None:
-        self._pacer = Pacer(self.params.real_time_factor)
+        factor = self.params.real_time_factor
+        self._pacer = Pacer(factor, max_batch=MOST_AT_ONCE)
         self._late_ticks = 0
-        self._usual_ticks = max(1, round(self.params.real_time_factor))
+        self._usual_ticks = max(1, round(factor))
+        self._most_put_off = max(1, min(MOST_PUT_OFF, int(MOST_PUT_OFF * factor)))
 
     def _load(self, playground: str) -> tuple[str, Playground]:
         """Its name and itself, robots named as wanted."""
@@ -227,6 +268,7 @@ class Simulator:
             content=lambda: self._content,
             moment=self._moment,
             options=self._port_options,
+            audience=self._audience,
             on_refusal=self.count_refusal,
             on_limit=self.count_limited,
         )
@@ -245,6 +287,7 @@ class Simulator:
     def _begin(self) -> None:
         """Order at a start: latched topics, then the clock at zero; the first readings follow (section 7)."""
         self._set_pace()
+        self._soon_ns = 0
         self._roster.begin(self.world.robots)
         self._transforms.begin(self._roster.names)
         self._world_ports.publish_scene(self.world.playground)
@@ -254,6 +297,7 @@ class Simulator:
 
     def _poster(self, robot: str) -> Callable[[Command], None]:
         def post(command: Command) -> None:
+            self.catch_up()
             # A message may be on its way to a robot that goes with the old playground.
             if robot in self.world.robots:
                 self.world.post(robot, command)
@@ -261,6 +305,7 @@ class Simulator:
         return post
 
     def _moment(self) -> Moment:
+        self.catch_up()
         return Moment(self.world.now_ns, round(self.params.cmd_vel_timeout * SECOND_NS))
 
     def _beat(self, now_ns: int) -> None:
@@ -292,6 +337,7 @@ class Simulator:
         self._world_ports.publish_state(self._state())
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        self.catch_up()
         refusal = params.refusal(self.params, parameters)
         if refusal:
             return SetParametersResult(successful=False, reason=refusal)

@@ -91,6 +91,7 @@ class SimulatorParams:
     start_paused: bool = param(False, "Whether the world waits for ~/pause or ~/step", fixed=True)
     step_ticks: int = param(1, "Ticks of 10 ms that ~/step does", low=1, high=100_000)
     publish_clock: bool = param(True, "Whether /clock is published", fixed=True)
+    clock_rate: float = param(50.0, "Hz of wall time that /clock has at most", low=1.0, high=100.0, fixed=True)
     log: str = param("", "File that a run log is written to, for thymio-sim replay; empty: none", fixed=True)
 
     robot_names: list[str] = param(

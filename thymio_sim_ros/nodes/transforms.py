@@ -1,7 +1,7 @@
 """/tf and /tf_static of all robots (ros-interface.md sections 4.1 and 8).
 
 `odom → base_link` is the wheels' odometry and how the robot leans; `map → odom` makes up for its drift, so that
-`map → base_link` is the truth (perfect localisation); the wheels turn by their angles.
+`map → base_link` is the truth (perfect localisation); the wheels turn by their angles. What nobody hears costs nothing.
 """
 
 from __future__ import annotations
@@ -9,19 +9,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from thymio_sim_ros.nodes import qos, tf_messages
+from thymio_sim_ros.nodes.audience import Audience, Heard
 from thymio_sim_ros.nodes.description import fixed_frames, wheel_position
 from thymio_sim_ros.nodes.names import MAP_FRAME, SIDES, RobotNames
 from thymio_sim_ros.nodes.patches import rotation
 from thymio_sim_ros.nodes.tf_messages import Transform
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
-from thymio_sim_ros.sim.readings import MotorReading, PoseReading, Reading
+from thymio_sim_ros.sim.readings import PoseReading, Reading
 
 __all__ = ["TRANSFORMING", "TransformOptions", "Transforms", "origin_of"]
 
@@ -36,26 +38,38 @@ class TransformOptions:
     namespaced: bool = False
 
 
-TRANSFORMING = ("motor", "pose")
-"""The sensors whose readings make transforms."""
+TRANSFORMING = "pose"
+"""The sensor whose readings make transforms."""
+
+MOVING = Heard(TRANSFORMING)
 
 
 class _Channel:
     """Publishers of one transform topic, and for each the transforms of this tick."""
 
-    def __init__(self, node: Node, word: str, profile: QoSProfile) -> None:
+    def __init__(self, node: Node, word: str, profile: QoSProfile, audience: Audience | None = None) -> None:
+        """`audience` is told which topics are heard."""
         self.word = word
-        self._node, self._profile = node, profile
+        self._node, self._profile, self._audience = node, profile, audience
         self._publishers: dict[str, Any] = {}
+        self._heard: set[str] = set()
         self._waiting: dict[str, list[Transform]] = {}
 
     def open(self, topics: set[str]) -> None:
         """Have publishers of these topics, and of no other."""
         self._waiting.clear()
         for topic in self._publishers.keys() - topics:
+            self._hear(topic, 0)
             self._node.destroy_publisher(self._publishers.pop(topic))
         for topic in topics - self._publishers.keys():
-            self._publishers[topic] = self._node.create_publisher(tf_messages.TFMessage, topic, self._profile)
+            events = PublisherEventCallbacks(matched=partial(self._matched, topic))
+            self._publishers[topic] = self._node.create_publisher(
+                tf_messages.TFMessage, topic, self._profile, event_callbacks=events
+            )
+
+    def is_heard(self, topic: str) -> bool:
+        """Whether anybody listens."""
+        return topic in self._heard
 
     def add(self, topic: str, transforms: Sequence[Transform]) -> None:
         """Send these with the next `flush`."""
@@ -67,20 +81,31 @@ class _Channel:
             self._publishers[topic].publish(tf_messages.encode(transforms))
         self._waiting.clear()
 
+    def _matched(self, topic: str, matched: Any) -> None:
+        self._hear(topic, matched.current_count)
+
+    def _hear(self, topic: str, listeners: int) -> None:
+        if self._audience is None or (listeners > 0) == (topic in self._heard):
+            return
+        if listeners:
+            self._heard.add(topic)
+            self._audience.join(MOVING)
+        else:
+            self._heard.remove(topic)
+            self._audience.leave(MOVING)
+
 
 class Transforms:
     """Publishes transforms from readings; silent where the type cannot be had (`tf_messages.available`)."""
 
-    def __init__(self, node: Node, options: TransformOptions | None = None) -> None:
+    def __init__(self, node: Node, audience: Audience, options: TransformOptions | None = None) -> None:
         self._options = options or TransformOptions()
         self._is_on = tf_messages.available()
-        self._moving = _Channel(node, "tf", qos.TRANSFORMS)
+        self._moving = _Channel(node, "tf", qos.TRANSFORMS, audience)
         self._static = _Channel(node, "tf_static", qos.LATCHED)
-        self._angles: dict[str, tuple[float, float]] = {}
 
     def begin(self, robots: Sequence[RobotNames]) -> None:
         """Latched frames of these robots, all in one message where the topic is common."""
-        self._angles.clear()
         if not self._is_on:
             return
         self._moving.open({self._topic(names, self._moving) for names in robots})
@@ -96,12 +121,11 @@ class Transforms:
             self._static.add(self._topic(names, self._static), fixed)
         self._static.flush()
 
-    def take(self, names: RobotNames, reading: Reading) -> None:
-        """Remember wheel angles; with each pose send the robot's moving frames at the end of the tick."""
-        if isinstance(reading, MotorReading):
-            self._angles[names.name] = reading.angles_rad
-        elif isinstance(reading, PoseReading) and self._is_on:
-            self._moving.add(self._topic(names, self._moving), self._frames(names, reading))
+    def take(self, names: RobotNames, reading: Reading, angles_rad: tuple[float, float]) -> None:
+        """Send the robot's moving frames at the end of the tick: its pose, its wheels turned by these angles."""
+        topic = self._topic(names, self._moving)
+        if isinstance(reading, PoseReading) and self._moving.is_heard(topic):
+            self._moving.add(topic, self._frames(names, reading, angles_rad))
 
     def flush(self) -> None:
         """The tick is over."""
@@ -110,15 +134,14 @@ class Transforms:
     def _topic(self, names: RobotNames, channel: _Channel) -> str:
         return names.topic(channel.word) if self._options.namespaced else f"/{channel.word}"
 
-    def _frames(self, names: RobotNames, reading: PoseReading) -> list[Transform]:
+    def _frames(self, names: RobotNames, reading: PoseReading, angles_rad: tuple[float, float]) -> list[Transform]:
         ns = reading.stamp_ns
         origin, odom, base, *wheels = _moving_frames(names)
         frames = [_planar(ns, odom, base, reading.odometry, reading.tilt)]
         if self._options.publish_map:
             frames.insert(0, _planar(ns, origin, odom, origin_of(reading.truth, reading.odometry)))
         if self._options.publish_wheels:
-            angles = self._angles.get(names.name, (0.0, 0.0))
-            for wheel, place, angle in zip(wheels, _WHEELS, angles, strict=True):
+            for wheel, place, angle in zip(wheels, _WHEELS, angles_rad, strict=True):
                 turn = (0.0, math.sin(angle / 2), 0.0, math.cos(angle / 2))
                 frames.append(Transform(ns, base, wheel, place, turn))
         return frames

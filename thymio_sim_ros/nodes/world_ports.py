@@ -7,9 +7,11 @@ import logging
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from nav_msgs.msg import OccupancyGrid
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
@@ -27,8 +29,8 @@ from thymio_sim_ros.sim.playground import Playground, PlaygroundError
 from thymio_sim_ros.sim.scene import ObjectSnapshot
 from thymio_sim_ros.sim.world import World
 
-CLOCK_GAP_NS = 18_000_000
-"""Shortest wall time between two clock messages: at most about 50 Hz (ros-interface.md section 5)."""
+CLOCK_GAP = 0.9
+"""Part of its period of wall time after which the clock may be told again: ticks come when they come."""
 
 OBJECTS_GAP_NS = 50_000_000
 """Shortest wall time between two messages of objects that move."""
@@ -114,27 +116,45 @@ class WorldPorts:
     """Publishers of the simulator that belong to no robot."""
 
     def __init__(
-        self, node: Node, *, publish_clock: bool = True, publish_map: bool = False, map_frame: str = MAP_FRAME
+        self,
+        node: Node,
+        *,
+        publish_clock: bool = True,
+        clock_rate_hz: float = 50.0,
+        publish_map: bool = False,
+        map_frame: str = MAP_FRAME,
     ) -> None:
+        """`clock_rate_hz`: of wall time, at most."""
         left_out = {"/clock": not publish_clock, "/map": not publish_map}
+        events = {"/clock": PublisherEventCallbacks(matched=self._matched_clock)}
         self._publishers = {
-            name: node.create_publisher(topic.type, name, topic.profile)
+            name: node.create_publisher(topic.type, name, topic.profile, event_callbacks=events.get(name))
             for name, topic in TOPICS.items()
             if not left_out.get(name)
         }
+        self._clock_gap_ns = round(CLOCK_GAP * SECOND_NS / clock_rate_hz)
+        self._is_clock_heard = False
         self._map_frame = map_frame
         self._publishers["~/playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
         self._last_clock_ns = self._last_objects_ns = 0
         self._shown: tuple[Playground, tuple[ObjectSnapshot, ...]] | None = None
 
+    @property
+    def clock_due_ns(self) -> int | None:
+        """The wall time from which the clock may be told again; None when nobody hears it."""
+        return self._last_clock_ns + self._clock_gap_ns if self._is_clock_heard else None
+
     def publish_clock(self, now_ns: int, *, last: bool) -> None:
-        """Simulated time; limited to 50 Hz of wall time unless it is the `last` one for a while."""
+        """Simulated time; limited by its rate of wall time unless it is the `last` one for a while."""
         wall_ns = time.monotonic_ns()
-        clock = self._publishers.get("/clock")
-        if clock is None or not (last or wall_ns - self._last_clock_ns >= CLOCK_GAP_NS):
+        clock, due_ns = self._publishers.get("/clock"), self.clock_due_ns
+        if clock is None or not (last or (due_ns is not None and wall_ns >= due_ns)):
             return
         self._last_clock_ns = wall_ns
         clock.publish(Clock(clock=stamp(now_ns)))
+
+    def _matched_clock(self, matched: Any) -> None:
+        self._is_clock_heard = matched.current_count > 0
 
     def publish_state(self, state: WorldState) -> None:
         """Latched state as JSON."""

@@ -27,7 +27,7 @@ from thymio_sim_ros.sim.fields import FieldError
 from thymio_sim_ros.sim.playground import RobotStart
 from thymio_sim_ros.sim.world import World
 
-__all__ = ["PLACE", "PLACED", "SERVICES", "Controlled", "WorldServices"]
+__all__ = ["PLACE", "PLACED", "SERVICES", "Controlled", "WorldServices", "presently"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +96,9 @@ class Controlled(Protocol):
     def load(self, playground: str) -> str:
         """Another playground by name, path or text; the reason if it is refused."""
 
+    def catch_up(self) -> None:
+        """Be at the present tick, and tell early what the next one brings."""
+
     def follow(self) -> None:
         """Robots have come or gone."""
 
@@ -103,12 +106,25 @@ class Controlled(Protocol):
         """A message was refused."""
 
 
+Handler = Callable[[Any, Any], Any]
+
+
+def presently(simulator: Controlled, handler: Handler) -> Handler:
+    """The same handler of a service, which finds the world at the present tick."""
+
+    def handle(request: Any, response: Any) -> Any:
+        simulator.catch_up()
+        return handler(request, response)
+
+    return handle
+
+
 class WorldServices:
     """The services of a simulator, on its node."""
 
     def __init__(self, node: Node, simulator: Controlled) -> None:
         self._node, self._simulator = node, simulator
-        handlers: dict[str, Callable[[Any, Any], Any]] = {
+        handlers: dict[str, Handler] = {
             "~/pause": self._pause,
             "~/step": self._step,
             "~/reset": self._reset,
@@ -117,7 +133,10 @@ class WorldServices:
             "~/set_poses": self._each(self._set_pose),
             "~/get_poses": self._get_poses,
         }
-        self._services = [node.create_service(service.type, name, handlers[name]) for name, service in SERVICES.items()]
+        self._services = [
+            node.create_service(service.type, name, presently(simulator, handlers[name]))
+            for name, service in SERVICES.items()
+        ]
         self._subscription = node.create_subscription(TransformStamped, PLACE, self._place, qos.COMMAND)
 
     def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
@@ -192,6 +211,7 @@ class WorldServices:
         return response
 
     def _place(self, message: TransformStamped) -> None:
+        self._simulator.catch_up()
         try:
             self._put(message)
         except ValueError as error:

@@ -6,9 +6,10 @@ wall clock, which its caller takes (architecture section 5).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 
-__all__ = ["NEVER_NS", "TICK_NS", "Pacer", "Schedule", "SimClock"]
+__all__ = ["NEVER_NS", "TICK_NS", "Pacer", "Schedule", "SimClock", "next_due_ns"]
 
 TICK_NS = 10_000_000
 """One step of the world: 10 ms, the fastest event of the robot (thymio-robot.md section 3)."""
@@ -72,6 +73,13 @@ class Schedule:
         return sorted(due + odd)
 
 
+def next_due_ns(period_ns: int, phase_ns: int, now_ns: int) -> int:
+    """The first tick after this one in which a `Schedule` lets a thing happen."""
+    first_ns = phase_ns or period_ns
+    periods = max(0, (now_ns - first_ns) // period_ns + 1)
+    return -(-(first_ns + periods * period_ns) // TICK_NS) * TICK_NS
+
+
 class Pacer:
     """Wall time → ticks owed. Invariant: never owes more than `max_batch` ticks at once.
 
@@ -109,11 +117,17 @@ class Pacer:
         self._measure(monotonic_ns)
         return self._grant(ticks)
 
-    def wait_ns(self, monotonic_ns: int) -> int:
-        """Wall time until the next tick is due; 0 when one is owed already."""
+    def wait_ns(self, monotonic_ns: int, ticks: int = 1) -> int:
+        """Wall time until so many ticks are due; 0 when they are owed already."""
         if self._next_due_ns is None or not self._factor:
             return 0
-        return max(0, int(self._next_due_ns - monotonic_ns) + 1)
+        return max(0, int(self._next_due_ns + (ticks - 1) * self._tick_wall_ns - monotonic_ns) + 1)
+
+    def ticks_until(self, monotonic_ns: int) -> int:
+        """How many ticks, at least one, there are to the first that is not due before this moment."""
+        if self._next_due_ns is None or not self._factor:
+            return 1
+        return max(1, math.ceil((monotonic_ns - self._next_due_ns) / self._tick_wall_ns) + 1)
 
     def _grant(self, ticks: int) -> int:
         self._window_ticks += ticks

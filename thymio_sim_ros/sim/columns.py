@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import Any, overload
 
 from thymio_sim_ros.sim.readings import Reading
 
-__all__ = ["Columns", "Later"]
+__all__ = ["Columns", "Later", "rows_of"]
 
 Row = tuple[str, str, Reading]
 
@@ -66,6 +66,13 @@ class Columns(Sequence[Row]):
     def __repr__(self) -> str:
         return repr(self._all())
 
+    def of(self, sensors: Collection[str]) -> Iterable[Row]:
+        """The rows of some sensors, in the same order; readings of the others are not made for that."""
+        if self._rows is not None:
+            return (row for row in self._rows if row[1] in sensors)
+        wanted = [column for column in self._columns if column[0] in sensors]
+        return Columns(self._robots, wanted) if wanted else ()
+
     def _all(self) -> tuple[Row, ...]:
         if self._rows is None:
             full = [(sensor, column) for sensor, column in self._columns if isinstance(column, Later) or any(column)]
@@ -81,3 +88,10 @@ class Columns(Sequence[Row]):
             )
             self._columns = ()
         return self._rows
+
+
+def rows_of(readings: Sequence[Row], sensors: Collection[str]) -> Iterable[Row]:
+    """Those of some sensors among the readings of one tick."""
+    if isinstance(readings, Columns):
+        return readings.of(sensors)
+    return (row for row in readings if row[1] in sensors)

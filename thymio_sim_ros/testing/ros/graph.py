@@ -30,6 +30,9 @@ SLICE_S = 0.02
 DEPTH = 1000
 """Messages that a recorder may be behind."""
 
+NOTICE = 2
+"""Deliveries until a publisher knows of a subscription: the event, then the task that it makes."""
+
 TEST_NODE = "test"
 
 
@@ -168,10 +171,15 @@ class Ros:
         return value
 
     def settle(self) -> None:
-        """Wait until all nodes of this test have found each other: from then on no message between them is lost."""
+        """Wait until all nodes of this test have found each other, and know it.
+
+        From then on no message between them is lost.
+        """
         __tracebackhide__ = True
         nodes = [*self._nodes, *(life.node for life in self._lives)]
         self.until(lambda: matching.is_settled(nodes), what="all publishers and subscriptions found each other")
+        for _ in range(NOTICE):
+            self.deliver()
 
     # --- topics and services ---
 

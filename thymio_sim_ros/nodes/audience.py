@@ -1,0 +1,69 @@
+"""Which topics of robots somebody hears, and when the next of their readings is due.
+
+Until then the simulator may sleep: nothing that it would do earlier could be seen.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from thymio_sim_ros.sim.clock import NEVER_NS, next_due_ns
+from thymio_sim_ros.sim.sensors import all_sensors
+
+__all__ = ["Audience", "Heard"]
+
+
+class Heard(NamedTuple):
+    """A topic by what makes it: a sensor, not more often than `every_ns`; regular, or when something happens."""
+
+    sensor: str
+    every_ns: int = 0
+    is_regular: bool = True
+
+
+class Audience:
+    """Counts of the topics that are sent. Invariant: `sensors` are those of at least one of them."""
+
+    def __init__(self, periods_ns: Mapping[str, int] | None = None) -> None:
+        """`periods_ns`: of sensors that do not measure as often as they say themselves."""
+        self._schedule = {
+            sensor.name: ((periods_ns or {}).get(sensor.name, sensor.period_ns), sensor.phase_ns)
+            for sensor in all_sensors()
+        }
+        self._counts: Counter[Heard] = Counter()
+        self._since_ns, self._due_ns = 0, 0
+        self.sensors: frozenset[str] = frozenset()
+
+    def join(self, topic: Heard) -> None:
+        """A topic is sent from now on."""
+        self._counts[topic] += 1
+        if self._counts[topic] == 1:
+            self._change()
+
+    def leave(self, topic: Heard) -> None:
+        """It is not sent any more."""
+        self._counts[topic] -= 1
+        if not self._counts[topic]:
+            del self._counts[topic]
+            self._change()
+
+    def due_ns(self, now_ns: int) -> int:
+        """The first tick after now that gives a regular reading that is sent; `NEVER_NS` without any."""
+        if not self._since_ns <= now_ns < self._due_ns:
+            self._since_ns = now_ns
+            self._due_ns = min((self._next_ns(topic, now_ns) for topic in self._counts), default=NEVER_NS)
+        return self._due_ns
+
+    def _next_ns(self, topic: Heard, now_ns: int) -> int:
+        period_ns, phase_ns = self._schedule[topic.sensor]
+        if not topic.is_regular or period_ns == NEVER_NS:
+            return NEVER_NS
+        if topic.every_ns:
+            now_ns = (now_ns // topic.every_ns + 1) * topic.every_ns - 1
+        return next_due_ns(period_ns, phase_ns, now_ns)
+
+    def _change(self) -> None:
+        self.sensors = frozenset(topic.sensor for topic in self._counts)
+        self._due_ns = 0
