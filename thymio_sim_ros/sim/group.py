@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -11,19 +11,48 @@ from thymio_sim_ros.sim.actuators.hand import HandState
 from thymio_sim_ros.sim.geometry import Tilt
 from thymio_sim_ros.sim.noise import NormalBank, UniformBank
 from thymio_sim_ros.sim.notes import Notes
-from thymio_sim_ros.sim.physics import Contact
+from thymio_sim_ros.sim.physics import Contact, Fleet
 from thymio_sim_ros.sim.raycaster import Fan, Indices, Values
-from thymio_sim_ros.sim.robot import Robot
+from thymio_sim_ros.sim.robot import Robot, Shared
 from thymio_sim_ros.sim.sound import Sound
 from thymio_sim_ros.sim.view import SensorView
 from thymio_sim_ros.sim.wheels import WheelArrays
 
-if TYPE_CHECKING:
-    from thymio_sim_ros.sim.crowd import Crowd
-
 __all__ = ["Group"]
 
 S = TypeVar("S")
+
+
+class Together(Protocol):
+    """The robots as they move and see together."""
+
+    @property
+    def shared(self) -> Shared:
+        """What all robots of the world share."""
+        ...
+
+    @property
+    def fleet(self) -> Fleet:
+        """Their bodies."""
+        ...
+
+    @property
+    def wheels(self) -> WheelArrays:
+        """Their wheels."""
+        ...
+
+    @property
+    def poses(self) -> Values:
+        """Where they are to be seen: rows x, y, yaw; who has fallen is far from any floor."""
+        ...
+
+    def states(self, kind: type[S]) -> list[S]:
+        """The state of one actuator of every robot."""
+        ...
+
+    def cast(self, fan: Fan) -> tuple[Indices, Values]:
+        """What the rays of all robots meet now."""
+        ...
 
 
 class Group:
@@ -31,7 +60,7 @@ class Group:
 
     __slots__ = ("_crowd", "_evens", "_noise", "_robots", "_views", "notes")
 
-    def __init__(self, crowd: Crowd, robots: Sequence[Robot], views: Sequence[SensorView]) -> None:
+    def __init__(self, crowd: Together, robots: Sequence[Robot], views: Sequence[SensorView]) -> None:
         self._crowd, self._robots, self._views = crowd, robots, views
         self._noise: NormalBank | None = None
         self._evens: UniformBank | None = None
