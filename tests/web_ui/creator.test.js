@@ -334,3 +334,13 @@ test("the creator has every word in every language, with the same values", () =>
     for (const key of Object.keys(fields)) assert.ok(`field.${key}` in WORDS.en, key);
   }
 });
+
+test("a picture is as wide as the ground, and without a grid a shaky second click ends a track", () => {
+  const { builder, click, item } = prepared();
+  builder.choose("picture", { image: "data:image/png;base64,AA==" });
+  click(0, 0);
+  assert.equal(item("picture_1")?.size_x_m, 1);
+  builder.choose("track");
+  for (const [x, y] of [[0.1, 0.3], [0.3, 0.3], [0.302, 0.301]]) click(x, y, true); // prettier-ignore
+  assert.deepEqual(item("track_1")?.points_m, [[0.1, 0.3], [0.3, 0.3]]); // prettier-ignore
+});

@@ -122,7 +122,7 @@ def test_a_playground_is_built_with_undo_saved_found_again_opened_and_tried(suit
     wait_for_items(page, 4)
     page.click("#creator-try")
     page.wait_for_function("window.thymio.state().simulator.title === 'A way out'")
-    assert built(page)["isOpen"] is False
+    page.wait_for_function("!window.thymio.built().isOpen")
     page.wait_for_function("window.thymio.state().robot?.latest")
     page.locator("#view").focus()
     page.keyboard.press("t")

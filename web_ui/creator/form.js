@@ -11,6 +11,8 @@ import { CREATOR_ICONS } from "./icons.js";
 /** @typedef {import("./fields.js").Setting} Setting */
 /** @typedef {import("./fields.js").Control} Control */
 
+/** Before all others: what it is called, and where it is. */
+const FIRST = ["name", "x_m", "y_m"];
 const LOAD_KEYS = ["mass_kg", "friction", "restitution"];
 
 /** @param {Omit<Setting, "commit">} setting @param {import("./builder.js").Builder} builder */
@@ -42,7 +44,10 @@ export function itemForm(setting, builder) {
     const own = kindNamed(kind)?.fields ?? {};
     const all = { ...(placing ? {} : { name: needed(RULES.name) }), ...own };
     const full = { ...setting, commit: builder.edit.bind(builder) };
-    controls = Object.entries(all).flatMap(([key, field]) => {
+    /** @param {[string, any]} entry */
+    const rank = ([key]) => (FIRST.includes(key) ? FIRST.indexOf(key) : FIRST.length);
+    const ordered = Object.entries(all).sort((one, other) => rank(one) - rank(other));
+    controls = ordered.flatMap(([key, field]) => {
       if (LOAD_KEYS.includes(key) || (placing && (key === "points_m" || key === "name" || isEnd(key)))) return [];
       return control(full, key, field) ?? [];
     });

@@ -58,7 +58,7 @@ export function hasKnob(item) {
   return group === "ground" || item.kind === "picture";
 }
 
-/** @param {Item} item */
+/** Grounds are too large for one; keys and numbers turn them. @param {Item} item */
 export function hasRing(item) {
-  return canTurn(item);
+  return canTurn(item) && kindNamed(item.kind)?.group !== "ground";
 }

@@ -4,14 +4,15 @@ import { kindNamed } from "../playground/kinds/index.js";
 import { distance } from "../playground/geometry.js";
 import { added, freeName, groundOf } from "./commands.js";
 import { canTurn, changed, middleOf, movedTo, turned } from "./place.js";
-import { snapped } from "./snap.js";
+import { rounded, snapped } from "./snap.js";
 
 /** @typedef {import("../playground/parts.js").Item} Item */
 /** @typedef {import("../playground/geometry.js").Point} Point */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 
-/** Nearer than this, a point is the same. */
+/** Nearer than this, a point is the same; without a grid a hand is not that steady. */
 const SAME_M = 0.0005;
+const SAME_PX = 8;
 
 export class Placing {
   /** @param {import("./builder.js").Builder} builder @param {string} kind @param {Record<string, any>} values */
@@ -21,7 +22,9 @@ export class Placing {
     const { playground } = builder;
     const ground = groundOf(playground);
     /** @type {Point} where it would be put */
-    this.place = builder.pointer ?? snapped(ground === null ? [0, 0] : middleOf(ground), builder.grid);
+    this.place = snapped(ground === null ? [0, 0] : middleOf(ground), builder.grid);
+    /** Metres within which a point is the same. */
+    this.same = SAME_M;
     /** @type {Point[]} of a path, so far */ this.points = [];
     /** @type {Point[]} taken back */ this.takenBack = [];
     /** @type {Item} how the next one looks; its place does not matter */
@@ -42,6 +45,7 @@ export class Placing {
   /** The pointer is there. @param {Point} place @param {boolean} free  of the grid */
   hover(place, free) {
     this.place = snapped(place, this.builder.gridFor(free));
+    this.same = free ? SAME_PX * this.builder.pixel : SAME_M;
   }
 
   /** Put it down, or one point of it. */
@@ -86,6 +90,7 @@ export class Placing {
 
   /** @param {number} dx @param {number} dy */
   nudge(dx, dy) {
+    this.same = SAME_M;
     this.place = snapped([this.place[0] + dx, this.place[1] + dy], null);
     const { ghost } = this;
     const at = ghost === null || this.isPath ? { kind: "robot", name: "", x_m: this.place[0], y_m: this.place[1] } : ghost.item;
@@ -125,8 +130,8 @@ export class Placing {
   #putPoint() {
     const { builder, points, place } = this;
     const last = points.at(-1);
-    if (last !== undefined && distance(last, place) < SAME_M) return this.finish();
-    if (this.kind === "track" && points.length > 2 && distance(points[0], place) < SAME_M) return this.finish(true);
+    if (last !== undefined && distance(last, place) < this.same) return this.finish();
+    if (this.kind === "track" && points.length > 2 && distance(points[0], place) < this.same) return this.finish(true);
     const item = this.#pathTo(place);
     const problem = item === null ? null : builder.problemOf(item, item.name);
     if (problem !== null) return builder.tell(problem);
@@ -172,9 +177,14 @@ export class Placing {
     return freeName(this.builder.playground, this.kind === "robot" ? "thymio" : this.kind);
   }
 
-  /** What a new one takes from the playground. @param {string} kind @returns {Record<string, any>} */
+  /** What a new one takes from the playground: a picture its width, a plate its last door. @param {string} kind @returns {Record<string, any>} */
   #own(kind) {
-    const door = [...this.builder.playground.items].reverse().find((item) => item.kind === "door");
+    const { playground } = this.builder;
+    const ground = groundOf(playground);
+    if (kind === "picture" && ground !== null) {
+      return { size_x_m: ground.size_x_m ?? rounded(ground.side_m * (1 + Math.SQRT2)) };
+    }
+    const door = [...playground.items].reverse().find((item) => item.kind === "door");
     return kind === "activation" && door !== undefined ? { door: door.name } : {};
   }
 }

@@ -1,6 +1,7 @@
 // What is drawn over the playground while one builds: grid, ghost, selection, handles. Pure: lines and areas in metres.
 
 import { placed } from "../playground/geometry.js";
+import { kindNamed } from "../playground/kinds/index.js";
 import { outlinesOf, partsOf, valuesOf } from "../playground/parts.js";
 import { hasKnob, hasRing, RING_BEYOND_M } from "./pick.js";
 import { middleOf, pointsOf, reachOf, yawOf } from "./place.js";
@@ -49,7 +50,9 @@ function draw(sketch, item, tone) {
 
 /** @param {Sketch} sketch @param {Item} item @param {Tone} tone */
 function handlesOf(sketch, item, tone) {
+  const isGround = kindNamed(item.kind)?.group === "ground";
   for (const { outline, height } of outlinesOf(item)) {
+    if (isGround && height > 0) continue; // its walls
     if (height > 0) sketch.areas.push({ outline, height, tone });
     sketch.lines.push({ points: [...outline, outline[0]], tone });
   }
