@@ -150,6 +150,7 @@ def test_the_actuators_are() -> None:
     assert [actuator.name for actuator in actuators.all_actuators()] == [
         "buttons",
         "comm",
+        "cover",
         "hand",
         "leds",
         "loudspeaker",

@@ -49,7 +49,7 @@ class FakeView:
         return self.grounds.get(y_m, GroundSample(1.0, 1.0))
 
     def state(self, kind: type[S]) -> S:
-        return next(state for state in self.states if isinstance(state, kind))
+        return next((state for state in self.states if isinstance(state, kind)), None) or kind()
 
     def draw(self, start: Point, end: Point, width_m: float, color: Color | None) -> Color | None:
         self.drawn.append((start, end, width_m, color))

@@ -59,6 +59,14 @@ def _light(message: Float32) -> Command:
     return commands.SetAmbientLight(round(min(max(float(message.data), 0.0), 1.0) * GROUND_FULL))
 
 
+def _proximity(message: Int16MultiArray) -> Command:
+    return _checked(commands.SetProximity, tuple(message.data) or (-1,) * 7)
+
+
+def _ground(message: Int16MultiArray) -> Command:
+    return _checked(commands.SetGround, tuple(message.data) or (-1,) * 2)
+
+
 def _temperature(message: Float32) -> Command:
     return _checked(commands.SetTemperature, float(message.data))
 
@@ -107,6 +115,20 @@ ROWS = (
         profile=qos.EVENTS,
         about="light on the ground besides the sensors' own, 0…1",
         beyond=limits.light,
+    ),
+    CommandRow(
+        "press/proximity",
+        Int16MultiArray,
+        _proximity,
+        profile=qos.EVENTS,
+        about="what the seven sensors count from now on, 0…4505, -1 what it sees by itself; empty: all do",
+    ),
+    CommandRow(
+        "press/ground",
+        Int16MultiArray,
+        _ground,
+        profile=qos.EVENTS,
+        about="what the two ground sensors count, 0…1023, -1 what it sees by itself; empty: both do",
     ),
     CommandRow("press/temperature", Float32, _temperature, profile=qos.EVENTS, about="°C round the robot, -40…85"),
     CommandRow("press/battery", Float32, _battery, profile=qos.EVENTS, about="V of the battery, 0…5"),

@@ -103,6 +103,14 @@ def ground_response(reflectance: float) -> float:
     return _GROUND_BLACK + _GROUND_SPAN / (1.0 + math.exp(-_GROUND_SLOPE * (reflectance - _GROUND_MIDDLE)))
 
 
+def ground_reflectance(count: float) -> float:
+    """The grey 0…1 over which a ground sensor gives a count."""
+    above = count - _GROUND_BLACK
+    if not 0.0 < above < _GROUND_SPAN:
+        return 0.0 if above <= 0.0 else 1.0
+    return min(1.0, max(0.0, _GROUND_MIDDLE - math.log(_GROUND_SPAN / above - 1.0) / _GROUND_SLOPE))
+
+
 def ground_responses(reflectances: Values) -> Values:
     """`ground_response` of many greys."""
     found: Values = _GROUND_BLACK + _GROUND_SPAN / (1.0 + np.exp(-_GROUND_SLOPE * (reflectances - _GROUND_MIDDLE)))

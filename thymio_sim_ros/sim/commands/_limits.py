@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["check"]
+__all__ = ["check", "check_counts"]
 
 
 def check(command: object, low: float, high: float, *fields: str) -> None:
@@ -11,3 +11,13 @@ def check(command: object, low: float, high: float, *fields: str) -> None:
         value = getattr(command, field)
         if not low <= value <= high:
             raise ValueError(f"{type(command).__name__}: {field} {value} found, expected {low:g} to {high:g}")
+
+
+def check_counts(command: object, counts: tuple[int, ...], number: int, high: int) -> None:
+    """ValueError unless these are so many counts of sensors, -1 for those that see by themselves."""
+    name = type(command).__name__
+    if len(counts) != number:
+        raise ValueError(f"{name}: {len(counts)} counts found, expected {number}")
+    for index, count in enumerate(counts):
+        if not -1 <= count <= high:
+            raise ValueError(f"{name}: counts[{index}] {count} found, expected 0 to {high}, or -1")

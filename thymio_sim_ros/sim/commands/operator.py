@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.commands._limits import check
+from thymio_sim_ros.sim.commands._limits import check, check_counts
 
 __all__ = [
     "BUTTONS",
@@ -18,8 +18,10 @@ __all__ = [
     "RemoteKey",
     "SetAmbientLight",
     "SetBattery",
+    "SetGround",
     "SetNoiseLevel",
     "SetPen",
+    "SetProximity",
     "SetTemperature",
     "Tap",
     "Tilt",
@@ -115,6 +117,26 @@ class SetAmbientLight:
 
 
 @dataclass(frozen=True, slots=True)
+class SetProximity:
+    """What the seven proximity sensors count from now on, 0…4505 in Thymio's order; -1: what it sees by itself."""
+
+    counts: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        check_counts(self, self.counts, 7, 4505)
+
+
+@dataclass(frozen=True, slots=True)
+class SetGround:
+    """What the two ground sensors count of their own light from now on, 0…1023; -1: what it sees by itself."""
+
+    counts: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        check_counts(self, self.counts, 2, 1023)
+
+
+@dataclass(frozen=True, slots=True)
 class SetTemperature:
     """Temperature round the robot in °C, -40…85."""
 
@@ -168,6 +190,8 @@ Operating = (
     | Clap
     | SetNoiseLevel
     | SetAmbientLight
+    | SetProximity
+    | SetGround
     | SetTemperature
     | RemoteKey
     | SetBattery

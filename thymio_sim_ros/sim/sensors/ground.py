@@ -2,14 +2,18 @@
 
 Over floor the count is 60 + 884 / (1 + exp(-9 (g - 0.44))), g being the grey of the footprint, plus noise; it fades
 to 0 as the footprint leaves the floor. Ambient is the operator's light, 0 at first; reflected is the count with that
-added, at most 1023; delta is reflected less ambient.
+added, at most 1023; delta is reflected less ambient. An operator can say what a sensor counts instead
+(`actuators/cover.py`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from thymio_sim_ros.sim import units
+from thymio_sim_ros.sim.actuators.cover import CoverState, covered
 from thymio_sim_ros.sim.actuators.room import RoomState
 from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.columns import Later
@@ -32,8 +36,17 @@ def response(sample: GroundSample) -> float:
 def _measure(view: SensorView) -> GroundReading:
     left, right = (view.ground_at(x, y) for x, y in GROUND_SENSORS)
     counts = (_count(left, view), _count(right, view))
-    words = _words(view.state(RoomState).ambient_light, *counts)
-    return GroundReading(view.now_ns, words, (left.reflectance, right.reflectance))
+    light, cover = view.state(RoomState).ambient_light, view.state(CoverState).ground
+    return _reading(view.now_ns, light, counts, (left.reflectance, right.reflectance), cover)
+
+
+def _reading(
+    now_ns: int, light: int, counts: Sequence[int], greys: Sequence[float], cover: Sequence[int]
+) -> GroundReading:
+    left, right = covered(counts, cover)
+    if cover:
+        greys = [grey if hand < 0 else units.ground_reflectance(hand) for grey, hand in zip(greys, cover, strict=True)]
+    return GroundReading(now_ns, _words(light, left, right), (greys[0], greys[1]))
 
 
 def _count(sample: GroundSample, view: SensorView) -> int:
@@ -59,11 +72,10 @@ def _measure_all(group: GroupView) -> Later:
     values[over_floor] += group.noise.draw(over_floor // 2, GROUND_NOISE)
     counts = np.rint(np.clip(values, 0.0, units.GROUND_FULL)).astype(int).reshape(-1, 2)
     lights = [room.ambient_light for room in group.states(RoomState)]
+    covers = [state.ground for state in group.states(CoverState)]
 
     def make(robot: int) -> GroundReading:
-        left, right = counts[robot].tolist()
-        grey_left, grey_right = reflectances[robot].tolist()
-        return GroundReading(now_ns, _words(lights[robot], left, right), (grey_left, grey_right))
+        return _reading(now_ns, lights[robot], counts[robot].tolist(), reflectances[robot].tolist(), covers[robot])
 
     return Later(len(group), make)
 

@@ -8,6 +8,7 @@ Model "default": the same, but a side ray that misses what the centre ray hits c
 things are seen.
 Model "cone": nine rays, the mean of F(d cos a) with a the ray's angle to the axis; it knows no jumps, and a thing that
 fills a part of the cone reads that part of F.
+An operator can say what a sensor counts instead (`actuators/cover.py`).
 `ranges_m` is the distance of a wall across the axis that would give the same count, as the robot's driver has it.
 """
 
@@ -19,6 +20,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from thymio_sim_ros.sim import thymio2, units
+from thymio_sim_ros.sim.actuators.cover import CoverState, covered
 from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.columns import Later
 from thymio_sim_ros.sim.raycaster import Fan, Values
@@ -93,7 +95,8 @@ def _within_range(distance_m: float, straight_m: float) -> float:
 def _measure(view: SensorView) -> ProximityReading:
     model = view.proximity_model
     around = view.surroundings(_FANS[model].reach_m, PROXIMITY_HEIGHT_M)
-    if around.is_empty:
+    cover = view.state(CoverState).proximity
+    if around.is_empty and not cover:
         return ProximityReading(view.now_ns, *_NOTHING)
     pose, noise = view.pose, view.noise
     x, y, cos, sin = pose.x_m, pose.y_m, math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
@@ -109,6 +112,7 @@ def _measure(view: SensorView) -> ProximityReading:
                 value = response(distances, model) + noise.gauss(PROXIMITY_NOISE)
                 count = round(max(0.0, min(float(units.PROXIMITY_FULL), value)))
         counts.append(count)
+    counts = covered(counts, cover)
     return ProximityReading(view.now_ns, tuple(counts), _ranges(counts))
 
 
@@ -125,8 +129,10 @@ def _measure_all(group: GroupView) -> Later:
         values = responses(distances, model) + group.noise.draw(sensors // _COUNT, PROXIMITY_NOISE)
         counts.ravel()[sensors] = np.rint(np.minimum(np.maximum(values, 0.0), units.PROXIMITY_FULL))
 
+    covers = [state.proximity for state in group.states(CoverState)]
+
     def make(robot: int) -> ProximityReading:
-        words = counts[robot].tolist()
+        words = covered(counts[robot].tolist(), covers[robot])
         return ProximityReading(now_ns, tuple(words), _ranges(words))
 
     return Later(len(group), make)
