@@ -1,10 +1,10 @@
 """CPU time of the simulator node while robots drive in circles: a process of its own, subscribers in another.
 
 Run: PYTHONPATH=. python benchmarks/ros_load.py [--seconds S] [--rounds N] [--only WORD] [--profile FILE] [--json FILE].
-Percentages are CPU seconds of the node's process, with all threads of DDS, for each second of wall time, of one core:
-the median of the rounds, and the best. The factor is the worst that `/diagnostics` told as achieved. "Start" is the
-CPU time until all robots listen. Other work on the machine makes everything dearer, by caches alone two to three
-times: the load is printed too.
+Percentages are CPU seconds of the node's process, with all threads of DDS, for each simulated second, of one core: the
+median of the rounds, and the best. The factor is what `/diagnostics` told as achieved, on average; below 1 real time
+was lost, by the simulator or by other work. "Start" is the CPU time until all robots listen. Other work on the machine
+makes everything dearer, by caches alone two to three times: the load is printed too.
 
 "All topics" are those of `topics`: all of every robot, /tf and /clock; "13 topics" those that performance.md section 7
 counts: nine Range, odometry, transforms, joints, Imu. All that is regular is sent at the scene's rate, the clock too.
@@ -258,9 +258,10 @@ def _watch(driver: Driver, pid: int, seconds: float) -> dict[str, float]:
     begin, before = time.monotonic(), cpu_s(pid)
     driver.spin(seconds)
     used, passed = cpu_s(pid) - before, time.monotonic() - begin
+    factor = statistics.fmean(driver.factors)
     return {
-        "cpu_percent": 100 * used / passed,
-        "factor": min(driver.factors, default=0.0),
+        "cpu_percent": 100 * used / (passed * factor),
+        "factor": factor,
         "memory_mb": memory_mb(pid),
     }
 

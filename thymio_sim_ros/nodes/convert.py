@@ -351,7 +351,16 @@ ROWS: dict[str, tuple[Row, ...]] = {
     "temperature": (
         Row("temperature", Temperature, senses.temperature, "°C, in tenths", "base_link", patch=patches.TEMPERATURE),
     ),
-    "battery": (Row("battery", BatteryState, senses.battery, "V, charge 0…1, charging or not", "base_link"),),
+    "battery": (
+        Row(
+            "battery",
+            BatteryState,
+            senses.battery,
+            "V, charge 0…1, charging or not",
+            "base_link",
+            patch=patches.BATTERY,
+        ),
+    ),
     "collision": (
         Row(
             "collision",

@@ -13,6 +13,7 @@ from thymio_sim_ros.sim import readings, thymio2
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt, Twist
 
 __all__ = [
+    "BATTERY",
     "IMU",
     "JOINTS",
     "JOY",
@@ -109,6 +110,18 @@ def _ray_numbers(reading: readings.ProximityReading, _options: Any) -> Sequence[
     return (*chain.from_iterable(ends), len(colors), *chain.from_iterable(colors))
 
 
+def _battery_numbers(reading: readings.BatteryReading, _options: Any) -> Sequence[float]:
+    return (reading.volts, *(math.nan,) * 5, reading.charge, charging_status(reading))
+
+
+def charging_status(reading: readings.BatteryReading) -> int:
+    """As BatteryState has it."""
+    return CHARGING if reading.is_charging else DISCHARGING
+
+
+CHARGING, DISCHARGING = 1, 2
+
+
 def _joint_numbers(reading: readings.MotorReading, _options: Any) -> Sequence[float]:
     return (*reading.angles_rad, 2, *reading.velocities_rad_s)
 
@@ -168,4 +181,6 @@ RAYS = Patch((Span(struct.Struct("<42dI56f"), _ray_numbers, behind=69),))
 """Points and colors; behind them a texture, texts and a mesh, all empty."""
 IMU = Patch((Span(struct.Struct("<3d"), lambda reading, _options: reading.acceleration_m_s2, behind=9 * 8),))
 JOY = Patch((Span(struct.Struct("<5i"), lambda reading, _options: reading.words),))
+BATTERY = Patch((Span(struct.Struct("<7fB"), _battery_numbers, behind=24),))
+"""Up to the status; behind it what stays, and empty cells and texts."""
 TEMPERATURE = Patch((Span(struct.Struct("<d"), lambda reading, _options: (reading.words[0] / 10,), behind=8),))

@@ -64,6 +64,8 @@ class _Outlet:
     heard: Heard
     next_ns: int
     publisher: Any = None
+    send: Callable[[bytes], None] = lambda _data: None
+    """Sends a serialised message."""
     is_sent: bool = False
     last: Any = None
     template: Template | None = None
@@ -127,7 +129,7 @@ class RobotPorts:
                     continue
                 outlet.next_ns = (stamp_ns // every_ns + 1) * every_ns
             if outlet.template is not None and outlet.template.options is content:
-                outlet.publisher.publish(outlet.template.fill(reading))
+                outlet.send(outlet.template.fill(reading))
                 continue
             row = outlet.row
             if row.on_change is not None:
@@ -174,6 +176,8 @@ class RobotPorts:
         events = PublisherEventCallbacks(matched=partial(self._matched, outlet))
         profile = qos.overridable(self._node, topic, row.profile)
         outlet.publisher = self._node.create_publisher(row.type, topic, event_callbacks=events, **profile)
+        # `publish` first asks what it was given, which costs as much as sending to nobody.
+        outlet.send = getattr(outlet.publisher.handle, "publish_raw", outlet.publisher.publish)
         self._outlets[heard.sensor].append(outlet)
         self._send(outlet, wanted=row.always)
 

@@ -53,7 +53,6 @@ def temperature(reading: readings.TemperatureReading, names: RobotNames, _option
 
 def battery(reading: readings.BatteryReading, names: RobotNames, _options: object) -> BatteryState:
     """Voltage and charge; what the robot does not measure is NaN."""
-    status = BatteryState.POWER_SUPPLY_STATUS_CHARGING
     message = BatteryState(
         voltage=reading.volts,
         percentage=reading.charge,
@@ -62,7 +61,7 @@ def battery(reading: readings.BatteryReading, names: RobotNames, _options: objec
         charge=math.nan,
         capacity=math.nan,
         design_capacity=math.nan,
-        power_supply_status=status if reading.is_charging else BatteryState.POWER_SUPPLY_STATUS_DISCHARGING,
+        power_supply_status=patches.charging_status(reading),
         power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LIPO,
         present=True,
     )

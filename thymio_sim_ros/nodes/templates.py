@@ -58,12 +58,13 @@ class Template:
     def checked(cls, patch: Patch, message: Any, reading: Any, options: Any) -> Template | None:
         """The template of the message that this reading gave; None if patching it in does not give the same."""
         template = cls(patch, message, options)
-        # Bytes between fields may be anything, hence messages are compared.
+        # Bytes between fields may be anything, hence messages are compared; by their text, where NaN equals NaN.
         try:
             filled = deserialize_message(template.fill(reading), type(message))
         except (RuntimeError, struct.error):  # a length was overwritten, or there is no room
             return None
-        return template if filled == deserialize_message(serialize_message(message), type(message)) else None
+        fresh = deserialize_message(serialize_message(message), type(message))
+        return template if repr(filled) == repr(fresh) else None
 
     def fill(self, reading: Any) -> bytes:
         """The message of a reading."""
