@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
 
@@ -21,6 +21,8 @@ from thymio_sim_ros.sim import actuators, playground, sensors, shapes
 from thymio_sim_ros.sim.primitives import Disc
 from thymio_sim_ros.sim.world import World
 
+Variant = Callable[[str, str, str], AbstractContextManager[None]]
+
 
 @pytest.fixture
 def extras(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
@@ -29,13 +31,16 @@ def extras(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         yield
 
 
-def variant(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, old: str, new: str
-) -> AbstractContextManager[None]:
-    """The page's package with one text replaced in one file."""
-    shown = plugin_page.files()
-    assert old in shown[name]
-    return plugin_page.installed(tmp_path, {**shown, name: shown[name].replace(old, new)}, monkeypatch)
+@pytest.fixture
+def variant(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Variant:
+    """`with variant(file, old, new)`: the page's package with one text replaced in one file."""
+
+    def install(name: str, old: str, new: str) -> AbstractContextManager[None]:
+        shown = plugin_page.files()
+        assert old in shown[name]
+        return plugin_page.installed(tmp_path, {**shown, name: shown[name].replace(old, new)}, monkeypatch)
+
+    return install
 
 
 def test_the_page_shows_one_file_for_each_thing() -> None:
@@ -100,15 +105,9 @@ def test_the_shape_becomes_primitives_and_part_of_the_schema() -> None:
     ],
 )
 def test_a_broken_one_is_named_and_the_others_go_on(
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    caplog: pytest.LogCaptureFixture,
-    name: str,
-    old: str,
-    new: str,
-    said: str,
+    variant: Variant, caplog: pytest.LogCaptureFixture, name: str, old: str, new: str, said: str
 ) -> None:
-    with variant(tmp_path, monkeypatch, name, old, new):
+    with variant(name, old, new):
         assert "compass" not in [sensor.name for sensor in sensors.all_sensors()]
         assert "hop" in [actuator.name for actuator in actuators.all_actuators()]
         World(make([FLOOR])).step()
@@ -125,15 +124,9 @@ def test_a_broken_one_is_named_and_the_others_go_on(
     ],
 )
 def test_programs_see_nothing_of_one_that_does_not_fit_the_robot(
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    caplog: pytest.LogCaptureFixture,
-    name: str,
-    old: str,
-    new: str,
-    said: str,
+    variant: Variant, caplog: pytest.LogCaptureFixture, name: str, old: str, new: str, said: str
 ) -> None:
-    with variant(tmp_path, monkeypatch, f"thymio_extras/{name}.py", old, new):
+    with variant(f"thymio_extras/{name}.py", old, new):
         runner = Runner(make([FLOOR]), load_program("motor.left.target = 100", "a"))
         runner.run(0.2)
         assert name in {plugin.name for plugin in (*sensors.all_sensors(), *actuators.all_actuators())}
@@ -141,18 +134,16 @@ def test_programs_see_nothing_of_one_that_does_not_fit_the_robot(
     assert told.startswith(f"programs see nothing of the plug-in '{name}': {said}")
 
 
-def test_a_folder_that_is_missing_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    with variant(tmp_path, monkeypatch, "pyproject.toml", '"thymio_extras.playgrounds"', '"thymio_extras.worlds"'):
+def test_a_folder_that_is_missing_is_named(variant: Variant, caplog: pytest.LogCaptureFixture) -> None:
+    with variant("pyproject.toml", '"thymio_extras.playgrounds"', '"thymio_extras.worlds"'):
         assert "line" in resources.playgrounds()
     assert "plug-in 'thymio_extras'" in caplog.text
 
 
 def test_a_sensor_that_raises_is_switched_off_until_the_next_reset(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    variant: Variant, caplog: pytest.LogCaptureFixture
 ) -> None:
-    with variant(tmp_path, monkeypatch, "thymio_extras/compass.py", "    heading = ", "    heading = 1 / 0 + "):
+    with variant("thymio_extras/compass.py", "    heading = ", "    heading = 1 / 0 + "):
         world = World(make([FLOOR]))
         for _ in range(100):
             world.step()
@@ -173,9 +164,9 @@ def test_a_sensor_that_raises_is_switched_off_until_the_next_reset(
     ],
 )
 def test_an_actuator_that_raises_is_switched_off(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, old: str, new: str
+    variant: Variant, caplog: pytest.LogCaptureFixture, old: str, new: str
 ) -> None:
-    with variant(tmp_path, monkeypatch, "thymio_extras/hop.py", old, new):
+    with variant("thymio_extras/hop.py", old, new):
         world = World(make([FLOOR]))
         (hop,) = (actuator for actuator in actuators.all_actuators() if actuator.name == "hop")
         for _ in range(10):
@@ -186,11 +177,9 @@ def test_an_actuator_that_raises_is_switched_off(
     assert "the actuator 'hop'" in caplog.text
 
 
-def test_a_shape_that_raises_refuses_the_playground_with_its_key(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_shape_that_raises_refuses_the_playground_with_its_key(variant: Variant) -> None:
     broken = "raise KeyError(name)\n        number = "
-    with variant(tmp_path, monkeypatch, "thymio_extras/slalom.py", "number = ", broken):
+    with variant("thymio_extras/slalom.py", "number = ", broken):
         path = resources.find_playground("slalom_field")
         with pytest.raises(playground.PlaygroundError, match=r"shapes\[1\]: found KeyError: 'posts'"):
             playground.load(path)

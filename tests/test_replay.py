@@ -15,7 +15,27 @@ from thymio_sim_ros.loading import read_program
 from thymio_sim_ros.replay import replay
 from thymio_sim_ros.runlog import RunLog, RunLogError
 from thymio_sim_ros.runner import Runner
-from thymio_sim_ros.sim.commands import MotorTargets, MoveObject, MoveRobot, SetPen
+from thymio_sim_ros.sim.commands import (
+    Clap,
+    Command,
+    ConnectCharger,
+    MotorTargets,
+    MoveObject,
+    MoveRobot,
+    PlayTone,
+    PressButton,
+    RemoteKey,
+    SetAmbientLight,
+    SetBattery,
+    SetGround,
+    SetMotorModel,
+    SetNoiseLevel,
+    SetPen,
+    SetProximity,
+    SetTemperature,
+    Tap,
+    Tilt,
+)
 from thymio_sim_ros.sim.placement import PlacementError
 from thymio_sim_ros.sim.playground import RobotStart
 from thymio_sim_ros.sim.world import World
@@ -65,6 +85,45 @@ def test_a_run_with_a_program_is_replayed_without_it(tmp_path: Path) -> None:
     Runner(shipped("line"), read_program("line_follower"), seed=3, log=log).run(5.0)
     log.close()
     assert replay(path).differs is None
+
+
+@pytest.mark.parametrize("recorded", ["plain", "compiled"])
+def test_a_class_with_operators_and_new_programs_is_replayed_by_either_engine(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recorded: str
+) -> None:
+    """Twenty robots sense as a crowd, compiled where wasmtime is installed; the log does not tell which it was."""
+
+    def engine(name: str) -> None:
+        monkeypatch.undo()
+        if name == "plain":
+            for module in ("raycaster", "ground"):
+                monkeypatch.setattr(f"thymio_sim_ros.sim.{module}.is_available", lambda: False)
+
+    path = tmp_path / "run.jsonl"
+    engine(recorded)
+    log = log_to(path)
+    runner = Runner(shipped("classroom"), read_program("line_follower"), seed=5, log=log)
+    names = list(runner.world.robots)
+    whims: list[Command] = [
+        Clap(200), Tap(), Tilt(0.3, -0.2), SetTemperature(31.5), RemoteKey(0, 80), SetBattery(3.5), SetAmbientLight(90),
+        SetNoiseLevel(60), PressButton("center", True), PressButton("center", False), ConnectCharger(True),
+        SetProximity((-1, 2000, 4505, -1, -1, -1, 0)), SetGround((77, -1)), SetPen(down=True, width_m=0.02),
+        SetMotorModel("firmware"), PlayTone(440.0, None),
+    ]  # fmt: skip
+    dice = random.Random(5)
+    for round_ in range(16):
+        runner.run(0.1)
+        runner.post(dice.choice(names), whims[round_ % len(whims)])
+        if round_ == 5:
+            runner.world.spawn(RobotStart("late", -1.9, -1.5, 0.3))
+        if round_ % 4 == 3:
+            runner.load(dice.choice(names), read_program(("explorer", "friendly", "fearful")[round_ % 3]))
+        if round_ == 12:
+            runner.world.remove("late")
+    log.close()
+    engine("plain" if recorded == "compiled" else "compiled")
+    found = replay(path)
+    assert (found.ticks, found.differs, found.is_complete) == (160, None, True)
 
 
 def test_refused_places_leave_no_trace(tmp_path: Path) -> None:
