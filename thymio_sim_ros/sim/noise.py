@@ -92,26 +92,27 @@ class UniformBank:
 
     def __init__(self, noises: Sequence[Noise]) -> None:
         self._noises = noises
-        self._numbers = np.zeros((len(noises), 0))
+        self._numbers = np.zeros((0, len(noises)))
         self._used = 0
 
     def draw(self, low: float, high: float, count: int) -> Values:
         """`Noise.uniform` so many times: a row for each time, a column for each user."""
         if not self._noises or not self._noises[0].enabled:
             return np.full((count, len(self._noises)), (low + high) / 2)
-        while self._used + count > self._numbers.shape[1]:
-            fresh = evens([noise.draw_ahead(_BLOCK) for noise in self._noises])
-            self._numbers = np.concatenate((self._numbers[:, self._used :], fresh), axis=1)
+        while self._used + count > len(self._numbers):
+            fresh = evens([noise.draw_ahead(_BLOCK) for noise in self._noises]).T
+            self._numbers = np.concatenate((self._numbers[self._used :], fresh))
             self._used = 0
         first, self._used = self._used, self._used + count
-        drawn: Values = low + (high - low) * self._numbers[:, first : self._used].T
+        drawn: Values = self._numbers[first : self._used] * (high - low)
+        drawn += low
         return drawn
 
     def give_back(self) -> None:
         """Let every user draw for himself again."""
-        for noise, numbers in zip(self._noises, self._numbers[:, self._used :].tolist(), strict=True):
+        for noise, numbers in zip(self._noises, self._numbers[self._used :].T.tolist(), strict=True):
             noise.give_back(numbers)
-        self._numbers, self._used = np.zeros((len(self._noises), 0)), 0
+        self._numbers, self._used = np.zeros((0, len(self._noises))), 0
 
 
 class NormalBank:

@@ -102,6 +102,9 @@ class WheelArrays:
         self._wheels = tuple(wheels)
         self.is_told = True
         """Whether the wheels are the truth just now."""
+        self._given: Values | None = None
+        """What was commanded last, beyond the limit perhaps."""
+        self._allowed: Values = np.zeros((2, 0))
         self.take()
 
     @property
@@ -139,10 +142,9 @@ class WheelArrays:
         """The loops that motors follow, by robot; those that follow at once have none."""
         return {number: wheels.control for number, wheels in enumerate(self._wheels) if wheels.control is not None}
 
-    def set_controls(self, controls: Sequence[tuple[WheelControl, WheelControl] | None]) -> None:
-        """The loops that each robot's motors follow."""
-        for wheels, control in zip(self._wheels, controls, strict=True):
-            wheels.control = control
+    def set_control(self, number: int, control: tuple[WheelControl, WheelControl] | None) -> None:
+        """The loops that one robot's motors follow."""
+        self._wheels[number].control = control
 
     def tell(self) -> None:
         """Write to the wheels what they are now."""
@@ -167,20 +169,35 @@ class WheelArrays:
         self._odometry = _rows([wheels.place for wheels in self._wheels], 3)
 
     def drive(self, commanded: Values, slip: Values, limit_m_s: float) -> None:
-        """As `Wheels.drive`."""
+        """As `Wheels.drive`. An array that is given again has not been changed."""
         self.take()
-        self._commanded = np.maximum(-limit_m_s, np.minimum(limit_m_s, commanded))
-        self._ground = np.maximum(-limit_m_s, np.minimum(limit_m_s, commanded * slip))
+        if commanded is not self._given:
+            self._given = commanded
+            self._allowed = np.maximum(-limit_m_s, np.minimum(limit_m_s, commanded))
+        self._commanded = self._allowed
+        self._ground = ground = commanded * slip
+        np.minimum(ground, limit_m_s, out=ground)
+        np.maximum(ground, -limit_m_s, out=ground)
 
     def roll(self, covered_m_s: Values, dt_s: float) -> None:
         """As `Wheels.roll`."""
         self.take()
-        self._speeds = speeds = self._commanded + (covered_m_s - self._ground)
+        self._speeds = speeds = covered_m_s - self._ground
+        speeds += self._commanded
         left, right = speeds
-        way, turn = (left + right) / 2 * dt_s, (right - left) / WHEEL_TRACK_M * dt_s
-        x, y, yaw = self._odometry
-        heading = yaw + turn / 2
-        self._odometry = np.stack((x + way * np.cos(heading), y + way * np.sin(heading), yaw + turn))
+        way, turn = left + right, right - left
+        way *= dt_s / 2
+        turn /= WHEEL_TRACK_M
+        turn *= dt_s
+        before, self._odometry = self._odometry, np.empty_like(self._odometry)
+        heading = turn / 2
+        heading += before[2]
+        place = self._odometry[:2]
+        np.cos(heading, out=place[0])
+        np.sin(heading, out=place[1])
+        place *= way
+        place += before[:2]
+        np.add(before[2], turn, out=self._odometry[2])
         self._angles = self._angles + speeds * (dt_s / WHEEL_RADIUS_M)
 
 

@@ -19,6 +19,7 @@ from thymio_sim_ros.sim.aseba_face import ActuatorFace, Output
 from thymio_sim_ros.sim.commands import BodyTwist, Command, MotorTargets, SetMotorModel, WheelVelocities
 from thymio_sim_ros.sim.motor_control import WheelControl
 from thymio_sim_ros.sim.view import ActuatorView, GroupActuatorView
+from thymio_sim_ros.sim.wheels import WheelArrays
 
 __all__ = ["ACTUATOR", "MotorState", "wanted_speeds"]
 
@@ -33,6 +34,8 @@ class MotorState:
     speeds_m_s: tuple[float, float] = _AT_REST
     ends_ns: int | None = None
     control: tuple[WheelControl, WheelControl] | None = None
+    news: tuple[set[int], int] | None = None
+    """Where a crowd wants to read that a command has come, and the number to be written there."""
 
 
 def wanted_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
@@ -61,12 +64,21 @@ def _apply(state: MotorState, command: MotorTargets | WheelVelocities | BodyTwis
     else:
         state.speeds_m_s = wheel_speeds(command)
         state.ends_ns = now_ns + command.timeout_ns if command.timeout_ns else None
+    if state.news is not None:
+        changed, number = state.news
+        changed.add(number)
+
+
+def _time_out(state: MotorState, now_ns: int) -> bool:
+    """Let the targets hold again when a command ends; whether it does now."""
+    is_over = state.ends_ns is not None and now_ns >= state.ends_ns
+    if is_over:
+        state.speeds_m_s, state.ends_ns = state.targets_m_s, None
+    return is_over
 
 
 def _update(state: MotorState, view: ActuatorView, dt_s: float) -> None:
-    if state.ends_ns is not None and view.now_ns >= state.ends_ns:
-        state.speeds_m_s = state.targets_m_s
-        state.ends_ns = None
+    _time_out(state, view.now_ns)
     noise, wheels = view.noise, view.wheels
     slip = (noise.uniform(*thymio2.SLIP), noise.uniform(*thymio2.SLIP))
     wheels.control = state.control
@@ -85,24 +97,54 @@ def _controlled(state: MotorState, wheels_m_s: Sequence[float], dt_s: float) -> 
     return (left, right)
 
 
+class _Together:
+    """What a crowd's motors aim at, kept from tick to tick; looked at again when a command has come."""
+
+    def __init__(self, states: Sequence[MotorState]) -> None:
+        self.commanded = np.zeros((2, len(states)))
+        self.timed: set[int] = set()
+        """Numbers of those whose command times out."""
+        self.controlled: set[int] = set()
+        """Numbers of those with control loops."""
+        self.changed = set(range(len(states)))
+        for number, state in enumerate(states):
+            state.news = (self.changed, number)
+
+    def look(self, states: Sequence[MotorState], wheels: WheelArrays, now_ns: int) -> None:
+        """Take over what has changed."""
+        for number in self.timed:
+            if _time_out(states[number], now_ns):
+                self.changed.add(number)
+        if not self.changed:
+            return
+        self.commanded = self.commanded.copy()
+        for number in self.changed:
+            state = states[number]
+            self.commanded[:, number] = state.speeds_m_s
+            wheels.set_control(number, state.control)
+            _include(self.timed, number, is_in=state.ends_ns is not None)
+            _include(self.controlled, number, is_in=state.control is not None)
+        self.changed.clear()
+
+
+def _include(numbers: set[int], number: int, *, is_in: bool) -> None:
+    if is_in:
+        numbers.add(number)
+    else:
+        numbers.discard(number)
+
+
 def _update_all(states: Sequence[MotorState], group: GroupActuatorView, dt_s: float) -> None:
-    now_ns, memory, wheels = group.now_ns, group.memory, group.wheels
-    for state in states:
-        if state.ends_ns is not None and now_ns >= state.ends_ns:
-            state.speeds_m_s = state.targets_m_s
-            state.ends_ns = None
-    speeds, controls = [state.speeds_m_s for state in states], [state.control for state in states]
-    if speeds != memory.get("speeds"):
-        memory["speeds"], memory["commanded"] = speeds, np.array(speeds).T
-    if controls != memory.get("controls"):
-        memory["controls"] = controls
-        wheels.set_controls(controls)
-    commanded = memory["commanded"]
-    if any(controls):
+    wheels = group.wheels
+    together = group.memory.get("together")
+    if together is None:
+        together = group.memory["together"] = _Together(states)
+    together.look(states, wheels, group.now_ns)
+    commanded = together.commanded
+    if together.controlled:
         commanded, turning = commanded.copy(), wheels.speeds.T.tolist()
-        for index, state in enumerate(states):
-            if state.control is not None:
-                commanded[:, index] = _controlled(state, turning[index], dt_s)
+        for number in together.controlled:
+            commanded[:, number] = _controlled(states[number], turning[number], dt_s)
     wheels.drive(commanded, group.noise.draw(*thymio2.SLIP, 2), thymio2.MAX_SPEED_M_S)
 
 

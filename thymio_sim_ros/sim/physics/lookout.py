@@ -43,38 +43,48 @@ class Lookout:
     def __init__(self, fixed: Sequence[Obstacle]) -> None:
         rows = Frames(fixed).rows[:, :6]
         reach_m = np.full((len(rows), 1), _RADIUS_M + _WAY_M + SAFE_M)
-        self._fixed = np.concatenate((rows, reach_m), axis=1).T
+        x, y, cos, sin, half_x, half_y, reach = self._fixed = np.concatenate((rows, reach_m), axis=1).T
+        wide_x = np.abs(cos) * half_x + np.abs(sin) * half_y + reach
+        wide_y = np.abs(sin) * half_x + np.abs(cos) * half_y + reach
+        self._bounds = np.stack((x - wide_x, x + wide_x, y, wide_y))
 
     def near(self, poses: Values, stands: Flags, things: Values) -> Flags:
         """Who may reach anything within `LOOK_ROUND_TICKS`, while doors rest and nothing is fast.
 
         `poses` has rows x, y, yaw, things rows x, y, radius; robots that do not stand are not there.
         """
-        count = poses.shape[1]
+        fixed, loose, count = self._fixed.shape[1], things.shape[1], poses.shape[1]
         x, y, yaw = poses
         x, y = x + np.cos(yaw) * _MIDDLE_M, y + np.sin(yaw) * _MIDDLE_M
-        loose = np.zeros((7, things.shape[1] + count))
-        loose[0], loose[1] = np.concatenate((things[0], x)), np.concatenate((things[1], y))
-        loose[2] = 1.0
-        loose[6, : things.shape[1]] = things[2] + (_RADIUS_M + (1.0 + THING_SHARE) * _WAY_M + SAFE_M)
-        loose[6, things.shape[1] :] = np.where(stands, 2 * (_RADIUS_M + _WAY_M) + SAFE_M, 0.0)
-        targets = np.concatenate((self._fixed, loose), axis=1)
-        wide_x = np.abs(targets[2]) * targets[4] + np.abs(targets[3]) * targets[5] + targets[6]
-
         order = np.argsort(x, kind="stable")
         sorted_x = x[order]
-        first = np.searchsorted(sorted_x, targets[0] - wide_x, side="left")
-        counts = np.searchsorted(sorted_x, targets[0] + wide_x, side="right") - first
-        target = np.repeat(np.arange(targets.shape[1]), counts)
-        robot = order[np.arange(len(target)) + np.repeat(first - (np.cumsum(counts) - counts), counts)]
+
+        targets = np.zeros((7, fixed + loose + count))
+        targets[2] = 1.0
+        targets[:, :fixed] = self._fixed
+        targets[:2, fixed : fixed + loose], targets[0, fixed + loose :], targets[1, fixed + loose :] = things[:2], x, y
+        reach = targets[6]
+        np.add(things[2], _RADIUS_M + (1.0 + THING_SHARE) * _WAY_M + SAFE_M, out=reach[fixed : fixed + loose])
+        np.multiply(stands, 2 * (_RADIUS_M + _WAY_M) + SAFE_M, out=reach[fixed + loose :])
+        left, right, middle, wide = bounds = np.empty((4, targets.shape[1]))
+        bounds[:, :fixed] = self._bounds
+        np.subtract(targets[0, fixed:], reach[fixed:], out=left[fixed:])
+        np.add(targets[0, fixed:], reach[fixed:], out=right[fixed:])
+        middle[fixed:], wide[fixed:] = targets[1, fixed:], reach[fixed:]
+
+        first = sorted_x.searchsorted(left)
+        counts = sorted_x.searchsorted(right, side="right") - first
+        target = np.arange(len(counts)).repeat(counts)
+        robot = order[np.arange(len(target)) + (first - counts.cumsum() + counts)[target]]
+        is_near = np.abs(y[robot] - middle[target]) <= wide[target]
+        is_near &= target - (fixed + loose) != robot
+        target, robot = target[is_near], robot[is_near]
 
         tx, ty, cos, sin, half_x, half_y, reach = targets[:, target]
         dx, dy = x[robot] - tx, y[robot] - ty
         along = np.maximum(np.abs(cos * dx + sin * dy) - half_x, 0.0)
         across = np.maximum(np.abs(cos * dy - sin * dx) - half_y, 0.0)
-        is_near = along * along + across * across < reach * reach
-        is_near &= target - (targets.shape[1] - count) != robot
         found = np.zeros(count, dtype=bool)
-        found[robot[is_near]] = True
+        found[robot[along * along + across * across < reach * reach]] = True
         found &= stands
         return found

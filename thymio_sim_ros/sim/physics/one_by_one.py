@@ -1,6 +1,7 @@
-"""Speeds and forces of single bodies, set by the function with which pymunk sets those of all (`pymunk.batch`).
+"""Single bodies of a space set, and all of them read, by the functions with which pymunk does so (`pymunk.batch`).
 
-That function is not public; where a pymunk has none, the public properties do the same, ten times slower.
+The one that sets a single body is not public; where a pymunk has none, the public properties do the same, ten times
+slower.
 """
 
 from __future__ import annotations
@@ -8,15 +9,22 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from itertools import repeat
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pymunk
 from pymunk import _chipmunk_cffi, batch
 
-__all__ = ["Setter", "set_by_properties"]
+__all__ = ["FORCES", "SPEEDS", "Reader", "Setter", "set_by_properties"]
 
 Values = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.intp]
+
+_Fields = batch.BodyFields
+SPEEDS = _Fields.VELOCITY | _Fields.ANGULAR_VELOCITY
+FORCES = SPEEDS | _Fields.FORCE | _Fields.TORQUE
+_STATE = _Fields.BODY_ID | _Fields.POSITION | _Fields.ANGLE | SPEEDS
 
 
 class Setter:
@@ -24,22 +32,59 @@ class Setter:
 
     def __init__(self, bodies: Sequence[pymunk.Body]) -> None:
         self._bodies = bodies
-        self._buffer = batch.Buffer()
         self._function = getattr(_chipmunk_cffi.lib, "pmSpaceBodySetIteratorFuncBatched", None)
         if self._function is not None:
             self._handles = [body._body for body in bodies]
-            self._data = _chipmunk_cffi.ffi.new("pmBatchedData *")
-            self._data.floatArray, self._data.intArray = self._buffer._float_arr, self._buffer._int_arr
+            self._prepared: dict[int, tuple[Values, batch.Buffer, Any]] = {}
 
     def set(self, fields: batch.BodyFields, motion: Values) -> None:
         """As `set_by_properties`; `fields` are those of the columns."""
         if self._function is None:
             set_by_properties(self._bodies, motion)
             return
-        self._buffer.set_float_buf(np.ascontiguousarray(motion))
-        self._buffer._float_arr.num = 0  # it is read from its beginning
-        self._data.fields = fields.value
-        deque(map(self._function, self._handles, repeat(self._data)), maxlen=0)
+        prepared = self._prepared.get(fields.value)
+        if prepared is None:
+            prepared = self._prepared[fields.value] = self._prepare(fields, motion.shape[1])
+        rows, buffer, data = prepared
+        rows[:] = motion
+        buffer._float_arr.num = 0  # it is read from its beginning
+        deque(map(self._function, self._handles, repeat(data)), maxlen=0)
+
+    def _prepare(self, fields: batch.BodyFields, columns: int) -> tuple[Values, batch.Buffer, Any]:
+        """An array that pymunk reads, and its way to it."""
+        rows, buffer = np.zeros((len(self._handles), columns)), batch.Buffer()
+        buffer.set_float_buf(rows)
+        data = _chipmunk_cffi.ffi.new("pmBatchedData *")
+        data.floatArray, data.intArray, data.fields = buffer._float_arr, buffer._int_arr, fields.value
+        return rows, buffer, data
+
+
+class Reader:
+    """Reads all bodies of a space."""
+
+    def __init__(self, space: pymunk.Space) -> None:
+        self._space = space
+        self._buffer = batch.Buffer()
+        self._ids = b""
+        self.order = 0
+        """Another number whenever the rows are in another order."""
+        self.state = np.zeros((0, 6))
+        """Columns x, y, angle, vx, vy, rate of turn, a row for each body."""
+
+    def read(self) -> None:
+        """Read anew."""
+        self._buffer.clear()
+        batch.get_space_bodies(self._space, _STATE, self._buffer)
+        self.state = np.frombuffer(self._buffer.float_buf()).reshape(-1, 6)
+        ids = bytes(self._buffer.int_buf())
+        if ids != self._ids:
+            self._ids = ids
+            self.order += 1
+
+    def rows(self, bodies: Sequence[pymunk.Body]) -> Indices:
+        """Where in `state` some bodies of the space are."""
+        rows = {number: row for row, number in enumerate(np.frombuffer(self._ids, dtype=np.uintp).tolist())}
+        return np.array([rows[body.id] for body in bodies], dtype=np.intp)
 
 
 def set_by_properties(bodies: Sequence[pymunk.Body], motion: Values) -> None:
