@@ -52,13 +52,15 @@ def test_a_broken_playground_is_located(capsys, tmp_path):
     assert "expected" in line
 
 
-@pytest.mark.parametrize(("option", "whose"), [("--port", "page"), ("--foxglove-port", "Foxglove")])
-def test_a_port_in_use_is_one_line(capsys, option, whose):
+@pytest.mark.parametrize(
+    ("option", "whose", "others"), [("--port", "page", []), ("--foxglove-port", "Foxglove", ["--no-web"])]
+)
+def test_a_port_in_use_is_one_line(capsys, option, whose, others):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         port = str(taken.getsockname()[1])
-        line = refused(capsys, option, port)
+        line = refused(capsys, option, port, *others)
     assert port in line
     assert whose in line
     assert option in line

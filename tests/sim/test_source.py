@@ -128,3 +128,21 @@ def test_other_json_is_taken_for_ours() -> None:
 
 def test_a_file_that_is_too_large_is_refused() -> None:
     assert "more than" in refused(b" " * (source.MAX_BYTES + 1)).found
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('{"title": "NaN",\n "format": NaN}', "t: line 2, column 12: found NaN, expected finite numbers"),
+        ('{"format": [1, -Infinity]}', "t: line 1, column 16: found -Infinity, expected finite numbers"),
+        ('{"format": 1,\n', "t: line 2, column 1: found the end of the text, expected JSON (Expecting property name"),
+        (
+            '{"format": 1 "title": ""}',
+            "t: line 1, column 14: found '\"title\": \"\"}', expected JSON (Expecting ',' delimi",
+        ),
+    ],
+)
+def test_a_fault_of_the_text_is_told_with_its_place(text: str, message: str) -> None:
+    with pytest.raises(PlaygroundError) as caught:
+        playground.loads(text, "t")
+    assert str(caught.value).startswith(message)

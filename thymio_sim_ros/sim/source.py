@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping
@@ -34,6 +35,10 @@ Beside = Callable[[str], bytes]
 _ZIP = b"PK\x03\x04"
 _BOM = b"\xef\xbb\xbf"
 _PLAYGROUND_ENDINGS = (".xml", ".playground", ".json")
+_WORDS = re.compile(r'"(?:[^"\\]|\\.)*"|NaN|-?Infinity')
+"""Strings of JSON, and words that Python takes for numbers outside them."""
+_SHOWN = 12
+"""Characters that an error shows."""
 _IN_FOLDER = "a file in the playground's folder"
 
 
@@ -137,7 +142,8 @@ def _extract(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
 
 def _parse_json(text: str) -> object:
     def refuse(word: str) -> NoReturn:
-        raise FieldError("", word, "finite numbers")
+        place = next(token.start() for token in _WORDS.finditer(text) if token.group() == word)
+        raise FieldError(_line_and_column(text, place), word, "finite numbers")
 
     def unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
         members = dict(pairs)
@@ -150,6 +156,11 @@ def _parse_json(text: str) -> object:
     try:
         return json.loads(text, parse_constant=refuse, object_pairs_hook=unique)
     except json.JSONDecodeError as error:
-        raise FieldError(f"line {error.lineno}, column {error.colno}", error.msg, "JSON") from error
+        found = repr(text[error.pos : error.pos + _SHOWN]) if error.pos < len(text) else "the end of the text"
+        raise FieldError(_line_and_column(text, error.pos), found, f"JSON ({error.msg})") from error
     except (RecursionError, ValueError) as error:
         raise FieldError("", "numbers or nesting without measure", "a playground") from error
+
+
+def _line_and_column(text: str, place: int) -> str:
+    return f"line {text.count(chr(10), 0, place) + 1}, column {place - text.rfind(chr(10), 0, place)}"
