@@ -1,5 +1,6 @@
 // What a person can do, as the messages, calls and parameters that do it. No document, no scene.
 
+import { CHECK_SERVICE, checkRequest, firstFault } from "./editor/checking.js";
 import { PARAMETERS, robotTopic } from "./state/names.js";
 
 /** @typedef {import("./protocol/client.js").Client} Client */
@@ -26,11 +27,13 @@ export class Actions {
    * @param {Client} options.client
    * @param {Store} options.store
    * @param {(key: string, values?: Record<string, any>) => string} options.t
+   * @param {() => string} options.language  of the page
    */
-  constructor({ client, store, t }) {
+  constructor({ client, store, t, language }) {
     this.client = client;
     this.store = store;
     this.t = t;
+    this.language = language;
   }
 
   /**
@@ -128,7 +131,15 @@ export class Actions {
       { name: PARAMETERS.programName, value: name },
       { name: PARAMETERS.source, value: text },
     ]);
-    this.store.dispatch({ type: "uploaded", what: "program", message: answer.ok ? null : answer.message });
+    const fault = answer.ok ? null : await this.#faultOf(text);
+    this.store.dispatch({ type: "uploaded", what: "program", message: answer.ok ? null : answer.message, fault });
+  }
+
+  /** The compiler's own words in the language of the page; null where it has none. @param {string} source */
+  async #faultOf(source) {
+    const question = checkRequest({ source, language: this.language(), events: [], constants: [] });
+    const { ok, value } = await this.client.call(CHECK_SERVICE, question);
+    return ok && value !== undefined ? firstFault(value) : null;
   }
 
   /** @param {string} name @param {Uint8Array} [content]  of a file, else `name` is one of the list */

@@ -59,7 +59,7 @@ async function main() {
     wants: (topic) => isWatched(store.state, topic) || editor.wants(topic),
     parameters: [PARAMETERS.playground, PARAMETERS.factor],
   });
-  const actions = new Actions({ client, store, t: (key, values) => t(key, values) });
+  const actions = new Actions({ client, store, t: (key, values) => t(key, values), language: () => language });
   const live = element("#live");
   /** @param {string} text */
   const announce = (text) => {

@@ -21,7 +21,7 @@ function prepared({ ok = true, message = "", value = /** @type {any} */ (undefin
     },
   };
   const store = new Store();
-  const actions = new Actions({ client: /** @type {any} */ (client), store, t: (key) => key });
+  const actions = new Actions({ client: /** @type {any} */ (client), store, t: (key) => key, language: () => "de" });
   return { actions, asked, store };
 }
 
@@ -150,4 +150,18 @@ test("a behaviour is a parameter of the runtime", async () => {
   const { actions, asked } = prepared();
   await actions.setBehaviour("menu");
   assert.deepEqual(asked, [["set", [{ name: "/aseba_runtime.behaviour", value: "menu" }]]]);
+});
+
+test("a program that is refused is explained in the language of the page", async () => {
+  const errors = [{ line: 1, column: 9, length: 5, message: "kein Ereignis heißt 'zzzzz'", kind: "unknown-event", node: "" }];
+  const value = { result: { successful: false, reason: JSON.stringify({ errors }) } };
+  const { actions, asked, store } = prepared({ value });
+  const client = /** @type {any} */ (actions.client);
+  client.setParameters = async () => ({ ok: false, message: "a.aesl: line 1, column 9: no event is called 'zzzzz'" });
+  await actions.loadProgram("a.aesl", "onevent zzzzz");
+  assert.deepEqual(store.state.uploads.program?.fault, { text: "kein Ereignis heißt 'zzzzz'", line: 1, column: 9 });
+  assert.deepEqual(asked[0][2].parameters[1], { name: "language", value: { type: 4, string_value: "de" } });
+  client.call = async () => ({ ok: false, message: "gone" });
+  await actions.loadProgram("a.aesl", "onevent zzzzz");
+  assert.equal(store.state.uploads.program?.fault?.text, "no event is called 'zzzzz'");
 });

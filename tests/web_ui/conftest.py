@@ -79,9 +79,10 @@ def other_page(browser) -> Iterator[Any]:
     yield from checked_page(browser)
 
 
-def checked_page(browser: Any) -> Iterator[Any]:
+def checked_page(browser: Any, **options: Any) -> Iterator[Any]:
     """A page of its own browser profile, whose problems are an assertion at its end."""
-    page = browser.new_page(viewport={"width": 800, "height": 600}, bypass_csp=True)  # wait_for_function evaluates
+    options = {"viewport": {"width": 800, "height": 600}, "bypass_csp": True} | options  # waiting evaluates
+    page = browser.new_page(**options)
     page.set_default_timeout(DEADLINE_MS)
     problems: list[str] = []
     page.on("pageerror", lambda error: problems.append(f"script: {error}"))

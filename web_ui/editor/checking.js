@@ -12,9 +12,14 @@
 /** @typedef {{ from: number, to: number, severity: "error" | "warning", message: string }} Mark */
 /** @typedef {{ name: string, value: number }} Entry */
 
+/** @typedef {{ text: string, line: number | null, column: number | null }} Fault */
+
 export const CHECK_SERVICE = "/aseba_runtime/check";
 const STRING = 4; // rcl_interfaces/msg/ParameterType
+const BOOL = 1;
 const STRING_ARRAY = 9;
+/** Of an answer to a question that could not be answered. */
+const NO_ANSWER = "request";
 
 /**
  * A request of rcl_interfaces/srv/SetParametersAtomically.
@@ -35,6 +40,23 @@ export function checkRequest({ source, language, events, constants }) {
       { name: "constants", value: list(constants) },
     ],
   };
+}
+
+/** A request for what the robot has, with help in this language. @param {string} language */
+export function targetRequest(language) {
+  return {
+    parameters: [
+      { name: "source", value: { type: STRING, string_value: "" } },
+      { name: "language", value: { type: STRING, string_value: language } },
+      { name: "target", value: { type: BOOL, bool_value: true } },
+    ],
+  };
+}
+
+/** The first error of a whole file in the words of a language; null without one. @param {any} answer @returns {Fault | null} */
+export function firstFault(answer) {
+  const found = readVerdict(answer).errors.find(({ kind }) => kind !== NO_ANSWER);
+  return found === undefined ? null : { text: found.message, line: found.line, column: found.column };
 }
 
 /** @param {any} answer @returns {Verdict} */

@@ -10,11 +10,12 @@ import { locate } from "../state/index.js";
 import { robotTopic } from "../state/names.js";
 import { readAesl } from "./aesl.js";
 import { breakpointLines, showBreakpoints, showPlace } from "./breakpoints.js";
-import { marks } from "./checking.js";
+import { CHECK_SERVICE, marks } from "./checking.js";
 import { isInRobot } from "./documents.js";
 import { download } from "./download.js";
 import { footer } from "./footer.js";
 import { header } from "./header.js";
+import { Lexicon } from "./lexicon.js";
 import { Link } from "./link.js";
 import { createText } from "./text.js";
 import { toolbar, watchKeys } from "./toolbar.js";
@@ -62,7 +63,8 @@ export function createEditor({ desk, client, store, language, pageText, announce
   /** The robot the tab's program is for; null for all. */
   const owner = () => (workspace.tab === ALL ? null : workspace.tab);
   const status = () => store.state.programs[robot()] ?? null;
-  const target = () => desk.state.targets[robot()] ?? null;
+  const lexicon = new Lexicon(language);
+  const target = () => lexicon.translate(desk.state.targets[robot()] ?? null);
 
   const element = h("section", { class: "editor", "aria-label": t("editor") });
   const redraw = () => {
@@ -174,10 +176,9 @@ export function createEditor({ desk, client, store, language, pageText, announce
   const load = async () => {
     const { tab } = workspace;
     const { name, text: source } = workspace.current;
-    const lines = breakpointLines(text.view.state);
     const { ok, message } = await link.load(owner(), name, source, robots());
     if (!ok) {
-      const fault = locate(message, name);
+      const fault = (await link.fault(source, language)) ?? locate(message, name);
       tell(
         fault.line === null ? fault.text : t("verdict.at", { line: codeLine(fault.line), message: fault.text }),
         "error",
@@ -186,7 +187,8 @@ export function createEditor({ desk, client, store, language, pageText, announce
     }
     workspace.loaded(tab, source);
     tell(t("editor.loaded", { name }), "good");
-    if (lines.length > 0) await sendBreakpoints();
+    // Those that stand there now: one may have been set while the robot answered.
+    if (workspace.tab === tab && breakpointLines(text.view.state).length > 0) await sendBreakpoints();
     redraw();
     return true;
   };
@@ -341,6 +343,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
 
   const render = () => {
     if (!desk.tabs(robots()).includes(workspace.tab)) workspace.choose(ALL);
+    if (store.state.services.includes(CHECK_SERVICE)) void lexicon.ask(link, redraw);
     workspace.tell(ALL, desk.state.targets[store.state.selected]?.program);
     if (workspace.tab !== ALL) workspace.tell(workspace.tab, target()?.program);
     if (workspace.current.text !== fileText) {

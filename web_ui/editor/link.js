@@ -1,7 +1,7 @@
 // What the editor asks of the Aseba runtime, as calls, parameters and messages (docs/aseba_ros.md).
 
 import { robotTopic } from "../state/names.js";
-import { CHECK_SERVICE, checkRequest, readVerdict } from "./checking.js";
+import { CHECK_SERVICE, checkRequest, firstFault, readVerdict, targetRequest } from "./checking.js";
 
 /** @typedef {import("../protocol/client.js").Client} Client */
 /** @typedef {{ ok: boolean, message: string }} Answer */
@@ -21,6 +21,19 @@ export class Link {
   async check(what) {
     const { ok, value } = await this.client.call(CHECK_SERVICE, checkRequest(what));
     return ok && value !== undefined ? readVerdict(value) : null;
+  }
+
+  /** What is wrong with a file, in a language. @param {string} source @param {string} language */
+  async fault(source, language) {
+    const question = checkRequest({ source, language, events: [], constants: [] });
+    const { ok, value } = await this.client.call(CHECK_SERVICE, question);
+    return ok && value !== undefined ? firstFault(value) : null;
+  }
+
+  /** What every robot has, with help in a language. @param {string} language @returns {Promise<import("./state.js").Target | null>} */
+  async target(language) {
+    const { ok, value } = await this.client.call(CHECK_SERVICE, targetRequest(language));
+    return ok && value !== undefined ? (JSON.parse(value.result.reason).target ?? null) : null;
   }
 
   /**

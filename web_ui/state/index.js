@@ -68,7 +68,7 @@ import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
  *   | { type: "fault", what: string }
  *   | { type: "select", robot: string }
  *   | { type: "upload", what: What, name: string, text: string }
- *   | { type: "uploaded", what: What, message: string | null }
+ *   | { type: "uploaded", what: What, message: string | null, fault?: Fault | null }
  *   | { type: "forget", what: What }
  *   | { type: "notice", level: Notice["level"], text: string }
  *   | { type: "dismiss", id: number }} Message
@@ -144,10 +144,10 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   fault: (state, { what }) => withNotice(state, "error", what),
   select: (state, { robot }) => ({ ...state, selected: robot }),
   upload: (state, { what, name, text }) => withUpload(state, what, { name, text, phase: "sending", fault: null }),
-  uploaded(state, { what, message }) {
+  uploaded(state, { what, message, fault: told = null }) {
     const upload = state.uploads[/** @type {What} */ (what)];
     if (upload === null) return state;
-    const fault = message === null ? null : locate(message, upload.name);
+    const fault = message === null ? null : (told ?? locate(message, upload.name));
     return withUpload(state, what, { ...upload, phase: fault === null ? "accepted" : "refused", fault });
   },
   forget: (state, { what }) => withUpload(state, what, null),

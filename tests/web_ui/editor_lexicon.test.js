@@ -1,0 +1,54 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { firstFault } from "../../web_ui/editor/checking.js";
+import { Lexicon } from "../../web_ui/editor/lexicon.js";
+import { Link } from "../../web_ui/editor/link.js";
+
+const TARGET = /** @type {any} */ ({
+  variables: [{ name: "acc", size: 3, address: 0, hidden: false, help: "accelerometer" }],
+  events: [{ name: "acc", help: "was read" }],
+  natives: [{ name: "own.native", parameters: [], hidden: false, help: "of a plug-in" }],
+  keywords: [],
+  limits: {},
+});
+const GERMAN = { ...TARGET, variables: [{ ...TARGET.variables[0], help: "Beschleunigung" }], natives: [] };
+
+/** @param {any} reason */
+function answering(reason) {
+  /** @type {any[]} */ const asked = [];
+  const value = { result: { successful: true, reason: JSON.stringify(reason) } };
+  const call = async (/** @type {any[]} */ ...given) => (asked.push(given), { ok: true, message: "", value });
+  return { asked, link: new Link(/** @type {any} */ ({ call })) };
+}
+
+test("help is asked for once, in the language of the page, and stands in for the target's", async () => {
+  const lexicon = new Lexicon("de");
+  const { asked, link } = answering({ target: GERMAN });
+  assert.equal(lexicon.translate(null), null);
+  assert.equal(lexicon.translate(TARGET).variables[0].help, "accelerometer");
+  let changes = 0;
+  for (let round = 0; round < 3; round++) await lexicon.ask(link, () => changes++);
+  assert.deepEqual([asked.length, changes], [1, 1]);
+  assert.equal(asked[0][1].parameters.find((/** @type {any} */ each) => each.name === "language").value.string_value, "de");
+  const translated = lexicon.translate(TARGET);
+  assert.equal(translated.variables[0].help, "Beschleunigung");
+  assert.equal(translated.events[0].help, "was read");
+  assert.equal(translated.natives[0].help, "of a plug-in");
+  assert.equal(lexicon.translate(TARGET), translated);
+});
+
+test("a runtime that cannot help leaves the help as it came", async () => {
+  const lexicon = new Lexicon("de");
+  await lexicon.ask(new Link(/** @type {any} */ ({ call: async () => ({ ok: false, message: "gone" }) })), () => {});
+  assert.equal(lexicon.translate(TARGET).variables[0].help, "accelerometer");
+});
+
+test("the first fault is told, but not that nobody could look", () => {
+  /** @param {string} kind */
+  const answer = (kind) => ({
+    result: { reason: JSON.stringify({ errors: [{ line: 2, column: 3, length: 1, message: "falsch", kind, node: "" }] }) },
+  });
+  assert.deepEqual(firstFault(answer("unknown-variable")), { text: "falsch", line: 2, column: 3 });
+  assert.equal(firstFault(answer("request")), null);
+});

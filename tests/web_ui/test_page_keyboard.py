@@ -1,0 +1,120 @@
+"""A lesson without a mouse: choose a playground, open and change a program, run, break, step, drive, stop."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+from tests.web_ui.page_support import MARKS, open_page
+
+pytestmark = MARKS
+
+PROGRAM = """\
+var presses = 0
+onevent button.forward
+presses = presses + button.forward
+motor.left.target = 150 * button.forward
+motor.right.target = 150 * button.forward
+"""
+MOST_TABS = 150
+STATE = "() => window.thymio.state()"
+
+
+def go_to(page: Any, selector: str, key: str = "Tab") -> None:
+    """Press a key until something has the focus, as a person would."""
+    for _ in range(MOST_TABS):
+        if page.evaluate("(selector) => document.activeElement?.matches(selector) ?? false", selector):
+            return
+        page.keyboard.press(key)
+    pytest.fail(f"{MOST_TABS} times {key} do not lead to {selector}")
+
+
+def expect(page: Any, selector: str) -> Any:
+    return playwright.expect(page.locator(selector))
+
+
+def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
+    file = tmp_path / "drive.aesl"
+    file.write_text(f'<network>\n<node nodeId="1" name="thymio-II">{PROGRAM}</node>\n</network>\n')
+    page.set_viewport_size({"width": 1280, "height": 720})
+    page.on("filechooser", lambda _chooser: None)  # from now on, so that no dialog of the system opens
+    open_page(page, suite("--playground", "line", "--program", "none"))
+
+    go_to(page, "#playground-choice")
+    page.keyboard.type("Base")
+    page.wait_for_function(f"({STATE})().simulator.playground === 'base'")
+
+    go_to(page, "#editor-switch", "Shift+Tab")
+    page.keyboard.press("Enter")
+    page.locator(".cm-content:focus").wait_for()  # the editor opens with the cursor in it
+    page.keyboard.press("Escape")
+    go_to(page, ".editor .file button", "Shift+Tab")
+    with page.expect_file_chooser() as chooser:
+        page.keyboard.press("Enter")
+    chooser.value.set_files(str(file))
+    expect(page, ".cm-content").to_contain_text("presses + button.forward")
+
+    go_to(page, ".cm-content")
+    page.keyboard.press("Control+End")
+    page.keyboard.insert_text("call leds.top(0, 32 * button.forward, 0)\n")
+    expect(page, ".verdict").to_contain_text("No errors")
+    page.keyboard.press("F9")
+    page.wait_for_function(f"({STATE})().program.name === 'drive.aesl'")
+
+    page.keyboard.press("Control+Home")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Control+b")
+    expect(page, ".breakpoints .breakpoint:visible").to_have_count(1)
+    page.wait_for_function(
+        f"({STATE})().program.values.breakpoints === '[4]'"
+    )  # of the file: its first line is <network>
+
+    page.keyboard.press("Escape")
+    go_to(page, "#view", "Shift+Tab")
+    page.keyboard.down("ArrowUp")
+    page.wait_for_function(f"({STATE})().robot.buttons.forward")
+    expect(page, ".editor-foot .state").to_contain_text("paused (line 3)")
+    page.keyboard.press("F7")
+    expect(page, ".current-line").to_have_text("motor.left.target = 150 * button.forward")
+    expect(page, "[data-variable=presses]").to_have_text("1")
+    page.keyboard.press("F9")
+    page.wait_for_function(f"({STATE})().robot.wheelSpeeds.left > 1 && ({STATE})().robot.wheelSpeeds.right > 1")
+    page.wait_for_function(f"Math.max(...({STATE})().robot.leds.top) === 1")
+
+    page.keyboard.press("Escape")
+    page.wait_for_function(f"({STATE})().program.state === 'stopped'")
+    page.wait_for_function(f"Math.abs(({STATE})().robot.wheelSpeeds.left) < 0.1")
+    page.keyboard.up("ArrowUp")
+    page.wait_for_function(f"!({STATE})().robot.buttons.forward")
+    said = page.evaluate("() => document.querySelector('#live').textContent")
+    assert "stopped" in said
+
+
+@pytest.mark.parametrize(
+    ("language", "error", "help_text"),
+    [
+        ("de", "keine Variable heißt 'motor.left.targt'; vielleicht ist 'motor.left.target' gemeint", "gewünschte"),
+        ("fr", "aucune variable ne s'appelle 'motor.left.targt'", "vitesse voulue"),
+        ("it", "nessuna variabile si chiama 'motor.left.targt'", "velocità voluta"),
+    ],
+)
+def test_the_editor_and_the_program_panel_explain_in_the_language_of_the_page(
+    suite, page, tmp_path, language, error, help_text
+):
+    broken = tmp_path / "broken.aesl"
+    broken.write_text("onevent prox\nmotor.left.targt = 1\n")
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.select_option("select.language", language)
+    page.wait_for_function("() => window.thymio.state().services.includes('/aseba_runtime/check')")
+    page.set_input_files("#program-file", str(broken))
+    expect(page, ".upload.refused").to_contain_text(error)
+    page.click("#editor-switch")
+    page.set_input_files("#editor-file", str(broken))
+    expect(page, ".verdict").to_contain_text(error)
+    page.click("#tool-tab-reference")
+    page.fill(".reference input", "motor.left.target")
+    expect(page, ".reference .entry-help:visible p").to_contain_text(help_text)

@@ -1,0 +1,128 @@
+"""Fingers on a tablet: turn and zoom the view, press buttons on the robot and on the cross, carry the robot."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from tests.web_ui.conftest import checked_page
+from tests.web_ui.page_support import MARKS, open_page, wait_until_settled
+
+pytestmark = MARKS
+
+RESTING = ("--playground", "base", "--program", "none")
+POSE = "() => window.thymio.state().robot.latest.pose"
+CORNERS = "() => [[0.4, 0.4, 0], [-0.4, -0.4, 0]].map(([x, y, z]) => window.thymio.screenPosition(x, y, z))"
+
+
+class Fingers:
+    """Several fingers at once, by the developer protocol: a finger is a number, a place is in CSS pixels."""
+
+    def __init__(self, page: Any) -> None:
+        self._developer = page.context.new_cdp_session(page)
+        self._down: dict[int, tuple[float, float]] = {}
+
+    def put(self, **places: tuple[float, float]) -> None:
+        """Put fingers down: a=(x, y), b=(x, y)."""
+        for name, place in places.items():
+            self._down[ord(name)] = place
+            self._send("touchStart")
+
+    def move(self, steps: int = 6, **places: tuple[float, float]) -> None:
+        """Move fingers that are down, all together."""
+        begin = {name: self._down[ord(name)] for name in places}
+        for step in range(1, steps + 1):
+            for name, (x, y) in places.items():
+                from_x, from_y = begin[name]
+                self._down[ord(name)] = (from_x + (x - from_x) * step / steps, from_y + (y - from_y) * step / steps)
+            self._send("touchMove")
+
+    def lift(self) -> None:
+        """Take all fingers up."""
+        self._down.clear()
+        self._send("touchEnd")
+
+    def _send(self, kind: str) -> None:
+        points = [{"x": x, "y": y, "id": number} for number, (x, y) in self._down.items()]
+        self._developer.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+
+@pytest.fixture
+def tablet(browser) -> Iterator[Any]:
+    """A page on a touch screen, which must not fail either."""
+    yield from checked_page(browser, has_touch=True)
+
+
+def place_of(page: Any, part: str) -> tuple[float, float]:
+    place = page.evaluate("(part) => window.thymio.partPosition(part)", part)
+    return place["x"], place["y"]
+
+
+def middle_of(page: Any, selector: str) -> tuple[float, float]:
+    box = page.locator(selector).bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def corners(page: Any) -> list[tuple[float, float]]:
+    """Where two corners of the playground are on the screen."""
+    return [(place["x"], place["y"]) for place in page.evaluate(CORNERS)]
+
+
+def test_one_finger_turns_the_view_and_two_zoom_it(suite, tablet):
+    open_page(tablet, suite(*RESTING))
+    wait_until_settled(tablet, "robot")
+    fingers = Fingers(tablet)
+    before = corners(tablet)
+    fingers.put(a=(60, 120))
+    fingers.move(a=(180, 120))
+    fingers.lift()
+    wait_until_settled(tablet, "robot")
+    turned = corners(tablet)
+    assert math.dist(before[0], turned[0]) > 20
+    fingers.put(a=(60, 120), b=(100, 160))
+    fingers.move(a=(20, 80), b=(200, 260))
+    fingers.lift()
+    wait_until_settled(tablet, "robot")
+    assert math.dist(*corners(tablet)) > 1.2 * math.dist(*turned)
+
+
+def test_two_fingers_press_two_buttons_on_the_robot_and_one_on_the_cross(suite, tablet):
+    open_page(tablet, suite(*RESTING))
+    tablet.locator("#view").focus()
+    tablet.keyboard.press("f")
+    wait_until_settled(tablet, "button.center")
+    fingers = Fingers(tablet)
+    fingers.put(a=place_of(tablet, "button.forward"), b=place_of(tablet, "button.backward"))
+    tablet.wait_for_function(
+        "() => { const {forward, backward} = window.thymio.state().robot.buttons; return forward && backward; }"
+    )
+    fingers.lift()
+    tablet.wait_for_function("() => !Object.values(window.thymio.state().robot.buttons).includes(true)")
+    fingers.put(a=middle_of(tablet, "[data-button=left]"), b=middle_of(tablet, "[data-button=center]"))
+    tablet.wait_for_function(
+        "() => { const {left, center} = window.thymio.state().robot.buttons; return left && center; }"
+    )
+    fingers.lift()
+    tablet.wait_for_function("() => !Object.values(window.thymio.state().robot.buttons).includes(true)")
+
+
+def test_a_finger_carries_the_robot(suite, tablet):
+    open_page(tablet, suite(*RESTING))
+    wait_until_settled(tablet, "robot")
+    tablet.wait_for_function("() => window.thymio.state().services.includes('/simulator/set_poses')")
+    before = tablet.evaluate(POSE)
+    tablet.get_by_role("button", name="Move things").tap()
+    fingers = Fingers(tablet)
+    x, y = place_of(tablet, "robot")
+    fingers.put(a=(x, y))
+    fingers.move(a=(x + 60, y + 10))
+    tablet.wait_for_function("() => window.thymio.held()?.blocker === null")
+    fingers.lift()
+    tablet.wait_for_function(
+        "(before) => { const {x, y} = window.thymio.state().robot.latest.pose;"
+        " return Math.hypot(x - before.x, y - before.y) > 0.05; }",
+        arg=before,
+    )

@@ -1,0 +1,43 @@
+// The robots' help in the language of the page: asked for once, and put in place of what a target brings.
+
+/** @typedef {import("./state.js").Target} Target */
+/** @typedef {import("./link.js").Link} Link */
+
+const KINDS = /** @type {const} */ (["variables", "events", "natives"]);
+
+export class Lexicon {
+  /** @param {string} language */
+  constructor(language) {
+    this.language = language;
+    this.asked = false;
+    /** @type {Map<string, string>} */ this.words = new Map();
+    /** @type {WeakMap<Target, Target>} */ this.known = new WeakMap();
+  }
+
+  /** Ask, unless that was done. @param {Link} link @param {() => void} changed  there is more to say */
+  async ask(link, changed) {
+    if (this.asked) return;
+    this.asked = true;
+    const target = await link.target(this.language);
+    if (target === null) return;
+    for (const kind of KINDS) for (const { name, help } of target[kind]) this.words.set(`${kind} ${name}`, help);
+    this.known = new WeakMap();
+    changed();
+  }
+
+  /** The target with help in the language, the same for the same. @template {Target | null} T @param {T} target @returns {T} */
+  translate(target) {
+    if (target === null) return target;
+    const found = this.known.get(target);
+    if (found !== undefined) return /** @type {T} */ (found);
+    const translated = { ...target };
+    for (const kind of KINDS) {
+      /** @type {any} */ (translated)[kind] = target[kind].map((entry) => ({
+        ...entry,
+        help: this.words.get(`${kind} ${entry.name}`) ?? entry.help,
+      }));
+    }
+    this.known.set(target, translated);
+    return translated;
+  }
+}
