@@ -6,6 +6,7 @@ import errno
 import socket
 import ssl
 import threading
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -210,6 +211,32 @@ def test_a_command_that_cannot_be_told_harms_neither_its_sender_nor_later_ones(
         assert message.time_ns == 7
     server.close()
     assert caplog.messages == ["Tell failed"]
+
+
+def test_a_thread_that_sends_without_a_pause_keeps_nobody_away() -> None:
+    server, _ = start()
+    server.post(ev.AddChannels((CHANNEL,)))
+    is_enough = threading.Event()
+
+    def send() -> None:
+        while not is_enough.is_set():
+            server.post(ev.Data(1, 0, bytes(100)))
+
+    sender = threading.Thread(target=send)
+    sender.start()
+    try:
+        with ExitStack() as clients:
+            for _ in range(5):
+                client = clients.enter_context(
+                    connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS, close_timeout=0)  # type: ignore[arg-type]  # plain strings
+                )
+                client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+                while not isinstance(wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
+                    pass
+    finally:
+        is_enough.set()
+        sender.join()
+        server.close()
 
 
 def test_closing_ends_the_thread_and_says_goodbye_to_clients() -> None:

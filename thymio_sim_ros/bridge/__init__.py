@@ -4,6 +4,7 @@
     channels            who wants what: all state and decisions, without sockets
     server, thread      sockets and the event loop around them
     transport, outlet   the way out to a client, from either thread
+    turn                whose turn it is to work on all that
     events              what the source of data is told (events) and tells (commands)
 
 Why our own server on `websockets` and not one of the vendor's packages: foxglove.md section 1.

@@ -12,7 +12,6 @@ import asyncio
 import itertools
 import logging
 import ssl
-import threading
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -34,6 +33,7 @@ from thymio_sim_ros.bridge.messages import Status, Time, Unsubscribe
 from thymio_sim_ros.bridge.origins import is_allowed
 from thymio_sim_ros.bridge.outlet import Outlet
 from thymio_sim_ros.bridge.transport import SharedConnection
+from thymio_sim_ros.bridge.turn import Turn
 from thymio_sim_ros.bridge.vocabulary import SUBPROTOCOLS, StatusLevel
 from thymio_sim_ros.bridge.wire import DATA_HEAD_SIZE, data_head, decode_client, encode_server
 
@@ -85,8 +85,8 @@ class BridgeServer:
         self._flush_is_due = False
         self._loop: asyncio.AbstractEventLoop
         self._servers: list[Server] = []
-        self._turn = threading.Lock()
-        """Held by the thread that works on board and outlets."""
+        self._turn = Turn()
+        """Of the thread that works on board and outlets."""
 
     async def start(self, listeners: Iterable[socket]) -> None:
         """Serve on bound sockets, which become the server's own."""
@@ -136,12 +136,12 @@ class BridgeServer:
 
     def apply_now(self, command: Command) -> bool:
         """Carry out a command in the calling thread, unless the loop is at work; returns whether it was done."""
-        if not self._turn.acquire(blocking=False):
+        if not self._turn.take():
             return False
         try:
             self._apply(command)
         finally:
-            self._turn.release()
+            self._turn.give_back()
         return True
 
     def _apply(self, command: Command) -> None:

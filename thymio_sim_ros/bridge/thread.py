@@ -19,6 +19,9 @@ __all__ = ["ServerThread", "listen"]
 _MAX_WAITING = 10_000
 """Commands that may wait for the loop before further data is dropped."""
 
+_BATCH = 100
+"""Commands that the loop carries out at a time."""
+
 
 _LOOPBACK = ("127.0.0.1", "::1")
 """What `localhost` means: a browser may try either first."""
@@ -133,12 +136,16 @@ class ServerThread:
         self._thread.join()
 
     def _drain(self) -> None:
-        self._wake_is_due = False
+        """Carry out some of what waits; clients have their turn before the rest, which may grow as fast."""
         self._server.apply(self._taken())
+        self._wake_is_due = False
+        if self._waiting:
+            self._wake_is_due = True
+            self._loop.call_soon(self._drain)
 
     def _taken(self) -> Iterator[Command]:
         """What waits, taken one by one: nobody may overtake a command that is neither here nor carried out."""
-        while self._waiting:
+        for _ in range(min(len(self._waiting), _BATCH)):
             yield self._waiting.popleft()
 
     def _run(self) -> None:
