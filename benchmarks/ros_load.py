@@ -6,6 +6,9 @@ median of the rounds, and the best. The factor is what `/diagnostics` told as ac
 was lost, by the simulator or by other work. "Start" is the CPU time until all robots listen. Other work on the machine
 makes everything dearer, by caches alone two to three times: the load is printed too.
 
+"Floor" is what a bare loop takes that sends ready bytes on as many topics at the same rate to the same listener, right
+after: what is left is the simulator's own.
+
 "All topics" are those of `topics`: all of every robot, /tf and /clock; "13 topics" those that performance.md section 7
 counts: nine Range, odometry, transforms, joints, Imu. All that is regular is sent at the scene's rate, the clock too.
 """
@@ -33,6 +36,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist, Vector3
 from rclpy.context import Context
 from rclpy.node import Node
+from rclpy.serialization import serialize_message
 from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Range
@@ -47,6 +51,7 @@ SPEED_M_S, TURN_RAD_S = 0.05, 1.0
 START_S, WARM_UP_S = 120.0, 3.0
 NODE = "import sys; from thymio_sim_ros.nodes.simulator_node import main; sys.exit(main())"
 PROFILED = "import sys; from benchmarks.ros_load import profiled; profiled(sys.argv[1], sys.argv[2:])"
+SENDER = "import sys; from benchmarks.ros_load import send; send(*sys.argv[1:])"
 LISTENER = "import sys; from benchmarks.ros_load import listen; listen(sys.argv[1:])"
 
 
@@ -99,12 +104,14 @@ def playground(robots: int) -> str:
     return json.dumps({"format": 1, "title": "Load", "shapes": [floor], "robots": starts})
 
 
-def topics(robots: int, heard: str) -> Iterator[tuple[type, str]]:
-    """Every topic that is listened to."""
+def topics(robots: int, heard: str, *, only_regular: bool = False) -> Iterator[tuple[type, str]]:
+    """Every topic that is listened to; or those of them on which nothing has to happen first."""
     spaces = [""] if robots == 1 else [f"/r{index}" for index in range(robots)]
     for space in spaces:
         for sensor in reference.own_sensors():
             for row in convert.rows_of(sensor):
+                if only_regular and not convert.is_regular(sensor, row):
+                    continue
                 if heard == ALL or row.type is Range or row.topic in ("odom", "joint_states", "imu"):
                     yield row.type, f"{space}/{row.topic}"
     yield tf_messages.TFMessage, "/tf"
@@ -124,6 +131,27 @@ def listen(arguments: list[str]) -> None:
     with contextlib.suppress(KeyboardInterrupt):
         while context.ok():
             executor.spin_once(timeout_sec=0.1)
+
+
+def send(robots: str, heard: str, rate_hz: str, seconds: str) -> None:
+    """The bare loop: one message that is ready on each regular topic, again and again; prints its CPU in percent."""
+    context = Context()
+    rclpy.init(args=[], context=context)
+    with dds_profile.alone():
+        node = Node("sender", context=context, enable_rosout=False, start_parameter_services=False)
+    ready = []
+    for kind, topic in topics(int(robots), heard, only_regular=True):
+        data = tf_messages.encode([]) if kind is tf_messages.TFMessage else serialize_message(kind())
+        ready.append((node.create_publisher(kind, topic, qos.SENSOR), data))
+    while not all(publisher.get_subscription_count() for publisher, _ in ready):
+        time.sleep(0.1)
+    rounds, due, before = round(float(seconds) * float(rate_hz)), time.monotonic(), time.process_time()
+    for _ in range(rounds):
+        for publisher, data in ready:
+            publisher.publish(data)
+        due += 1 / float(rate_hz)
+        time.sleep(max(0.0, due - time.monotonic()))
+    print(100 * (time.process_time() - before) / float(seconds))
 
 
 def profiled(path: str, arguments: list[str]) -> None:
@@ -220,9 +248,10 @@ class Driver:
 
 @dataclass(frozen=True)
 class Figures:
-    """Of one round: CPU in percent of a core, real-time factor, resident memory, CPU time of the start."""
+    """Of one round: CPU in percent of a core, that of a bare loop, factor, resident memory, CPU time of the start."""
 
     cpu_percent: float
+    floor_percent: float | None
     factor: float
     memory_mb: float
     start_s: float
@@ -249,7 +278,17 @@ def measure(scene: Scene, seconds: float, profile: str | None) -> Figures:
                     driver.until_heard([topic for _, topic in topics(scene.robots, scene.heard)])
                 figures = _watch(driver, pid, seconds)
             driver.close()
-    return Figures(**figures, start_s=start_s)
+    return Figures(**figures, floor_percent=_floor(scene, seconds), start_s=start_s)
+
+
+def _floor(scene: Scene, seconds: float) -> float | None:
+    """CPU percent of the bare loop; None where nothing is heard at a common rate."""
+    if scene.heard == NOTHING or not scene.rate_hz:
+        return None
+    arguments = (str(scene.robots), scene.heard)
+    command = [sys.executable, "-c", SENDER, *arguments, str(scene.rate_hz), str(seconds)]
+    with process(LISTENER, *arguments):
+        return float(subprocess.run(command, capture_output=True, text=True, check=True, timeout=START_S).stdout)
 
 
 def _watch(driver: Driver, pid: int, seconds: float) -> dict[str, float]:
@@ -269,10 +308,12 @@ def _watch(driver: Driver, pid: int, seconds: float) -> dict[str, float]:
 def summary(scene: Scene, rounds: list[Figures]) -> dict[str, object]:
     """What the rounds of a scene say together."""
     percents = [one.cpu_percent for one in rounds]
+    floors = [one.floor_percent for one in rounds if one.floor_percent is not None]
     return {
         "scene": scene.name,
         "median": round(statistics.median(percents), 2),
         "best": round(min(percents), 2),
+        "floor": round(statistics.median(floors), 2) if floors else None,
         "most": scene.most_percent,
         "factor": round(statistics.median(one.factor for one in rounds), 3),
         "memory_mb": round(max(one.memory_mb for one in rounds)),
@@ -292,8 +333,8 @@ def main() -> None:
     chosen = parser.parse_args()
     os.environ.update(ROS_DOMAIN_ID=str(DOMAIN), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
     found = []
-    print("| scene | CPU %, median | best | at most | factor | MB | start, CPU s | load |")
-    print("|---|---:|---:|---:|---:|---:|---:|---:|")
+    print("| scene | CPU %, median | best | floor | at most | factor | MB | start, CPU s | load |")
+    print("|---|---:|---:|---:|---:|---:|---:|---:|---:|")
     for scene in SCENES:
         if chosen.only in scene.name:
             rounds = [measure(scene, chosen.seconds, chosen.profile) for _ in range(chosen.rounds)]
