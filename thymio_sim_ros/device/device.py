@@ -12,12 +12,11 @@ from dataclasses import dataclass
 
 from aseba_vm import VirtualMachine
 from aseba_vm.outbox import BadCode, DivisionByZero, Emitted, NodeSpecific, OutOfBounds
-from thymio_sim_ros.device import bindings
-from thymio_sim_ros.device.bindings import Slot
 from thymio_sim_ros.device.body import RESTART, Body
 from thymio_sim_ros.device.breakpoints import Breakpoints, LineDebugger
 from thymio_sim_ros.device.card import Card
 from thymio_sim_ros.device.events import POLICIES, EventQueue, GlobalEvent
+from thymio_sim_ros.device.inputs import Inputs
 from thymio_sim_ros.device.layout import LAYOUTS, target
 from thymio_sim_ros.device.natives import native_functions
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
@@ -51,20 +50,15 @@ class AsebaDevice:
         self._target = target(self.layout)
         self._addresses = self._target.addresses
         self._first_values = LAYOUTS[self.layout].first_values
-        self._sensors = bindings.sensors(self.layout)
         self._timer_events = tuple(map(self._event_index, ("timer0", "timer1")))
         self._queue = EventQueue(POLICIES[options.events], self._timer_events)
         self._periods = self._addresses["timer.period"]
         self._intensity = self._addresses["mic.intensity"][0]
         self._sound_finished = self._event_index("sound.finished")
         self._rc5 = self._event_index("rc5")
-        self._slow = self._queue.policy.periods_ns
-        self._heard: dict[str, int] = {}
         self._rules = OwnRules(self._addresses)
         self._rules_ns = 0
         self._now_ns = 0
-        self._last: dict[str, tuple[Sequence[int], int]] = {}
-        """The last words of each sensor, and the number of writes then."""
         self._event = ""
         self._begun = 0
         self._events: list[EmittedEvent] = []
@@ -74,12 +68,8 @@ class AsebaDevice:
         self._noticed: set[str] = set()
         self._are_periods_new = False
         """Whether somebody else than the program may have changed the periods of timers."""
-        self._writes = 0
-        """How often the program, or somebody else, may have written to the memory."""
-        self._told_writes = -1
-        """That number when outputs looked at it."""
-        self._is_news = True
-        """Whether the memory may have changed since the robot's own rules looked at it."""
+        self._is_changed = True
+        """Whether the program, or somebody else, may have written to the memory since outputs looked at it."""
         self._state = RUNNING
         self._fault: DeviceStatus | None = None
         settings = Settings(options.settings_file)
@@ -95,6 +85,7 @@ class AsebaDevice:
         self._vm = VirtualMachine(
             self._target, native_functions(self._outputs.send, self.body), node_id, on_reset=self._on_reset
         )
+        self._inputs = Inputs(self.layout, self._queue.policy.periods_ns, self._vm, self._happen)
         self.load(load_program("", "none", self.layout))
 
     @property
@@ -125,20 +116,18 @@ class AsebaDevice:
         """
         if program.layout != self.layout:
             raise ValueError(f"a program for the layout {program.layout} found, expected {self.layout}")
-        readings = self._last.items() if warm else ()
         self._program = program
         self._names = [name for name, _ in program.events]
         self._handled = frozenset(0xFFFE - event.number for event in program.program.events)
-        self._wanted = self._handled | self._watched
+        self._inputs.wanted = self._handled | self._watched | {self._rc5}
         self._vm.clear_breakpoints()
         self._debugger = LineDebugger(self._vm, program)
         words = program.program.words
         self._vm.set_bytecode((*words, *[0] * (self._target.bytecode_size - len(words))))
-        for sensor, (reading, _) in readings:
-            for slot in self._sensors[sensor].slots:
-                self._vm.write_variables(slot.address, reading[slot.begin : slot.begin + slot.size])
-        if not warm:
-            self._last.clear()
+        if warm:
+            self._inputs.restore()
+        else:
+            self._inputs.forget()
         self._run_again()
 
     def feed(self, sensor: str, words: Sequence[int]) -> None:
@@ -146,27 +135,7 @@ class AsebaDevice:
 
         KeyError: no such sensor; ValueError: wrong number of words.
         """
-        binding = self._sensors[sensor]
-        if len(words) != binding.size:
-            raise ValueError(f"{len(words)} words found, expected {binding.size}")
-        if sensor in self._slow and not self._is_due(sensor):
-            return
-        memory = self._vm.variables.words
-        old, new = self._last.get(sensor), (tuple(words), self._writes)
-        if new != old:
-            for address, address_end, begin, end in binding.runs:
-                memory[address:address_end] = words[begin:end]
-            self._is_news = True
-            self._last[sensor] = new
-            if binding.edges:
-                self._compare(old[0] if old is not None else (0,) * binding.size, new[0], binding.edges)
-        event = binding.event
-        if event == self._rc5:
-            self._rules.flash_remote()
-        if event not in self._wanted or (event == self._sound_finished and not self._outputs.has_used_sound):
-            return
-        if binding.above is None or words[0] > memory[binding.above] != 0:
-            self._happen(event)
+        self._inputs.feed(sensor, words, self._now_ns)
 
     def advance(self, now_ns: int) -> None:
         """Simulated time has come so far; `run` raises the events of timers whose period ended on the way."""
@@ -288,12 +257,12 @@ class AsebaDevice:
         """
         if not 0 <= self._now_ns - self._rules_ns < PERIOD_NS:
             self._rules_ns = self._now_ns - self._now_ns % PERIOD_NS
-            if self._state != OFF and (self._is_news or self._rules.is_moving):
-                self._is_news = False
+            if self._state != OFF and (self._inputs.is_news or self._rules.is_moving):
+                self._inputs.is_news = False
                 self._outputs.tell(*self._rules.look(self._vm.variables.words))
         commands = self._outputs.take()
-        if self._told_writes != self._writes:
-            self._told_writes = self._writes
+        if self._is_changed:
+            self._is_changed = False
             commands += self._outputs.take_changes()
         return commands
 
@@ -310,7 +279,7 @@ class AsebaDevice:
     def watch_events(self, names: Collection[str]) -> None:
         """Remember when these local events happen, whether the program handles them or not."""
         self._watched = frozenset(index for index, event in enumerate(self._target.local_events) if event.name in names)
-        self._wanted = self._handled | self._watched
+        self._inputs.wanted = self._handled | self._watched | {self._rc5}
 
     def take_local_events(self) -> list[str]:
         """Those watched events that happened since the last time, in order."""
@@ -347,20 +316,17 @@ class AsebaDevice:
         self._note_writing()
         self._are_periods_new = True
 
-    def _compare(self, old: Sequence[int], new: Sequence[int], edges: Sequence[Slot]) -> None:
-        """Raise the events of variables that have changed."""
-        if new != old:
-            for slot in edges:
-                begin, end = slot.begin, slot.begin + slot.size
-                if slot.edge in self._wanted and new[begin:end] != old[begin:end]:
-                    self._happen(slot.edge)
-
     def _note_writing(self) -> None:
         """The program, or somebody else, may have written to the memory."""
-        self._writes += 1
-        self._is_news = True
+        self._is_changed = True
+        self._inputs.note_writing()
 
     def _happen(self, index: int) -> None:
+        """A reading raises a local event."""
+        if index == self._rc5:
+            self._rules.flash_remote()
+        if index == self._sound_finished and not self._outputs.has_used_sound:
+            return
         if index in self._handled:
             self._queue.arrive(index)
         if index in self._watched:
@@ -384,12 +350,6 @@ class AsebaDevice:
         self.body.settings.restart()
         self._vm.reset()
         self._run_again()
-
-    def _is_due(self, sensor: str) -> bool:
-        """Whether a new period of a sensor that is heard less often has begun."""
-        number = self._now_ns // self._slow[sensor]
-        before, self._heard[sensor] = self._heard.get(sensor), number
-        return number != before
 
     def _start_next(self) -> None:
         """Start the next event, if there is one."""
