@@ -153,6 +153,13 @@ export class Actions {
     this.store.dispatch({ type: "uploaded", what: "playground", message: answer.ok ? null : answer.message });
   }
 
+  /** The playground that runs, as the text of our format; null when the simulator does not say. */
+  async playgroundText() {
+    const answer = await this.client.call("/simulator/get_playground");
+    if (!answer.ok) this.store.dispatch({ type: "notice", level: "error", text: answer.message });
+    return answer.ok ? answer.message : null;
+  }
+
   /** A file chosen or dropped: its ending says what it is. @param {File} file */
   async loadFile(file) {
     if (isProgram(file)) {

@@ -1,10 +1,15 @@
-// The place of the playground creator on the page: loads it when it is first opened, and lets it be tried in the simulator.
+// The place of the playground creator on the page: loads it when it is first opened, and lets it be tried in the
+// simulator.
 
 import { faultView } from "./panels/fault.js";
+import { parse } from "./playground/document.js";
 
 /** @typedef {import("./creator/index.js").Creator} Creator */
 /** @typedef {import("./creator/workshop.js").Workshop} Workshop */
 /** @typedef {import("./panels/index.js").Context} Context */
+
+/** The tools stand at the left of the view. */
+const PALETTE_PX = 66;
 
 export class CreatorHost {
   /**
@@ -65,9 +70,15 @@ export class CreatorHost {
       document.body.classList.add("building");
       this.slot("creator").hidden = false;
       context.mover.setMode(false);
+      this.scene().camera.setInset(PALETTE_PX);
       this.#build();
     }
     this.scene().look("home");
+  }
+
+  /** Go on with a playground of the simulator's. Fails with a Fault for one that is not ours. @param {string} text */
+  async openText(text) {
+    await this.open(parse(text));
   }
 
   /** A file dropped on the page while one builds. @param {File} file */
@@ -83,6 +94,7 @@ export class CreatorHost {
     this.creator = null;
     document.body.classList.remove("building");
     this.slot("creator").hidden = true;
+    this.scene().camera.setInset(0);
     this.scene().look("home");
   }
 

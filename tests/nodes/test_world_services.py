@@ -11,6 +11,9 @@ from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
 from std_msgs.msg import Header, String
+from std_srvs.srv import Trigger
+
+from thymio_sim_ros.sim import playground as playgrounds
 
 GREY = "#808080"
 ROOM = json.dumps(
@@ -44,6 +47,14 @@ def ask(ros, service, **values):
 def poses(ros, *names):
     values = ros.call(GetParameters, "/simulator/get_poses", GetParameters.Request(names=names)).values
     return [list(value.double_array_value) for value in values]
+
+
+def test_the_playground_is_told_as_a_file_of_ours(ros, simulation):
+    simulation(playground=ROOM)
+    answer = ros.call(Trigger, "/simulator/get_playground", Trigger.Request())
+    told, given = playgrounds.loads(answer.message, "told.json"), playgrounds.loads(ROOM, "room.json")
+    assert answer.success
+    assert (told.shapes, told.robots) == (given.shapes, given.robots)
 
 
 def test_a_robot_is_spawned_and_removed_while_the_world_is_paused(ros, simulation):

@@ -62,6 +62,9 @@ function opens(text) {
 
 const cases = Array.from({ length: Number(process.argv[2]) }, () => {
   const text = built();
-  return [{ text, opens: opens(text) }, ...[1, 2, 3].map(() => crowded(text)).map((other) => ({ text: other, opens: opens(other) }))];
+  return [
+    { text, opens: opens(text) },
+    ...[1, 2, 3].map(() => crowded(text)).map((other) => ({ text: other, opens: opens(other) })),
+  ];
 }).flat();
 process.stdout.write(JSON.stringify(cases));

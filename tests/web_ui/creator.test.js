@@ -11,6 +11,7 @@ import { shown, taken } from "../../web_ui/creator/units.js";
 import { WORDS } from "../../web_ui/creator/words/index.js";
 import { Workshop } from "../../web_ui/creator/workshop.js";
 import { parse, write } from "../../web_ui/playground/document.js";
+import { offGround } from "../../web_ui/playground/judge.js";
 import { SHAPES } from "../../web_ui/playground/kinds/index.js";
 
 /** Straight down. @param {number} x @param {number} y */
@@ -19,7 +20,11 @@ const down = (x, y) => ({ origin: { x, y, z: 1 }, direction: { x: 0, y: 0, z: -1
 /** A builder on a new playground, with what it told. */
 function prepared() {
   /** @type {import("../../web_ui/playground/rules.js").Phrase[]} */ const told = [];
-  const builder = new Builder({ playground: newPlayground("Mine"), tell: (phrase) => told.push(phrase), changed: () => {} });
+  const builder = new Builder({
+    playground: newPlayground("Mine"),
+    tell: (phrase) => told.push(phrase),
+    changed: () => {},
+  });
   /** @param {number} x @param {number} y @param {boolean} [free] */
   const click = (x, y, free = false) => {
     builder.placing?.hover([x, y], free);
@@ -343,4 +348,26 @@ test("a picture is as wide as the ground, and without a grid a shaky second clic
   builder.choose("track");
   for (const [x, y] of [[0.1, 0.3], [0.3, 0.3], [0.302, 0.301]]) click(x, y, true); // prettier-ignore
   assert.deepEqual(item("track_1")?.points_m, [[0.1, 0.3], [0.3, 0.3]]); // prettier-ignore
+});
+
+test("what is taken in hand begins where there is room", () => {
+  const { builder } = prepared();
+  builder.choose("box");
+  assert.deepEqual(builder.placing?.place, [0.15, 0]);
+  assert.equal(builder.ghost?.problem, null);
+});
+
+test("what a smaller ground leaves outside is told, and can still be changed", () => {
+  const { builder, click, item } = prepared();
+  builder.choose("box");
+  click(0.4, 0.4);
+  builder.select("ground");
+  assert.equal(builder.edit({ size_x_m: 0.5 }), null);
+  assert.deepEqual(
+    offGround(builder.playground.items).map(({ name }) => name),
+    ["box_1"],
+  );
+  builder.select("box_1");
+  assert.equal(builder.edit({ height_m: 0.2 }), null);
+  assert.equal(item("box_1")?.height_m, 0.2);
 });

@@ -37,7 +37,9 @@ function objectOf(fields, extra) {
       return [key, { ...schemaOf(rule), ...(hasDefault ? { default: otherwise } : {}) }];
     }),
   );
-  const required = Object.entries(fields).filter(([, { required }]) => required).map(([key]) => key);
+  const required = Object.entries(fields)
+    .filter(([, { required }]) => required)
+    .map(([key]) => key);
   return { type: "object", properties: { ...extra, ...properties }, required };
 }
 
@@ -49,14 +51,21 @@ function bare(schema) {
   const { description: _words, additionalProperties: _closed, ...rest } = schema;
   if (rest.default === null) delete rest.default;
   if (rest.required?.length === 0) delete rest.required;
-  const entries = Object.entries(rest).map(([key, value]) => [key, key === "properties" ? members(value) : bare(value)]);
+  const entries = Object.entries(rest).map(([key, value]) => [
+    key,
+    key === "properties" ? members(value) : bare(value),
+  ]);
   if (Array.isArray(rest.required)) rest.required.sort();
   return Object.fromEntries(entries.sort(([one], [other]) => (one < other ? -1 : 1)));
 }
 
 /** @param {Record<string, any>} properties */
 function members(properties) {
-  return Object.fromEntries(Object.keys(properties).sort().map((key) => [key, bare(properties[key])]));
+  return Object.fromEntries(
+    Object.keys(properties)
+      .sort()
+      .map((key) => [key, bare(properties[key])]),
+  );
 }
 
 for (const kind of SHAPES) {
@@ -88,13 +97,23 @@ for (const file of readdirSync(FOLDER).filter((name) => name.endsWith(".json") &
     const world = worldOf(playground.items, new Markers(() => null));
     assert.equal(Object.keys(world.robots).length, given.robots.length);
     assert.ok(world.markers.size >= given.shapes.length - (file === "line_gradient.json" ? 1 : 0));
-    for (const item of playground.items) assert.ok(isOnGround(playground.items, item) || item.kind !== "robot", item.name);
+    for (const item of playground.items)
+      assert.ok(isOnGround(playground.items, item) || item.kind !== "robot", item.name);
   });
 }
 
 /** @param {any[]} shapes @param {any[]} [robots] */
 const text = (shapes, robots = []) => JSON.stringify({ format: 1, title: "t", shapes, robots });
-const BOX = { kind: "box", name: "crate", x_m: 0, y_m: 0, size_x_m: 0.1, size_y_m: 0.1, height_m: 0.1, color: "#112233" };
+const BOX = {
+  kind: "box",
+  name: "crate",
+  x_m: 0,
+  y_m: 0,
+  size_x_m: 0.1,
+  size_y_m: 0.1,
+  height_m: 0.1,
+  color: "#112233",
+};
 
 for (const [what, given, key, word] of /** @type {[string, string, string, string][]} */ ([
   ["no JSON", "{", "", "fault.json"],

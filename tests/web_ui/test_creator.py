@@ -150,7 +150,7 @@ def test_everything_is_built_by_keys_alone(suite, page):
     page.keyboard.press("Escape")
     wait_for_items(page, 3)
     box = items(page)["box_1"]
-    assert (box["x_m"], box["y_m"]) == (0.25, 0.05)
+    assert (box["x_m"], box["y_m"]) == (0.4, 0.05)
     assert box["yaw_rad"] == pytest.approx(-0.2618, abs=1e-3)
     page.locator("[data-tool=track]").press("Enter")
     for key in ("Shift+ArrowDown", " ", "Shift+ArrowRight", " ", "ArrowUp", " ", "Backspace", "Enter", "Escape"):
@@ -161,7 +161,7 @@ def test_everything_is_built_by_keys_alone(suite, page):
     page.keyboard.press("n")
     assert built(page)["selected"] == "box_1"
     page.keyboard.press("Alt+ArrowLeft")
-    assert items(page)["box_1"]["x_m"] == 0.249
+    assert items(page)["box_1"]["x_m"] == 0.399
     page.keyboard.press("Control+d")
     wait_for_items(page, 5)
     page.keyboard.press("Delete")
@@ -282,6 +282,19 @@ def test_a_copy_of_a_shipped_playground_is_changed(suite, page):
     page.wait_for_function("window.thymio.built()?.playground.title === 'Gate'")
     page.click("[data-verb=undo]")
     page.wait_for_function("window.thymio.built().playground.title === 'My playground'")
+
+
+def test_a_playground_of_aseba_that_runs_is_changed(suite, page, tmp_path):
+    foreign = tmp_path / "arena.playground"
+    wall = '<wall x="20" y="80" l1="20" l2="4" h="10" color="grey"/>'
+    foreign.write_text(
+        '<aseba-playground><color name="grey" r="0.5" g="0.5" b="0.5"/><world w="100" h="100" color="grey"/>'
+        f'{wall}<robot x="50" y="50"/></aseba-playground>'
+    )
+    open_page(page, suite("--playground", str(foreign), "--program", "none"))
+    page.click("#playground-change")
+    page.wait_for_function("window.thymio.built()?.playground.items.length >= 3")
+    assert "box" in {item["kind"] for item in items(page).values()}
 
 
 def test_it_is_in_sight_in_every_language_at_800_by_600_and_without_a_finding_of_axe(suite, page):

@@ -21,7 +21,7 @@ from thymio_sim_ros.nodes import convert, qos
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.robot_ports import WARN_EVERY_S
-from thymio_sim_ros.sim import fields
+from thymio_sim_ros.sim import fields, playground_text
 from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
 from thymio_sim_ros.sim.fields import FieldError
 from thymio_sim_ros.sim.playground import RobotStart
@@ -48,6 +48,7 @@ SERVICES: Mapping[str, Service] = {
     "~/get_poses": Service(
         GetParameters, "where robots, movable things and doors are: names → [x, y, yaw]; NOT_SET: nowhere"
     ),
+    "~/get_playground": Service(Trigger, "`message` is the playground as JSON of our format, with its pictures"),
 }
 """Every service of the simulator that belongs to no robot."""
 
@@ -132,6 +133,7 @@ class WorldServices:
             "~/remove": self._each(self._remove),
             "~/set_poses": self._each(self._set_pose),
             "~/get_poses": self._get_poses,
+            "~/get_playground": self._get_playground,
         }
         self._services = [
             node.create_service(service.type, name, presently(simulator, handlers[name]))
@@ -208,6 +210,10 @@ class WorldServices:
                 value.type = ParameterType.PARAMETER_DOUBLE_ARRAY
                 value.double_array_value = [pose.x_m, pose.y_m, pose.yaw_rad]
             response.values.append(value)
+        return response
+
+    def _get_playground(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        response.success, response.message = True, playground_text.dumps(self._simulator.world.playground)
         return response
 
     def _place(self, message: TransformStamped) -> None:

@@ -8,7 +8,11 @@ import { GRID_SIZES } from "./snap.js";
 export function bar(t, builder) {
   /** @param {string} name @param {() => void} act */
   const button = (name, act) =>
-    h("button", { type: "button", "data-verb": name, title: t(`bar.${name}`), "aria-label": t(`bar.${name}`), onclick: act }, icon(CREATOR_ICONS[name])); // prettier-ignore
+    h(
+      "button",
+      { type: "button", "data-verb": name, title: t(`bar.${name}`), "aria-label": t(`bar.${name}`), onclick: act },
+      icon(CREATOR_ICONS[name]),
+    );
   const undo = button("undo", () => builder.undo());
   const redo = button("redo", () => builder.redo());
   const camera = button("camera", () => builder.toggleCamera());

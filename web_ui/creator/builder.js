@@ -95,7 +95,14 @@ export class Builder {
     this.select(items[next].name);
   }
 
-  /** Why an item cannot be in the place of one of that name; what is off the ground may be opened, but not put there. @param {Item} item @param {string} name @returns {Phrase | null} */
+  /**
+   * Why an item cannot be in the place of one of that name; what is off the ground may be opened, but not put
+   * there.
+   *
+   * @param {Item} item
+   * @param {string} name
+   * @returns {Phrase | null}
+   */
   problemOf(item, name) {
     const others = commands.othersOf(this.playground, name);
     if (item.name !== name && others.some((other) => other.name === item.name)) {
@@ -111,7 +118,14 @@ export class Builder {
     this.changed();
   }
 
-  /** Put an item in the place of one; whether it could. @param {string} name @param {Item} item @param {Phrase} did @param {string} [series] */
+  /**
+   * Put an item in the place of one; whether it could.
+   *
+   * @param {string} name
+   * @param {Item} item
+   * @param {Phrase} did
+   * @param {string} [series]
+   */
   replace(name, item, did, series) {
     const problem = this.problemOf(item, name);
     if (problem !== null) {
@@ -123,7 +137,12 @@ export class Builder {
     return true;
   }
 
-  /** Other values for what is in hand, else for what is selected; why not, or null. @param {Record<string, any>} values @returns {Phrase | null} */
+  /**
+   * Other values for what is in hand, else for what is selected; why not, or null.
+   *
+   * @param {Record<string, any>} values
+   * @returns {Phrase | null}
+   */
   edit(values) {
     if (this.placing !== null) return this.placing.edit(values);
     const { item } = this;
@@ -204,7 +223,12 @@ export class Builder {
     this.tell(did);
   }
 
-  /** A change of the whole: titles, ground, another file; why not, or null. @param {Playground} next @param {Phrase} did */
+  /**
+   * A change of the whole: titles, ground, another file; why not, or null.
+   *
+   * @param {Playground} next
+   * @param {Phrase} did
+   */
   become(next, did) {
     this.selecting.cancel();
     this.do(next, did);
@@ -265,4 +289,3 @@ export class Builder {
 export function centimetres(metres) {
   return rounded(metres * 100);
 }
-

@@ -25,7 +25,10 @@ export function newPlayground(title) {
 /** A name of its own for another item. @param {Playground} playground @param {string} wanted */
 export function freeName({ items }, wanted) {
   const taken = new Set(items.map(({ name }) => name));
-  const stem = wanted.replace(/_?\d+$/, "").slice(0, 50).replace(/_$/, "");
+  const stem = wanted
+    .replace(/_?\d+$/, "")
+    .slice(0, 50)
+    .replace(/_$/, "");
   if (!taken.has(stem) && kindNamed(stem) === undefined) return stem;
   for (let number = 1; ; number++) if (!taken.has(`${stem}_${number}`)) return `${stem}_${number}`;
 }
@@ -40,25 +43,48 @@ export function othersOf({ items }, name) {
   return items.filter((item) => item.name !== name);
 }
 
-/** With another item: over all other shapes; robots come last, as in the file. @param {Playground} playground @param {Item} item @returns {Playground} */
+/**
+ * With another item: over all other shapes; robots come last, as in the file.
+ *
+ * @param {Playground} playground
+ * @param {Item} item
+ * @returns {Playground}
+ */
 export function added(playground, item) {
   const robots = playground.items.filter(({ kind }) => kind === "robot");
   const shapes = playground.items.filter(({ kind }) => kind !== "robot");
   return { ...playground, items: item.kind === "robot" ? [...shapes, ...robots, item] : [...shapes, item, ...robots] };
 }
 
-/** An item in the place of the one of that name; what opened a door of the old name opens the new one. @param {Playground} playground @param {string} name @param {Item} item @returns {Playground} */
+/**
+ * An item in the place of the one of that name; what opened a door of the old name opens the new one.
+ *
+ * @param {Playground} playground
+ * @param {string} name
+ * @param {Item} item
+ * @returns {Playground}
+ */
 export function replaced(playground, name, item) {
   const items = playground.items.map((one) => {
     if (one.name === name) return item;
-    return one.kind === "activation" && one.door === name && item.name !== name ? changed(one, { door: item.name }) : one;
+    return one.kind === "activation" && one.door === name && item.name !== name
+      ? changed(one, { door: item.name })
+      : one;
   });
   return { ...playground, items };
 }
 
-/** Without an item; plates of a door that is no more go too. @param {Playground} playground @param {string} name @returns {Playground} */
+/**
+ * Without an item; plates of a door that is no more go too.
+ *
+ * @param {Playground} playground
+ * @param {string} name
+ * @returns {Playground}
+ */
 export function removed(playground, name) {
-  const items = playground.items.filter((item) => item.name !== name && !(item.kind === "activation" && item.door === name));
+  const items = playground.items.filter(
+    (item) => item.name !== name && !(item.kind === "activation" && item.door === name),
+  );
   return { ...playground, items };
 }
 
@@ -67,7 +93,14 @@ export function copyOf(playground, item) {
   return changed(moved(item, COPY_AWAY_M, -COPY_AWAY_M), { name: freeName(playground, item.name) });
 }
 
-/** An item over (1) or under (-1) its neighbour: later paint covers earlier. @param {Playground} playground @param {string} name @param {number} by @returns {Playground} */
+/**
+ * An item over (1) or under (-1) its neighbour: later paint covers earlier.
+ *
+ * @param {Playground} playground
+ * @param {string} name
+ * @param {number} by
+ * @returns {Playground}
+ */
 export function raised(playground, name, by) {
   const items = [...playground.items];
   const from = items.findIndex((item) => item.name === name);
@@ -82,15 +115,29 @@ export function titled(playground, titles) {
   return { ...playground, ...titles };
 }
 
-/** Another main ground, of this kind or none; it keeps place, color, walls and about its size. @param {Playground} playground @param {string} kind @returns {Playground} */
+/**
+ * Another main ground, of this kind or none; it keeps place, color, walls and about its size.
+ *
+ * @param {Playground} playground
+ * @param {string} kind
+ * @returns {Playground}
+ */
 export function grounded(playground, kind) {
   const old = groundOf(playground);
   if ((old?.kind ?? "none") === kind) return playground;
   const others = playground.items.filter((item) => item !== old);
   if (kind === "none") return { ...playground, items: others };
-  const { size_x_m: x = 1, size_y_m: y = 1, side_m: side = 0.4142, ...rest } = /** @type {Record<string, any>} */ (old ?? {});
+  const {
+    size_x_m: x = 1,
+    size_y_m: y = 1,
+    side_m: side = 0.4142,
+    ...rest
+  } = /** @type {Record<string, any>} */ (old ?? {});
   const across = side * (1 + Math.SQRT2);
-  const size = kind === "octagon" ? { side_m: round(Math.min(x, y) / (1 + Math.SQRT2)) } : { size_x_m: round(across), size_y_m: round(across) }; // prettier-ignore
+  const size =
+    kind === "octagon"
+      ? { side_m: round(Math.min(x, y) / (1 + Math.SQRT2)) }
+      : { size_x_m: round(across), size_y_m: round(across) };
   const name = freeName({ ...playground, items: others }, "ground");
   const ground = /** @type {Item} */ (Object.freeze({ color: "#f3efe4", ...rest, kind, name, ...size }));
   return { ...playground, items: [ground, ...others] };

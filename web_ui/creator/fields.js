@@ -128,7 +128,14 @@ function doorControl({ t, say, commit, doors }, key) {
   };
 }
 
-/** A list of points as pairs of numbers; the view has handles for them. @param {Setting} setting @param {string} key @param {Field} field @returns {Control} */
+/**
+ * A list of points as pairs of numbers; the view has handles for them.
+ *
+ * @param {Setting} setting
+ * @param {string} key
+ * @param {Field} field
+ * @returns {Control}
+ */
 function pointsControl({ t, say, commit }, key, { rule }) {
   const list = h("ol", { class: "points" });
   const problem = h("small", { class: "problem", role: "alert", hidden: true });
@@ -144,7 +151,12 @@ function pointsControl({ t, say, commit }, key, { rule }) {
   /** @param {number} index @param {number} axis */
   const coordinate = (index, axis) => {
     const label = t("field.coordinate", { number: index + 1, axis: "xy"[axis] });
-    const input = h("input", { type: "number", step: "any", "aria-label": label, value: shown(points[index][axis], "m") });
+    const input = h("input", {
+      type: "number",
+      step: "any",
+      "aria-label": label,
+      value: shown(points[index][axis], "m"),
+    });
     input.addEventListener("change", () => {
       if (Number.isNaN(input.valueAsNumber)) return;
       const value = taken(input.valueAsNumber, "m");
@@ -193,7 +205,14 @@ function imageControl({ t, say, commit, readPicture }, key) {
   return { element, update: () => {} };
 }
 
-/** Something that may be left out as a whole: walls, a pen. @param {Setting} setting @param {string} key @param {Field} field @returns {Control} */
+/**
+ * Something that may be left out as a whole: walls, a pen.
+ *
+ * @param {Setting} setting
+ * @param {string} key
+ * @param {Field} field
+ * @returns {Control}
+ */
 function groupControl(setting, key, { rule }) {
   /** @type {Record<string, any> | null} */ let group = null;
   const input = h("input", { type: "checkbox", "data-field": key });
@@ -215,7 +234,13 @@ function groupControl(setting, key, { rule }) {
   };
 }
 
-/** Movable, and how heavy. @param {Setting} setting @param {import("../playground/rules.js").Fields} fields @returns {Control} */
+/**
+ * Movable, and how heavy.
+ *
+ * @param {Setting} setting
+ * @param {import("../playground/rules.js").Fields} fields
+ * @returns {Control}
+ */
 export function loadControl(setting, fields) {
   const input = h("input", { type: "checkbox", "data-field": "movable" });
   const inner = ["mass_kg", "friction", "restitution"].map((key) => numberControl(setting, key, fields[key]));
@@ -234,7 +259,14 @@ export function loadControl(setting, fields) {
   };
 }
 
-/** The control of a field. @param {Setting} setting @param {string} key @param {Field} field @returns {Control | null} */
+/**
+ * The control of a field.
+ *
+ * @param {Setting} setting
+ * @param {string} key
+ * @param {Field} field
+ * @returns {Control | null}
+ */
 export function control(setting, key, field) {
   const { type } = field.rule;
   if (key === "door") return doorControl(setting, key);

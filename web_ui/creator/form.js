@@ -31,11 +31,24 @@ export function itemForm(setting, builder) {
     ...verb,
     button: h(
       "button",
-      { type: "button", class: "tool", title: t(verb.word), "aria-label": t(verb.word), onclick: verb.act, "data-verb": verb.icon },
+      {
+        type: "button",
+        class: "tool",
+        title: t(verb.word),
+        "aria-label": t(verb.word),
+        onclick: verb.act,
+        "data-verb": verb.icon,
+      },
       icon(CREATOR_ICONS[verb.icon]),
     ),
   }));
-  const element = h("section", { class: "item-form" }, title, h("div", { class: "row verbs-row" }, ...verbs.map(({ button }) => button)), fields); // prettier-ignore
+  const element = h(
+    "section",
+    { class: "item-form" },
+    title,
+    h("div", { class: "row verbs-row" }, ...verbs.map(({ button }) => button)),
+    fields,
+  );
   /** @type {Control[]} */ let controls = [];
   let shownKind = "";
 
@@ -60,7 +73,8 @@ export function itemForm(setting, builder) {
     focus: () => /** @type {HTMLElement | null} */ (fields.querySelector("input, select"))?.focus(),
     render() {
       const { placing, item } = builder;
-      const shown = placing === null ? item : (placing.isPath ? placing.pattern : (placing.ghost?.item ?? placing.pattern));
+      const shown =
+        placing === null ? item : placing.isPath ? placing.pattern : (placing.ghost?.item ?? placing.pattern);
       element.hidden = shown === null;
       if (shown === null) return;
       const kind = `${placing === null ? item?.name : "new"} ${shown.kind}`;
@@ -68,7 +82,12 @@ export function itemForm(setting, builder) {
         shownKind = kind;
         build(shown.kind, placing !== null);
       }
-      setText(title, placing === null ? `${t(`kind.${shown.kind}`)} – ${shown.name}` : t("form.new", { kind: t(`kind.${shown.kind}`) }));
+      setText(
+        title,
+        placing === null
+          ? `${t(`kind.${shown.kind}`)} – ${shown.name}`
+          : t("form.new", { kind: t(`kind.${shown.kind}`) }),
+      );
       const values = valuesOf(shown);
       for (const one of controls) one.update(values);
       for (const { icon: verb, button } of verbs) {

@@ -1,4 +1,5 @@
-// The playground creator's panels: tools on the view, the form beside it, the bar below. All of it acts on the workshop.
+// The playground creator's panels: tools on the view, the form beside it, the bar below. All of it acts on the
+// workshop.
 
 import "./creator.css";
 
@@ -7,6 +8,7 @@ import { download } from "../editor/download.js";
 import { faultView } from "../panels/fault.js";
 import { fileButton, h, icon, setText } from "../panels/dom.js";
 import { parse } from "../playground/document.js";
+import { offGround } from "../playground/judge.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { Fault } from "../playground/rules.js";
 import { bar } from "./bar.js";
@@ -35,7 +37,12 @@ export { Workshop, WORDS };
  * @property {() => void} destroy
  */
 
-/** A phrase in words: kinds by their names, and what was done inside it. @param {import("../i18n/index.js").Translate} t @param {Phrase} phrase */
+/**
+ * A phrase in words: kinds by their names, and what was done inside it.
+ *
+ * @param {import("../i18n/index.js").Translate} t
+ * @param {Phrase} phrase
+ */
 export function inWords(t, { word, values = {} }) {
   const filled = { ...values };
   if (typeof values.kind === "string" && kindNamed(values.kind) !== undefined) filled.kind = t(`kind.${values.kind}`);
@@ -73,6 +80,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
   const sheet = sheetForm(setting, builder);
   const list = thingsList(t, builder);
   const fault = h("div", { class: "fault", role: "alert", hidden: true });
+  const warning = h("p", { class: "warning", hidden: true });
   const unsaved = h("span", { class: "unsaved", title: t("file.unsaved") });
   const name = h("strong", { class: "name" });
   const hint = h("p", { class: "hint building-hint" });
@@ -81,8 +89,17 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     act();
     canvas.focus();
   };
-  const finish = h("button", { type: "button", class: "finish", onclick: andBack(() => builder.placing?.finish()) }, icon(CREATOR_ICONS.done), t("hint.finish")); // prettier-ignore
-  const cancel = h("button", { type: "button", class: "cancel", onclick: andBack(() => builder.cancel()) }, t("hint.cancel"));
+  const finish = h(
+    "button",
+    { type: "button", class: "finish", onclick: andBack(() => builder.placing?.finish()) },
+    icon(CREATOR_ICONS.done),
+    t("hint.finish"),
+  );
+  const cancel = h(
+    "button",
+    { type: "button", class: "cancel", onclick: andBack(() => builder.cancel()) },
+    t("hint.cancel"),
+  );
   const hints = h("div", { class: "building-hints" }, hint, finish, cancel);
 
   /** @param {HTMLElement[] | null} told */
@@ -120,21 +137,48 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
   const side = h(
     "div",
     { class: "creator", role: "region", "aria-label": t("creator") },
-    h("div", { class: "creator-head" }, name, unsaved, h("button", { type: "button", class: "leave", onclick: close }, t("file.close"))),
+    h(
+      "div",
+      { class: "creator-head" },
+      name,
+      unsaved,
+      h("button", { type: "button", class: "leave", onclick: close }, t("file.close")),
+    ),
     h(
       "div",
       { class: "row" },
-      h("button", { type: "button", class: "primary", id: "creator-try", title: t("file.tryHelp"), onclick: tryIt }, t("file.try")),
-      h("button", { type: "button", id: "creator-save", title: t("file.saveHelp"), onclick: save }, icon(CREATOR_ICONS.save), t("file.save")),
-      fileButton({ id: "creator-file", label: t("file.open"), help: t("file.openHelp"), accept: ".json", open: (file) => void open(file) }),
-      h("button", { type: "button", id: "creator-new", title: t("file.newHelp"), onclick: fresh }, icon(CREATOR_ICONS.fresh), t("file.new")),
+      h(
+        "button",
+        { type: "button", class: "primary", id: "creator-try", title: t("file.tryHelp"), onclick: tryIt },
+        t("file.try"),
+      ),
+      h(
+        "button",
+        { type: "button", id: "creator-save", title: t("file.saveHelp"), onclick: save },
+        icon(CREATOR_ICONS.save),
+        t("file.save"),
+      ),
+      fileButton({
+        id: "creator-file",
+        label: t("file.open"),
+        help: t("file.openHelp"),
+        accept: ".json",
+        open: (file) => void open(file),
+      }),
+      h(
+        "button",
+        { type: "button", id: "creator-new", title: t("file.newHelp"), onclick: fresh },
+        icon(CREATOR_ICONS.fresh),
+        t("file.new"),
+      ),
     ),
     fault,
+    warning,
     form.element,
     sheet.element,
     list.element,
     h("p", { class: "keys" }, t("keys")),
-  ); // prettier-ignore
+  );
 
   /** @param {Phrase} phrase */
   function tell(phrase) {
@@ -143,6 +187,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     announce(text);
   }
 
+  /** @type {import("../playground/document.js").Playground | null} */ let judged = null;
   const pointers = watchBuilding({ stage, canvas, builder, scene });
   const endKeys = watchBuildingKeys({
     stage,
@@ -168,10 +213,19 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
       scene.camera.controls.enabled = builder.cameraOn;
       setText(name, builder.playground.title || t("new.title"));
       unsaved.hidden = !workshop.isUnsaved;
+      if (builder.playground !== judged) {
+        judged = builder.playground;
+        const outside = offGround(judged.items).map((item) => item.name);
+        warning.hidden = outside.length === 0;
+        setText(warning, outside.length === 0 ? "" : t("warn.outside", { names: outside.join(", ") }));
+      }
       const { placing } = builder;
       const problem = builder.ghost?.problem ?? null;
       const word = placing === null ? "" : placing.isPath ? `hint.${placing.kind}` : "hint.placing";
-      setText(hint, problem !== null ? say(problem) : word === "" ? "" : say({ word, values: { kind: placing?.kind ?? "" } }));
+      setText(
+        hint,
+        problem !== null ? say(problem) : word === "" ? "" : say({ word, values: { kind: placing?.kind ?? "" } }),
+      );
       hint.classList.toggle("taken", problem !== null);
       hints.hidden = hint.textContent === "";
       finish.hidden = placing?.kind !== "track" || placing.points.length < 2;

@@ -1,5 +1,5 @@
-// Keys while one builds. They work on the view only, so that writing in fields acts on nothing else; undo and redo also
-// from the buttons around it.
+// Keys while one builds. They work on the view only, so that writing in fields acts on nothing else; undo and redo
+// also from the buttons around it.
 
 /** @typedef {import("./builder.js").Builder} Builder */
 
@@ -48,7 +48,8 @@ export function watchBuildingKeys({ stage, canvas, around, builder, editFields }
     },
     { capture: true, signal },
   );
-  for (const name of ["pointerdown", "wheel"]) stage.addEventListener(name, () => (shiftAlone = false), { capture: true, signal });
+  for (const name of ["pointerdown", "wheel"])
+    stage.addEventListener(name, () => (shiftAlone = false), { capture: true, signal });
   for (const element of around) {
     element.addEventListener(
       "keydown",
@@ -64,7 +65,12 @@ export function watchBuildingKeys({ stage, canvas, around, builder, editFields }
   return () => ending.abort();
 }
 
-/** Shift and arrows turn the camera while nothing is in hand or selected. @param {Builder} builder @param {KeyboardEvent} event */
+/**
+ * Shift and arrows turn the camera while nothing is in hand or selected.
+ *
+ * @param {Builder} builder
+ * @param {KeyboardEvent} event
+ */
 function isCameraTurn({ placing, selected }, { key, shiftKey }) {
   return shiftKey && key in STEPS && placing === null && selected === null;
 }
@@ -79,7 +85,13 @@ function travel(builder, { key, ctrlKey, metaKey, shiftKey }) {
   return true;
 }
 
-/** Whether the key did something. @param {Builder} builder @param {KeyboardEvent} event @param {() => void} editFields */
+/**
+ * Whether the key did something.
+ *
+ * @param {Builder} builder
+ * @param {KeyboardEvent} event
+ * @param {() => void} editFields
+ */
 function act(builder, event, editFields) {
   const { key, shiftKey, altKey, ctrlKey, metaKey } = event;
   const { placing } = builder;

@@ -5,7 +5,20 @@ import { CREATOR_ICONS } from "./icons.js";
 import { readPicture } from "./read_picture.js";
 
 /** In their order on the page. */
-const TOOLS = ["select", "rectangle", "octagon", "picture", "track", "box", "cylinder", "wall", "u_figure", "door", "activation", "robot"];
+const TOOLS = [
+  "select",
+  "rectangle",
+  "octagon",
+  "picture",
+  "track",
+  "box",
+  "cylinder",
+  "wall",
+  "u_figure",
+  "door",
+  "activation",
+  "robot",
+];
 
 /**
  * @param {object} options
@@ -14,7 +27,13 @@ const TOOLS = ["select", "rectangle", "octagon", "picture", "track", "box", "cyl
  * @param {HTMLElement} options.canvas   which gets the focus, so that keys go on there
  */
 export function palette({ t, builder, canvas }) {
-  const file = h("input", { type: "file", accept: "image/png,image/jpeg,image/svg+xml", hidden: true, id: "creator-picture", "aria-label": t("field.image") }); // prettier-ignore
+  const file = h("input", {
+    type: "file",
+    accept: "image/png,image/jpeg,image/svg+xml",
+    hidden: true,
+    id: "creator-picture",
+    "aria-label": t("field.image"),
+  });
   file.addEventListener("change", async () => {
     const chosen = file.files?.[0];
     file.value = "";
@@ -28,7 +47,13 @@ export function palette({ t, builder, canvas }) {
     tool,
     button: h(
       "button",
-      { type: "button", title: t(`tool.${tool}`), "aria-label": t(`tool.${tool}`), "data-tool": tool, onclick: () => choose(tool) },
+      {
+        type: "button",
+        title: t(`tool.${tool}`),
+        "aria-label": t(`tool.${tool}`),
+        "data-tool": tool,
+        onclick: () => choose(tool),
+      },
       icon(CREATOR_ICONS[tool]),
     ),
   }));

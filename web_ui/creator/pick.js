@@ -18,17 +18,17 @@ const TINY_M = 0.006;
 
 /** The item under a pointer: what stands, else what lies on top. @param {readonly Item[]} items @param {Ray} ray */
 export function itemAt(items, ray) {
-  const standing = items.flatMap((item) =>
-    outlinesOf(item)
-      .filter(({ height }) => height > 0)
-      .map(({ outline, height }) => ({ name: item.name, robot: null, pose: { x: 0, y: 0, yaw: 0 }, outline: [/** @type {[number, number][]} */ ([...outline])], height })),
-  ); // prettier-ignore
+  const standing = items.flatMap((item) => solidsOf(item));
   const found = hit(ray, standing);
   if (found !== null) return items.find(({ name }) => name === found.thing.name) ?? null;
   const place = atHeight(ray, 0);
   if (place === null) return null;
   const point = /** @type {Point} */ ([place.x, place.y]);
-  return [...items].reverse().find((item) => outlinesOf(item).some(({ outline, height }) => height === 0 && holds(outline, point))) ?? null;
+  return (
+    [...items]
+      .reverse()
+      .find((item) => outlinesOf(item).some(({ outline, height }) => height === 0 && holds(outline, point))) ?? null
+  );
 }
 
 /**
@@ -61,4 +61,14 @@ export function hasKnob(item) {
 /** Grounds are too large for one; keys and numbers turn them. @param {Item} item */
 export function hasRing(item) {
   return canTurn(item) && kindNamed(item.kind)?.group !== "ground";
+}
+
+/** What of an item stands, each as a thing for a pointer to hit. @param {Item} item */
+function solidsOf(item) {
+  return outlinesOf(item)
+    .filter(({ height }) => height > 0)
+    .map(({ outline, height }) => {
+      const polygon = /** @type {[number, number][]} */ ([...outline]);
+      return { name: item.name, robot: null, pose: { x: 0, y: 0, yaw: 0 }, outline: [polygon], height };
+    });
 }

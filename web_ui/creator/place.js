@@ -74,7 +74,8 @@ export function pointsOf(item) {
   const kind = kindNamed(item.kind);
   if (kind === undefined) return [];
   const values = valuesOf(item);
-  const single = kind.points.length > 1 ? kind.points.map(([x, y]) => /** @type {Point} */ ([values[x], values[y]])) : [];
+  const single =
+    kind.points.length > 1 ? kind.points.map(([x, y]) => /** @type {Point} */ ([values[x], values[y]])) : [];
   if (kind.path === undefined) return single;
   return kind.relative ? placed(poseOf(values), values[kind.path]) : values[kind.path];
 }
@@ -90,7 +91,11 @@ export function withPoint(item, index, place) {
   }
   const values = valuesOf(item);
   const own = kind.relative ? inFrame(poseOf(values), [x, y]) : [x, y];
-  return changed(item, { [kind.path]: values[kind.path].map((/** @type {Point} */ point, /** @type {number} */ at) => (at === index ? own : point)) }); // prettier-ignore
+  return changed(item, {
+    [kind.path]: values[kind.path].map((/** @type {Point} */ point, /** @type {number} */ at) =>
+      at === index ? own : point,
+    ),
+  });
 }
 
 /** How far an item reaches from its middle. @param {Item} item */

@@ -13,6 +13,7 @@ import { rounded, snapped } from "./snap.js";
 /** Nearer than this, a point is the same; without a grid a hand is not that steady. */
 const SAME_M = 0.0005;
 const SAME_PX = 8;
+const ASIDE_M = 0.15;
 
 export class Placing {
   /** @param {import("./builder.js").Builder} builder @param {string} kind @param {Record<string, any>} values */
@@ -28,7 +29,27 @@ export class Placing {
     /** @type {Point[]} of a path, so far */ this.points = [];
     /** @type {Point[]} taken back */ this.takenBack = [];
     /** @type {Item} how the next one looks; its place does not matter */
-    this.pattern = Object.freeze({ kind, ...kindNamed(kind)?.fresh, ...this.#own(kind), ...values, name: this.#name() });
+    this.pattern = Object.freeze({
+      kind,
+      ...kindNamed(kind)?.fresh,
+      ...this.#own(kind),
+      ...values,
+      name: this.#name(),
+    });
+    if (!this.isPath) this.#makeRoom();
+  }
+
+  /** Not on top of a robot to begin with. */
+  #makeRoom() {
+    const [x, y] = this.place;
+    const places = [0, 1, 2, 3].flatMap((far) =>
+      [1, -1].map((side) => snapped([x + side * far * ASIDE_M, y], this.builder.grid)),
+    );
+    const free = places.find((place) => {
+      this.place = place;
+      return this.ghost?.problem === null;
+    });
+    this.place = free ?? places[0];
   }
 
   /** Whether several places are asked for. */
@@ -93,7 +114,8 @@ export class Placing {
     this.same = SAME_M;
     this.place = snapped([this.place[0] + dx, this.place[1] + dy], null);
     const { ghost } = this;
-    const at = ghost === null || this.isPath ? { kind: "robot", name: "", x_m: this.place[0], y_m: this.place[1] } : ghost.item;
+    const at =
+      ghost === null || this.isPath ? { kind: "robot", name: "", x_m: this.place[0], y_m: this.place[1] } : ghost.item;
     this.builder.tellPlace(at, ghost?.problem);
     this.builder.changed();
   }
@@ -112,7 +134,10 @@ export class Placing {
     const next = changed(this.pattern, values);
     if (this.isPath) this.pattern = next;
     else {
-      const item = "x_m" in values || "y_m" in values ? movedTo({ ...this.#whole(), ...next }, middleOf({ ...this.#whole(), ...values })) : movedTo({ ...this.#whole(), ...next }, this.place); // prettier-ignore
+      const item =
+        "x_m" in values || "y_m" in values
+          ? movedTo({ ...this.#whole(), ...next }, middleOf({ ...this.#whole(), ...values }))
+          : movedTo({ ...this.#whole(), ...next }, this.place);
       const problem = builder.problemOf(item, item.name);
       if (problem?.word === "problem.value") return problem;
       this.pattern = next;
@@ -145,7 +170,12 @@ export class Placing {
     builder.changed();
   }
 
-  /** What it would be if the pointer were its last point; null when there is not enough of it. @param {Point} place @returns {Item | null} */
+  /**
+   * What it would be if the pointer were its last point; null when there is not enough of it.
+   *
+   * @param {Point} place
+   * @returns {Item | null}
+   */
   #pathTo(place) {
     const last = this.points.at(-1);
     if (last === undefined) return null;
@@ -177,7 +207,12 @@ export class Placing {
     return freeName(this.builder.playground, this.kind === "robot" ? "thymio" : this.kind);
   }
 
-  /** What a new one takes from the playground: a picture its width, a plate its last door. @param {string} kind @returns {Record<string, any>} */
+  /**
+   * What a new one takes from the playground: a picture its width, a plate its last door.
+   *
+   * @param {string} kind
+   * @returns {Record<string, any>}
+   */
   #own(kind) {
     const { playground } = this.builder;
     const ground = groundOf(playground);

@@ -1,5 +1,5 @@
-// Pointer and wheel while one builds. Handlers only note what happened and ask for a frame; places are taken over once a
-// frame (`flush`), however many moves there were. They come before the camera's, which gets what is not ours.
+// Pointer and wheel while one builds. Handlers only note what happened and ask for a frame; places are taken over once
+// a frame (`flush`), however many moves there were. They come before the camera's, which gets what is not ours.
 
 import { atHeight } from "../move/things.js";
 
@@ -42,7 +42,11 @@ export function watchBuilding({ stage, canvas, builder, scene }) {
   const isHere = (event) => event.target === canvas;
   /** @param {keyof HTMLElementEventMap} name @param {(event: any) => void} handle */
   const on = (name, handle) =>
-    stage.addEventListener(name, (event) => isHere(event) && handle(event), { capture: true, passive: false, signal: ending.signal });
+    stage.addEventListener(name, (event) => isHere(event) && handle(event), {
+      capture: true,
+      passive: false,
+      signal: ending.signal,
+    });
 
   on("pointerdown", (/** @type {PointerEvent} */ event) => {
     canvas.focus();

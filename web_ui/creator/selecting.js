@@ -1,4 +1,5 @@
-// Taking what stands there: select it, carry it, turn it by its ring, move its points. Until it is let go, it is a ghost.
+// Taking what stands there: select it, carry it, turn it by its ring, move its points. Until it is let go, it is a
+// ghost.
 
 import { atHeight } from "../move/things.js";
 import { kindNamed } from "../playground/kinds/index.js";
@@ -64,7 +65,8 @@ export class Selecting {
     this.cancel();
     if (ghost === null || grip === null) return;
     if (ghost.problem !== null) return builder.tell(ghost.problem);
-    const word = grip.handle.type === "ring" ? "did.turned" : grip.handle.type === "point" ? "did.changed" : "did.moved";
+    const word =
+      grip.handle.type === "ring" ? "did.turned" : grip.handle.type === "point" ? "did.changed" : "did.moved";
     builder.do(replaced(builder.playground, ghost.item.name, ghost.item), { word, values: { name: ghost.item.name } });
     builder.tellPlace(ghost.item);
   }

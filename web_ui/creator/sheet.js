@@ -24,7 +24,9 @@ export function sheetForm(setting, builder) {
   const titles = ["title", "description"].map((key) => control({ ...setting, commit: title }, key, needed(RULES.line)));
   const select = h("select", { id: "creator-ground", "data-field": "ground" });
   select.append(...GROUNDS.map((kind) => h("option", { value: kind }, t(`ground.${kind}`))));
-  select.addEventListener("change", () => builder.become(grounded(builder.playground, select.value), { word: "did.ground" }));
+  select.addEventListener("change", () =>
+    builder.become(grounded(builder.playground, select.value), { word: "did.ground" }),
+  );
   const fields = h("div", { class: "fields" });
   const element = h(
     "section",
@@ -59,7 +61,9 @@ export function sheetForm(setting, builder) {
       const kind = `${ground?.name} ${ground?.kind}`;
       if (kind !== shownKind) {
         shownKind = kind;
-        const own = Object.entries(kindNamed(ground?.kind ?? "")?.fields ?? {}).filter(([key]) => GROUND_KEYS.includes(key));
+        const own = Object.entries(kindNamed(ground?.kind ?? "")?.fields ?? {}).filter(([key]) =>
+          GROUND_KEYS.includes(key),
+        );
         controls = own.flatMap(([key, field]) => control({ ...setting, commit: change }, key, field) ?? []);
         fields.replaceChildren(...controls.map((one) => one.element));
       }

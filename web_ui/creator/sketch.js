@@ -1,4 +1,5 @@
-// What is drawn over the playground while one builds: grid, ghost, selection, handles. Pure: lines and areas in metres.
+// What is drawn over the playground while one builds: grid, ghost, selection, handles. Pure: lines and areas in
+// metres.
 
 import { placed } from "../playground/geometry.js";
 import { kindNamed } from "../playground/kinds/index.js";
@@ -22,7 +23,12 @@ const ARROW = { from: 0.09, to: 0.17, head: 0.025 };
 /** @param {import("./builder.js").Builder} builder @returns {Sketch} */
 export function sketchOf(builder) {
   const { playground, ghost, item, placing } = builder;
-  /** @type {Sketch} */ const sketch = { areas: [], lines: gridOf(builder), knobs: [], knobSize: KNOB_PX * builder.pixel };
+  /** @type {Sketch} */ const sketch = {
+    areas: [],
+    lines: gridOf(builder),
+    knobs: [],
+    knobSize: KNOB_PX * builder.pixel,
+  };
   for (const one of playground.items) {
     if (one.kind === "robot" && one.name !== ghost?.item.name) sketch.lines.push(...arrowOf(one, "soft"));
   }
@@ -34,7 +40,8 @@ export function sketchOf(builder) {
     const tone = ghost?.problem ? "taken" : "free";
     for (const [x, y] of placing.points) sketch.knobs.push({ x, y, tone });
     if (placing.isPath) sketch.knobs.push({ x: placing.place[0], y: placing.place[1], tone });
-  } else if (item !== null) handlesOf(sketch, ghost?.item ?? item, ghost === null ? "chosen" : ghost.problem === null ? "free" : "taken");
+  } else if (item !== null)
+    handlesOf(sketch, ghost?.item ?? item, ghost === null ? "chosen" : ghost.problem === null ? "free" : "taken");
   return sketch;
 }
 
@@ -75,11 +82,27 @@ function handlesOf(sketch, item, tone) {
 function arrowOf(item, tone) {
   const [x, y] = middleOf(item);
   const { from, to, head } = ARROW;
-  /** @type {Point[][]} */ const strokes = [[[from, 0], [to, 0]], [[to - head, head], [to, 0], [to - head, -head]]]; // prettier-ignore
+  /** @type {Point[][]} */ const strokes = [
+    [
+      [from, 0],
+      [to, 0],
+    ],
+    [
+      [to - head, head],
+      [to, 0],
+      [to - head, -head],
+    ],
+  ];
   return strokes.map((points) => ({ points: placed({ x, y, yaw: yawOf(item) }, points), tone }));
 }
 
-/** What cannot be seen: where a door goes, and the area of a plate. @param {Item} item @param {Tone} tone @returns {Line[]} */
+/**
+ * What cannot be seen: where a door goes, and the area of a plate.
+ *
+ * @param {Item} item
+ * @param {Tone} tone
+ * @returns {Line[]}
+ */
 function hintsOf(item, tone) {
   if (item.kind === "door") {
     const { closed_x_m, closed_y_m, opened_x_m, opened_y_m } = valuesOf(item);
@@ -95,7 +118,12 @@ function hintsOf(item, tone) {
   );
 }
 
-/** The grid over all grounds; coarser where it would be too fine to see. @param {import("./builder.js").Builder} builder @returns {Line[]} */
+/**
+ * The grid over all grounds; coarser where it would be too fine to see.
+ *
+ * @param {import("./builder.js").Builder} builder
+ * @returns {Line[]}
+ */
 function gridOf({ playground, grid, pixel }) {
   const corners = playground.items.flatMap((item) => partsOf(item).floors.flat());
   if (corners.length === 0) corners.push([-0.5, -0.5], [0.5, 0.5]);
@@ -104,7 +132,21 @@ function gridOf({ playground, grid, pixel }) {
   let step = grid.size;
   while (step < 5 * pixel || (right - left + top - bottom) / step > MOST_LINES) step *= 2;
   /** @type {Line[]} */ const lines = [];
-  for (let x = Math.ceil(left / step - 1e-6) * step; x <= right + 1e-6; x += step) lines.push({ points: [[x, bottom], [x, top]], tone: "grid" }); // prettier-ignore
-  for (let y = Math.ceil(bottom / step - 1e-6) * step; y <= top + 1e-6; y += step) lines.push({ points: [[left, y], [right, y]], tone: "grid" }); // prettier-ignore
+  for (let x = Math.ceil(left / step - 1e-6) * step; x <= right + 1e-6; x += step)
+    lines.push({
+      points: [
+        [x, bottom],
+        [x, top],
+      ],
+      tone: "grid",
+    });
+  for (let y = Math.ceil(bottom / step - 1e-6) * step; y <= top + 1e-6; y += step)
+    lines.push({
+      points: [
+        [left, y],
+        [right, y],
+      ],
+      tone: "grid",
+    });
   return lines;
 }

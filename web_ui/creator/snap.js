@@ -7,7 +7,13 @@
 export const GRID_SIZES = [0.01, 0.02, 0.05, 0.1];
 const MICRO = 1e6;
 
-/** The place of the grid that is nearest. @param {Point} place @param {Grid | null} grid  null: none @returns {Point} */
+/**
+ * The place of the grid that is nearest.
+ *
+ * @param {Point} place
+ * @param {Grid | null} grid  null: none
+ * @returns {Point}
+ */
 export function snapped([x, y], grid) {
   if (grid === null) return [rounded(x), rounded(y)];
   const offset = grid.on === "centres" ? grid.size / 2 : 0;

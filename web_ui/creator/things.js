@@ -17,7 +17,12 @@ export function thingsList(t, builder) {
         shown = items;
         rows = items.map(({ kind, name }) => ({
           name,
-          button: h("button", { type: "button", class: "plain", "data-thing": name, onclick: () => builder.select(name) }, name, h("small", {}, t(`kind.${kind}`))), // prettier-ignore
+          button: h(
+            "button",
+            { type: "button", class: "plain", "data-thing": name, onclick: () => builder.select(name) },
+            name,
+            h("small", {}, t(`kind.${kind}`)),
+          ),
         }));
         list.replaceChildren(...rows.map(({ button }) => h("li", {}, button)));
         setText(summary, t("things", { count: items.length }));

@@ -1,5 +1,5 @@
-// The bench on which a playground is built: the builder, what the scene draws of it, and the draft that the browser keeps.
-// It outlives the panels, which are made anew for another language.
+// The bench on which a playground is built: the builder, what the scene draws of it, and the draft that the browser
+// keeps. It outlives the panels, which are made anew for another language.
 
 import { Markers } from "../playground/markers.js";
 import { parse, write } from "../playground/document.js";
@@ -64,7 +64,11 @@ export class Workshop {
 
   /** Its name as a file: the title's letters and digits. */
   get fileName() {
-    const stem = this.builder.playground.title.normalize("NFKD").replace(/\p{M}/gu, "").replace(/[^\w]+/g, "_").replace(/^_+|_+$/g, "");
+    const stem = this.builder.playground.title
+      .normalize("NFKD")
+      .replace(/\p{M}/gu, "")
+      .replace(/[^\w]+/g, "_")
+      .replace(/^_+|_+$/g, "");
     return `${stem.slice(0, 60) || "playground"}.json`;
   }
 
@@ -73,7 +77,12 @@ export class Workshop {
     this.#changed();
   }
 
-  /** Another playground on the bench; the one before comes back by undoing. @param {Playground} playground @param {Phrase} did */
+  /**
+   * Another playground on the bench; the one before comes back by undoing.
+   *
+   * @param {Playground} playground
+   * @param {Phrase} did
+   */
   take(playground, did) {
     this.builder.selected = null;
     this.builder.placing = null;

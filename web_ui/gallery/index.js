@@ -61,7 +61,13 @@ export function galleryDialog({ t, language, actions, shelf, store, creator }) {
     cards.push({ name: info.name, button });
     const change = h(
       "button",
-      { type: "button", class: "change", hidden: true, title: t("gallery.change"), "aria-label": t("gallery.changeOf", { title }) },
+      {
+        type: "button",
+        class: "change",
+        hidden: true,
+        title: t("gallery.change"),
+        "aria-label": t("gallery.changeOf", { title }),
+      },
       icon(PENCIL),
     );
     void shelf.sample(info.name).then((sample) => {

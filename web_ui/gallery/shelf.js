@@ -1,4 +1,5 @@
-// The shipped playgrounds: read from the server when they are first wanted, with a picture of each drawn from its data.
+// The shipped playgrounds: read from the server when they are first wanted, with a picture of each drawn from its
+// data.
 
 import { parse } from "../playground/document.js";
 import { Markers } from "../playground/markers.js";

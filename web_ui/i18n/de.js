@@ -112,6 +112,8 @@ export const de = {
   "playground.own": "{title} (aus einer Datei)",
   "playground.open": "Öffnen …",
   "playground.openHelp": "Eine Spielfeld-Datei (.json, .playground oder .zip) öffnen",
+  "playground.change": "Ändern",
+  "playground.changeHelp": "Eine Kopie dieses Spielfelds ändern",
   "playground.sending": "{name} wird geladen …",
   "playground.remarks": "Bemerkungen zu dieser Datei ({count})",
   "playground.refused": "{name} wurde nicht geladen. Das Spielfeld bleibt, wie es war.",

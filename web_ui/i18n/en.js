@@ -114,6 +114,8 @@ export const en = {
   "playground.own": "{title} (from a file)",
   "playground.open": "Open …",
   "playground.openHelp": "Open a playground file (.json, .playground or .zip)",
+  "playground.change": "Change",
+  "playground.changeHelp": "Change a copy of this playground",
   "playground.sending": "Loading {name} …",
   "playground.remarks": "Remarks on this file ({count})",
   "playground.refused": "{name} was not loaded. The playground stays as it was.",

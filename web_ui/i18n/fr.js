@@ -111,6 +111,8 @@ export const fr = {
   "playground.own": "{title} (d’un fichier)",
   "playground.open": "Ouvrir …",
   "playground.openHelp": "Ouvrir un fichier de terrain (.json, .playground ou .zip)",
+  "playground.change": "Modifier",
+  "playground.changeHelp": "Modifier une copie de ce terrain",
   "playground.sending": "Chargement de {name} …",
   "playground.remarks": "Remarques sur ce fichier ({count})",
   "playground.refused": "{name} n’a pas été chargé. Le terrain reste comme il était.",

@@ -112,6 +112,8 @@ export const it = {
   "playground.own": "{title} (da un file)",
   "playground.open": "Aprire …",
   "playground.openHelp": "Aprire un file di campo (.json, .playground o .zip)",
+  "playground.change": "Modificare",
+  "playground.changeHelp": "Modificare una copia di questo campo",
   "playground.sending": "Caricamento di {name} …",
   "playground.remarks": "Osservazioni su questo file ({count})",
   "playground.refused": "{name} non è stato caricato. Il campo resta com’era.",

@@ -5,13 +5,22 @@ import { card } from "./card.js";
 import { fileButton, h, icon, setText } from "./dom.js";
 import { faultView } from "./fault.js";
 
+const PENCIL = "M3 17.500V21h3.500L17 10.500 13.500 7zM15 5.500 18.500 9l2-2L17 3.500z";
 const PICTURES = "M4 4h7v7H4zM13 4h7v7h-7zM4 13h7v7H4zM13 13h7v7h-7z";
 
 /** @typedef {import("../state/index.js").PlaygroundInfo} PlaygroundInfo */
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function playgroundPanel(context) {
-  const { t, language, actions, announce } = context;
+  const { t, language, actions, announce, creator, store } = context;
+  const change = async () => {
+    const text = await actions.playgroundText();
+    try {
+      if (text !== null) await creator.openText(text);
+    } catch (error) {
+      store.dispatch({ type: "notice", level: "error", text: error instanceof Error ? error.message : String(error) });
+    }
+  };
   const gallery = galleryDialog(context);
   const select = h("select", { id: "playground-choice", "aria-label": t("playground.choose") });
   select.addEventListener("change", () => actions.loadPlayground(select.value));
@@ -32,6 +41,12 @@ export function playgroundPanel(context) {
         { type: "button", id: "gallery-open", title: t("gallery.help"), onclick: gallery.open },
         icon(PICTURES),
         t("gallery.open"),
+      ),
+      h(
+        "button",
+        { type: "button", id: "playground-change", title: t("playground.changeHelp"), onclick: change },
+        icon(PENCIL),
+        t("playground.change"),
       ),
       fileButton({
         id: "playground-file",

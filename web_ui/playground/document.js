@@ -22,10 +22,19 @@ export function parse(text) {
   } catch (error) {
     throw new Fault("", error instanceof Error ? error.message : String(error), { word: "fault.json" });
   }
-  if (typeof data !== "object" || data === null || Array.isArray(data)) throw new Fault("", describe(data), { word: "fault.object" }); // prettier-ignore
-  const { format, $schema, shapes = [], robots = [], translations = {}, ...titles } = /** @type {Record<string, any>} */ (data);
+  if (typeof data !== "object" || data === null || Array.isArray(data))
+    throw new Fault("", describe(data), { word: "fault.object" });
+  const {
+    format,
+    $schema,
+    shapes = [],
+    robots = [],
+    translations = {},
+    ...titles
+  } = /** @type {Record<string, any>} */ (data);
   if (format !== FORMAT) throw new Fault("format", describe(format), { word: "fault.format" });
-  if ($schema !== undefined && typeof $schema !== "string") throw new Fault("$schema", describe($schema), { word: "fault.line", values: { longest: 2000 } }); // prettier-ignore
+  if ($schema !== undefined && typeof $schema !== "string")
+    throw new Fault("$schema", describe($schema), { word: "fault.line", values: { longest: 2000 } });
   check(TITLES, titles, "");
   checkTranslations(translations);
   const items = [
@@ -54,11 +63,18 @@ export function write({ title, description, translations, items }) {
   return `{\n  ${members.join(",\n  ")}\n}\n`;
 }
 
-/** Without what is as if left out. @param {Record<string, any> & { kind: string, name: string }} item @returns {Item} */
+/**
+ * Without what is as if left out.
+ *
+ * @param {Record<string, any> & { kind: string, name: string }} item
+ * @returns {Item}
+ */
 export function tidy(item) {
   const fields = kindNamed(item.kind)?.fields ?? {};
   return /** @type {Item} */ (
-    Object.fromEntries(Object.entries(item).filter(([key, value]) => !(key in fields) || value !== fields[key].otherwise))
+    Object.fromEntries(
+      Object.entries(item).filter(([key, value]) => !(key in fields) || value !== fields[key].otherwise),
+    )
   );
 }
 
@@ -79,8 +95,10 @@ function list(value, key, most) {
 /** @param {any} shape @param {number} index @returns {Item} */
 function readShape(shape, index) {
   const key = `shapes[${index}]`;
-  if (typeof shape !== "object" || shape === null || Array.isArray(shape)) throw new Fault(key, describe(shape), { word: "fault.object" }); // prettier-ignore
-  if (typeof shape.kind !== "string" || shape.kind === "robot") throw new Fault(`${key}.kind`, describe(shape.kind), { word: "fault.kind" }); // prettier-ignore
+  if (typeof shape !== "object" || shape === null || Array.isArray(shape))
+    throw new Fault(key, describe(shape), { word: "fault.object" });
+  if (typeof shape.kind !== "string" || shape.kind === "robot")
+    throw new Fault(`${key}.kind`, describe(shape.kind), { word: "fault.kind" });
   const { kind, name = `${kind}_${index}`, ...values } = shape;
   check({ name: needed(RULES.name) }, { name }, key);
   const known = kindNamed(kind);
@@ -96,11 +114,17 @@ function readRobot(start, index) {
 
 /** @param {any} translations */
 function checkTranslations(translations) {
-  if (typeof translations !== "object" || translations === null || Array.isArray(translations) || Object.keys(translations).length > MOST.translations) {
+  if (
+    typeof translations !== "object" ||
+    translations === null ||
+    Array.isArray(translations) ||
+    Object.keys(translations).length > MOST.translations
+  ) {
     throw new Fault("translations", describe(translations), { word: "fault.object" });
   }
   for (const [language, titles] of Object.entries(translations)) {
-    if (!LANGUAGE.test(language)) throw new Fault(`translations.${language}`, describe(language), { word: "fault.language" });
+    if (!LANGUAGE.test(language))
+      throw new Fault(`translations.${language}`, describe(language), { word: "fault.language" });
     check(TITLES, titles, `translations.${language}`);
   }
 }

@@ -9,7 +9,13 @@ const EXACT = 1e-12;
 const ON_THE_EDGE = 1e-9;
 const ROUND = 28;
 
-/** Points of a pose's frame in the frame that holds the pose. @param {Pose} pose @param {readonly Point[]} points @returns {Point[]} */
+/**
+ * Points of a pose's frame in the frame that holds the pose.
+ *
+ * @param {Pose} pose
+ * @param {readonly Point[]} points
+ * @returns {Point[]}
+ */
 export function placed({ x, y, yaw }, points) {
   const [cos, sin] = [Math.cos(yaw), Math.sin(yaw)];
   return points.map(([u, v]) => [x + cos * u - sin * v, y + sin * u + cos * v]);
@@ -71,7 +77,12 @@ function discOverlaps(middle, radius, hull) {
   return !outside;
 }
 
-/** Whether an edge of one has all of the other on its outer side. @param {readonly Point[]} one @param {readonly Point[]} two */
+/**
+ * Whether an edge of one has all of the other on its outer side.
+ *
+ * @param {readonly Point[]} one
+ * @param {readonly Point[]} two
+ */
 function separates(one, two) {
   return one.some(([bx, by], index) => {
     const [ax, ay] = one.at(index - 1) ?? [bx, by];

@@ -35,7 +35,12 @@ export function objection(others, item) {
   return blocker === null ? null : { word: "problem.taken", values: { name: blocker } };
 }
 
-/** The name of what is in an item's way: only robots need a place of their own. @param {readonly Item[]} others @param {Item} item */
+/**
+ * The name of what is in an item's way: only robots need a place of their own.
+ *
+ * @param {readonly Item[]} others
+ * @param {Item} item
+ */
 export function blockerOf(others, item) {
   const mine = partsOf(item).footprints;
   if (mine.length === 0) return null;
@@ -47,13 +52,23 @@ export function blockerOf(others, item) {
   return inTheWay?.name ?? null;
 }
 
-/** Whether an item has ground under it; where there is no ground at all, nothing falls. @param {readonly Item[]} others @param {Item} item */
+/**
+ * Whether an item has ground under it; where there is no ground at all, nothing falls.
+ *
+ * @param {readonly Item[]} others
+ * @param {Item} item
+ */
 export function isOnGround(others, item) {
   const kind = kindNamed(item.kind);
   if (kind === undefined || kind.group === "ground") return true;
   const floors = others.flatMap((other) => partsOf(other).floors);
   if (floors.length === 0) return true;
   return groundPoints(item).every((point) => floors.some((floor) => holds(floor, point)));
+}
+
+/** What hangs over an edge: the simulator takes it with a remark. @param {readonly Item[]} items */
+export function offGround(items) {
+  return items.filter((item) => !isOnGround(items, item));
 }
 
 /** @param {Item} item @returns {import("./geometry.js").Point[]} */
@@ -80,7 +95,8 @@ export function checkSettled({ items }) {
   /** @type {Map<string, string>} */ const seen = new Map();
   for (const { item, key } of keyed) {
     const other = seen.get(item.name);
-    if (other !== undefined) throw new Fault(`${key}.name`, `"${item.name}"`, { word: "fault.ownName", values: { other } });
+    if (other !== undefined)
+      throw new Fault(`${key}.name`, `"${item.name}"`, { word: "fault.ownName", values: { other } });
     seen.set(item.name, key);
   }
   let count = 0;
@@ -99,6 +115,9 @@ export function checkSettled({ items }) {
   const doors = shapes.filter(({ kind }) => kind === "door").map(({ name }) => name);
   for (const { item, key } of keyed) {
     if (item.kind !== "activation" || doors.includes(item.door)) continue;
-    throw new Fault(`${key}.door`, `"${item.door}"`, { word: "fault.door", values: { names: doors.join(", ") || "–" } });
+    throw new Fault(`${key}.door`, `"${item.door}"`, {
+      word: "fault.door",
+      values: { names: doors.join(", ") || "–" },
+    });
   }
 }

@@ -18,7 +18,12 @@ export class Markers {
     /** @type {WeakMap<Item, { layer: number, pictures: string, markers: Marker[] }>} */ this.known = new WeakMap();
   }
 
-  /** Markers of what is the same stay the same objects. @param {readonly Item[]} items @returns {ReadonlyMap<string, Marker>} */
+  /**
+   * Markers of what is the same stay the same objects.
+   *
+   * @param {readonly Item[]} items
+   * @returns {ReadonlyMap<string, Marker>}
+   */
   of(items) {
     /** @type {Map<string, Marker>} */ const found = new Map();
     items.forEach((item, layer) => {
@@ -51,19 +56,36 @@ export class Markers {
 /** @param {string} name @param {import("./primitives.js").Patch[]} patches @param {number} z @returns {Marker} */
 function flat(name, patches, z) {
   const points = patches.flatMap(({ vertices }) =>
-    vertices.slice(2).flatMap((third, index) => [vertices[0], vertices[index + 1], third].map(([x, y]) => ({ x, y, z: 0 }))),
+    vertices
+      .slice(2)
+      .flatMap((third, index) => [vertices[0], vertices[index + 1], third].map(([x, y]) => ({ x, y, z: 0 }))),
   );
-  return { ...marker(`${patches[0].type}/${name}`, 0, MARKER.TRIANGLE_LIST, patches[0].color), pose: pose(0, 0, z, 0), points };
+  return {
+    ...marker(`${patches[0].type}/${name}`, 0, MARKER.TRIANGLE_LIST, patches[0].color),
+    pose: pose(0, 0, z, 0),
+    points,
+  };
 }
 
 /** @param {string} name @param {number} id @param {import("./primitives.js").Solid} part @returns {Marker} */
 function solid(name, id, { pose: { x, y, yaw }, size, radius, height, color }) {
   const [sizeX, sizeY] = size ?? [2 * radius, 2 * radius];
   const type = size === null ? MARKER.CYLINDER : MARKER.CUBE;
-  return { ...marker(`solid/${name}`, id, type, color), pose: pose(x, y, height / 2, yaw), scale: { x: sizeX, y: sizeY, z: height } };
+  return {
+    ...marker(`solid/${name}`, id, type, color),
+    pose: pose(x, y, height / 2, yaw),
+    scale: { x: sizeX, y: sizeY, z: height },
+  };
 }
 
-/** @param {string} name @param {number} id @param {import("./primitives.js").Print} part @param {Picture} picture @param {number} z @returns {Marker} */
+/**
+ * @param {string} name
+ * @param {number} id
+ * @param {import("./primitives.js").Print} part
+ * @param {Picture} picture
+ * @param {number} z
+ * @returns {Marker}
+ */
 function print(name, id, { pose: { x, y, yaw }, sizeX, sizeY }, { image, width, height }, z) {
   const scale = { x: sizeX, y: sizeY ?? (sizeX * height) / width, z: 1 };
   return {
@@ -77,7 +99,17 @@ function print(name, id, { pose: { x, y, yaw }, sizeX, sizeY }, { image, width, 
 /** @param {string} ns @param {number} id @param {number} type @param {string} color @returns {Marker} */
 function marker(ns, id, type, color) {
   const [r, g, b] = [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16) / 255);
-  return { ns, id, type, action: 0, pose: pose(0, 0, 0, 0), scale: { x: 1, y: 1, z: 1 }, color: { r, g, b, a: 1 }, points: [], colors: [] };
+  return {
+    ns,
+    id,
+    type,
+    action: 0,
+    pose: pose(0, 0, 0, 0),
+    scale: { x: 1, y: 1, z: 1 },
+    color: { r, g, b, a: 1 },
+    points: [],
+    colors: [],
+  };
 }
 
 /** @param {number} x @param {number} y @param {number} z @param {number} yaw */

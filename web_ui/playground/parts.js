@@ -50,7 +50,12 @@ function filled(fields, given) {
   return values;
 }
 
-/** What an item covers, as polygons that can be drawn and pointed at, with their heights. @param {Item} item @returns {{ outline: Point[], height: number }[]} */
+/**
+ * What an item covers, as polygons that can be drawn and pointed at, with their heights.
+ *
+ * @param {Item} item
+ * @returns {{ outline: Point[], height: number }[]}
+ */
 export function outlinesOf(item) {
   if (item.kind === "robot") return [{ outline: placed(poseOfRobot(valuesOf(item)), ROBOT_OUTLINE[0]), height: 0.053 }];
   return partsOf(item).primitives.flatMap((part) => {

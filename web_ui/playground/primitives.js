@@ -20,7 +20,14 @@ import { placed, rectangle } from "./geometry.js";
 /** @typedef {{ type: "trigger", vertices: Point[], door: string }} Trigger */
 /** @typedef {Patch | Solid | Print | Trigger} Primitive */
 
-/** @param {Pose} pose @param {number} sizeX @param {number} sizeY @param {number} height @param {string} color @returns {Solid} */
+/**
+ * @param {Pose} pose
+ * @param {number} sizeX
+ * @param {number} sizeY
+ * @param {number} height
+ * @param {string} color
+ * @returns {Solid}
+ */
 export function boxSolid(pose, sizeX, sizeY, height, color) {
   return { type: "solid", pose, size: [sizeX, sizeY], radius: 0, height, color };
 }

@@ -23,7 +23,12 @@ const MOST_POINTS = 1000;
 /** @param {string} unit @param {number} low @param {number} high @returns {Rule} */
 const number = (unit, low, high) => ({ type: "number", unit, low, high });
 /** @param {string} expression @param {string} meaning @param {number} longest @returns {Rule} */
-const text = (expression, meaning, longest) => ({ type: "text", pattern: new RegExp(`^(${expression})$`), meaning, longest });
+const text = (expression, meaning, longest) => ({
+  type: "text",
+  pattern: new RegExp(`^(${expression})$`),
+  meaning,
+  longest,
+});
 
 export const RULES = {
   coordinate: number("m", -FAR_M, FAR_M),
@@ -76,7 +81,10 @@ export function check(fields, data, key) {
   const members = /** @type {Record<string, unknown>} */ (data);
   for (const name of Object.keys(members)) {
     if (!(name in fields))
-      throw new Fault(join(key, name), `"${name}"`, { word: "fault.known", values: { names: Object.keys(fields).join(", ") } }); // prettier-ignore
+      throw new Fault(join(key, name), `"${name}"`, {
+        word: "fault.known",
+        values: { names: Object.keys(fields).join(", ") },
+      });
   }
   for (const [name, { rule, required, otherwise }] of Object.entries(fields)) {
     if (otherwise === null && members[name] === null) continue;
@@ -88,9 +96,15 @@ export function check(fields, data, key) {
 /** @param {Rule} rule @param {unknown} value @param {string} key */
 export function checkValue(rule, value, key) {
   if (rule.type === "object") return check(rule.fields ?? {}, value, key);
-  if (rule.type === "points" && Array.isArray(value) && value.length >= (rule.fewest ?? 0) && value.length <= MOST_POINTS) {
+  if (
+    rule.type === "points" &&
+    Array.isArray(value) &&
+    value.length >= (rule.fewest ?? 0) &&
+    value.length <= MOST_POINTS
+  ) {
     value.forEach((point, index) => {
-      if (!Array.isArray(point) || point.length !== 2) throw new Fault(`${key}[${index}]`, describe(point), { word: "fault.point" });
+      if (!Array.isArray(point) || point.length !== 2)
+        throw new Fault(`${key}[${index}]`, describe(point), { word: "fault.point" });
       point.forEach((part, axis) => checkValue(RULES.coordinate, part, `${key}[${index}][${axis}]`));
     });
     return;

@@ -12,7 +12,9 @@ const KNOWN = new WeakMap();
 
 /** @param {readonly Item[]} items @param {import("./markers.js").Markers} markers @returns {State} */
 export function worldOf(items, markers) {
-  const robots = Object.fromEntries(items.filter(({ kind }) => kind === "robot").map((item) => [item.name, robotOf(item)]));
+  const robots = Object.fromEntries(
+    items.filter(({ kind }) => kind === "robot").map((item) => [item.name, robotOf(item)]),
+  );
   return { ...INITIAL, markers: markers.of(items), robots };
 }
 

@@ -34,13 +34,24 @@ export class Camera {
     /** @type {THREE.Vector3[]} what the overview takes in */
     this.corners = [new THREE.Vector3(-0.5, -0.5, 0), new THREE.Vector3(0.5, 0.5, 0)];
     this.target = new THREE.Vector3();
+    this.size = { width: 1, height: 1 };
+    this.inset = 0;
   }
 
   /** @param {number} width @param {number} height */
   resize(width, height) {
+    this.size = { width, height };
     this.camera.aspect = width / height;
+    if (this.inset === 0) this.camera.clearViewOffset();
+    else this.camera.setViewOffset(width, height, -this.inset / 2, 0, width, height);
     this.camera.updateProjectionMatrix();
     if (!this.touched && !this.goesAlong) this.look(this.view);
+  }
+
+  /** So many pixels at the left are covered by something: worlds are fitted beside it. @param {number} inset */
+  setInset(inset) {
+    this.inset = inset;
+    this.resize(this.size.width, this.size.height);
   }
 
   /** Whether the view goes along with a robot. */
@@ -48,7 +59,12 @@ export class Camera {
     return this.view === "follow" || this.view === "eye";
   }
 
-  /** A new world to fit in. @param {THREE.Vector3[]} corners @param {boolean} [held]  whether the camera stays where it is */
+  /**
+   * A new world to fit in.
+   *
+   * @param {THREE.Vector3[]} corners
+   * @param {boolean} [held]  whether the camera stays where it is
+   */
   frame(corners, held = false) {
     if (corners.length === 0) return;
     this.corners = corners;
@@ -81,7 +97,9 @@ export class Camera {
     }
     // Seen from straight above there is no "up"; a hair beside it, x points to the right.
     const from = (view === "top" ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.22, -0.85, 0.85)).normalize();
-    const { target, distance } = fit(this.camera, this.corners, from);
+    const { width, height } = this.size;
+    const shown = { fov: this.camera.fov, aspect: Math.max(0.2, (width - this.inset) / height) };
+    const { target, distance } = fit(shown, this.corners, from);
     this.#place(target, from.multiplyScalar(distance).add(target));
   }
 

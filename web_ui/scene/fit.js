@@ -8,7 +8,7 @@ const MARGIN = 1.05;
  * Where to look and how far to stand along `from`: each side of the picture is a plane through the camera, pushed out
  * to the corner that is farthest.
  *
- * @param {THREE.PerspectiveCamera} camera
+ * @param {{ fov: number, aspect: number }} camera  degrees upwards, width by height
  * @param {THREE.Vector3[]} corners
  * @param {THREE.Vector3} from  unit vector from the target to the camera
  */

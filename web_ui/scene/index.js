@@ -172,7 +172,12 @@ export class SceneView {
     return new Promise((settle) => shown.toBlob(settle, "image/png"));
   }
 
-  /** A small picture of another world, drawn in one of the next frames. @param {State} world @returns {Promise<HTMLCanvasElement>} */
+  /**
+   * A small picture of another world, drawn in one of the next frames.
+   *
+   * @param {State} world
+   * @returns {Promise<HTMLCanvasElement>}
+   */
   photograph(world) {
     return new Promise((settle) => {
       this.sittings.push({ world, settle });
@@ -222,7 +227,13 @@ export class SceneView {
     this.invalidate();
   }
 
-  /** Where a point of the world is in CSS pixels of the window. @param {number} x @param {number} y @param {number} z */
+  /**
+   * Where a point of the world is in CSS pixels of the window.
+   *
+   * @param {number} x
+   * @param {number} y
+   * @param {number} z
+   */
   screenPosition(x, y, z) {
     return this.#toWindow(new THREE.Vector3(x, y, z));
   }

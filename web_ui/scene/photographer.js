@@ -1,5 +1,5 @@
-// Small pictures of whole worlds, one after the other, drawn with what draws the view: in a corner of its canvas, before
-// the view is drawn over it in the same frame.
+// Small pictures of whole worlds, one after the other, drawn with what draws the view: in a corner of its canvas,
+// before the view is drawn over it in the same frame.
 
 import * as THREE from "three";
 
@@ -17,7 +17,11 @@ const FROM = new THREE.Vector3(-0.22, -0.85, 0.95).normalize();
 /** Drawn finer than shown, which smooths the edges. */
 const SIZE = { width: 480, height: 320 };
 
-/** @param {State} world @param {THREE.WebGLRenderer | null} renderer  null: from above in 2D @returns {HTMLCanvasElement} */
+/**
+ * @param {State} world
+ * @param {THREE.WebGLRenderer | null} renderer  null: from above in 2D
+ * @returns {HTMLCanvasElement}
+ */
 export function photograph(world, renderer) {
   return renderer === null ? fromAbove(world) : inSpace(world, renderer);
 }
@@ -90,7 +94,11 @@ function fromAbove(world) {
 function cornersOf(playground, robots) {
   const corners = playground.corners();
   for (const { group } of robots) {
-    for (const [x, y] of [[-0.1, -0.1], [0.1, 0.1]]) corners.push(group.position.clone().add(new THREE.Vector3(x, y, 0.05))); // prettier-ignore
+    for (const [x, y] of [
+      [-0.1, -0.1],
+      [0.1, 0.1],
+    ])
+      corners.push(group.position.clone().add(new THREE.Vector3(x, y, 0.05)));
   }
   return corners.length > 0 ? corners : [new THREE.Vector3(-0.3, -0.3, 0), new THREE.Vector3(0.3, 0.3, 0)];
 }

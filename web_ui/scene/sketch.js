@@ -33,7 +33,12 @@ export class SketchModel {
             polygonOffsetFactor: -2,
             polygonOffsetUnits: -2,
           }),
-          line: new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: line, depthTest: tone === "grid" }),
+          line: new THREE.LineBasicMaterial({
+            color: colour,
+            transparent: true,
+            opacity: line,
+            depthTest: tone === "grid",
+          }),
           knob: new THREE.MeshBasicMaterial({ color: colour, transparent: true, depthTest: false }),
         },
       ]),
@@ -64,7 +69,11 @@ export class SketchModel {
       this.group.add(mesh);
     }
     for (const { x, y, tone } of sketch.knobs) {
-      for (const [size, material, order] of /** @type {const} */ ([[1.3, this.rim, 2], [1, this.materials[tone].knob, 3]])) { // prettier-ignore
+      for (const [size, material, order] of /** @type {const} */ ([
+        [1.3, this.rim, 2],
+        [1, this.materials[tone].knob, 3],
+      ])) {
+        // prettier-ignore
         const disc = new THREE.CircleGeometry(sketch.knobSize * size, 24).translate(x, y, ABOVE_M);
         const mesh = new THREE.Mesh(disc, material);
         mesh.renderOrder = order;
@@ -74,7 +83,13 @@ export class SketchModel {
   }
 }
 
-/** The same in two dimensions; the context is in metres, y up. @param {CanvasRenderingContext2D} context @param {Sketch} sketch @param {number} pixel  metres */
+/**
+ * The same in two dimensions; the context is in metres, y up.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {Sketch} sketch
+ * @param {number} pixel  metres
+ */
 export function drawSketch(context, { areas, lines, knobs, knobSize }, pixel) {
   for (const { outline, tone } of areas) {
     context.fillStyle = css(tone, TONES[tone].area);
@@ -88,7 +103,11 @@ export function drawSketch(context, { areas, lines, knobs, knobSize }, pixel) {
     context.stroke();
   }
   for (const { x, y, tone } of knobs) {
-    for (const [size, fill] of /** @type {const} */ ([[1.3, "#fff"], [1, css(tone, 1)]])) { // prettier-ignore
+    for (const [size, fill] of /** @type {const} */ ([
+      [1.3, "#fff"],
+      [1, css(tone, 1)],
+    ])) {
+      // prettier-ignore
       context.fillStyle = fill;
       context.beginPath();
       context.arc(x, y, knobSize * size, 0, 2 * Math.PI);
@@ -105,5 +124,7 @@ function trace(context, points) {
 
 /** @param {Tone} tone @param {number} opacity */
 function css(tone, opacity) {
-  return `#${TONES[tone].colour.toString(16).padStart(6, "0")}${Math.round(opacity * 255).toString(16).padStart(2, "0")}`;
+  return `#${TONES[tone].colour.toString(16).padStart(6, "0")}${Math.round(opacity * 255)
+    .toString(16)
+    .padStart(2, "0")}`;
 }

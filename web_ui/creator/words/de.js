@@ -2,7 +2,8 @@
 
 export const de = {
   creator: "Spielfeld-Baukasten",
-  canvas: "Das Spielfeld, das gebaut wird. Ein Werkzeug wählen; Pfeiltasten bewegen, was in der Hand oder ausgewählt ist, Komma und Punkt drehen es, Eingabe setzt es ab, Escape beendet; N wählt das nächste Ding, Entf löscht es; Strg und Z macht rückgängig; Umschalt allein schaltet die Kamera ein und aus.",
+  canvas:
+    "Das Spielfeld, das gebaut wird. Ein Werkzeug wählen; Pfeiltasten bewegen, was in der Hand oder ausgewählt ist, Komma und Punkt drehen es, Eingabe setzt es ab, Escape beendet; N wählt das nächste Ding, Entf löscht es; Strg und Z macht rückgängig; Umschalt allein schaltet die Kamera ein und aus.",
   "new.title": "Mein Spielfeld",
   palette: "Werkzeuge",
   "tool.select": "Auswählen und bewegen",
@@ -101,7 +102,8 @@ export const de = {
   "file.unsaved": "Nicht als Datei gespeichert; der Browser behält einen Entwurf",
   "file.refused": "{name} wurde nicht geöffnet. Das Gebaute bleibt.",
   "hint.placing": "{kind}: Klick setzt ab; Rad oder Komma und Punkt drehen; Alt ohne Raster; Esc beendet.",
-  "hint.track": "Punkt für Punkt klicken (Leertaste); Eingabe oder nochmals der letzte Punkt beendet, der erste schließt; Rücktaste nimmt zurück.",
+  "hint.track":
+    "Punkt für Punkt klicken (Leertaste); Eingabe oder nochmals der letzte Punkt beendet, der erste schließt; Rücktaste nimmt zurück.",
   "hint.wall": "Klicken, wo die Wand beginnt und wo sie endet; Esc beendet.",
   "hint.finish": "Fertig",
   "hint.cancel": "Abbrechen",
@@ -139,6 +141,7 @@ export const de = {
   "problem.twoPoints": "Eine Bahn braucht zwei Punkte",
   "problem.picture": "{name} ist kein lesbares Bild",
   "problem.range": "von {low} bis {high} {unit}",
+  "warn.outside": "Außerhalb des Bodens: {names}",
   "problem.line": "Eine Zeile Text",
   "fault.json": "JSON-Text",
   "fault.object": "ein Objekt",

@@ -2,7 +2,8 @@
 
 export const en = {
   creator: "Playground creator",
-  canvas: "The playground that is built. Choose a tool; arrow keys move what is in hand or selected, comma and full stop turn it, Enter puts it down, Escape ends; N selects the next thing, Delete removes it; Control and Z undoes; Shift alone switches the camera on and off.",
+  canvas:
+    "The playground that is built. Choose a tool; arrow keys move what is in hand or selected, comma and full stop turn it, Enter puts it down, Escape ends; N selects the next thing, Delete removes it; Control and Z undoes; Shift alone switches the camera on and off.",
   "new.title": "My playground",
   palette: "Tools",
   "tool.select": "Select and move",
@@ -101,7 +102,8 @@ export const en = {
   "file.unsaved": "Not saved as a file; the browser keeps a draft",
   "file.refused": "{name} was not opened. What was built stays.",
   "hint.placing": "{kind}: click to put it down; wheel or comma and full stop turn it; Alt leaves the grid; Esc ends.",
-  "hint.track": "Click point after point (Space); Enter or a second click on the last point ends, a click on the first one closes; Backspace takes back.",
+  "hint.track":
+    "Click point after point (Space); Enter or a second click on the last point ends, a click on the first one closes; Backspace takes back.",
   "hint.wall": "Click where the wall begins and where it ends; Esc ends.",
   "hint.finish": "Finish",
   "hint.cancel": "Cancel",
@@ -139,6 +141,7 @@ export const en = {
   "problem.twoPoints": "A track needs two points",
   "problem.picture": "{name} is no picture that can be read",
   "problem.range": "from {low} to {high} {unit}",
+  "warn.outside": "Outside the ground: {names}",
   "problem.line": "One line of text",
   "fault.json": "JSON text",
   "fault.object": "an object",

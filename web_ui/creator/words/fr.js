@@ -2,7 +2,8 @@
 
 export const fr = {
   creator: "Atelier de terrains",
-  canvas: "Le terrain en construction. Choisir un outil ; les flèches déplacent ce qui est en main ou choisi, virgule et point le tournent, Entrée le pose, Échap termine ; N choisit l’objet suivant, Suppr l’efface ; Ctrl et Z annule ; Maj seule met la caméra en marche ou l’arrête.",
+  canvas:
+    "Le terrain en construction. Choisir un outil ; les flèches déplacent ce qui est en main ou choisi, virgule et point le tournent, Entrée le pose, Échap termine ; N choisit l’objet suivant, Suppr l’efface ; Ctrl et Z annule ; Maj seule met la caméra en marche ou l’arrête.",
   "new.title": "Mon terrain",
   palette: "Outils",
   "tool.select": "Choisir et déplacer",
@@ -100,8 +101,10 @@ export const fr = {
   "file.close": "Retour",
   "file.unsaved": "Pas encore dans un fichier ; le navigateur garde un brouillon",
   "file.refused": "{name} n’a pas été ouvert. La construction reste.",
-  "hint.placing": "{kind} : cliquer pour poser ; molette ou virgule et point tournent ; Alt sans grille ; Échap termine.",
-  "hint.track": "Cliquer point par point (Espace) ; Entrée ou encore le dernier point termine, le premier ferme ; Retour arrière reprend.",
+  "hint.placing":
+    "{kind} : cliquer pour poser ; molette ou virgule et point tournent ; Alt sans grille ; Échap termine.",
+  "hint.track":
+    "Cliquer point par point (Espace) ; Entrée ou encore le dernier point termine, le premier ferme ; Retour arrière reprend.",
   "hint.wall": "Cliquer où le mur commence et où il finit ; Échap termine.",
   "hint.finish": "Terminer",
   "hint.cancel": "Annuler",
@@ -139,6 +142,7 @@ export const fr = {
   "problem.twoPoints": "Une piste demande deux points",
   "problem.picture": "{name} n’est pas une image lisible",
   "problem.range": "de {low} à {high} {unit}",
+  "warn.outside": "Hors du sol : {names}",
   "problem.line": "Une ligne de texte",
   "fault.json": "du texte JSON",
   "fault.object": "un objet",

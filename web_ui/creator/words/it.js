@@ -2,7 +2,8 @@
 
 export const it = {
   creator: "Laboratorio di campi",
-  canvas: "Il campo in costruzione. Scegliere uno strumento; le frecce spostano ciò che è in mano o scelto, virgola e punto lo girano, Invio lo posa, Esc termina; N sceglie l’oggetto seguente, Canc lo elimina; Ctrl e Z annulla; Maiusc da solo accende e spegne la telecamera.",
+  canvas:
+    "Il campo in costruzione. Scegliere uno strumento; le frecce spostano ciò che è in mano o scelto, virgola e punto lo girano, Invio lo posa, Esc termina; N sceglie l’oggetto seguente, Canc lo elimina; Ctrl e Z annulla; Maiusc da solo accende e spegne la telecamera.",
   "new.title": "Il mio campo",
   palette: "Strumenti",
   "tool.select": "Scegliere e spostare",
@@ -101,7 +102,8 @@ export const it = {
   "file.unsaved": "Non salvato in un file; il browser conserva una bozza",
   "file.refused": "{name} non è stato aperto. La costruzione resta.",
   "hint.placing": "{kind}: clic per posare; rotella o virgola e punto girano; Alt senza griglia; Esc termina.",
-  "hint.track": "Cliccare punto per punto (Spazio); Invio o di nuovo l’ultimo punto termina, il primo chiude; Backspace toglie.",
+  "hint.track":
+    "Cliccare punto per punto (Spazio); Invio o di nuovo l’ultimo punto termina, il primo chiude; Backspace toglie.",
   "hint.wall": "Cliccare dove il muro inizia e dove finisce; Esc termina.",
   "hint.finish": "Finire",
   "hint.cancel": "Annullare",
@@ -139,6 +141,7 @@ export const it = {
   "problem.twoPoints": "Una pista richiede due punti",
   "problem.picture": "{name} non è un’immagine leggibile",
   "problem.range": "da {low} a {high} {unit}",
+  "warn.outside": "Fuori dal suolo: {names}",
   "problem.line": "Una riga di testo",
   "fault.json": "testo JSON",
   "fault.object": "un oggetto",

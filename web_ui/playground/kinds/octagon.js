@@ -20,7 +20,9 @@ export const octagon = {
   primitives(values) {
     const { side_m: side, color, walls } = values;
     const pose = poseOf(values);
-    const corners = Array.from({ length: 8 }, (_, index) => polar(side / 2 / Math.sin(EIGHTH / 2), (index + 0.5) * EIGHTH));
+    const corners = Array.from({ length: 8 }, (_, index) =>
+      polar(side / 2 / Math.sin(EIGHTH / 2), (index + 0.5) * EIGHTH),
+    );
     /** @type {import("../primitives.js").Primitive[]} */
     const found = [{ type: "floor", vertices: placed(pose, corners), color }];
     if (walls === null) return found;

@@ -34,7 +34,12 @@ export const track = {
       if (distance([ax, ay], [bx, by]) < SAME_PLACE_M) continue;
       const half = width / 2;
       const [ux, uy, vx, vy] = [-Math.sin(a) * half, Math.cos(a) * half, -Math.sin(b) * half, Math.cos(b) * half];
-      const vertices = /** @type {Point[]} */ ([[ax - ux, ay - uy], [bx - vx, by - vy], [bx + vx, by + vy], [ax + ux, ay + uy]]); // prettier-ignore
+      const vertices = /** @type {Point[]} */ ([
+        [ax - ux, ay - uy],
+        [bx - vx, by - vy],
+        [bx + vx, by + vy],
+        [ax + ux, ay + uy],
+      ]);
       found.push({ type: "paint", vertices, color });
     }
     return found;
@@ -79,7 +84,14 @@ function stationsOf({ points_m, width_m: width, closed, corner_radius_m: radius 
   return stations;
 }
 
-/** @param {Point} corner @param {number} direction @param {number} turn @param {number} cut @param {number} size @returns {Station[]} */
+/**
+ * @param {Point} corner
+ * @param {number} direction
+ * @param {number} turn
+ * @param {number} cut
+ * @param {number} size
+ * @returns {Station[]}
+ */
 function arc(corner, direction, turn, cut, size) {
   if (cut === 0) return [];
   const radius = Math.sign(turn) * size;
