@@ -14,6 +14,7 @@ from tests.sim.builders import FLOOR, box, make, run, shipped
 from thymio_sim_ros.sim import playground
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.commands import (
+    BodyTwist,
     Clap,
     MotorTargets,
     MoveRobot,
@@ -23,6 +24,7 @@ from thymio_sim_ros.sim.commands import (
     SetPen,
     Tap,
     Tilt,
+    WheelVelocities,
 )
 from thymio_sim_ros.sim.playground import Playground, RobotStart
 from thymio_sim_ros.sim.sensors import NEVER_NS
@@ -113,6 +115,27 @@ def test_one_robot_may_be_a_crowd(monkeypatch: pytest.MonkeyPatch) -> None:
         world = World(scene, seed=4)
         world.post("thymio", MotorTargets(300, 250))
         runs.append(run(world, 5.0))
+    assert_same(*runs)
+
+
+def test_commands_of_a_crowd_time_out_and_motor_models_change_as_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    robots = [{"name": f"robot_{index}", "x_m": index * 0.4, "y_m": 0.0} for index in range(4)]
+    runs = []
+    for crowd in (ONE_BY_ONE, AT_ONCE):
+        monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+        world = World(make([FLOOR], robots))
+        steps = []
+        for tick in range(100):
+            if tick == 0:
+                world.post("robot_0", MotorTargets(200, 100))
+            if tick in (5, 30):
+                world.post("robot_0", WheelVelocities(-2.0, 3.0, timeout_ns=200_000_000))
+                world.post("robot_1", BodyTwist(0.1, 1.0, timeout_ns=150_000_000))
+            if tick in (20, 60):
+                world.post("robot_2", SetMotorModel("firmware" if tick == 20 else "ideal"))
+                world.post("robot_2", MotorTargets(5 * tick, 300))
+            steps.append(world.step())
+        runs.append(steps)
     assert_same(*runs)
 
 

@@ -8,10 +8,7 @@ import pytest
 from pymunk import batch
 
 from thymio_sim_ros.sim.physics import one_by_one
-from thymio_sim_ros.sim.physics.one_by_one import Setter, set_by_properties
-
-SPEEDS = batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
-FORCES = SPEEDS | batch.BodyFields.FORCE | batch.BodyFields.TORQUE
+from thymio_sim_ros.sim.physics.one_by_one import FORCES, SPEEDS, Reader, Setter, set_by_properties
 
 
 def space(count: int) -> tuple[pymunk.Space, list[pymunk.Body]]:
@@ -83,3 +80,19 @@ def test_a_sleeping_body_that_is_set_moves() -> None:
         Setter(bodies).set(SPEEDS, np.array([[1.0, 0.0, 0.0]]))
         found.step(0.01)
     assert bodies[0].position.x == pytest.approx(0.1)
+
+
+def test_a_reader_finds_bodies_in_whatever_order_the_space_has_them() -> None:
+    found, bodies = space(4)
+    Setter(bodies).set(SPEEDS, np.arange(12.0).reshape(4, 3))
+    reader = Reader(found)
+    reader.read()
+    expected = [(10.0 * index, 0.0, 0.0, 3.0 * index, 3.0 * index + 1, 3.0 * index + 2) for index in range(4)]
+    assert reader.state[reader.rows(bodies)].tolist() == [list(row) for row in expected]
+    order = reader.order
+    reader.read()
+    assert reader.order == order
+    found.remove(bodies[0], *bodies[0].shapes)
+    reader.read()
+    assert reader.order != order
+    assert reader.state[reader.rows(bodies[1:])].tolist() == [list(row) for row in expected[1:]]

@@ -124,7 +124,7 @@ def test_gliding_is_what_the_engine_does(monkeypatch: pytest.MonkeyPatch) -> Non
         return poses
 
     gliding = go()
-    monkeypatch.setattr(singles, "quiet_ticks", lambda robot, nearby, is_alone: 0)
+    monkeypatch.setattr(singles, "quiet_ticks", lambda robot, nearby, at_least, is_alone: 0)
     for glided, stepped in zip(gliding, go(), strict=True):
         assert pose_close(glided, stepped, 1e-9)
 

@@ -23,24 +23,28 @@ _FAR_M = thymio2.HULL_RADIUS_M + SAFE_M + _MOST_TICKS * LONGEST_WAY_M
 """What is farther away does not shorten the quiet."""
 
 
-def quiet_ticks(robot: RobotBody, nearby: Nearby, *, is_alone: bool) -> int:
+def quiet_ticks(robot: RobotBody, nearby: Nearby, *, at_least: int, is_alone: bool) -> int:
     """For how many ticks it can reach nothing, however it and all others drive, while doors rest and nothing is fast.
 
-    `is_alone` when nothing else moves, or could be moved by anybody else.
+    0 when they are fewer than `at_least`. `is_alone` when nothing else moves, or could be moved by anybody else.
     """
     reach_m = thymio2.HULL_RADIUS_M + SAFE_M
     x, y = robot.pose.x_m, robot.pose.y_m
-    free_m = _FAR_M - reach_m
+    free_m, least_m = _FAR_M - reach_m, at_least * LONGEST_WAY_M
     for obstacle in nearby.fixed(x, y, _FAR_M):
         left, bottom, right, top = obstacle.bounds
         free_m = min(free_m, math.hypot(max(left - x, 0.0, x - right), max(bottom - y, 0.0, y - top)) - reach_m)
+        if free_m < least_m:
+            return 0
     for mover in nearby.movers(x, y, (1.0 + THING_SHARE) * _FAR_M):
         if mover is robot:
             continue
         away_m = math.hypot(mover.pose.x_m - x, mover.pose.y_m - y) - mover.reach_m - reach_m
         if isinstance(mover, RobotBody):
-            free_m = min(free_m, away_m / 2)
-        else:
-            share = THING_SHARE if isinstance(mover, MovableBody) and not is_alone else 0.0
-            free_m = min(free_m, away_m / (1.0 + share))
+            away_m /= 2
+        elif isinstance(mover, MovableBody) and not is_alone:
+            away_m /= 1.0 + THING_SHARE
+        free_m = min(free_m, away_m)
+        if free_m < least_m:
+            return 0
     return max(0, int(free_m / LONGEST_WAY_M))

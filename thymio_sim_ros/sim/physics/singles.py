@@ -45,8 +45,9 @@ class Singles:
 
     def begin_tick(self, *, do_doors_move: bool) -> None:
         """Let those glide who can reach nothing."""
-        is_restless = do_doors_move or any(movable.is_fast for movable in self._movables.values())
-        self._is_anything_moving = do_doors_move or any(movable.is_moving for movable in self._movables.values())
+        moving = [movable for movable in self._movables.values() if movable.is_moving]
+        is_restless = do_doors_move or any(movable.is_fast for movable in moving)
+        self._is_anything_moving = do_doors_move or bool(moving)
         if is_restless:
             self._calm.clear()
         self._engaged = []
@@ -87,10 +88,12 @@ class Singles:
 
     def _look_round(self, robot: RobotBody, *, is_restless: bool) -> int:
         """A number for `_calm`."""
-        is_alone = len(self._robots) == 1 and not self._is_anything_moving
-        ticks = 0 if robot.touching or is_restless else quiet_ticks(robot, self._nearby, is_alone=is_alone)
-        if ticks >= (_LOOK_ROUND_TICKS if robot.is_engaged else 1):
-            robot.disengage(self._space)
-            return ticks
+        if not (robot.touching or is_restless):
+            is_alone = len(self._robots) == 1 and not self._is_anything_moving
+            at_least = _LOOK_ROUND_TICKS if robot.is_engaged else 1
+            ticks = quiet_ticks(robot, self._nearby, at_least=at_least, is_alone=is_alone)
+            if ticks > 0:
+                robot.disengage(self._space)
+                return ticks
         robot.engage(self._space)
         return -_LOOK_ROUND_TICKS
