@@ -17,7 +17,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
 from aseba_vm import engine_python, engine_wasm
-from aseba_vm.blocks import Blocks, Known, Memories, find_blocks
+from aseba_vm.blocks import Blocks, Memories, find_blocks
 from aseba_vm.bytecode import WAS_TRUE
 from aseba_vm.codememory import CodeMemory
 from aseba_vm.host import Host, PythonHost, Run
@@ -25,6 +25,7 @@ from aseba_vm.interpreter import ACTIVE
 from aseba_vm.nativecall import Native, NativeFault, Signature
 from aseba_vm.natives import NATIVES
 from aseba_vm.outbox import Emitted, Message
+from aseba_vm.statements import Known
 from aseba_vm.structure import GO_ON, INTERPRET, STOPPED, Structure
 from aseba_vm.target import TargetDescription
 from aseba_vm.variables import Variables

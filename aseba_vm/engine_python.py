@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from aseba_vm.blocks import Assign, AssignIndex, Blocks, Branch, Call, Emit, Known, Place, Statement
+from aseba_vm.blocks import Blocks
 from aseba_vm.host import Run
 from aseba_vm.python_expressions import Expressions
+from aseba_vm.statements import Assign, AssignIndex, Branch, Call, Emit, Known, Place, Statement
 from aseba_vm.structure import (
     INTERPRET,
     STOPPED,

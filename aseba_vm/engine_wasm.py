@@ -10,7 +10,8 @@ from __future__ import annotations
 import importlib
 from collections.abc import Sequence
 
-from aseba_vm.blocks import Assign, AssignIndex, Blocks, Branch, Call, Emit, Known, Place, Statement, arguments
+from aseba_vm.blocks import Blocks
+from aseba_vm.statements import Assign, AssignIndex, Branch, Call, Emit, Known, Place, Statement, arguments
 from aseba_vm.structure import INTERPRET, Back, Check, Cost, Exit, If, Loop, Node, Routine, Structure, Visit
 from aseba_vm.wasm_expressions import WasmExpressions
 from aseba_vm.wasm_host import (

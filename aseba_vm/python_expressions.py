@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from aseba_vm import intervals
-from aseba_vm.blocks import Binary, Const, Expr, Index, Load, Temp, Unary
 from aseba_vm.intervals import WORD, Interval, is_word
+from aseba_vm.statements import Binary, Const, Expr, Index, Load, Temp, Unary
 
 _LARGE = 1 << 31
 _COMPARISONS = ("==", "!=", ">", ">=", "<", "<=", "or", "and")

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from aseba_vm.blocks import Blocks, Branch, Enter, Jump, Leave, Place, Return, Statement, Stop
+from aseba_vm.blocks import Blocks
+from aseba_vm.statements import Branch, Enter, Jump, Leave, Place, Return, Statement, Stop
 
 MAX_NESTING = 14
 MAX_NODES = 4000

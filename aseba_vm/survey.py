@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from aseba_vm.blocks import (
+from aseba_vm.statements import (
     Assign,
     AssignIndex,
     Binary,

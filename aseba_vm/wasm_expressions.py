@@ -9,8 +9,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from aseba_vm import intervals
-from aseba_vm.blocks import Binary, Const, Expr, Index, Load, Temp, Unary
 from aseba_vm.intervals import WORD, Interval, is_word
+from aseba_vm.statements import Binary, Const, Expr, Index, Load, Temp, Unary
 
 _COMPARISONS = ("eq", "ne", "gt_s", "ge_s", "lt_s", "le_s")
 _PLAIN = {2: "add", 3: "sub", 4: "mul", 7: "or", 8: "xor", 9: "and"}
