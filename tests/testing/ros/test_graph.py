@@ -166,6 +166,12 @@ def test_time_that_passes_in_vain_is_told_with_all_that_is_known(ros, simulation
     assert lines[-1].endswith(" other topics")
 
 
+def test_time_that_stood_still_is_told(ros, simulation):
+    simulation()
+    with pytest.raises(pytest.fail.Exception, match="simulated time stood still meanwhile: sim_time= lets it pass"):
+        ros.until(lambda: False, timeout=0.0)
+
+
 def test_qualities_that_do_not_fit_are_told(ros):
     ros.node.create_publisher(Bool, "light", BEST_EFFORT)
     ros.make_node("viewer").create_subscription(Bool, "light", lambda _: None, 10)

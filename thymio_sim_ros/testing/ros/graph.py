@@ -158,7 +158,8 @@ class Ros:
         __tracebackhide__ = True
         if sim_time is not None:
             return self._simulated().until(condition, sim_time, what=what)
-        return self.spin_until(condition, timeout, lambda: f"not within {timeout:g} s: {what or told(condition)}")
+        hint = "" if self.simulation is None else "\n(simulated time stood still meanwhile: sim_time= lets it pass)"
+        return self.spin_until(condition, timeout, lambda: f"not within {timeout:g} s: {what or told(condition)}{hint}")
 
     def spin_until(self, condition: Callable[[], Any], timeout: float, head: Callable[[], str]) -> Any:
         """Spin until the condition is true, at most so many seconds of real time; the failure begins with `head()`."""

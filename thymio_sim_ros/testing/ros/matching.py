@@ -83,7 +83,7 @@ def topic_lines(node: Node, ours: Sequence[str]) -> list[str]:
         ]
         quality = f" ({_name(unfit[0][0])} and {_name(unfit[0][1])} do not fit in QoS)" if unfit else ""
         lines.append(f"{topic} {' '.join(kinds)}: {sides}{lonely}{quality}")
-    return [*lines, f"and {others} other topics"] if others else lines
+    return [*lines, f"and {counted(others, 'other topic')}"] if others else lines
 
 
 def _name(info: Any) -> str:
