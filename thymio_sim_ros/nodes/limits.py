@@ -19,6 +19,7 @@ from thymio_sim_ros.sim.tones import HIGHEST_HZ, LOWEST_HZ
 
 __all__ = [
     "Beyond",
+    "brightness",
     "color",
     "intensities",
     "light",
@@ -86,9 +87,14 @@ def color(message: ColorRGBA) -> str:
     return _outside((message.r, message.g, message.b), 0.0, 1.0, "color")
 
 
-def intensities(message: Float32MultiArray) -> str:
+def brightness(values: Iterable[float]) -> str:
     """Intensities of lights beyond 0…1."""
-    return _outside(message.data, 0.0, 1.0, "intensity")
+    return _outside(values, 0.0, 1.0, "intensity")
+
+
+def intensities(message: Float32MultiArray) -> str:
+    """The same of a message."""
+    return brightness(message.data)
 
 
 def _one(message: Float32, *, what: str) -> str:

@@ -13,12 +13,21 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from thymio_sim_ros import registry
-from thymio_sim_ros.nodes import convert, params, qos, robot_ports, tf_messages, world_ports, world_services
+from thymio_sim_ros.nodes import (
+    convert,
+    driver_topics,
+    params,
+    qos,
+    robot_ports,
+    tf_messages,
+    world_ports,
+    world_services,
+)
 from thymio_sim_ros.nodes.aseba_node import RuntimeParams
 from thymio_sim_ros.nodes.description import fixed_frames, wheel_position
 from thymio_sim_ros.nodes.migration import migration
 from thymio_sim_ros.nodes.names import SIDES
-from thymio_sim_ros.nodes.reference_text import AFTER, BEFORE, INTERFACES, QUALITY, RVIZ
+from thymio_sim_ros.nodes.reference_text import AFTER, BEFORE, DRIVER, INTERFACES, QUALITY, RVIZ
 from thymio_sim_ros.nodes.robot_inputs import RobotInput, robot_inputs
 from thymio_sim_ros.nodes.sim_interfaces import OFFERS, PACKAGE, STEPS
 from thymio_sim_ros.nodes.simulator_params import SimulatorParams
@@ -62,6 +71,8 @@ def text() -> str:
         _topics(_published()),
         "## What a robot listens to\n",
         _topics(_line_of_input(one) for one in robot_inputs()),
+        DRIVER,
+        table(("topic", "", "type", ""), _of_driver()),
         "## Topics of the world\n",
         _topics(_of_world()),
         "## Services\n",
@@ -114,6 +125,11 @@ def _published() -> Iterator[_Line]:
 
 def _line_of_input(one: RobotInput) -> _Line:
     return _Line(one.topic, type_name(one.type), "", "", qos.kind_of(one.profile), one.about)
+
+
+def _of_driver() -> Iterator[tuple[str, str, str, str]]:
+    for topic, (direction, kind, about) in driver_topics.TOPICS.items():
+        yield f"`{topic}`", direction, f"`{driver_topics.PACKAGE}/msg/{kind}`", about
 
 
 def _of_world() -> Iterator[_Line]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["AFTER", "BEFORE", "INTERFACES", "QUALITY", "RVIZ"]
+__all__ = ["AFTER", "BEFORE", "DRIVER", "INTERFACES", "QUALITY", "RVIZ"]
 
 BEFORE = """\
 # The ROS 2 interface
@@ -28,11 +28,15 @@ ros2 launch thymio_sim_ros thymio.launch.py driver_compat:=true program:=none
 ```
 
 `driver_compat` sets `out_of_range` to `driver`: a range is -1 where nothing is seen, as the driver has it, instead of
-+inf. Code that adds or averages ranges needs this, code that compares them (`r < 0.08`) needs the default. Left out are
-the topics whose types only the driver's own package `thymio_msgs` has: `led`, `led/gesture`, `sound/play`,
-`sound/play/system` and `comm/rx` have twins of standard types (`led/…`, `led/gesture/…`, `sound/tone`, `sound/system`,
-`comm/received` with `raw/comm`). Left out are also the parameters that calibrate a real robot's motors (`axis_length`,
-`motor.…`).
++inf. Code that adds or averages ranges needs this, code that compares them (`r < 0.08`) needs the default. Topics whose
+types only the driver's own package `thymio_msgs` has are there [where it is](#topics-with-types-of-thymio_msgs); their
+twins of standard types are there everywhere. Left out are:
+
+- the parameters that calibrate a real robot's motors (`axis_length`, `motor.…`);
+- what `asebaros` does with types of `asebaros_msgs`. Its `aseba/events/<event>` carries both directions, told apart by
+  a field that no standard type has; here `aseba/events/<event>` is what robots say, `aseba/emit/<event>` what they
+  hear. In place of its services: `script.path` and `script.source`, `aseba/get_variables`, `aseba/set_variables`,
+  `aseba/list_variables`, and the latched `aseba/target` and `aseba/status`.
 
 ## Control of time and world
 
@@ -65,6 +69,13 @@ Names are those of the playground (`robot` in `/simulator/state`), also of movab
 `/simulator/place`, with the name, or a robot's frame, in `child_frame_id`; or a robot's `initialpose`, as the tools of
 RViz and Foxglove do. All of it works through the Foxglove bridge too. What is moved while time stands still is there
 after the next step.
+"""
+
+DRIVER = """\
+## Topics with types of `thymio_msgs`
+
+Of a robot, where the driver's package is installed; their twins are `comm/received` with `raw/comm`, `led/…`,
+`led/gesture/…`, `sound/tone` and `sound/system`.
 """
 
 INTERFACES = """\

@@ -21,6 +21,7 @@ from thymio_sim_ros.nodes import convert, qos
 from thymio_sim_ros.nodes.audience import Audience, Heard
 from thymio_sim_ros.nodes.convert import CommandError, ConvertOptions, Row
 from thymio_sim_ros.nodes.description import urdf
+from thymio_sim_ros.nodes.driver_topics import DriverTopics
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.robot_inputs import Moment, RobotInput, robot_inputs
 from thymio_sim_ros.nodes.templates import Template
@@ -49,11 +50,15 @@ SERVICES: Mapping[str, tuple[type, str]] = {
 
 @dataclass(frozen=True, slots=True)
 class PortOptions:
-    """What a user may choose about the topics of all robots, once; `every_ns`: of topics with a rate of their own."""
+    """What a user may choose about the topics of all robots, once; `every_ns`: of topics with a rate of their own.
+
+    `extra`: what there is besides.
+    """
 
     stamped_cmd_vel: bool = False
     left_out: frozenset[str] = frozenset()
     every_ns: Mapping[str, int] = field(default_factory=dict)
+    extra: DriverTopics = field(default_factory=DriverTopics)
 
 
 @dataclass(slots=True)
@@ -102,7 +107,7 @@ class RobotPorts:
         self._sent: dict[str, tuple[_Outlet, ...]] = {}
         """By sensor, what somebody hears or what is always sent."""
         for sensor in all_sensors():
-            for row in convert.rows_of(sensor):
+            for row in (*convert.rows_of(sensor), *options.extra.rows.get(sensor.name, ())):
                 if row.topic not in options.left_out:
                     every_ns = options.every_ns.get(row.topic, row.every_ns)
                     self._open(row, Heard(sensor.name, every_ns, convert.is_regular(sensor, row)))
@@ -112,7 +117,7 @@ class RobotPorts:
             self._description.publish(String(data=urdf(names)))
         self._subscriptions = [
             node.create_subscription(one.type, names.topic(one.topic), self._taker(one), one.profile)
-            for one in robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel)
+            for one in (*robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel), *options.extra.inputs)
         ]
         handlers = {"is_ready": lambda _request, response: response, "reset_odometry": self._reset_odometry}
         self._services = [

@@ -12,6 +12,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.context import Context
@@ -21,7 +22,7 @@ from rclpy.parameter import Parameter
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.nodes import dds_profile, params, sim_interfaces
+from thymio_sim_ros.nodes import dds_profile, driver_topics, params, sim_interfaces
 from thymio_sim_ros.nodes.audience import Audience
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
@@ -85,7 +86,7 @@ class Simulator:
         )
         self._audience = Audience(self.params.periods_ns)
         self._transforms = Transforms(self.node, self._audience, self.params.transform_options)
-        self._port_options = self.params.port_options
+        self._port_options = replace(self.params.port_options, extra=driver_topics.found(self.node))
         self._roster = Roster(self._ports, self.params.naming)
         self._set_world(self._new_world(playground, self.params))
         self._services = WorldServices(self.node, self)

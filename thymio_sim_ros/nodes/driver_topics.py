@@ -1,0 +1,131 @@
+"""Topics whose types only the driver's own package `thymio_msgs` has, where that package is installed.
+
+Each has a twin of standard types (ros-interface.md section 4), which is there everywhere.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+
+from thymio_sim_ros.nodes import convert, limits, qos
+from thymio_sim_ros.nodes.convert import CommandError, Row
+from thymio_sim_ros.nodes.headers import SECOND_NS
+from thymio_sim_ros.nodes.limits import Beyond
+from thymio_sim_ros.nodes.robot_inputs import Moment, RobotInput
+from thymio_sim_ros.sim import commands
+from thymio_sim_ros.sim.commands import Command
+
+__all__ = ["PACKAGE", "TOPICS", "DriverTopics", "found"]
+
+PACKAGE = "thymio_msgs"
+
+GROUPS = ("circle", "proximity", "buttons", "ground", "temperature", "microphone", "remote")
+"""Groups of lights by the number in `Led` and `LedGesture`."""
+
+SHORTEST_NS = SECOND_NS // 60
+"""Of a tone, as the driver plays it."""
+
+TOPICS: Mapping[str, tuple[str, str, str]] = {
+    "comm/rx": ("out", "Comm", "an infrared frame: value, payloads and intensities of the seven sensors"),
+    "led": (
+        "in",
+        "Led",
+        "group 0…6 (circle, proximity, buttons, ground, temperature, microphone, remote), intensities",
+    ),
+    "led/gesture": ("in", "LedGesture", "the nearest of `led/gesture/{circle,blink,kit,alive,off}`"),
+    "sound/play": ("in", "Sound", "Hz, duration of at least 1/60 s"),
+    "sound/play/system": ("in", "SystemSound", "the robot's sound 0…7, -1 stops"),
+}
+"""Direction, type and meaning of each."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriverTopics:
+    """What a robot publishes and listens to besides: rows by sensor, and inputs. Nothing without the package."""
+
+    rows: Mapping[str, Sequence[Row]] = field(default_factory=dict)
+    inputs: Sequence[RobotInput] = ()
+
+    @classmethod
+    def of(cls, messages: Any) -> DriverTopics:
+        """All of them, by the module `thymio_msgs.msg`."""
+
+        def comm(reading: Any, _names: object, _options: object) -> Any:
+            words = reading.words
+            return messages.Comm(value=words[0], payloads=words[1:8], intensities=words[8:15])
+
+        def taken(topic: str, act: Any, profile: QoSProfile, beyond: Beyond = limits.nothing) -> RobotInput:
+            _, kind, about = TOPICS[topic]
+            return RobotInput(topic, getattr(messages, kind), act, about, profile, beyond)
+
+        return cls(
+            {"comm": (Row("comm/rx", messages.Comm, comm, TOPICS["comm/rx"][2]),)},
+            (
+                taken("led", _led, qos.LEDS, _too_bright),
+                taken("led/gesture", _gesture, qos.LEDS),
+                taken("sound/play", _tone, qos.EVENTS),
+                taken("sound/play/system", _system, qos.EVENTS),
+            ),
+        )
+
+
+def found(node: Node) -> DriverTopics:
+    """Those of the package, if there is one; one that cannot be loaded is told once."""
+    try:
+        import thymio_msgs.msg
+    except ImportError as error:
+        if not isinstance(error, ModuleNotFoundError) or error.name != PACKAGE:
+            node.get_logger().warning(f"{PACKAGE} is left out: {error}")
+        return DriverTopics()
+    return DriverTopics.of(thymio_msgs.msg)
+
+
+def _group(number: int) -> str:
+    if number >= len(GROUPS):
+        raise CommandError(f"group {number} found, expected 0 to {len(GROUPS) - 1}: {', '.join(GROUPS)}")
+    return GROUPS[number]
+
+
+def _led(message: Any, _moment: Moment) -> Sequence[Command]:
+    group = _group(message.id)
+    size = commands.LED_GROUPS[group]
+    return (convert.led_levels(group, list(message.values)[:size]),)
+
+
+def _too_bright(message: Any) -> str:
+    return limits.brightness(message.values[: commands.LED_GROUPS[GROUPS[message.id]]])
+
+
+def _gesture(message: Any, _moment: Moment) -> Sequence[Command]:
+    """The driver's own four are told apart by group, shape and length."""
+    if message.gesture == message.OFF:
+        return (commands.StopGesture(),)
+    group = _group(message.leds)
+    if group == "circle":
+        name = "alive" if message.wave == message.RECT else "blink" if message.length <= 1 else "circle"
+    elif group == "proximity":
+        name = "kit"
+    else:
+        raise CommandError(f"a gesture of the {group} lights found, expected circle (0) or proximity (1)")
+    if not math.isfinite(message.period):
+        raise CommandError(f"period is {message.period}, expected a finite number")
+    try:
+        return (commands.PlayGesture(name, float(message.period)),)
+    except ValueError as error:
+        raise CommandError(str(error)) from error
+
+
+def _tone(message: Any, _moment: Moment) -> Sequence[Command]:
+    convert.finite(message.frequency, "frequency")
+    duration_ns = message.duration.sec * SECOND_NS + message.duration.nanosec
+    return (commands.PlayTone(max(1.0, float(message.frequency)), max(SHORTEST_NS, duration_ns)),)
+
+
+def _system(message: Any, _moment: Moment) -> Sequence[Command]:
+    return (commands.StopSound() if message.sound == message.STOP else commands.PlaySystemSound(int(message.sound)),)
