@@ -293,7 +293,8 @@ def test_the_description_service_tells_the_type_whose_hash_it_is() -> None:
     assert response.successful, response.failure_reason
     assert _hash_of(response.type_description) == HASH
     sources = {source.type_name: source for source in response.type_sources}
-    assert sources["tf2_msgs/msg/TFMessage"].raw_file_contents == "geometry_msgs/TransformStamped[] transforms\n"
+    content = sources["tf2_msgs/msg/TFMessage"].raw_file_contents
+    assert content.strip() == "geometry_msgs/TransformStamped[] transforms"
     assert sources["tf2_msgs/msg/TFMessage"].encoding == "msg"
     assert "geometry_msgs/msg/Quaternion" in sources
 
