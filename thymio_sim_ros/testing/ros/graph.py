@@ -121,14 +121,19 @@ class Ros:
     def stop(self, node: Node) -> None:
         """End a node of this test before the test ends."""
         self._nodes.remove(node)
-        self._executor.remove_node(node)
+        self._forget(node)
         node.destroy_node()
 
     def end(self, life: Any) -> None:
         """Close a `Life` before the test ends."""
         self._lives.remove(life)
-        self._executor.remove_node(life.node)
+        self._forget(life.node)
         life.close()
+
+    def _forget(self, node: Node) -> None:
+        """Let the executor do all that waits for a node, and then take its leave of it."""
+        self._executor.remove_node(node)
+        self.deliver()
 
     # --- time ---
 
