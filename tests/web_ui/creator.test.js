@@ -371,3 +371,17 @@ test("what a smaller ground leaves outside is told, and can still be changed", (
   assert.equal(builder.edit({ height_m: 0.2 }), null);
   assert.equal(item("box_1")?.height_m, 0.2);
 });
+
+test("while only the pointer moves the world that is drawn stays the same", () => {
+  const shelf = { getItem: () => null, setItem: () => {}, removeItem: () => {} };
+  const workshop = new Workshop({ shelf, title: "Mine", tell: () => {}, changed: () => {} });
+  workshop.builder.choose("box");
+  const { world, sketch } = workshop;
+  workshop.builder.placing?.hover([0.3, 0.3], false);
+  workshop.builder.changed();
+  assert.equal(workshop.world, world);
+  assert.notEqual(workshop.sketch, sketch);
+  workshop.builder.placing?.put();
+  assert.notEqual(workshop.world, world);
+  clearTimeout(workshop.timer);
+});

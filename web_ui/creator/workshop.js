@@ -11,6 +11,7 @@ import { sketchOf } from "./sketch.js";
 
 /** @typedef {import("../playground/document.js").Playground} Playground */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
+/** @typedef {import("../state/index.js").State} State */
 /** @typedef {Pick<Storage, "getItem" | "setItem" | "removeItem">} Shelf */
 
 const DRAFT_KEY = "creator.draft";
@@ -29,12 +30,16 @@ export class Workshop {
     this.told = changed;
     const draft = this.#draft();
     this.builder = new Builder({ playground: draft ?? newPlayground(title), tell, changed: () => this.#changed() });
-    this.pictures = new Pictures(() => this.#changed());
+    this.pictures = new Pictures(() => {
+      this.drawn = null;
+      this.#changed();
+    });
     this.markers = new Markers((uri) => this.pictures.get(uri));
     /** @type {Playground | null} as it was saved last */ this.saved = draft === null ? this.builder.playground : null;
     this.kept = this.builder.playground;
     this.timer = 0;
-    /** @type {import("../state/index.js").State | null} */ this.drawn = null;
+    /** @type {{ of: Playground["items"], carried: string | undefined, world: State } | null} what was drawn last */
+    this.drawn = null;
     /** @type {import("./sketch.js").Sketch | null} */ this.sketched = null;
   }
 
@@ -47,9 +52,12 @@ export class Workshop {
   get world() {
     const { playground, selecting } = this.builder;
     const carried = selecting.ghost?.item.name;
-    const items = carried === undefined ? playground.items : playground.items.filter(({ name }) => name !== carried);
-    this.drawn ??= worldOf(items, this.markers);
-    return this.drawn;
+    const { items } = playground;
+    if (this.drawn === null || this.drawn.of !== items || this.drawn.carried !== carried) {
+      const seen = carried === undefined ? items : items.filter(({ name }) => name !== carried);
+      this.drawn = { of: items, carried, world: worldOf(seen, this.markers) };
+    }
+    return this.drawn.world; // the same while only the pointer moves
   }
 
   get sketch() {
@@ -104,7 +112,6 @@ export class Workshop {
   }
 
   #changed() {
-    this.drawn = null;
     this.sketched = null;
     if (this.builder.playground !== this.kept) {
       clearTimeout(this.timer);
