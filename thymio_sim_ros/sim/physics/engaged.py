@@ -122,6 +122,6 @@ class Engaged:
 
         Rows x, y, yaw, speed along the heading, rate of turn, speed over ground at the left and the right wheel.
         """
-        state, held = self._state, np.flatnonzero(self._held)
+        state, held = self._state, self._held.nonzero()[0]
         found = np.concatenate((state[:3], self._speed[None], state[5:], self._covered))
         return self.numbers[held], found[:, held]
