@@ -13,6 +13,9 @@ export const LARGEST_PROGRAM = 1_000_000;
 /** A playground may hold pictures; as text it must fit into one message of the bridge. */
 export const LARGEST_PLAYGROUND = 3_000_000;
 
+/** At a quarter of the speed of time this is more than the 20 ms between two looks (thymio-robot.md section 3). */
+const SHORTEST_PRESS_MS = 120;
+
 /** What the ending of a file's name says about it. */
 const KINDS = { program: /\.(aesl|aseba|txt)$/i, playground: /\.(json|playground|xml|zip)$/i };
 
@@ -28,23 +31,40 @@ export class Actions {
    * @param {Store} options.store
    * @param {(key: string, values?: Record<string, any>) => string} options.t
    * @param {() => string} options.language  of the page
+   * @param {() => number} [options.now]  milliseconds
+   * @param {(act: () => void, ms: number) => void} [options.later]
    */
-  constructor({ client, store, t, language }) {
+  constructor({ client, store, t, language, now = () => performance.now(), later = setTimeout.bind(globalThis) }) {
     this.client = client;
     this.store = store;
     this.t = t;
     this.language = language;
+    this.now = now;
+    this.later = later;
+    /** @type {Map<string, number>} since when a button is held, by its topic */ this.held = new Map();
   }
 
   /**
-   * A finger on or off one of a robot's buttons.
+   * A finger on or off one of a robot's buttons. The robot looks at them now and then: a touch that would be too short
+   * to be seen lasts a little longer.
    *
    * @param {string} robot
    * @param {string} button
    * @param {boolean} pressed
    */
   press(robot, button, pressed) {
-    this.client.publish(robotTopic(robot, `press/${button}`), "std_msgs/msg/Bool", { data: pressed });
+    const topic = robotTopic(robot, `press/${button}`);
+    const since = this.held.get(topic);
+    const tell = () => this.client.publish(topic, "std_msgs/msg/Bool", { data: pressed });
+    if (pressed) {
+      this.held.set(topic, this.now());
+      return tell();
+    }
+    const rest = since === undefined ? 0 : since + SHORTEST_PRESS_MS - this.now();
+    if (rest <= 0) return tell();
+    this.later(() => {
+      if (this.held.get(topic) === since) tell(); // else it is held again
+    }, rest);
   }
 
   /**

@@ -165,3 +165,28 @@ test("a program that is refused is explained in the language of the page", async
   await actions.loadProgram("a.aesl", "onevent zzzzz");
   assert.equal(store.state.uploads.program?.fault?.text, "no event is called 'zzzzz'");
 });
+
+test("a touch lasts long enough for the robot to see it", () => {
+  const { asked, store } = prepared();
+  let now = 0;
+  /** @type {[() => void, number][]} */ const waiting = [];
+  const client = /** @type {any} */ ({ publish: (/** @type {any} */ _topic, /** @type {any} */ _type, /** @type {any} */ { data }) => asked.push(data) });
+  const later = (/** @type {() => void} */ act, /** @type {number} */ ms) => waiting.push([act, ms]);
+  const actions = new Actions({ client, store, t: (key) => key, language: () => "en", now: () => now, later });
+  actions.press("", "left", true);
+  now = 20;
+  actions.press("", "left", false);
+  assert.deepEqual([asked, waiting.map(([, ms]) => ms)], [[true], [100]]);
+  waiting[0][0]();
+  assert.deepEqual(asked, [true, false]);
+  now = 500;
+  actions.press("", "left", true);
+  now = 510;
+  actions.press("", "left", false);
+  now = 520;
+  actions.press("", "left", true); // again, before the first was let go
+  waiting[1][0]();
+  now = 900;
+  actions.press("", "left", false);
+  assert.deepEqual(asked, [true, false, true, true, false]);
+});

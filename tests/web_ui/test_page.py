@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import zipfile
 from pathlib import Path
@@ -14,6 +15,8 @@ from tests.sim.images import BLACK, WHITE, png
 from tests.web_ui.page_support import MARKS, open_page, wait_until_settled
 
 pytestmark = MARKS
+
+MOST_BYTES = 800_000  # compressed, web-ui-features.md section 5.3
 
 PROGRAM = """\
 var lit = 0
@@ -57,6 +60,16 @@ def test_the_canvas_shows_something_and_the_robot_moves(suite, page):
         " return Math.hypot(now.x - begin.x, now.y - begin.y) > 5; }",
         arg=begin,
     )
+
+
+def test_little_is_loaded_before_the_editor_is_opened(suite, page):
+    loaded: dict[str, bytes] = {}
+    page.on("requestfinished", lambda request: loaded.update({request.url: request.response().body()}))
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.wait_for_function("() => window.thymio.state().markers > 0")
+    assert len(loaded) <= 10
+    assert sum(len(gzip.compress(body)) for body in loaded.values()) < MOST_BYTES
+    assert [url for url in loaded if "editor" in url] == []
 
 
 def test_a_click_on_the_centre_button_reaches_the_program(suite, page, tmp_path):

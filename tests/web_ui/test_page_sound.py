@@ -16,6 +16,19 @@ window.heard = [];
 window.AudioContext = class extends FakeAudio { constructor() { super(); window.heard.push(this); } };
 """
 )
+OFFLINE = """
+window.AudioContext = class extends OfflineAudioContext {
+  constructor() { super(1, 22050, 22050); window.heard = this; }
+  get state() { return "running"; }
+  resume() { return Promise.resolve(); }
+  suspend() { return Promise.resolve(); }
+};
+"""
+LISTEN_A_SECOND = """async () => {
+  const values = (await window.heard.startRendering()).getChannelData(0);
+  const rising = values.reduce((count, value, at) => count + Number(at > 0 && values[at - 1] < 0 && value >= 0), 0);
+  return {rising, loudest: Math.max(...values)};
+}"""
 SINGING = "call sound.freq(440, 0)\nonevent button.center\n  call sound.freq(550, -1)\n"
 SOUNDING = "() => (window.heard[0]?.sounding ?? []).length"
 
@@ -29,7 +42,7 @@ def test_a_tone_is_heard_after_the_first_touch_and_until_it_is_muted(suite, page
     button = page.locator("button.sound")
     assert button.get_attribute("data-phase") == "waiting"
     assert page.evaluate("() => window.heard.length") == 0
-    page.locator("h1").click()
+    page.locator(".chip").click()
     page.wait_for_function(f"({SOUNDING})() === 1")
     source = "window.heard[0].sounding[0]"
     assert (
@@ -45,12 +58,25 @@ def test_a_tone_is_heard_after_the_first_touch_and_until_it_is_muted(suite, page
     page.mouse.up()
 
 
+def test_the_browser_makes_a_tone_of_that_pitch(suite, page, tmp_path):
+    program = tmp_path / "singing.aesl"
+    program.write_text(SINGING)
+    page.add_init_script(OFFLINE)
+    open_page(page, suite("--program", str(program)))
+    page.wait_for_function("() => window.thymio.state().robot.sound[0] === 440")
+    page.locator(".chip").click()
+    page.wait_for_function("() => window.heard")
+    heard = page.evaluate(LISTEN_A_SECOND)
+    assert abs(heard["rising"] - 440) <= 1
+    assert 0.05 < heard["loudest"] < 1
+
+
 def test_a_pause_holds_the_sound(suite, page, tmp_path):
     program = tmp_path / "singing.aesl"
     program.write_text(SINGING)
     page.add_init_script(LISTEN)
     open_page(page, suite("--program", str(program)))
-    page.locator("h1").click()
+    page.locator(".chip").click()
     page.wait_for_function(f"({SOUNDING})() === 1")
     page.locator(".time button.primary").click()
     page.wait_for_function("() => window.heard[0].state === 'suspended'")

@@ -1,0 +1,82 @@
+"""What the earlier thesis wanted its page for, done by somebody who reads nothing but the page: names, no selectors."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+from tests.web_ui.page_support import MARKS, open_page
+
+pytestmark = MARKS
+
+MOVED = """([x, y, far]) => {
+    const pose = window.thymio.state().robot.latest.pose;
+    return Math.hypot(pose.x - x, pose.y - y) > far;
+}"""
+
+
+@pytest.fixture
+def class_page(suite, page) -> Any:
+    """The page as a class finds it: the robot is switched on and nothing was chosen."""
+    open_page(page, suite("--playground", "base"))
+    return page
+
+
+def choose(page: Any, label: str, option: str) -> None:
+    """Choose by what is written there, once it is."""
+    box = page.get_by_role("combobox", name=label)
+    playwright.expect(box.get_by_text(option, exact=True)).to_have_count(1)
+    box.select_option(label=option)
+
+
+def robot_button(page: Any, name: str) -> Any:
+    """One of the robot's five, not a key of the remote control."""
+    return page.get_by_role("group", name="Buttons of the robot").get_by_role("button", name=name)
+
+
+def wait_until_moved(page: Any, far_m: float, act: Any) -> None:
+    """Do something, and wait until the robot has gone so far from where it was."""
+    pose = page.evaluate("() => window.thymio.state().robot.latest.pose")
+    act()
+    page.wait_for_function(MOVED, arg=[pose["x"], pose["y"], far_m])
+
+
+def test_the_basic_mode_drives_by_the_arrows(class_page):
+    choose(class_page, "Built-in behaviour", "Thesis: basic (white)")
+    playwright.expect(class_page.get_by_text("Arrows drive until something is in the way.")).to_be_visible()
+    wait_until_moved(class_page, 0.05, robot_button(class_page, "Forward").click)
+    class_page.get_by_role("banner").get_by_role("button", name="Stop").click()
+    class_page.wait_for_function("() => Math.abs(window.thymio.state().robot.wheelSpeeds.left) < 0.1")
+
+
+def test_the_explorer_finds_its_way_among_obstacles(class_page):
+    class_page.get_by_role("button", name="Gallery").click()
+    class_page.get_by_role("dialog").get_by_role("button", name="Obstacle").first.click()
+    class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'obstacle'")
+    choose(class_page, "Built-in behaviour", "Thesis: explorer (orange)")
+    wait_until_moved(class_page, 0.2, robot_button(class_page, "Forward").click)
+    playwright.expect(class_page.get_by_text("running", exact=True).first).to_be_visible()
+
+
+def test_the_track_follower_goes_along_the_track(class_page):
+    class_page.get_by_role("combobox", name="Choose a playground").select_option(label="Borderless")
+    class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'borderless'")
+    choose(class_page, "Built-in behaviour", "Thesis: track follower (pink)")
+    wait_until_moved(class_page, 0.3, robot_button(class_page, "Forward").click)
+
+
+def test_an_aseba_program_is_written_and_runs_on_the_robot(class_page):
+    class_page.get_by_role("button", name="Aseba editor").click()
+    text = class_page.get_by_role("textbox", name="Program")
+    text.press("Control+a")
+    class_page.keyboard.insert_text("onevent button.center\ncall leds.top(32, 0, 0)\nmotor.left.target = 100\n")
+    playwright.expect(class_page.get_by_text("No errors")).to_be_visible()
+    class_page.get_by_role("region", name="Aseba editor").get_by_role("button", name="Run").click()
+    playwright.expect(class_page.get_by_role("region", name="Aseba editor")).to_contain_text("is loaded")
+    class_page.get_by_role("button", name="Aseba editor").click()
+    robot_button(class_page, "Centre").click()
+    class_page.wait_for_function("() => window.thymio.state().robot.leds.top[0] === 1")
+    class_page.wait_for_function("() => window.thymio.state().robot.wheelSpeeds.left > 0.5")
