@@ -70,6 +70,7 @@ export class CreatorHost {
       document.body.classList.add("building");
       this.slot("creator").hidden = false;
       context.mover.setMode(false);
+      context.editor.close(); // there is room for one of them
       this.scene().camera.setInset(PALETTE_PX);
       this.#build();
     }
@@ -87,6 +88,7 @@ export class CreatorHost {
   }
 
   close() {
+    if (!this.isOpen) return;
     this.workshop?.keep();
     this.isOpen = false;
     window.removeEventListener("pagehide", this.#keep);

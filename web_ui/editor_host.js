@@ -59,6 +59,7 @@ export class EditorHost {
   }
 
   close() {
+    if (!this.isOpen) return;
     this.isOpen = false;
     this.editor?.destroy();
     this.editor = null;

@@ -44,7 +44,10 @@ async function main() {
   const editor = new EditorHost({
     slot: element('[data-slot="editor"]'),
     client: () => client,
-    changed: () => scene.invalidate(),
+    changed: () => {
+      if (editor.isOpen) creator.close();
+      scene.invalidate();
+    },
   });
   const creator = new CreatorHost({
     slot: (name) => element(`[data-slot="${name}"]`),

@@ -329,6 +329,16 @@ def test_fingers_place_and_carry(suite, browser):
     page.close()
 
 
+def test_editor_and_creator_give_way_to_each_other(suite, page):
+    open_creator(page, suite)
+    page.click("#editor-switch")
+    page.locator(".editor-slot").wait_for()
+    assert built(page)["isOpen"] is False
+    page.click("#creator-switch")
+    page.locator(".palette").wait_for()
+    playwright.expect(page.locator(".editor-slot")).to_be_hidden()
+
+
 def test_a_picture_lies_on_the_ground(suite, page, tmp_path):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(
