@@ -1,17 +1,15 @@
 """The topics and services of one robot: made with it, destroyed with it.
 
 Publishing turns readings into messages by the rows of `convert`; subscribing turns messages into commands and posts
-them. Publishers are told who listens: topics that nobody hears cost nothing.
+them. Topics that nobody hears cost nothing but a look now and then.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
-from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import Empty as EmptyService
@@ -149,6 +147,22 @@ class RobotPorts:
                 outlet.template = Template.checked(row.patch, message, reading, content)
             outlet.publisher.publish(message)
 
+    @property
+    def topics(self) -> int:
+        """How many topics of sensors it has."""
+        return sum(map(len, self._outlets.values()))
+
+    def look(self) -> None:
+        """Find out which topics somebody hears now.
+
+        It is asked for, since rclpy's events executor dies of a publisher with callbacks that is destroyed while one of
+        them waits.
+        """
+        for outlets in self._outlets.values():
+            for outlet in outlets:
+                if not outlet.row.always:
+                    self._send(outlet, wanted=outlet.publisher.get_subscription_count() > 0)
+
     def tell_place(self, now_ns: int, pose: Pose, tilt: Tilt) -> None:
         """Say where the robot stands while time does, for those who come late."""
         still = Twist(0.0, 0.0)
@@ -178,17 +192,12 @@ class RobotPorts:
 
     def _open(self, row: Row, heard: Heard) -> None:
         topic, outlet = self.names.topic(row.topic), _Outlet(row, heard, next_ns=heard.every_ns)
-        events = PublisherEventCallbacks(matched=partial(self._matched, outlet))
         profile = qos.overridable(self._node, topic, row.profile)
-        outlet.publisher = self._node.create_publisher(row.type, topic, event_callbacks=events, **profile)
+        outlet.publisher = self._node.create_publisher(row.type, topic, **profile)
         # `publish` first asks what it was given, which costs as much as sending to nobody.
         outlet.send = getattr(outlet.publisher.handle, "publish_raw", outlet.publisher.publish)
         self._outlets[heard.sensor].append(outlet)
         self._send(outlet, wanted=row.always)
-
-    def _matched(self, outlet: _Outlet, matched: Any) -> None:
-        """A subscription has come or gone."""
-        self._send(outlet, wanted=outlet.row.always or matched.current_count > 0)
 
     def _send(self, outlet: _Outlet, *, wanted: bool) -> None:
         if outlet.is_sent == wanted:

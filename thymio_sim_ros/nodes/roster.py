@@ -21,6 +21,16 @@ class Roster:
         return self._ports[robot]
 
     @property
+    def topics(self) -> int:
+        """How many topics of sensors there are."""
+        return sum(ports.topics for ports in self._ports.values())
+
+    def look(self) -> None:
+        """Find out which topics somebody hears now."""
+        for ports in self._ports.values():
+            ports.look()
+
+    @property
     def names(self) -> tuple[RobotNames, ...]:
         """Of all robots, in the order of the world."""
         return tuple(ports.names for ports in self._ports.values())

@@ -53,6 +53,11 @@ HEARTBEAT_NS = SECOND_NS
 MOST_PUT_OFF = 10
 """Ticks that are put off at most, and tenths of a second of wall time: what happens meanwhile is told so much later."""
 
+LOOK_EVERY_NS = SECOND_NS // 20
+"""Wall time after which the simulator looks again who listens, but for this share of the processor at most:"""
+LOOK_NS = 1_000
+"""what a look at one topic costs (performance.md section 7), a hundred times."""
+
 MOST_AT_ONCE = 2 * MOST_PUT_OFF
 """Ticks done at once at most, when the machine was busy with other things; what is owed beyond is dropped."""
 
@@ -72,6 +77,7 @@ class Simulator:
             raise StartError(str(error)) from error
         self.paused = self.params.start_paused
         self._is_asleep = False
+        self._looked_ns = self._look_every_ns = 0
         self._soon_ns = 0
         """No tick is put off until this simulated time: something has come in."""
         self._set_pace()
@@ -119,6 +125,8 @@ class Simulator:
     def turn(self, executor: Executor) -> None:
         """Ticks that are owed, then messages until the next one is due that anybody hears."""
         now = time.monotonic_ns()
+        if now - self._looked_ns >= self._look_every_ns:
+            self._look()
         if self.paused:
             if now - self._last_beat_ns >= HEARTBEAT_NS:
                 self._beat(now)
@@ -137,21 +145,9 @@ class Simulator:
             deliver(executor)
 
     def advance(self, ticks: int) -> None:
-        """Step the world by ticks of 10 ms at once, also while paused, and publish what they give."""
-        self.follow()
-        for _ in range(ticks):
-            result = self.world.step()
-            for robot, sensor, reading in rows_of(result.readings, self._audience.sensors):
-                ports = self._roster[robot]
-                ports.publish(sensor, reading)
-                if sensor == TRANSFORMING:
-                    self._transforms.take(ports.names, reading, self.world.robots[robot].wheels.angles_rad)
-            self._transforms.flush()
-            if self.paused:
-                self._world_ports.publish_clock(result.now_ns, last=True)
-        if not self.paused:
-            self._world_ports.publish_clock(self.world.now_ns, last=False)
-        self._world_ports.publish_objects(self.world, last=self.paused)
+        """Step the world by ticks of 10 ms at once, also while paused; publish what they give to who listens now."""
+        self._look()
+        self._advance(ticks)
 
     def catch_up(self) -> None:
         """Do the ticks that were put off: somebody asks, or something has come in that the next tick shall see."""
@@ -204,13 +200,37 @@ class Simulator:
             self._interfaces.close()
         self.node.destroy_node()
 
+    def _look(self) -> None:
+        """Find out who listens."""
+        self._looked_ns = time.monotonic_ns()
+        self._look_every_ns = max(LOOK_EVERY_NS, 100 * LOOK_NS * self._roster.topics)
+        self._roster.look()
+        self._transforms.look()
+        self._world_ports.look()
+
+    def _advance(self, ticks: int) -> None:
+        self.follow()
+        for _ in range(ticks):
+            result = self.world.step()
+            for robot, sensor, reading in rows_of(result.readings, self._audience.sensors):
+                ports = self._roster[robot]
+                ports.publish(sensor, reading)
+                if sensor == TRANSFORMING:
+                    self._transforms.take(ports.names, reading, self.world.robots[robot].wheels.angles_rad)
+            self._transforms.flush()
+            if self.paused:
+                self._world_ports.publish_clock(result.now_ns, last=True)
+        if not self.paused:
+            self._world_ports.publish_clock(self.world.now_ns, last=False)
+        self._world_ports.publish_objects(self.world, last=self.paused)
+
     def _run_owed(self) -> None:
         expected = max(self._usual_ticks, self._wanted_ticks())
         ticks = self._pacer.owed(time.monotonic_ns())
         if self.params.real_time_factor > 0.0:
             self._late_ticks += max(0, ticks - expected)
         if ticks:
-            self.advance(ticks)
+            self._advance(ticks)
 
     def _wanted_ticks(self) -> int:
         """Ticks to the next that gives something that is heard, or that was asked for."""

@@ -9,10 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache
 from typing import Any
 
-from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
@@ -62,10 +61,12 @@ class _Channel:
             self._hear(topic, 0)
             self._node.destroy_publisher(self._publishers.pop(topic))
         for topic in topics - self._publishers.keys():
-            events = PublisherEventCallbacks(matched=partial(self._matched, topic))
-            self._publishers[topic] = self._node.create_publisher(
-                tf_messages.TFMessage, topic, self._profile, event_callbacks=events
-            )
+            self._publishers[topic] = self._node.create_publisher(tf_messages.TFMessage, topic, self._profile)
+
+    def look(self) -> None:
+        """Find out which topics somebody hears now."""
+        for topic, publisher in self._publishers.items():
+            self._hear(topic, publisher.get_subscription_count())
 
     def is_heard(self, topic: str) -> bool:
         """Whether anybody listens."""
@@ -80,9 +81,6 @@ class _Channel:
         for topic, transforms in self._waiting.items():
             self._publishers[topic].publish(tf_messages.encode(transforms))
         self._waiting.clear()
-
-    def _matched(self, topic: str, matched: Any) -> None:
-        self._hear(topic, matched.current_count)
 
     def _hear(self, topic: str, listeners: int) -> None:
         if self._audience is None or (listeners > 0) == (topic in self._heard):
@@ -126,6 +124,10 @@ class Transforms:
         topic = self._topic(names, self._moving)
         if isinstance(reading, PoseReading) and self._moving.is_heard(topic):
             self._moving.add(topic, self._frames(names, reading, angles_rad))
+
+    def look(self) -> None:
+        """Find out which moving frames somebody hears now."""
+        self._moving.look()
 
     def flush(self) -> None:
         """The tick is over."""

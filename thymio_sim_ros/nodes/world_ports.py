@@ -7,11 +7,9 @@ import logging
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from nav_msgs.msg import OccupancyGrid
-from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
@@ -126,9 +124,8 @@ class WorldPorts:
     ) -> None:
         """`clock_rate_hz`: of wall time, at most."""
         left_out = {"/clock": not publish_clock, "/map": not publish_map}
-        events = {"/clock": PublisherEventCallbacks(matched=self._matched_clock)}
         self._publishers = {
-            name: node.create_publisher(topic.type, name, topic.profile, event_callbacks=events.get(name))
+            name: node.create_publisher(topic.type, name, topic.profile)
             for name, topic in TOPICS.items()
             if not left_out.get(name)
         }
@@ -153,8 +150,10 @@ class WorldPorts:
         self._last_clock_ns = wall_ns
         clock.publish(Clock(clock=stamp(now_ns)))
 
-    def _matched_clock(self, matched: Any) -> None:
-        self._is_clock_heard = matched.current_count > 0
+    def look(self) -> None:
+        """Find out whether somebody hears the clock now."""
+        clock = self._publishers.get("/clock")
+        self._is_clock_heard = clock is not None and clock.get_subscription_count() > 0
 
     def publish_state(self, state: WorldState) -> None:
         """Latched state as JSON."""
