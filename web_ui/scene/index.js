@@ -26,8 +26,8 @@ import { isSensed } from "../state/names.js";
 const LOST_FOR_GOOD_MS = 4000;
 /** From above, a name stands this far over its robot. */
 const FLAT_LABEL_PX = 24;
-/** A robot that looks smaller than this is drawn coarsely. */
-const SMALL_PX = 36;
+/** A robot that is smaller than this, in pixels as they are drawn, is drawn coarsely. */
+const SMALL_PX = 40;
 const SIZE_M = 0.11;
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 
@@ -337,7 +337,8 @@ export class SceneView {
   #isSmall(frame) {
     const { camera } = this.camera;
     const away = camera.position.distanceTo(new THREE.Vector3().setFromMatrixPosition(frame));
-    const pixelsPerRadian = this.canvas.clientHeight / (2 * Math.tan((camera.fov * Math.PI) / 360));
+    const high = this.canvas.clientHeight * (this.renderer?.getPixelRatio() ?? 1);
+    const pixelsPerRadian = high / (2 * Math.tan((camera.fov * Math.PI) / 360));
     return (SIZE_M / away) * pixelsPerRadian < SMALL_PX;
   }
 
