@@ -226,7 +226,7 @@ def test_a_thread_that_sends_without_a_pause_keeps_nobody_away() -> None:
     sender.start()
     try:
         with ExitStack() as clients:
-            for _ in range(5):
+            for _ in range(2):
                 client = clients.enter_context(
                     connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS, close_timeout=0)  # type: ignore[arg-type]  # plain strings
                 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 
-STORM_S = 8
+STORM_S = 5
 STORM = f"""
 import time
 import rclpy
@@ -32,7 +32,9 @@ print("done")
 
 def test_a_storm_of_listeners_outlives_changes_of_the_playground(ros, simulation):
     sim = simulation(playground="two_robots")
-    storm = subprocess.Popen([sys.executable, "-c", STORM], stdout=subprocess.PIPE, text=True)
+    storm = subprocess.Popen(
+        [sys.executable, "-X", "faulthandler", "-c", STORM], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
     changes = 0
     try:
         while storm.poll() is None:
@@ -43,5 +45,6 @@ def test_a_storm_of_listeners_outlives_changes_of_the_playground(ros, simulation
                 changes += 1
     finally:
         storm.kill()
-    assert storm.communicate()[0] == "done\n"
+    output = storm.communicate()[0]
+    assert (storm.returncode, output) == (0, "done\n")
     assert changes > 2
