@@ -234,9 +234,9 @@ class Driver:
     def until_heard(self, names: list[str]) -> None:
         """Wait until somebody subscribes to all of these."""
         end = time.monotonic() + START_S
-        while not all(map(self.node.count_subscribers, names)):
+        while missing := [name for name in names if not self.node.count_subscribers(name)]:
             if time.monotonic() > end:
-                raise TimeoutError("nobody listens")
+                raise TimeoutError(f"nobody listens to {len(missing)} of {len(names)} topics, such as {missing[0]}")
             self.spin(0.5)
 
     def close(self) -> None:

@@ -1,17 +1,27 @@
-"""Shared-memory files of LTTng: rcl's tracing library makes two at its first load on a machine and leaves them.
+"""Files in shared memory that others leave behind.
 
-Whoever made them tidies up, unless another process uses them by then; LTTng makes them again when it needs them.
+rcl's tracing library, LTTng, makes two at its first load on a machine and leaves them: whoever made them tidies up,
+unless another process uses them by then; LTTng makes them again when it needs them.
+
+Fast DDS makes one for each port at which a participant listens. A process killed while it does so leaves one half made,
+and every later participant that comes to this port waits for ever for the rest (seen with 2.14).
 """
 
 from __future__ import annotations
 
 import contextlib
 import os
+import time
 from collections.abc import Iterable
 from pathlib import Path
 
 SHARED_MEMORY = Path("/dev/shm")
 PATTERN = "lttng-ust-wait-*"
+PORTS = "fastrtps_port*"
+HALF_MADE = {b"", bytes(4), b"\x01\x00\x00\x00"}
+"""How a segment of Boost.Interprocess begins until it is initialised: the first word counts 0, 1, then 2."""
+MAKING_S = 10.0
+"""Making a port takes microseconds."""
 
 
 def present(folder: Path = SHARED_MEMORY) -> frozenset[Path]:
@@ -29,6 +39,21 @@ def remove_new(before: frozenset[Path], folder: Path = SHARED_MEMORY) -> None:
         if str(path) not in used:
             with contextlib.suppress(OSError):
                 path.unlink()
+
+
+def remove_half_made_ports(folder: Path = SHARED_MEMORY) -> list[Path]:
+    """Remove the ports that nobody will ever finish; which they were."""
+    removed = []
+    for path in folder.glob(PORTS):
+        with contextlib.suppress(OSError):  # it has gone meanwhile, or belongs to somebody else
+            if path.name.endswith("_el") or time.time() - path.stat().st_mtime < MAKING_S:
+                continue
+            with path.open("rb") as file:
+                is_half_made = file.read(4) in HALF_MADE
+            if is_half_made:
+                path.unlink()
+                removed.append(path)
+    return removed
 
 
 def _mapped_by_others() -> set[str]:

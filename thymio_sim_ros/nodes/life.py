@@ -23,6 +23,8 @@ from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
+from thymio_sim_ros.nodes.leftovers import remove_half_made_ports
+
 SWITCH_INTERVAL_S = 0.0005
 """How long a thread may keep the interpreter while others wait: a tenth of Python's default, since a command that waits
 for 5 ms is 12 ticks late at 25 times real time (measured: the line follower strays 36 mm instead of 17 mm)."""
@@ -170,6 +172,7 @@ def run_main(
     gc.set_threshold(YOUNG_OBJECTS, *gc.get_threshold()[1:])
     signal.signal(signal.SIGINT, end)
     signal.signal(signal.SIGTERM, end)
+    remove_half_made_ports()
     try:
         rclpy.init(
             args=None if args is None else list(args), context=context, signal_handler_options=SignalHandlerOptions.NO

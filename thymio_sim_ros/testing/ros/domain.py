@@ -8,6 +8,8 @@ import os
 import socket
 from collections.abc import Iterator
 
+from thymio_sim_ros.nodes.leftovers import remove_half_made_ports
+
 __all__ = ["NoDomainError", "reserved"]
 
 DOMAINS = range(1, 101)
@@ -46,6 +48,7 @@ def reserved() -> Iterator[int]:
                 continue
             if _is_spoken_in(domain):
                 continue
+            remove_half_made_ports()
             with _environment(ROS_DOMAIN_ID=str(domain), ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST"):
                 yield domain
             return
