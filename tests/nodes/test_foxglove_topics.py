@@ -11,6 +11,7 @@ from std_msgs.msg import Bool, String
 from tests.bridge.studio import Studio
 from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.nodes import tf_messages
+from thymio_sim_ros.nodes.foxglove_topics import Topics
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -99,6 +100,42 @@ def test_a_latched_publisher_that_comes_after_the_client_is_heard(ros, studio):
     publisher = ros.node.create_publisher(String, "/description", LATCHED)
     publisher.publish(String(data="late"))
     assert deserialize_message(studio.next(ms.MessageData).payload, String).data == "late"
+
+
+def test_publishers_are_asked_for_their_qos_when_their_number_has_changed_and_else_now_and_then(ros, monkeypatch):
+    names = ("/one", "/two")
+    first = {name: ros.node.create_publisher(String, name, 10) for name in names}
+    commands = []
+    topics = Topics(ros.node, commands.append, lambda: 0)
+    topics.update({name: ["std_msgs/msg/String"] for name in names})
+    for channel in commands[0].channels:
+        topics.want(channel.id)
+    asked = []
+    ask = ros.node.get_publishers_info_by_topic
+    monkeypatch.setattr(ros.node, "get_publishers_info_by_topic", lambda name: asked.append(name) or ask(name))
+
+    def refresh_one_by_one(times):
+        for _ in range(times):
+            topics.refresh()
+        found = sorted(asked)
+        asked.clear()
+        return found
+
+    def heard(name):
+        (info,) = ros.node.get_subscriptions_info_by_topic(name)
+        return info.qos_profile.reliability
+
+    assert refresh_one_by_one(10) == ["/one", "/two"]
+    ros.node.create_publisher(String, "/one", BEST_EFFORT)
+    ros.until(lambda: ros.node.count_publishers("/one") == 2)
+    assert "/one" in refresh_one_by_one(1)
+    assert [heard(name) for name in names] == [ReliabilityPolicy.BEST_EFFORT, ReliabilityPolicy.RELIABLE]
+    ros.node.destroy_publisher(first["/two"])
+    ros.node.create_publisher(String, "/two", BEST_EFFORT)
+    ros.until(lambda: ros.node.count_publishers("/two") == 1)
+    assert refresh_one_by_one(10) == ["/one", "/two"]
+    assert heard("/two") == ReliabilityPolicy.BEST_EFFORT
+    topics.close()
 
 
 def test_a_vanished_topic_is_taken_away(ros, studio):

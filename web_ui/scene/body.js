@@ -5,7 +5,7 @@ import * as THREE from "three";
 import { glow } from "./glow.js";
 import { Instances } from "./instances.js";
 import { merged } from "./merged.js";
-import { HEIGHT_M } from "./parts.js";
+import { HEIGHT_M, WHEEL } from "./parts.js";
 
 const HALF_WIDTH_M = 0.056;
 const REAR_M = -0.03;
@@ -18,6 +18,7 @@ const ARCH = { half: 0.0245, inner: 0.0385 };
 const WHITE = 0xf7f8fa;
 const LOWER = 0xe7ebef;
 const DARK = 0x2b333c;
+const TYRE = 0x343b44;
 
 /** @typedef {import("./fleet.js").Look} Look */
 
@@ -27,24 +28,20 @@ const SHELL = new THREE.Color(WHITE);
 const HERE = new THREE.Matrix4();
 
 /** @param {import("./fleet.js").Room} room */
-export function createBody({ robots, fine }) {
+export function createBody({ robots }) {
   const counts = { each: 1, robots };
   const hole = new THREE.CircleGeometry(0.0062, 24).translate(0, 0, HEIGHT_M + 0.0003);
   const rim = new THREE.RingGeometry(0.0062, 0.0082, 24).translate(0, 0, HEIGHT_M + 0.0003);
-  const lower = fine
-    ? merged([
-        [extruded(outline(true), FLOOR_M, BELT_M - 0.0012), LOWER],
-        [extruded(outline(false, 0.0018), BELT_M - 0.0025, BELT_M + 0.001), DARK],
-        [hole, DARK],
-        [rim, LOWER],
-      ])
-    : merged([[extruded(outline(true), FLOOR_M, BELT_M, { corners: 2 }), LOWER]]);
-  const upper = fine
-    ? merged([
-        [extruded(outline(false), BELT_M, HEIGHT_M, { bevel: 0.0025 }), 0xffffff],
-        [studGeometry(), 0xffffff],
-      ])
-    : merged([[extruded(outline(false), BELT_M, HEIGHT_M, { corners: 2 }), 0xffffff]]);
+  const lower = merged([
+    [extruded(outline(true), FLOOR_M, BELT_M - 0.0012), LOWER],
+    [extruded(outline(false, 0.0018), BELT_M - 0.0025, BELT_M + 0.001), DARK],
+    [hole, DARK],
+    [rim, LOWER],
+  ]);
+  const upper = merged([
+    [extruded(outline(false), BELT_M, HEIGHT_M, { bevel: 0.0025 }), 0xffffff],
+    [studGeometry(), 0xffffff],
+  ]);
   const base = new Instances(lower, new THREE.MeshLambertMaterial({ vertexColors: true }), counts);
   const shell = new Instances(upper, new THREE.MeshLambertMaterial(), counts);
   const colour = new THREE.Color();
@@ -54,10 +51,36 @@ export function createBody({ robots, fine }) {
     show(slot, { robot }) {
       base.put(slot, 0, HERE);
       shell.put(slot, 0, HERE);
-      glow(colour, SHELL, robot.leds.top, TINT);
-      shell.tint(slot, 0, colour.multiplyScalar(1 + SHINE * Math.max(0, ...(robot.leds.top ?? []))));
+      shell.tint(slot, 0, shellColour(colour, robot));
     },
   };
+}
+
+/** A robot that is small on the screen: body and wheels in one piece. @param {import("./fleet.js").Room} room */
+export function createFarBody({ robots }) {
+  const wheel = () => new THREE.CylinderGeometry(WHEEL.radius, WHEEL.radius, WHEEL.width, 8);
+  const shape = merged([
+    [extruded(outline(false), BELT_M, HEIGHT_M, { corners: 2 }), 0xffffff],
+    [extruded(outline(true), FLOOR_M, BELT_M, { corners: 2 }), LOWER],
+    [wheel().translate(0, WHEEL.track / 2, WHEEL.radius), TYRE],
+    [wheel().translate(0, -WHEEL.track / 2, WHEEL.radius), TYRE],
+  ]);
+  const body = new Instances(shape, new THREE.MeshLambertMaterial({ vertexColors: true }), { each: 1, robots });
+  const colour = new THREE.Color();
+  return {
+    parts: [body],
+    /** @param {number} slot @param {Look} look */
+    show(slot, { robot }) {
+      body.put(slot, 0, HERE);
+      body.tint(slot, 0, shellColour(colour, robot));
+    },
+  };
+}
+
+/** The top light shines through the shell. @param {THREE.Color} colour  is set @param {import("../state/robot.js").Robot} robot */
+function shellColour(colour, { leds: { top } }) {
+  glow(colour, SHELL, top, TINT);
+  return colour.multiplyScalar(1 + SHINE * Math.max(0, ...(top ?? [])));
 }
 
 /**

@@ -1,10 +1,10 @@
 // Many robots at once: each piece of the model is one draw call, however many robots there are. Robots that are near
-// are one fleet, those that are small on the screen another. The list below is where a new piece is added.
+// are one fleet, those that are small on the screen another. The lists below are where a new piece is added.
 
 import * as THREE from "three";
 
 import { createBlob } from "./blob.js";
-import { createBody } from "./body.js";
+import { createBody, createFarBody } from "./body.js";
 import { createButtons } from "./buttons.js";
 import { createGroundPatches } from "./ground_patches.js";
 import { createLeds } from "./leds.js";
@@ -24,16 +24,17 @@ import { createWheels } from "./wheels.js";
 
 /** @typedef {{ robots: number, fine: boolean }} Room   for robots at most, drawn finely or as seen from far */
 
-const PIECES = /** @type {((room: Room) => Piece)[]} */ ([
+/** @typedef {(room: Room) => Piece} Maker */
+const FINE = /** @type {Maker[]} */ ([
   createBlob,
   createBody,
   createWheels,
   createLeds,
   createRays,
   createGroundPatches,
+  createButtons,
 ]);
-/** What cannot be told apart from far. */
-const FINE_PIECES = [...PIECES, createButtons];
+const COARSE = /** @type {Maker[]} */ ([createBlob, createFarBody, createLeds, createRays, createGroundPatches]);
 
 export class Fleet {
   /** @param {{ fine: boolean }} how */
@@ -67,7 +68,7 @@ export class Fleet {
     this.dispose();
     this.capacity = robots === 1 ? 1 : 2 * robots;
     const room = { robots: this.capacity, fine: this.fine };
-    this.pieces = (this.fine ? FINE_PIECES : PIECES).map((create) => create(room));
+    this.pieces = (this.fine ? FINE : COARSE).map((create) => create(room));
     for (const { parts } of this.pieces) this.group.add(...parts.map(({ mesh }) => mesh));
   }
 

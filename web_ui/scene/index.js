@@ -58,6 +58,7 @@ export class SceneView {
     this.framed = false;
     this.frames = 0;
     this.requested = false;
+    this.size = { width: 0, height: 0 }; // of the canvas in CSS pixels: asking it after a label was moved lays out the page
     this.showSensors = true;
     this.showNumbers = false;
     this.numbers = new Numbers(labels);
@@ -66,7 +67,7 @@ export class SceneView {
     this.isLost = false;
     /** @type {Target | null} */ this.hovered = null;
     /** @type {{ world: State, settle: (picture: HTMLCanvasElement) => void }[]} */ this.sittings = [];
-    /** @type {Map<string, { model: RobotModel, trail: PlaygroundModel, label: HTMLElement }>} */ this.robots = new Map();
+    /** @type {Map<string, { model: RobotModel, trail: PlaygroundModel, label: HTMLElement, transform: string }>} */ this.robots = new Map();
     this.scene = litScene();
     this.playground = new PlaygroundModel(() => this.invalidate());
     this.objects = new PlaygroundModel(() => this.invalidate());
@@ -214,11 +215,11 @@ export class SceneView {
 
   /** How much of the ground one CSS pixel shows, about where the camera looks; metres. */
   get pixelSize() {
-    const { clientHeight } = this.canvas;
-    if (this.isFlat) return (this.flat.camera.top - this.flat.camera.bottom) / Math.max(1, clientHeight);
+    const { height } = this.size;
+    if (this.isFlat) return (this.flat.camera.top - this.flat.camera.bottom) / Math.max(1, height);
     const { camera, controls } = this.camera;
     const far = camera.position.distanceTo(controls.target);
-    return (2 * far * Math.tan((camera.fov * Math.PI) / 360)) / Math.max(1, clientHeight);
+    return (2 * far * Math.tan((camera.fov * Math.PI) / 360)) / Math.max(1, height);
   }
 
   /** Let the next playground that is built fill the view. */
@@ -300,7 +301,8 @@ export class SceneView {
     for (const [name, robot] of Object.entries(state.robots)) {
       let entry = this.robots.get(name);
       if (entry === undefined) {
-        entry = { model: new RobotModel(name), trail: new PlaygroundModel(), label: document.createElement("span") };
+        const label = document.createElement("span");
+        entry = { model: new RobotModel(name), trail: new PlaygroundModel(), label, transform: "" };
         entry.label.className = "robot-label";
         this.labels.append(entry.label);
         this.scene.add(entry.model.group, entry.trail.group);
@@ -337,16 +339,20 @@ export class SceneView {
   #isSmall(frame) {
     const { camera } = this.camera;
     const away = camera.position.distanceTo(new THREE.Vector3().setFromMatrixPosition(frame));
-    const high = this.canvas.clientHeight * (this.renderer?.getPixelRatio() ?? 1);
+    const high = this.size.height * (this.renderer?.getPixelRatio() ?? 1);
     const pixelsPerRadian = high / (2 * Math.tan((camera.fov * Math.PI) / 360));
     return (SIZE_M / away) * pixelsPerRadian < SMALL_PX;
   }
 
   #placeLabels() {
-    for (const { model, label } of this.robots.values()) {
+    for (const entry of this.robots.values()) {
+      const { model, label } = entry;
       const place = model.group.visible ? this.#project(model.group.position.clone().setZ(0.115)) : null;
-      label.hidden = place === null;
-      if (place !== null) label.style.transform = `translate(${place.x}px, ${place.y}px) translate(-50%, calc(-100% - ${this.isFlat ? FLAT_LABEL_PX : 0}px))`;
+      if (label.hidden !== (place === null)) label.hidden = place === null;
+      if (place === null) continue;
+      const above = this.isFlat ? FLAT_LABEL_PX : 0;
+      const transform = `translate(${Math.round(place.x)}px, ${Math.round(place.y - above)}px) translate(-50%, -100%)`;
+      if (entry.transform !== transform) label.style.transform = entry.transform = transform;
     }
     const { robots, selected } = this.state();
     const group = this.robots.get(selected)?.model.group;
@@ -369,7 +375,7 @@ export class SceneView {
   #project(place) {
     const { x, y, z } = place.project(this.eye);
     if (z > 1 || z < -1) return null;
-    return { x: ((x + 1) / 2) * this.canvas.clientWidth, y: ((1 - y) / 2) * this.canvas.clientHeight };
+    return { x: ((x + 1) / 2) * this.size.width, y: ((1 - y) / 2) * this.size.height };
   }
 
   /** @param {THREE.Vector3} place */
@@ -382,6 +388,7 @@ export class SceneView {
   #resize() {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
+    this.size = { width: clientWidth, height: clientHeight };
     this.renderer?.setPixelRatio(Math.min(window.devicePixelRatio, this.quality.settings.pixelRatio));
     this.renderer?.setSize(clientWidth, clientHeight, false);
     this.camera.resize(clientWidth, clientHeight);

@@ -13,6 +13,7 @@ const STRIP_OFF = new THREE.Color(0xcfd6dd);
 const STRIPS = /** @type {const} */ (["bottom_left", "bottom_right"]);
 const GLOW = 4.2; // size of the halo of a full light, in radii
 const BEFORE_M = 0.0004; // of the halo before its disc
+const FAR = 2.5; // size of a light that is seen from far, in radii: without halo, and only while it shines
 
 const UP = new THREE.Vector3(0, 0, 1);
 
@@ -36,7 +37,7 @@ export function createLeds({ robots, fine }) {
   halos.mesh.renderOrder = 2;
   const strip = new THREE.BoxGeometry(0.022, 0.0016, 0.004);
   const strips = new Instances(strip, new THREE.MeshBasicMaterial(), { each: STRIPS.length, robots });
-  const places = LIGHTS.map((light) => facing(light, light.radius, 0));
+  const places = LIGHTS.map((light) => facing(light, light.radius * (fine ? 1 : FAR), 0));
   const stripPlaces = STRIPS.map((name) => placeOf(RGB_LIGHTS[name]));
   const full = LIGHTS.map(({ colour }) => new THREE.Color(colour));
   const colour = new THREE.Color();
@@ -48,13 +49,13 @@ export function createLeds({ robots, fine }) {
       LIGHTS.forEach((light, index) => {
         const level = robot.leds[light.group]?.[light.index] ?? 0;
         const size = light.radius * (1.4 + GLOW * Math.sqrt(level));
-        discs.put(slot, index, places[index]);
+        discs.put(slot, index, fine || level > 0 ? places[index] : null);
         discs.tint(slot, index, colour.copy(OFF).lerp(full[index], Math.sqrt(level)));
-        halos.put(slot, index, level > 0 ? facing(light, size, BEFORE_M) : null);
+        halos.put(slot, index, fine && level > 0 ? facing(light, size, BEFORE_M) : null);
         halos.tint(slot, index, full[index]);
       });
       STRIPS.forEach((name, index) => {
-        strips.put(slot, index, stripPlaces[index]);
+        strips.put(slot, index, fine || robot.leds[name]?.some((level) => level > 0) ? stripPlaces[index] : null);
         glow(colour, STRIP_OFF, robot.leds[name], 1);
         strips.tint(slot, index, colour);
       });

@@ -48,7 +48,8 @@ export function createRays({ robots, fine }) {
 
 /** @param {number} opacity */
 function beam(opacity) {
-  return new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false, side: THREE.DoubleSide, opacity });
+  const flat = { side: THREE.DoubleSide, forceSinglePass: true };
+  return new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false, opacity, ...flat });
 }
 
 /** A flat fan of length 1 along x: scaled, it is the beam. */
