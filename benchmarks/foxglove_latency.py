@@ -29,6 +29,8 @@ from websockets.asyncio.client import ClientConnection, connect
 SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"]
 STAMP = struct.Struct("<Q")
 CATCH_UP_S = 0.1
+WARM_UP_S = 0.5
+"""What a connection costs at its begin is not counted."""
 STUCK_S = 10.0
 """A scene that takes so much longer than it should is given up: its server answers nobody."""
 HEADER = 1 + 4 + 8  # opcode, subscription, time
@@ -154,19 +156,28 @@ async def count(connection: ClientConnection, until_s: float, latencies_ms: list
         return
 
 
-async def watch(port: int, seconds: float, healthy: int, stalled: int) -> list[list[float]]:
-    """Latencies seen by each healthy client."""
+async def watch(port: int, process: int, seconds: float, healthy: int, stalled: int) -> tuple[list[list[float]], float]:
+    """Latencies seen by each healthy client, and the CPU seconds that the process took, once all have been served."""
     blocked = [await subscribe(port) for _ in range(stalled)]
     for connection in blocked:
         connection.transport.pause_reading()
     connections = [await subscribe(port) for _ in range(healthy)]
-    until_s = asyncio.get_running_loop().time() + seconds
-    seen: list[list[float]] = [[] for _ in connections]
-    await asyncio.gather(*(count(one, until_s, latencies) for one, latencies in zip(connections, seen, strict=True)))
-    if not connections:
-        await asyncio.sleep(seconds)
+    await read(connections, WARM_UP_S)
+    before_s = cpu_s(process)
+    seen = await read(connections, seconds)
+    used_s = cpu_s(process) - before_s
     for connection in (*connections, *blocked):
         connection.transport.abort()
+    return seen, used_s
+
+
+async def read(connections: list[ClientConnection], seconds: float) -> list[list[float]]:
+    """The latencies of what each connection gets in so long."""
+    until_s = asyncio.get_running_loop().time() + seconds
+    seen: list[list[float]] = [[] for _ in connections]
+    await asyncio.gather(
+        asyncio.sleep(seconds), *(count(one, until_s, found) for one, found in zip(connections, seen, strict=True))
+    )
     return seen
 
 
@@ -190,17 +201,15 @@ def running(library: str, rate: float, size: int) -> Iterator[tuple[int, int]]:
 def measure(library: str, options: argparse.Namespace, healthy: int, stalled: int, idle_us: float = 0.0) -> Result:
     """Run one scene; `idle_us`: CPU time per message that pacing takes."""
     with running(library, options.rate, options.size) as (port, process):
-        before_s, started_s = cpu_s(process), time.monotonic()
-        scene = watch(port, options.seconds, healthy, stalled)
+        scene = watch(port, process, options.seconds, healthy, stalled)
         try:
-            seen = asyncio.run(asyncio.wait_for(scene, options.seconds + STUCK_S))
+            seen, used_s = asyncio.run(asyncio.wait_for(scene, WARM_UP_S + options.seconds + STUCK_S))
         except TimeoutError:
-            seen = []
-        used_s, took_s = cpu_s(process) - before_s, time.monotonic() - started_s
+            seen, used_s = [], float("nan")
     latencies = sorted(latency for one in seen for latency in one) or [float("nan")] * 2
     ranks = statistics.quantiles(latencies, n=100, method="inclusive")
     deliveries = sum(len(one) for one in seen)
-    sent = options.rate * took_s
+    sent = options.rate * options.seconds
     expected = options.rate * options.seconds * max(1, healthy)
     return Result(
         deliveries / expected, ranks[49], ranks[98], (used_s * 1e6 - idle_us * sent) / (deliveries or round(sent))

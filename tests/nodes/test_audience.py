@@ -57,6 +57,13 @@ def test_sensors_may_measure_at_another_rate():
     assert audience.due_ns(0) == 30 * MS
 
 
+def test_a_sensor_at_another_rate_has_no_phase_of_its_own():
+    audience = Audience({"battery": 100 * MS, "proximity": 100 * MS})
+    audience.join(Heard("battery"))
+    audience.join(Heard("proximity"))
+    assert [audience.due_ns(now * MS) for now in (0, 100)] == [100 * MS, 200 * MS]
+
+
 def test_time_may_jump_back():
     audience = Audience()
     audience.join(Heard("pose"))

@@ -26,8 +26,9 @@ from thymio_sim_ros.sim.commands import (
     Tilt,
     WheelVelocities,
 )
+from thymio_sim_ros.sim.crowd import CROWD
 from thymio_sim_ros.sim.playground import Playground, RobotStart
-from thymio_sim_ros.sim.sensors import NEVER_NS
+from thymio_sim_ros.sim.sensors import NEVER_NS, all_sensors
 from thymio_sim_ros.sim.world import StepResult, World
 
 ONE_BY_ONE, AT_ONCE = 10**9, 1
@@ -231,6 +232,16 @@ def test_only_the_chosen_sensors_measure_and_as_often_as_told() -> None:
     assert [tick for tick, name in found if name == "ground"] == [3, 6, 9]
     assert [tick for tick, name in found if name == "buttons"] == [5, 10]
     assert {name for _, name in found} == {"ground", "buttons"}
+
+
+@pytest.mark.parametrize("robots", [1, CROWD])
+def test_sensors_of_one_period_measure_in_the_same_tick_whatever_their_own_phase(robots: int) -> None:
+    starts = [{"name": f"r{number}", "x_m": 0.3 * number, "y_m": 0.0} for number in range(robots)]
+    regular = [sensor.name for sensor in all_sensors() if sensor.period_ns != NEVER_NS]
+    world = World(make([FLOOR], starts), periods_ns=dict.fromkeys(regular, 100_000_000))
+    found = [{name for _, name, _ in world.step().readings} for _ in range(20)]
+    assert [bool(names) for names in found] == [tick % 10 == 9 for tick in range(20)]
+    assert {"battery", "leds", "proximity"} <= found[9]
 
 
 @pytest.mark.parametrize(("periods_ns", "found"), [({"sonar": 1}, "'sonar'"), ({"ground": 0}, "found 0 ns")])

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import MappingProxyType
 
 from thymio_sim_ros.sim.actuators import all_actuators
@@ -265,4 +265,4 @@ def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -
             raise ValueError(f"sensor {name!r}: expected one of {', '.join(names)}")
         if period_ns <= 0:
             raise ValueError(f"period of {name!r}: found {period_ns} ns, expected a number above 0")
-    return tuple(replace(sensor, period_ns=periods_ns[sensor.name]) for sensor in sensors if sensor.name in periods_ns)
+    return tuple(sensor.every(periods_ns[sensor.name]) for sensor in sensors if sensor.name in periods_ns)

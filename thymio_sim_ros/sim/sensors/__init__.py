@@ -40,6 +40,10 @@ class Sensor:
     measure_all: Callable[[GroupView], Sequence[Reading | None]] | None = None
     feel: Callable[[SensorView], None] | None = None
 
+    def every(self, period_ns: int) -> Sensor:
+        """The same, measuring so often; with another period than its own, from 0 on like all others."""
+        return self if period_ns == self.period_ns else replace(self, period_ns=period_ns, phase_ns=0)
+
 
 def all_sensors() -> tuple[Sensor, ...]:
     """Every sensor of this folder and of other packages, in name order."""
