@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from aseba_vm.bytecode import signed
-from aseba_vm.messages import MESSAGES, wording
+from aseba_vm.messages import LANGUAGES, MESSAGES, wording
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +56,28 @@ class EventKilled:
     pc: int
 
 
+class _Fault:
+    """Why an event ended: a kind of `messages` and its arguments."""
+
+    __slots__ = ()
+
+    @property
+    def words(self) -> tuple[str, tuple[object, ...]]:
+        """The kind, and what its sentence is about; a kind that no table has is its own sentence."""
+        raise NotImplementedError
+
+    @property
+    def sentence(self) -> str:
+        """The fault in words."""
+        return self.sentence_in("en")
+
+    def sentence_in(self, language: str) -> str:
+        """The fault in words of a language of `LANGUAGES`; others get English."""
+        return wording(*self.words, LANGUAGES.get(language, MESSAGES))
+
+
 @dataclass(frozen=True, slots=True)
-class OutOfBounds:
+class OutOfBounds(_Fault):
     """An index outside an array, as an unsigned word; without size and index when a deque was misused."""
 
     pc: int
@@ -65,50 +85,40 @@ class OutOfBounds:
     index: int | None = None
 
     @property
-    def reason(self) -> str:
-        """The fault in words."""
+    def words(self) -> tuple[str, tuple[object, ...]]:
+        """See `_Fault`."""
         if self.size is None or self.index is None:
-            return wording("fault-deque", ())
-        return wording("fault-index", (signed(self.index), self.size))
-
-    @property
-    def sentence(self) -> str:
-        """The fault in words."""
-        return self.reason
+            return "fault-deque", ()
+        return "fault-index", (signed(self.index), self.size)
 
 
 @dataclass(frozen=True, slots=True)
-class DivisionByZero:
+class DivisionByZero(_Fault):
     """A division or remainder by 0."""
 
     pc: int
 
     @property
-    def reason(self) -> str:
-        """The fault in words."""
-        return wording("fault-division-by-zero", ())
-
-    @property
-    def sentence(self) -> str:
-        """The fault in words."""
-        return self.reason
+    def words(self) -> tuple[str, tuple[object, ...]]:
+        """See `_Fault`."""
+        return "fault-division-by-zero", ()
 
 
 @dataclass(frozen=True, slots=True)
-class NodeSpecific:
+class NodeSpecific(_Fault):
     """A native refused its arguments; ``reason`` is what it said."""
 
     pc: int
     reason: str
 
     @property
-    def sentence(self) -> str:
-        """The fault in words."""
-        return _sentence(self.reason)
+    def words(self) -> tuple[str, tuple[object, ...]]:
+        """See `_Fault`."""
+        return _kind(self.reason), ()
 
 
 @dataclass(frozen=True, slots=True)
-class BadCode:
+class BadCode(_Fault):
     """Bytecode that no compiler makes, or a stack that overflows; the reference stops its whole process here.
 
     ``reason`` is an identifier.
@@ -118,13 +128,13 @@ class BadCode:
     reason: str
 
     @property
-    def sentence(self) -> str:
-        """The fault in words."""
-        return _sentence(self.reason)
+    def words(self) -> tuple[str, tuple[object, ...]]:
+        """See `_Fault`."""
+        return _kind(self.reason), ()
 
 
-def _sentence(reason: str) -> str:
-    return wording(f"fault-{reason}", ()) if f"fault-{reason}" in MESSAGES else reason
+def _kind(reason: str) -> str:
+    return f"fault-{reason}" if f"fault-{reason}" in MESSAGES else reason
 
 
 Fault = OutOfBounds | DivisionByZero | NodeSpecific | BadCode

@@ -131,12 +131,12 @@ def test_when_remembers_between_events():
         ("var t[4]\nvar i = -1\nt[i] = 1", "index -1 is outside an array of 4", 2),
         ("var z\n\nz = 5 / z", "division by zero", 2),
         ("var q[8]\nvar v\ncall deque.pop_back(q, v)", "a deque was given a wrong index or too many values", 2),
-        ("var a = -1\ncall math.sqrt(a, a)", "sqrt-of-negative", 1),
+        ("var a = -1\ncall math.sqrt(a, a)", "square root of a negative number", 1),
     ],
 )
 def test_a_fault_stops_the_machine_and_says_why_and_where(source, reason, row):
     machine, program = machine_with(source)
-    assert machine.fault.reason == reason
+    assert machine.fault.sentence == reason
     assert program.row_of(machine.fault.pc) == row
     assert machine.flags == STEP_BY_STEP
     machine.start_local(8)

@@ -146,6 +146,12 @@ def test_a_late_listener_hears_the_last_fault(ros, runtime, prox):
     status = Status(ros)
     ros.until(lambda: status.place == ("fault", "prox", "4"))
     assert status["fault"] == "index 9 is outside an array of 3"
+    assert status.data("faults") == {
+        "en": "index 9 is outside an array of 3",
+        "de": "der Index 9 liegt außerhalb eines Feldes mit 3 Elementen",
+        "fr": "l'indice 9 est hors d'un tableau de 3",
+        "it": "l'indice 9 è fuori da un array di 3",
+    }
     assert status.messages[-1].level == DiagnosticStatus.ERROR
     assert call(ros, "run") == (True, "running")
 

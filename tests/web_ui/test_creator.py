@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 
 import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.conftest import DEADLINE_MS, LOCAL
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, Fingers, open_page
 from tests.web_ui.test_page_access import AXE, FINDINGS
 from thymio_sim_ros.sim import playground as playgrounds
 
@@ -227,6 +228,41 @@ def test_things_are_carried_turned_and_changed_by_numbers(suite, page):
     assert len(items(page)) == 3, "keys in a field act on the field only"
 
 
+def test_keys_of_a_mac_undo_redo_and_copy(suite, page):
+    open_creator(page, suite)
+    page.click("[data-tool=box]")
+    click(page, 0.3, 0.2)
+    wait_for_items(page, 3)
+    page.keyboard.press("Escape")
+    for keys, count in (("Meta+z", 2), ("Meta+Shift+z", 3), ("Meta+z", 2), ("Meta+y", 3)):
+        page.keyboard.press(keys)
+        wait_for_items(page, count)
+    page.keyboard.press("n")
+    page.keyboard.press("n")
+    assert built(page)["selected"] == "box_1"
+    page.keyboard.press("Meta+d")
+    wait_for_items(page, 4)
+
+
+def test_places_keep_to_the_grid_unless_alt_is_held_and_the_wheel_turns_what_is_in_hand(suite, page):
+    open_creator(page, suite)
+    page.click("[data-tool=box]")
+    click(page, 0.313, 0.207)
+    wait_for_items(page, 3)
+    page.mouse.move(*spot(page, -0.3, 0.2))
+    page.mouse.wheel(0, 120)
+    page.keyboard.down("Alt")
+    click(page, -0.313, 0.207)
+    page.keyboard.up("Alt")
+    wait_for_items(page, 4)
+    placed = items(page)
+    assert (placed["box_1"]["x_m"], placed["box_1"]["y_m"], placed["box_1"].get("yaw_rad", 0)) == (0.3, 0.2, 0)
+    assert placed["box_2"]["x_m"] == pytest.approx(-0.313, abs=0.003)
+    assert placed["box_2"]["y_m"] == pytest.approx(0.207, abs=0.003)
+    assert placed["box_2"]["x_m"] != -0.3
+    assert placed["box_2"]["yaw_rad"] == pytest.approx(-math.radians(30), abs=1e-3)
+
+
 def test_shift_switches_the_camera_off_and_on_and_clicks_place_either_way(suite, page):
     open_creator(page, suite)
     page.click("[data-tool=cylinder]")
@@ -324,6 +360,16 @@ def test_fingers_place_and_carry(suite, browser):
     page.touchscreen.tap(*spot(page, 0.25, 0.2))
     wait_for_items(page, 3)
     assert items(page)["thymio_1"]["x_m"] == 0.25
+    fingers, corners = Fingers(page), ((0.4, 0.4), (-0.4, -0.4))
+    before = math.dist(*(spot(page, *corner) for corner in corners))
+    camera = built(page)["camera"]
+    fingers.put(a=(380, 280), b=(420, 320))
+    fingers.move(a=(320, 220), b=(480, 380))
+    fingers.lift()
+    page.wait_for_function("(camera) => window.thymio.built().camera[0] !== camera[0]", arg=camera)
+    settle(page)
+    assert math.dist(*(spot(page, *corner) for corner in corners)) > 1.2 * before
+    assert len(items(page)) == 3, "two fingers move the camera and place nothing"
     page.locator(".cancel").tap()
     assert built(page)["placing"] is None
     page.close()

@@ -74,3 +74,25 @@ def test_a_broken_file_is_told_with_place_found_and_expected_and_the_world_stays
     playwright.expect(fault).to_contain_text("broken.json")
     playwright.expect(fault.locator("dd")).to_contain_text(["shapes[0].x_m", "'far'", "a number of m"])
     assert page.evaluate("window.thymio.state().simulator.playground") == "base"
+
+
+def test_a_playground_of_the_thesis_is_taken_and_shows_its_things(suite, page, tmp_path):
+    foreign = tmp_path / "mine.json"
+    pillar = {"topRadius": 2, "botRadius": 2, "height": 6, "color": "#9fa3bd", "positionX": 20, "positionZ": 0}
+    floor = {"name": "ground", "props": {"width": 50, "height": 50, "color": "#bdbbbb"}, "hasWalls": True}
+    robot = {"name": "thymio", "positionX": 0, "positionZ": 0}
+    foreign.write_text(
+        json.dumps(
+            {
+                "playground": "Lone pillar",
+                "planes": [floor],
+                "cylinders": [{"name": "pillar", "props": pillar}],
+                "thymios": robot,
+            }
+        )
+    )
+    open_gallery(page, suite)
+    page.set_input_files("#gallery-file", str(foreign))
+    page.wait_for_function("window.thymio.state().simulator.title === 'Lone pillar'")
+    page.wait_for_function("window.thymio.state().robot?.latest")
+    page.wait_for_function("window.thymio.state().markers > 0")

@@ -9,45 +9,13 @@ from typing import Any
 import pytest
 
 from tests.web_ui.conftest import checked_page
-from tests.web_ui.page_support import MARKS, open_page, wait_until_settled
+from tests.web_ui.page_support import MARKS, Fingers, open_page, wait_until_settled
 
 pytestmark = MARKS
 
 RESTING = ("--playground", "base", "--program", "none")
 POSE = "() => window.thymio.state().robot.latest.pose"
 CORNERS = "() => [[0.4, 0.4, 0], [-0.4, -0.4, 0]].map(([x, y, z]) => window.thymio.screenPosition(x, y, z))"
-
-
-class Fingers:
-    """Several fingers at once, by the developer protocol: a finger is a number, a place is in CSS pixels."""
-
-    def __init__(self, page: Any) -> None:
-        self._developer = page.context.new_cdp_session(page)
-        self._down: dict[int, tuple[float, float]] = {}
-
-    def put(self, **places: tuple[float, float]) -> None:
-        """Put fingers down: a=(x, y), b=(x, y)."""
-        for name, place in places.items():
-            self._down[ord(name)] = place
-            self._send("touchStart")
-
-    def move(self, steps: int = 6, **places: tuple[float, float]) -> None:
-        """Move fingers that are down, all together."""
-        begin = {name: self._down[ord(name)] for name in places}
-        for step in range(1, steps + 1):
-            for name, (x, y) in places.items():
-                from_x, from_y = begin[name]
-                self._down[ord(name)] = (from_x + (x - from_x) * step / steps, from_y + (y - from_y) * step / steps)
-            self._send("touchMove")
-
-    def lift(self) -> None:
-        """Take all fingers up."""
-        self._down.clear()
-        self._send("touchEnd")
-
-    def _send(self, kind: str) -> None:
-        points = [{"x": x, "y": y, "id": number} for number, (x, y) in self._down.items()]
-        self._developer.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
 
 
 @pytest.fixture

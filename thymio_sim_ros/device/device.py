@@ -11,6 +11,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from aseba_vm import VirtualMachine
+from aseba_vm.messages import LANGUAGES
 from aseba_vm.outbox import BadCode, DivisionByZero, Emitted, NodeSpecific, OutOfBounds
 from thymio_sim_ros.device.body import RESTART, Body
 from thymio_sim_ros.device.breakpoints import Breakpoints, LineDebugger
@@ -24,7 +25,7 @@ from thymio_sim_ros.device.outputs import Outputs
 from thymio_sim_ros.device.own_rules import PERIOD_NS, OwnRules
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.device.settings import Settings
-from thymio_sim_ros.device.status import FAULT, INIT, OFF, PAUSED, RUNNING, STOPPED, DeviceStatus, sentence
+from thymio_sim_ros.device.status import FAULT, INIT, OFF, PAUSED, RUNNING, STOPPED, DeviceStatus
 from thymio_sim_ros.sim.commands import LED_GROUPS, Command, PlaySystemSound, ReleaseLeds
 from thymio_sim_ros.sim.tones import SHUT_DOWN
 
@@ -385,7 +386,8 @@ class AsebaDevice:
             elif isinstance(message, OutOfBounds | DivisionByZero | NodeSpecific | BadCode) and not self.body.wanted:
                 line = self._program.line_of(message.pc)
                 self._state = FAULT
-                self._fault = DeviceStatus(FAULT, self._event, line, sentence(message.reason), message.pc)
+                told = {language: message.sentence_in(language) for language in LANGUAGES}
+                self._fault = DeviceStatus(FAULT, self._event, line, message.sentence, message.pc, told)
                 self._queue.clear()
                 self._halt()
         if self._state == RUNNING and self._vm.is_step_by_step:

@@ -10,12 +10,6 @@ RUNNING, PAUSED, STOPPED, FAULT, OFF = "running", "paused", "stopped", "fault", 
 INIT = "init"
 """In place of an event: the beginning of the program."""
 
-_SENTENCES: Mapping[str, str] = {
-    "sqrt-of-negative": "square root of a negative number",
-    "stack-overflow": "the stack is full: an expression or a chain of subroutines is too deep",
-    "emit-too-long": "an event carries more words than a message holds",
-}
-
 
 @dataclass(frozen=True, slots=True)
 class DeviceStatus:
@@ -29,8 +23,5 @@ class DeviceStatus:
     line: int | None = None
     fault: str = ""
     pc: int | None = field(default=None, compare=False)  # the place is the line
-
-
-def sentence(reason: str) -> str:
-    """A fault's reason for people."""
-    return _SENTENCES.get(reason, reason)
+    faults: Mapping[str, str] = field(default_factory=dict, compare=False)
+    """Language → the sentence of `fault` in it (`aseba_vm.messages.LANGUAGES`)."""

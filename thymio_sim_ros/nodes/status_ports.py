@@ -72,6 +72,7 @@ class StatusPorts:
                 KeyValue(key="line", value=_text(shown.line)),
                 KeyValue(key="pc", value=_text(shown.pc)),
                 KeyValue(key="fault", value=shown.fault),
+                KeyValue(key="faults", value=json.dumps(dict(shown.faults))),
             ],
         )
         if shown.state == FAULT:

@@ -8,6 +8,7 @@ import { LARGEST_PROGRAM } from "../actions.js";
 import { h } from "../panels/dom.js";
 import { locate } from "../state/index.js";
 import { robotTopic } from "../state/names.js";
+import { faultWords, lineOf, placeWords, stateWord } from "../state/standing.js";
 import { readAesl } from "./aesl.js";
 import { breakpointLines, showBreakpoints, showPlace } from "./breakpoints.js";
 import { CHECK_SERVICE, marks } from "./checking.js";
@@ -309,25 +310,19 @@ export function createEditor({ desk, client, store, language, pageText, announce
         const first = firstLine();
         const inForce = JSON.parse(values.breakpoints || "[]").map((/** @type {number} */ line) => line - first + 1);
         showBreakpoints(text.view, inForce);
-        const at = Number(values.line ?? "") - first + 1;
-        const fault = values.state === "fault";
-        showPlace(text.view, values.line && at >= 1 ? { line: at, fault } : null);
+        const line = lineOf(values);
+        showPlace(text.view, line > 0 ? { line, fault: values.state === "fault" } : null);
         for (const [line, became] of Object.entries(JSON.parse(values.breakpoints_moved || "{}"))) {
           if (became === null) announce(t("breakpoint.none", { line: Number(line) - first + 1 }));
         }
       }
     }
-    const known = ["running", "paused", "stopped", "fault"].includes(values.state ?? "");
-    const other = values.state === "off" ? t("state.off") : (values.state ?? "");
-    const word = known ? pageText(`state.${values.state}`) : other;
-    const place =
-      values.line && values.state !== "running"
-        ? ` (${pageText("state.line", { line: Number(values.line) - firstLine() + 1 })})`
-        : "";
-    const detail = values.fault ? `: ${values.fault}` : "";
-    foot.robot(values.state ?? "", word + place + detail);
-    if (word + place + detail !== said) {
-      said = word + place + detail;
+    const fault = faultWords(values, language);
+    const words = values.state ? stateWord(values.state, pageText) + placeWords(values, pageText) : "";
+    const sentence = words + (fault ? `: ${fault}` : "");
+    foot.robot(values.state ?? "", sentence);
+    if (sentence !== said) {
+      said = sentence;
       announce(said);
     }
     /** @param {string} name @returns {import("./footer.js").Share} */

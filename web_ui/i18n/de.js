@@ -105,6 +105,7 @@ export const de = {
   "state.paused": "pausiert",
   "state.stopped": "gestoppt",
   "state.fault": "Fehler",
+  "state.off": "aus",
   "state.unknown": "unbekannt",
   "state.line": "Zeile {line}",
   playground: "Spielfeld",

@@ -107,6 +107,7 @@ export const en = {
   "state.paused": "paused",
   "state.stopped": "stopped",
   "state.fault": "fault",
+  "state.off": "off",
   "state.unknown": "unknown",
   "state.line": "line {line}",
   playground: "Playground",

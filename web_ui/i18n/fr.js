@@ -104,6 +104,7 @@ export const fr = {
   "state.paused": "en pause",
   "state.stopped": "arrêté",
   "state.fault": "erreur",
+  "state.off": "éteint",
   "state.unknown": "inconnu",
   "state.line": "ligne {line}",
   playground: "Terrain",

@@ -105,6 +105,7 @@ export const it = {
   "state.paused": "in pausa",
   "state.stopped": "fermo",
   "state.fault": "errore",
+  "state.off": "spento",
   "state.unknown": "sconosciuto",
   "state.line": "riga {line}",
   playground: "Campo",

@@ -2,26 +2,21 @@
 // refuses is shown in its own text, at its place, while the old program goes on.
 
 import { programOf } from "../state/index.js";
+import { faultWords, placeWords, stateWord } from "../state/standing.js";
 import { behaviourChoice } from "./behaviours.js";
 import { card } from "./card.js";
 import { fileButton, h, icon, ICONS, setAttribute, setText } from "./dom.js";
 import { sourceView } from "./source.js";
 
-const KNOWN_STATES = ["running", "paused", "stopped", "fault"];
 const VERBS = /** @type {const} */ ([
   ["run", ICONS.play],
   ["stop", ICONS.stop],
   ["reset", ICONS.restart],
 ]);
 
-/** The line as the editor counts, from that on which the node's code begins. @param {import("../state/index.js").Program} program */
-function codeLine({ line, values }) {
-  return Number(line) - Number(values.first_line ?? 1) + 1;
-}
-
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function programPanel(context) {
-  const { t, actions, store, announce, editor } = context;
+  const { t, language, actions, store, announce, editor } = context;
   const behaviour = behaviourChoice(context);
   const name = h("strong", { class: "name" });
   const lamp = h("span", { class: "state" });
@@ -58,7 +53,7 @@ export function programPanel(context) {
     behaviour.element,
   );
   /** @type {import("../state/index.js").Upload | null} */ let shown = null;
-  let told = "";
+  let announced = "";
 
   /** @param {import("../state/index.js").Upload | null} now */
   const showUpload = (now) => {
@@ -104,19 +99,17 @@ export function programPanel(context) {
     render(state) {
       behaviour.render(state);
       const program = programOf(state);
-      const known = program !== null && KNOWN_STATES.includes(program.state);
-      const word = program === null ? "" : t(known ? `state.${program.state}` : "state.unknown");
+      const word = program === null ? "" : stateWord(program.state, t);
       setText(name, program?.name || t("program.none"));
       setText(lamp, word);
       setAttribute(lamp, "data-state", program?.state ?? "");
-      const line =
-        program?.line && program.state !== "running" ? ` (${t("state.line", { line: codeLine(program) })})` : "";
-      setText(message, program !== null && program.level > 0 ? program.message + line : "");
+      const { values, level, message: told } = program ?? { values: {}, level: 0, message: "" };
+      setText(message, level > 0 ? (faultWords(values, language) || told) + placeWords(values, t) : "");
       message.hidden = message.textContent === "";
       for (const { verb, button } of verbs) button.disabled = !state.services.includes(actions.programService(verb));
       const news = program === null ? "" : `${program.name}: ${word}`;
-      if (news !== told && news !== "") announce(news);
-      told = news;
+      if (news !== announced && news !== "") announce(news);
+      announced = news;
       showUpload(state.uploads.program);
     },
   };

@@ -37,7 +37,6 @@ export const de = {
   "verdict.at": "Zeile {line}: {message}",
   "verdict.unknown": "Fehler erscheinen, sobald die Aseba-Laufzeit antwortet.",
   "breakpoint.none": "Zeile {line}: hier und darunter steht kein Code, also kein Haltepunkt.",
-  "state.off": "aus",
   "memory.variables": "Variablen",
   "memory.bytecode": "Programm",
   "memory.stack": "Stapel",

@@ -37,7 +37,6 @@ export const en = {
   "verdict.at": "Line {line}: {message}",
   "verdict.unknown": "Errors are shown as soon as the Aseba runtime answers.",
   "breakpoint.none": "Line {line}: no code here or below, so no breakpoint.",
-  "state.off": "off",
   "memory.variables": "Variables",
   "memory.bytecode": "Program",
   "memory.stack": "Stack",

@@ -38,7 +38,6 @@ export const fr = {
   "verdict.at": "Ligne {line} : {message}",
   "verdict.unknown": "Les erreurs apparaîtront dès que l'environnement Aseba répondra.",
   "breakpoint.none": "Ligne {line} : pas de code ici ni plus bas, donc pas de point d'arrêt.",
-  "state.off": "éteint",
   "memory.variables": "Variables",
   "memory.bytecode": "Programme",
   "memory.stack": "Pile",

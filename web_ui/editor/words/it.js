@@ -37,7 +37,6 @@ export const it = {
   "verdict.at": "Riga {line}: {message}",
   "verdict.unknown": "Gli errori appariranno quando l'ambiente Aseba risponderà.",
   "breakpoint.none": "Riga {line}: né qui né sotto c'è codice, quindi nessun punto di arresto.",
-  "state.off": "spento",
   "memory.variables": "Variabili",
   "memory.bytecode": "Programma",
   "memory.stack": "Pila",
