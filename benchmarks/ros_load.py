@@ -41,7 +41,7 @@ from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Range
 
-from thymio_sim_ros.nodes import convert, dds_profile, qos, reference, tf_messages
+from thymio_sim_ros.nodes import dds_profile, qos, reference, sensor_topics, tf_messages
 from thymio_sim_ros.nodes.life import drive, make_executor
 from thymio_sim_ros.nodes.simulator_node import Simulator
 
@@ -109,8 +109,8 @@ def topics(robots: int, heard: str, *, only_regular: bool = False) -> Iterator[t
     spaces = [""] if robots == 1 else [f"/r{index}" for index in range(robots)]
     for space in spaces:
         for sensor in reference.own_sensors():
-            for row in convert.rows_of(sensor):
-                if only_regular and not convert.is_regular(sensor, row):
+            for row in sensor_topics.rows_of(sensor):
+                if only_regular and not sensor_topics.is_regular(sensor, row):
                     continue
                 if heard == ALL or row.type is Range or row.topic in ("odom", "joint_states", "imu"):
                     yield row.type, f"{space}/{row.topic}"

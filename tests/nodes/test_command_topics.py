@@ -16,7 +16,7 @@ from std_msgs.msg import (
 )
 
 from thymio_sim_ros.nodes.command_topics import ROWS, topic_of
-from thymio_sim_ros.nodes.convert import CommandError
+from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.sim.actuators import all_actuators, leds, loudspeaker
 from thymio_sim_ros.sim.commands import (
     LED_GROUPS,

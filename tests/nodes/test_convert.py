@@ -8,8 +8,9 @@ import pytest
 from geometry_msgs.msg import Quaternion, Twist, Vector3
 from sensor_msgs.msg import JointState, LaserScan, Range
 
-from thymio_sim_ros.nodes import convert
-from thymio_sim_ros.nodes.convert import CommandError, ConvertOptions
+from thymio_sim_ros.nodes import command_values, convert, sensor_topics
+from thymio_sim_ros.nodes.command_values import CommandError
+from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.names import RobotNames, ros_names, topic_word
 from thymio_sim_ros.sim import commands, readings
 from thymio_sim_ros.sim.geometry import Pose, Tilt
@@ -18,7 +19,7 @@ from thymio_sim_ros.sim.sensors import all_sensors
 
 ALONE = RobotNames("")
 SECOND = RobotNames("thymio_2")
-ROWS = {row.topic: row for sensor in all_sensors() for row in convert.rows_of(sensor)}
+ROWS = {row.topic: row for sensor in all_sensors() for row in sensor_topics.rows_of(sensor)}
 
 PROXIMITY = readings.ProximityReading(
     1_500_000_000,
@@ -108,28 +109,28 @@ def test_leds_are_labelled_parts_of_one_array():
 
 @pytest.mark.parametrize("level", range(33))
 def test_a_level_survives_the_way_over_a_topic(level):
-    assert convert.led_levels("remote", [level / commands.LED_FULL]).levels == (level,)
+    assert command_values.led_levels("remote", [level / commands.LED_FULL]).levels == (level,)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_numbers_that_are_not_finite_are_refused(value):
     with pytest.raises(CommandError, match=r"linear\.x"):
-        convert.body_twist(Twist(linear=Vector3(x=value)), 0)
+        command_values.body_twist(Twist(linear=Vector3(x=value)), 0)
     with pytest.raises(CommandError, match="finite"):
-        convert.wheel_velocities([0.0, value], 0)
+        command_values.wheel_velocities([0.0, value], 0)
     with pytest.raises(CommandError, match="finite"):
-        convert.led_levels("remote", [value])
+        command_values.led_levels("remote", [value])
 
 
 def test_arrays_of_the_wrong_length_are_refused():
     with pytest.raises(CommandError, match="3 values found, expected 8 intensities"):
-        convert.led_levels("circle", [1.0, 1.0, 1.0])
+        command_values.led_levels("circle", [1.0, 1.0, 1.0])
     with pytest.raises(CommandError, match="left, right"):
-        convert.motor_targets([1])
+        command_values.motor_targets([1])
 
 
 def test_intensities_are_clamped():
-    assert convert.led_levels("ground", [-3.0, 7.0]).levels == (0, 32)
+    assert command_values.led_levels("ground", [-3.0, 7.0]).levels == (0, 32)
 
 
 @pytest.mark.parametrize("yaw", [-3.0, -0.5, 0.0, 1.0, 3.1])

@@ -11,7 +11,7 @@ import pytest
 from builtin_interfaces.msg import Duration
 
 from thymio_sim_ros.nodes import reference
-from thymio_sim_ros.nodes.convert import CommandError
+from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.nodes.driver_topics import TOPICS, DriverTopics
 from thymio_sim_ros.nodes.robot_inputs import Moment
 from thymio_sim_ros.sim.commands import (

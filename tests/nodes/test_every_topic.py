@@ -32,7 +32,7 @@ from std_msgs.msg import (
     UInt8MultiArray,
 )
 
-from thymio_sim_ros.nodes import convert, qos, reference, robot_ports, world_ports, world_services
+from thymio_sim_ros.nodes import qos, reference, robot_ports, sensor_topics, world_ports, world_services
 from thymio_sim_ros.nodes.robot_inputs import robot_inputs
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import LED_GROUPS
@@ -54,7 +54,7 @@ PAIR = json.dumps(
     }
 )  # fmt: skip
 
-PUBLISHED = [(sensor, row) for sensor in reference.own_sensors() for row in convert.rows_of(sensor)]
+PUBLISHED = [(sensor, row) for sensor in reference.own_sensors() for row in sensor_topics.rows_of(sensor)]
 INPUTS = {one.topic: one for one in robot_inputs()}
 
 
@@ -105,7 +105,7 @@ def test_what_a_robot_publishes(ros, simulation, sensor, row):
         usual = {"map": "map"}.get(row.frame, f"anna/{row.frame}")
         assert headed.header.frame_id == usual
         assert (headed.header.stamp.nanosec + headed.header.stamp.sec * 10**9) % 10_000_000 == 0
-    often = convert.often(sensor, row)
+    often = sensor_topics.often(sensor, row)
     if often not in ("event", "change"):
         messages.clear()
         sim.step(2.0)

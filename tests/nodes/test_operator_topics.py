@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from std_msgs.msg import Bool, Empty, Float32, Float32MultiArray, Int8, Int16MultiArray
 
-from thymio_sim_ros.nodes.convert import CommandError
+from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.nodes.operator_topics import ROWS
 from thymio_sim_ros.sim.commands import (
     Clap,

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from aseba_vm.targets import THYMIO_II
-from thymio_sim_ros.nodes import convert, reference
+from thymio_sim_ros.nodes import reference, sensor_topics
 from thymio_sim_ros.nodes.robot_inputs import robot_inputs
 
 PAGE = Path(__file__).parent.parent.parent / "docs" / "ros.md"
@@ -21,12 +21,12 @@ def test_the_page_is_what_the_nodes_declare():
 
 
 def test_every_topic_says_what_it_is_about():
-    rows = [row for sensor in reference.own_sensors() for row in convert.rows_of(sensor)]
+    rows = [row for sensor in reference.own_sensors() for row in sensor_topics.rows_of(sensor)]
     assert [one.topic for one in (*rows, *robot_inputs()) if not one.about] == []
 
 
 def test_no_topic_is_declared_twice():
-    topics = [row.topic for sensor in reference.own_sensors() for row in convert.rows_of(sensor)]
+    topics = [row.topic for sensor in reference.own_sensors() for row in sensor_topics.rows_of(sensor)]
     topics += [one.topic for one in robot_inputs()]
     assert sorted(topics) == sorted(set(topics))
 

@@ -9,13 +9,13 @@ import pytest
 from sensor_msgs.msg import BatteryState, Imu, Temperature
 from std_msgs.msg import Bool, Empty, Float32, Float32MultiArray, Int8, Int16, Int16MultiArray
 
-from thymio_sim_ros.nodes import convert
+from thymio_sim_ros.nodes import sensor_topics
 from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.sim import readings
 from thymio_sim_ros.sim.sensors import all_sensors
 
-ROWS = {row.topic: row for sensor in all_sensors() for row in convert.rows_of(sensor)}
+ROWS = {row.topic: row for sensor in all_sensors() for row in sensor_topics.rows_of(sensor)}
 
 TWO = json.dumps(
     {

@@ -9,14 +9,14 @@ import pytest
 from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import Float32, Float32MultiArray
 
-from thymio_sim_ros.nodes import convert, reference
+from thymio_sim_ros.nodes import reference, sensor_topics
 from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.templates import Patch, Span, Template
 from thymio_sim_ros.sim import readings
 from thymio_sim_ros.sim.geometry import Pose, Tilt, Twist
 
-PATCHED = [(sensor, row) for sensor in reference.own_sensors() for row in convert.rows_of(sensor) if row.patch]
+PATCHED = [(sensor, row) for sensor in reference.own_sensors() for row in sensor_topics.rows_of(sensor) if row.patch]
 
 
 def reading_of(sensor, seed):

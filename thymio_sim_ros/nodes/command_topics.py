@@ -26,8 +26,8 @@ from std_msgs.msg import (
     UInt8MultiArray,
 )
 
-from thymio_sim_ros.nodes import convert, limits, qos
-from thymio_sim_ros.nodes.convert import CommandError
+from thymio_sim_ros.nodes import command_values, convert, limits, qos
+from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.limits import Beyond
 from thymio_sim_ros.sim import commands
@@ -97,7 +97,7 @@ def _encode_targets(command: commands.MotorTargets) -> Int16MultiArray:
 
 
 def _decode_targets(message: Int16MultiArray) -> Command:
-    return convert.motor_targets(message.data)
+    return command_values.motor_targets(message.data)
 
 
 def _encode_color(command: commands.SetLeds | commands.ReleaseLeds) -> ColorRGBA:
@@ -107,7 +107,7 @@ def _encode_color(command: commands.SetLeds | commands.ReleaseLeds) -> ColorRGBA
 
 
 def _decode_color(message: ColorRGBA, *, group: str) -> Command:
-    return convert.led_levels(group, (message.r, message.g, message.b))
+    return command_values.led_levels(group, (message.r, message.g, message.b))
 
 
 def _encode_levels(command: commands.SetLeds | commands.ReleaseLeds) -> Float32MultiArray:
@@ -117,7 +117,7 @@ def _encode_levels(command: commands.SetLeds | commands.ReleaseLeds) -> Float32M
 
 
 def _decode_levels(message: Float32MultiArray, *, group: str) -> Command:
-    return convert.led_levels(group, message.data) if len(message.data) else commands.ReleaseLeds(group)
+    return command_values.led_levels(group, message.data) if len(message.data) else commands.ReleaseLeds(group)
 
 
 def _encode_single(command: commands.SetLed) -> Int16MultiArray:
@@ -125,7 +125,7 @@ def _encode_single(command: commands.SetLed) -> Int16MultiArray:
 
 
 def _decode_single(message: Int16MultiArray) -> Command:
-    number, level = convert.sized(message.data, 2, "[number of the light, brightness 0…32]")
+    number, level = command_values.sized(message.data, 2, "[number of the light, brightness 0…32]")
     return commands.SetLed(int(number), int(level))
 
 
@@ -138,7 +138,7 @@ def _decode_own(message: Float32MultiArray) -> Command:
     group = message.layout.dim[0].label if message.layout.dim else ""
     if group not in commands.LED_GROUPS:
         raise CommandError(f"group {group!r} found in layout.dim[0].label, expected {', '.join(commands.LED_GROUPS)}")
-    return commands.ShowOnLeds(group, convert.led_levels(group, message.data).levels)
+    return commands.ShowOnLeds(group, command_values.led_levels(group, message.data).levels)
 
 
 def _encode_tone(command: commands.PlayTone | commands.StopSound) -> Float32MultiArray:
@@ -149,9 +149,9 @@ def _encode_tone(command: commands.PlayTone | commands.StopSound) -> Float32Mult
 
 def _decode_tone(message: Float32MultiArray) -> Command:
     """[Hz, s]; 0 s is until stopped, a negative time stops."""
-    hertz, seconds = convert.sized(message.data, 2, "[Hz, s]")
-    convert.finite(hertz, "frequency")
-    convert.finite(seconds, "duration")
+    hertz, seconds = command_values.sized(message.data, 2, "[Hz, s]")
+    command_values.finite(hertz, "frequency")
+    command_values.finite(seconds, "duration")
     if seconds < 0:
         return commands.StopSound()
     return commands.PlayTone(float(hertz), round(seconds * SECOND_NS) or None)
@@ -180,7 +180,7 @@ def _encode_wave(command: commands.SetWave) -> Int8MultiArray:
 
 
 def _decode_wave(message: Int8MultiArray) -> Command:
-    samples = convert.sized(message.data, WAVE_LENGTH, f"{WAVE_LENGTH} samples of one period")
+    samples = command_values.sized(message.data, WAVE_LENGTH, f"{WAVE_LENGTH} samples of one period")
     return commands.SetWave(tuple(int(sample) for sample in samples))
 
 
@@ -200,7 +200,7 @@ def _encode_threshold(command: commands.SetSoundThreshold) -> Float32:
 
 def _decode_threshold(message: Float32) -> Command:
     """0…1 of 255, or beyond: nothing is as loud."""
-    convert.finite(message.data, "threshold")
+    command_values.finite(message.data, "threshold")
     return commands.SetSoundThreshold(max(-0x8000, min(0x7FFF, round(message.data * FULL_LEVEL))))
 
 
@@ -247,7 +247,7 @@ def _decode_pen_down(message: Bool) -> Command:
 def _decode_pen_color(message: ColorRGBA) -> Command:
     """A color to draw with; alpha 0 is the eraser."""
     for value in (message.r, message.g, message.b, message.a):
-        convert.finite(value, "color")
+        command_values.finite(value, "color")
     red, green, blue = (min(max(value, 0.0), 1.0) for value in (message.r, message.g, message.b))
     return commands.SetPen(color=(red, green, blue), erase=message.a <= 0.0)
 

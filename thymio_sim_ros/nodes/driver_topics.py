@@ -13,11 +13,12 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
-from thymio_sim_ros.nodes import convert, limits, qos
-from thymio_sim_ros.nodes.convert import CommandError, Row
+from thymio_sim_ros.nodes import command_values, limits, qos
+from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.limits import Beyond
 from thymio_sim_ros.nodes.robot_inputs import Moment, RobotInput
+from thymio_sim_ros.nodes.sensor_topics import Row
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 
@@ -95,7 +96,7 @@ def _group(number: int) -> str:
 def _led(message: Any, _moment: Moment) -> Sequence[Command]:
     group = _group(message.id)
     size = commands.LED_GROUPS[group]
-    return (convert.led_levels(group, list(message.values)[:size]),)
+    return (command_values.led_levels(group, list(message.values)[:size]),)
 
 
 def _too_bright(message: Any) -> str:
@@ -122,7 +123,7 @@ def _gesture(message: Any, _moment: Moment) -> Sequence[Command]:
 
 
 def _tone(message: Any, _moment: Moment) -> Sequence[Command]:
-    convert.finite(message.frequency, "frequency")
+    command_values.finite(message.frequency, "frequency")
     duration_ns = message.duration.sec * SECOND_NS + message.duration.nanosec
     return (commands.PlayTone(max(1.0, float(message.frequency)), max(SHORTEST_NS, duration_ns)),)
 

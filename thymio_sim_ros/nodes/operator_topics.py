@@ -10,9 +10,9 @@ from typing import Any, TypeVar
 
 from std_msgs.msg import Bool, Empty, Float32, Float32MultiArray, Int8, Int16MultiArray
 
-from thymio_sim_ros.nodes import convert, limits, qos
+from thymio_sim_ros.nodes import command_values, limits, qos
 from thymio_sim_ros.nodes.command_topics import CommandRow
-from thymio_sim_ros.nodes.convert import CommandError
+from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.sound import FULL_LEVEL
@@ -32,7 +32,7 @@ def _checked(make: Callable[..., C], *values: Any) -> C:
 
 
 def _level(message: Float32) -> int:
-    convert.finite(message.data, "loudness")
+    command_values.finite(message.data, "loudness")
     return round(min(max(float(message.data), 0.0), 1.0) * FULL_LEVEL)
 
 
@@ -45,17 +45,17 @@ def _remote(message: Int8) -> Command:
 
 
 def _rc5(message: Int16MultiArray) -> Command:
-    address, command = convert.sized(message.data, 2, "[address 0…31, command 0…127]")
+    address, command = command_values.sized(message.data, 2, "[address 0…31, command 0…127]")
     return _checked(commands.RemoteKey, int(address), int(command))
 
 
 def _tilt(message: Float32MultiArray) -> Command:
-    roll, pitch = convert.sized(message.data, 2, "[roll, pitch] in rad")
+    roll, pitch = command_values.sized(message.data, 2, "[roll, pitch] in rad")
     return _checked(commands.Tilt, float(roll), float(pitch))
 
 
 def _light(message: Float32) -> Command:
-    convert.finite(message.data, "light")
+    command_values.finite(message.data, "light")
     return commands.SetAmbientLight(round(min(max(float(message.data), 0.0), 1.0) * GROUND_FULL))
 
 

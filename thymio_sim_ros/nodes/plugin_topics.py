@@ -14,9 +14,9 @@ from typing import Any
 
 from std_msgs.msg import Float64MultiArray
 
-from thymio_sim_ros.nodes import convert
+from thymio_sim_ros.nodes import command_values, convert
 from thymio_sim_ros.nodes.command_topics import CommandRow
-from thymio_sim_ros.nodes.convert import CommandError
+from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.actuators import Actuator, all_actuators
 
@@ -78,9 +78,9 @@ def _decoder(kind: type[Any]) -> Callable[[Float64MultiArray], Any]:
     names = [field.name for field in dataclasses.fields(kind)]
 
     def decode(message: Float64MultiArray) -> Any:
-        values = convert.sized(message.data, len(names), f"[{', '.join(names)}]")
+        values = command_values.sized(message.data, len(names), f"[{', '.join(names)}]")
         for name, value in zip(names, values, strict=True):
-            convert.finite(value, name)
+            command_values.finite(value, name)
         try:
             return kind(*(_NUMBERS[hints[name]](value) for name, value in zip(names, values, strict=True)))
         except ValueError as error:

@@ -14,11 +14,11 @@ from typing import Any, TypeVar
 
 from thymio_sim_ros import registry
 from thymio_sim_ros.nodes import (
-    convert,
     driver_topics,
     params,
     qos,
     robot_ports,
+    sensor_topics,
     tf_messages,
     world_ports,
     world_services,
@@ -115,8 +115,8 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def _published() -> Iterator[_Line]:
     for sensor in own_sensors():
-        for row in convert.rows_of(sensor):
-            often = convert.often(sensor, row)
+        for row in sensor_topics.rows_of(sensor):
+            often = sensor_topics.often(sensor, row)
             profile = qos.kind_of(row.profile)
             yield _Line(row.topic, type_name(row.type), often, row.frame, profile, row.about)
     kind, about = robot_ports.DESCRIBED

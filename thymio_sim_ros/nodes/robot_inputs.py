@@ -17,9 +17,9 @@ from geometry_msgs.msg import Twist as TwistMsg
 from rclpy.qos import QoSProfile
 from std_msgs.msg import Bool, Empty, Float64MultiArray
 
-from thymio_sim_ros.nodes import command_topics, convert, limits, operator_topics, plugin_topics, qos
+from thymio_sim_ros.nodes import command_topics, command_values, convert, limits, operator_topics, plugin_topics, qos
 from thymio_sim_ros.nodes.command_topics import CommandRow
-from thymio_sim_ros.nodes.convert import CommandError
+from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.limits import Beyond
 from thymio_sim_ros.sim import commands
@@ -99,7 +99,7 @@ def _of_row(row: CommandRow) -> RobotInput:
 
 
 def _twist(message: TwistMsg, moment: Moment) -> Sequence[Command]:
-    return (convert.body_twist(message, moment.timeout_ns),)
+    return (command_values.body_twist(message, moment.timeout_ns),)
 
 
 def _stamped_twist(message: TwistStamped, moment: Moment) -> Sequence[Command]:
@@ -107,11 +107,11 @@ def _stamped_twist(message: TwistStamped, moment: Moment) -> Sequence[Command]:
     age_ns = moment.now_ns - sent_ns
     if moment.timeout_ns and sent_ns and age_ns > moment.timeout_ns:
         raise CommandError(f"stamp is {age_ns / 1e9:.3f} s old, expected at most {moment.timeout_ns / 1e9:.3f} s")
-    return (convert.body_twist(message.twist, moment.timeout_ns),)
+    return (command_values.body_twist(message.twist, moment.timeout_ns),)
 
 
 def _wheels(message: Float64MultiArray, moment: Moment) -> Sequence[Command]:
-    return (convert.wheel_velocities(message.data, moment.timeout_ns),)
+    return (command_values.wheel_velocities(message.data, moment.timeout_ns),)
 
 
 def _leds_off(_message: Empty, _moment: Moment) -> Sequence[Command]:

@@ -1,7 +1,7 @@
 """The topics and services of one robot: made with it, destroyed with it.
 
-Publishing turns readings into messages by the rows of `convert`; subscribing turns messages into commands and posts
-them. Topics that nobody hears cost nothing but a look now and then.
+Publishing turns readings into messages by the rows of `sensor_topics`; subscribing turns messages into commands and
+posts them. Topics that nobody hears cost nothing but a look now and then.
 """
 
 from __future__ import annotations
@@ -15,13 +15,15 @@ from std_msgs.msg import String
 from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import Trigger
 
-from thymio_sim_ros.nodes import convert, qos
+from thymio_sim_ros.nodes import qos, sensor_topics
 from thymio_sim_ros.nodes.audience import Audience, Heard
-from thymio_sim_ros.nodes.convert import CommandError, ConvertOptions, Row
+from thymio_sim_ros.nodes.command_values import CommandError
+from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.description import urdf
 from thymio_sim_ros.nodes.driver_topics import DriverTopics
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.robot_inputs import Moment, RobotInput, robot_inputs
+from thymio_sim_ros.nodes.sensor_topics import Row
 from thymio_sim_ros.nodes.templates import Template
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
@@ -105,10 +107,10 @@ class RobotPorts:
         self._sent: dict[str, tuple[_Outlet, ...]] = {}
         """By sensor, what somebody hears or what is always sent."""
         for sensor in all_sensors():
-            for row in (*convert.rows_of(sensor), *options.extra.rows.get(sensor.name, ())):
+            for row in (*sensor_topics.rows_of(sensor), *options.extra.rows.get(sensor.name, ())):
                 if row.topic not in options.left_out:
                     every_ns = options.every_ns.get(row.topic, row.every_ns)
-                    self._open(row, Heard(sensor.name, every_ns, convert.is_regular(sensor, row)))
+                    self._open(row, Heard(sensor.name, every_ns, sensor_topics.is_regular(sensor, row)))
         self._description: Any = None
         if DESCRIPTION not in options.left_out:
             self._description = node.create_publisher(DESCRIBED[0], names.topic(DESCRIPTION), qos.LATCHED)
@@ -168,7 +170,7 @@ class RobotPorts:
         still = Twist(0.0, 0.0)
         reading = PoseReading(now_ns, (), pose, still, pose, still, tilt)
         for outlet in self._outlets["pose"]:
-            if outlet.row.topic == convert.TRUTH:
+            if outlet.row.topic == sensor_topics.TRUTH:
                 outlet.publisher.publish(outlet.row.encode(reading, self.names, self._content()))
 
     def forget(self) -> None:

@@ -1,4 +1,4 @@
-"""Messages of the senses besides proximity and ground (ros-interface.md sections 3 and 4.1), for rows of `convert`."""
+"""Messages of the senses besides proximity and ground (ros-interface.md sections 3 and 4.1)."""
 
 from __future__ import annotations
 

@@ -5,20 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from thymio_sim_ros.nodes.convert import (
-    JOINTS,
-    PROXIMITY_FOV_RAD,
-    PROXIMITY_MAX_M,
-    TRUTH,
-    ConvertOptions,
-    RangeFields,
-)
+from thymio_sim_ros.nodes.convert import PROXIMITY_FOV_RAD, PROXIMITY_MAX_M, ConvertOptions, RangeFields
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import StartError
 from thymio_sim_ros.nodes.names import FrameNames, Naming
 from thymio_sim_ros.nodes.params import group, param
 from thymio_sim_ros.nodes.patches import PROXIMITY_MIN_M
 from thymio_sim_ros.nodes.robot_ports import DESCRIPTION, PortOptions
+from thymio_sim_ros.nodes.sensor_topics import JOINTS, TRUTH
 from thymio_sim_ros.nodes.transforms import TransformOptions
 from thymio_sim_ros.sim import fields
 from thymio_sim_ros.sim.clock import TICK_NS

@@ -1,0 +1,58 @@
+"""Messages → commands, with the checks that topics share."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from geometry_msgs.msg import Twist as TwistMsg
+
+from thymio_sim_ros.sim import commands
+
+
+class CommandError(ValueError):
+    """A message that is refused; the text says what was found and what was expected."""
+
+
+def body_twist(message: TwistMsg, timeout_ns: int) -> commands.BodyTwist:
+    """geometry_msgs/Twist → command; linear.x and angular.z count. NaN and inf are refused."""
+    finite(message.linear.x, "linear.x")
+    finite(message.angular.z, "angular.z")
+    return commands.BodyTwist(message.linear.x, message.angular.z, timeout_ns)
+
+
+def wheel_velocities(data: Any, timeout_ns: int) -> commands.WheelVelocities:
+    """[left, right] in rad/s → command."""
+    values = sized(data, 2, "[left, right] in rad/s")
+    for value in values:
+        finite(value, "wheel speed")
+    return commands.WheelVelocities(float(values[0]), float(values[1]), timeout_ns)
+
+
+def motor_targets(data: Any) -> commands.MotorTargets:
+    """[left, right] in Thymio units → command."""
+    left, right = sized(data, 2, "[left, right] in Thymio units")
+    return commands.MotorTargets(int(left), int(right))
+
+
+def led_levels(group: str, intensities: Any) -> commands.SetLeds:
+    """Intensities 0…1 → command with levels 0…32; clamped; fewer than the group has are refused."""
+    size = commands.LED_GROUPS[group]
+    values = sized(intensities, size, f"{size} intensities 0…1")
+    for value in values:
+        finite(value, "intensity")
+    return commands.SetLeds(group, tuple(round(min(max(v, 0.0), 1.0) * commands.LED_FULL) for v in values))
+
+
+def sized(data: Any, size: int, what: str) -> list[Any]:
+    """The values of an array of this size; CommandError for another."""
+    values = list(data)
+    if len(values) != size:
+        raise CommandError(f"{len(values)} values found, expected {what}")
+    return values
+
+
+def finite(value: float, what: str) -> None:
+    """CommandError for NaN and infinities."""
+    if not math.isfinite(value):
+        raise CommandError(f"{what} is {value}, expected a finite number")
