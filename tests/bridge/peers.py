@@ -6,9 +6,10 @@ import asyncio
 import base64
 import os
 import socket
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Coroutine
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from websockets.asyncio.client import ClientConnection, connect
 
@@ -24,6 +25,12 @@ DEADLINE_S = 20.0
 T = TypeVar("T")
 
 CHANNEL = ms.Channel(10, "/t", "cdr", "std_msgs/msg/String", "string data", "ros2msg")
+
+
+def run(scenario: Coroutine[Any, Any, T]) -> T:
+    """What a scenario gives. It has a thread of its own: tests in a browser leave a running loop in this one."""
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(asyncio.run, scenario).result()
 
 
 class Sink:

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.bridge.peers import CHANNEL, DEADLINE_S, Bridge, Client, StalledClient, bridge
+from tests.bridge.peers import CHANNEL, DEADLINE_S, Bridge, Client, StalledClient, bridge, run
 from thymio_sim_ros.bridge import ServerSettings, wire
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
@@ -64,7 +64,7 @@ def test_mutated_frames_leave_the_server_standing_and_others_served(seed: int) -
             await fuzzer.connection.send("the end")
             assert await answers > FRAMES // 10
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 async def count_until(client: Client, text: str) -> int:
@@ -90,7 +90,7 @@ def test_clients_that_come_and_go_leave_nothing_behind() -> None:
             server.sink.events.clear()
             assert len(gc.get_objects()) < things + VISITS
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 async def visit(server: Bridge, number: int) -> None:
@@ -135,7 +135,7 @@ def test_a_stalled_client_costs_its_limit_and_one_message() -> None:
                 assert connection.transport.get_write_buffer_size() <= limit + 2 * len(message)
             stalled.abort()
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_a_flood_of_control_answers_to_a_stalled_client_is_bounded() -> None:
@@ -157,4 +157,4 @@ def test_a_flood_of_control_answers_to_a_stalled_client_is_bounded() -> None:
             assert (await other.next(ms.MessageData)).payload == b"still here"
             stalled.abort()
 
-    asyncio.run(scenario())
+    run(scenario())

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import asyncio
+import ssl
+from pathlib import Path
 
 import pytest
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from tests.bridge.peers import CHANNEL, DEADLINE_S, StalledClient, bridge
-from thymio_sim_ros.bridge import ServerSettings
+from tests.bridge.certificates import make_certificate
+from tests.bridge.peers import CHANNEL, DEADLINE_S, Client, StalledClient, bridge, run
+from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerSettings
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.bridge.vocabulary import StatusLevel
@@ -31,7 +34,24 @@ def test_both_names_of_the_protocol_are_spoken(offered: tuple[str, ...], accepte
         async with bridge() as server, server.client(subprotocols=offered) as client:
             return client.connection.subprotocol
 
-    assert asyncio.run(scenario()) == accepted
+    assert run(scenario()) == accepted
+
+
+@pytest.mark.parametrize("version", [ssl.TLSVersion.TLSv1_2, ssl.TLSVersion.TLSv1_3])
+def test_a_client_comes_by_either_version_of_tls(tmp_path: Path, version: ssl.TLSVersion) -> None:
+    cert, key = make_certificate(tmp_path)
+    tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    tls.load_cert_chain(cert, key)
+    trust = ssl.create_default_context(cafile=cert)
+    trust.minimum_version = trust.maximum_version = version
+
+    async def scenario() -> ms.ServerInfo:
+        async with bridge(ServerSettings(tls=tls)) as server:
+            address = f"wss://localhost:{server.port}"
+            async with connect(address, subprotocols=SUBPROTOCOLS, ssl=trust) as connection:  # type: ignore[arg-type]  # plain strings
+                return await Client(connection).next(ms.ServerInfo)
+
+    assert run(scenario()).name == "test"
 
 
 def test_a_client_of_another_protocol_is_refused() -> None:
@@ -40,7 +60,7 @@ def test_a_client_of_another_protocol_is_refused() -> None:
             pass
 
     with pytest.raises(InvalidStatus, match="400"):
-        asyncio.run(scenario())
+        run(scenario())
 
 
 def test_a_page_from_elsewhere_is_refused_and_told_why() -> None:
@@ -49,7 +69,7 @@ def test_a_page_from_elsewhere_is_refused_and_told_why() -> None:
             pass
 
     with pytest.raises(InvalidStatus) as caught:
-        asyncio.run(scenario())
+        run(scenario())
     assert caught.value.response.status_code == 403
     assert b"allowed_origins" in caught.value.response.body
 
@@ -59,7 +79,7 @@ def test_a_page_of_this_machine_is_welcome() -> None:
         async with bridge() as server, server.client(origin="http://localhost:8080") as client:
             return await client.next(ms.ServerInfo)
 
-    assert asyncio.run(scenario()).name == "test"
+    assert run(scenario()).name == "test"
 
 
 def test_messages_reach_every_subscriber_under_its_own_id() -> None:
@@ -72,7 +92,7 @@ def test_messages_reach_every_subscriber_under_its_own_id() -> None:
                 assert await client.next(ms.MessageData) == ms.MessageData(subscription, 0, b"a")
                 assert await client.next(ms.MessageData) == ms.MessageData(subscription, 1, b"b")
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_new_and_vanished_channels_are_told_to_all() -> None:
@@ -86,7 +106,7 @@ def test_new_and_vanished_channels_are_told_to_all() -> None:
                 assert await client.next(ms.Advertise) == ms.Advertise((added,))
                 assert await client.next(ms.Unadvertise) == ms.Unadvertise((11,))
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_equal_client_channel_ids_of_two_clients_are_not_confused() -> None:
@@ -101,7 +121,7 @@ def test_equal_client_channel_ids_of_two_clients_are_not_confused() -> None:
             await one.settle()
             return server.sink.events[:4]
 
-    opened_a, opened_b, *sent = asyncio.run(scenario())
+    opened_a, opened_b, *sent = run(scenario())
     assert isinstance(opened_a, ev.ClientChannelOpened)
     assert isinstance(opened_b, ev.ClientChannelOpened)
     assert (opened_a.channel.topic, opened_b.channel.topic) == ("/a", "/b")
@@ -120,7 +140,7 @@ def test_a_bad_frame_is_answered_and_the_connection_kept() -> None:
             for peer in (client, other):
                 assert (await peer.next(ms.MessageData)).payload == b"still here"
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_a_too_long_frame_ends_that_connection_only() -> None:
@@ -134,7 +154,7 @@ def test_a_too_long_frame_ends_that_connection_only() -> None:
             server.publish(b"still here")
             assert (await other.next(ms.MessageData)).payload == b"still here"
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_a_client_that_vanishes_is_forgotten() -> None:
@@ -150,7 +170,7 @@ def test_a_client_that_vanishes_is_forgotten() -> None:
             assert [type(event) for event in server.sink.events[2:]] == [ev.ChannelUnwanted, ev.ClientChannelClosed]
             assert server.server.client_count == 0
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_messages_for_a_client_that_has_just_vanished_are_dropped_without_a_word(
@@ -166,7 +186,7 @@ def test_messages_for_a_client_that_has_just_vanished_are_dropped_without_a_word
             server.publish(*[KILOBYTE] * 100)
             await server.until(lambda: server.server.client_count == 0)
 
-    asyncio.run(scenario())
+    run(scenario())
     assert caplog.messages == []
 
 
@@ -185,7 +205,7 @@ def test_a_healthy_client_beside_a_stalled_one_loses_nothing() -> None:
                 assert int.from_bytes(data.payload[:4], "little") == number
             stalled.abort()
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_a_stalled_client_keeps_its_control_messages_and_gets_the_newest_data() -> None:
@@ -209,7 +229,7 @@ def test_a_stalled_client_keeps_its_control_messages_and_gets_the_newest_data() 
             assert (await stalled.next(ms.ParameterValues)).id in ("still answered", "answered")
             stalled.abort()
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_a_slow_connection_is_told_so_once() -> None:
@@ -230,7 +250,7 @@ def test_a_slow_connection_is_told_so_once() -> None:
             stalled.abort()
             return texts
 
-    slow, end = asyncio.run(scenario())
+    slow, end = run(scenario())
     assert slow.startswith("Send buffer limit reached")
     assert end == "end"
 
@@ -247,7 +267,7 @@ def test_a_client_that_lets_even_control_messages_pile_up_is_cut_off() -> None:
             await server.until(lambda: server.server.client_count == 0)
             stalled.abort()
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_while_the_owner_is_behind_a_busy_client_waits_and_others_are_served() -> None:
@@ -267,7 +287,7 @@ def test_while_the_owner_is_behind_a_busy_client_waits_and_others_are_served() -
                 b"second",
             ]
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_a_stalled_client_does_not_hold_up_the_end() -> None:
@@ -284,4 +304,4 @@ def test_a_stalled_client_does_not_hold_up_the_end() -> None:
             assert server.server.client_count == 0
             stalled.abort()
 
-    asyncio.run(scenario())
+    run(scenario())

@@ -14,7 +14,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from tests.bridge.certificates import make_certificate
+from tests.bridge.certificates import make_certificate, trusting
 from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerInfo, ServerSettings, ServerThread, wire
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
@@ -178,8 +178,7 @@ def test_data_of_another_thread_arrives_by_tls_too(tmp_path: Path) -> None:
     sink = Sink()
     server = ServerThread(ServerInfo("test", ()), sink, port=0, settings=ServerSettings(tls=tls))
     server.post(ev.AddChannels((CHANNEL,)))
-    trust = ssl.create_default_context(cafile=cert)
-    with connect(f"wss://localhost:{server.port}", subprotocols=SUBPROTOCOLS, ssl=trust) as client:  # type: ignore[arg-type]  # plain strings
+    with connect(f"wss://localhost:{server.port}", subprotocols=SUBPROTOCOLS, ssl=trusting(cert)) as client:  # type: ignore[arg-type]  # plain strings
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         for number in range(100):

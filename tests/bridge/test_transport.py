@@ -11,7 +11,7 @@ from contextlib import asynccontextmanager
 
 import pytest
 
-from tests.bridge.peers import DEADLINE_S
+from tests.bridge.peers import DEADLINE_S, run
 from thymio_sim_ros.bridge.transport import SharedTransport
 
 CHUNK = struct.Struct("<II992x")
@@ -99,7 +99,7 @@ def test_messages_of_two_threads_arrive_whole_and_in_order() -> None:
             for writer in (0, 1):
                 assert [number for who, number in chunks if who == writer] == list(range(count))
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_what_the_kernel_does_not_take_waits_and_counts() -> None:
@@ -113,7 +113,7 @@ def test_what_the_kernel_does_not_take_waits_and_counts() -> None:
             assert len(await pair.read(written + 5000)) == written + 5000
             assert pair.transport.get_write_buffer_size() == 0
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_an_offer_is_refused_while_more_than_its_limit_waits() -> None:
@@ -125,7 +125,7 @@ def test_an_offer_is_refused_while_more_than_its_limit_waits() -> None:
             assert pair.transport.offer(b"in time", waiting)
             assert (await pair.read(written + 7)).endswith(b"in time")
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 @pytest.mark.parametrize("end", [SharedTransport.close, SharedTransport.write_eof])
@@ -140,7 +140,7 @@ def test_all_that_was_written_arrives_before_the_end(end: Callable[[SharedTransp
             assert len(data) == written + 8
             assert data.endswith(b"the last")
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_another_thread_may_cut_a_connection_off() -> None:
@@ -150,7 +150,7 @@ def test_another_thread_may_cut_a_connection_off() -> None:
             await asyncio.to_thread(pair.transport.abort)
             assert len(await pair.read(written)) < written
 
-    asyncio.run(scenario())
+    run(scenario())
 
 
 def test_writing_to_somebody_who_has_left_does_nothing() -> None:
@@ -164,4 +164,4 @@ def test_writing_to_somebody_who_has_left_does_nothing() -> None:
             pair.transport.write(b"lost")
             assert pair.transport.get_write_buffer_size() == 0
 
-    asyncio.run(scenario())
+    run(scenario())

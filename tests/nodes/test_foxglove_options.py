@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ssl
-
 import pytest
 from rclpy.context import Context
 from rclpy.impl.rcutils_logger import RcutilsLogger
@@ -11,7 +9,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool, UInt32
 from websockets.exceptions import ConnectionClosed
 
-from tests.bridge.certificates import make_certificate
+from tests.bridge.certificates import make_certificate, trusting
 from tests.bridge.studio import Studio
 from thymio_sim_ros.bridge import Capability
 from thymio_sim_ros.bridge import messages as ms
@@ -32,7 +30,7 @@ def test_a_client_comes_by_tls(ros, bridge, certificate):
     life = bridge(tls=True, certfile=cert, keyfile=key)
     assert f"wss://localhost:{life.port}" in life.greeting
     ros.node.create_publisher(Bool, "/flag", 1)
-    with Studio(life.port, ros.until, tls=ssl.create_default_context(cafile=cert)) as studio:
+    with Studio(life.port, ros.until, tls=trusting(cert)) as studio:
         assert studio.channel("/flag").schema_name == "std_msgs/msg/Bool"
 
 
