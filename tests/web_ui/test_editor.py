@@ -94,6 +94,13 @@ def test_a_variable_is_edited_within_its_range(editor):
     playwright.expect(value).to_have_text("120")
 
 
+def test_a_long_array_takes_three_lines_and_no_more(editor):
+    value = editor.locator("[data-variable='event.args']")
+    playwright.expect(value).to_contain_text("0 0 0 0")
+    height, line = value.evaluate("(cell) => [cell.clientHeight, parseFloat(getComputedStyle(cell).lineHeight)]")
+    assert 2 < height / line < 4
+
+
 def test_an_event_is_defined_sent_and_logged(editor):
     editor.click("#tool-tab-events")
     for name, size in (("ping", "1"), ("pong", "1")):
