@@ -312,7 +312,8 @@ export class SceneView {
       moving = entry.model.update(robot, nowMs) || moving;
       const title = `${robot.sound[0] > 0 || robot.sound[1] > 0 ? "♪ " : ""}${this.robotTitle(name)}`;
       if (entry.label.textContent !== title) entry.label.textContent = title;
-      if (names.length > 1) entry.label.style.setProperty("--colour", robotColour(names, name));
+      entry.label.toggleAttribute("data-coloured", names.length > 1);
+      entry.label.style.setProperty("--colour", robotColour(names, name));
     }
     const standing = this.#standing(state, names);
     this.near.update(standing.filter(({ frame }) => !this.#isSmall(frame)));
