@@ -71,12 +71,13 @@ def test_two_robots_have_colours_and_numbers_are_at_the_beams_of_the_selected_on
     open_page(page, suite("--playground", "two_robots", "--program", "none"))
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
     page.wait_for_function("() => document.querySelectorAll('.robot-label').length === 2")
-    colours = page.evaluate(
-        "() => [...document.querySelectorAll('.robot-label, .robots button')]"
-        ".map((one) => getComputedStyle(one).borderInlineStartColor)"
+    names, tabs = page.evaluate(
+        "() => [[...document.querySelectorAll('.robot-label')]"
+        ".map((one) => getComputedStyle(one, '::before').backgroundColor),"
+        " [...document.querySelectorAll('.robots button')].map((one) => getComputedStyle(one).borderInlineStartColor)]"
     )
-    assert len(set(colours[:2])) == 2
-    assert set(colours[:2]) == set(colours[2:])
+    assert len(set(names)) == 2
+    assert set(names) == set(tabs)
     page.locator("#numbers").check()
     page.wait_for_function("() => document.querySelectorAll('.ray-number:not([hidden])').length === 9")
     page.locator("[data-robot=red]").click()
