@@ -94,3 +94,15 @@ def test_a_finger_carries_the_robot(suite, tablet):
         " return Math.hypot(x - before.x, y - before.y) > 0.05; }",
         arg=before,
     )
+
+
+def test_on_a_phone_nothing_lies_beyond_the_edge_and_stop_is_in_sight(suite, tablet):
+    tablet.set_viewport_size({"width": 412, "height": 860})
+    open_page(tablet, suite(*RESTING))
+    for switch in ("", "#editor-switch", "#creator-switch"):
+        if switch:
+            tablet.locator(switch).tap()
+            tablet.locator({"#editor-switch": ".cm-content", "#creator-switch": ".palette"}[switch]).wait_for()
+        tablet.wait_for_function("() => document.documentElement.scrollWidth <= innerWidth")
+        x, y = middle_of(tablet, "button.stop")
+        assert tablet.evaluate("([x, y]) => document.elementFromPoint(x, y)?.closest('button.stop') !== null", [x, y])
