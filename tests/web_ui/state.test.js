@@ -302,6 +302,20 @@ test("of a crowd, beams and values are asked of the selected robot only", () => 
   assert.equal(isWatched(state(20), "/r1/no/such"), false);
 });
 
+test("of a crowd, what a robot measured is forgotten when another is selected", () => {
+  const names = ["a", "b", "c", "d", "e"];
+  const topics = (/** @type {number} */ count) => names.slice(0, count).map((name) => `/${name}/ground_truth/odom`);
+  const story = (/** @type {number} */ count) =>
+    after([
+      { type: "channels", topics: topics(count) },
+      message("/a/raw/ground", { data: [1, 2] }),
+      { type: "select", robot: "b" },
+      { type: "select", robot: "a" },
+    ]).robots.a.raw;
+  assert.deepEqual(story(2), { ground: [1, 2] });
+  assert.deepEqual(story(5), {});
+});
+
 test("robots stand in the order of their numbers", () => {
   const topics = ["/thymio_10/ground_truth/odom", "/thymio_2/ground_truth/odom", "/anna/ground_truth/odom"];
   assert.deepEqual(Object.keys(after([{ type: "channels", topics }]).robots), ["anna", "thymio_2", "thymio_10"]);

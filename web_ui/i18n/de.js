@@ -169,6 +169,7 @@ export const de = {
   "sensors.copy": "Kopieren",
   "sensors.copied": "Kopiert",
   "sensors.notCopied": "Nicht kopiert",
+  "sensors.waiting": "Die Zeit steht still: Werte kommen, sobald sie weitergeht.",
   "sensors.nothing": "nichts",
   "sensors.bright": "hell",
   "sensors.dark": "dunkel",

@@ -171,6 +171,7 @@ export const en = {
   "sensors.copy": "Copy",
   "sensors.copied": "Copied",
   "sensors.notCopied": "Not copied",
+  "sensors.waiting": "Time stands still: values come when it goes on.",
   "sensors.nothing": "nothing",
   "sensors.bright": "bright",
   "sensors.dark": "dark",

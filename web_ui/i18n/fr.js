@@ -168,6 +168,7 @@ export const fr = {
   "sensors.copy": "Copier",
   "sensors.copied": "Copié",
   "sensors.notCopied": "Non copié",
+  "sensors.waiting": "Le temps est arrêté : les valeurs viennent quand il reprend.",
   "sensors.nothing": "rien",
   "sensors.bright": "clair",
   "sensors.dark": "sombre",

@@ -169,6 +169,7 @@ export const it = {
   "sensors.copy": "Copia",
   "sensors.copied": "Copiato",
   "sensors.notCopied": "Non copiato",
+  "sensors.waiting": "Il tempo è fermo: i valori arrivano quando riprende.",
   "sensors.nothing": "nulla",
   "sensors.bright": "chiaro",
   "sensors.dark": "scuro",

@@ -54,7 +54,8 @@ export function sensorsPanel({ t, store, announce }) {
     setText(copy, t(done ? "sensors.copied" : "sensors.notCopied"));
     setTimeout(() => setText(copy, t("sensors.copy")), COPIED_MS);
   });
-  const element = card("sensors", t("sensors"), h("div", { class: "row verbs" }, freeze, copy), table);
+  const waiting = h("small", { class: "waiting", hidden: true }, t("sensors.waiting"));
+  const element = card("sensors", t("sensors"), h("div", { class: "row verbs" }, freeze, copy), waiting, table);
   /** @type {Robot | undefined} */ let shown;
   /** @param {Robot | undefined} robot */
   const show = (robot) => {
@@ -73,8 +74,9 @@ export function sensorsPanel({ t, store, announce }) {
   return {
     slot: "side",
     element,
-    render({ robots, selected }) {
+    render({ robots, selected, simulator }) {
       const robot = robots[selected];
+      waiting.hidden = !simulator?.paused || robot === undefined || Object.keys(robot.raw).length > 0;
       if (frozen || robot === shown || !element.open) return;
       show(robot);
     },

@@ -2,7 +2,7 @@
 // Pure: no clock, no socket, no document; a message carries what it needs.
 
 import { applyMarkers } from "./markers.js";
-import { PARAMETERS, splitTopic } from "./names.js";
+import { PARAMETERS, isSensed, splitTopic } from "./names.js";
 import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
 
 /** @typedef {import("./robot.js").Robot} Robot */
@@ -142,7 +142,7 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
     );
   },
   fault: (state, { what }) => withNotice(state, "error", what),
-  select: (state, { robot }) => ({ ...state, selected: robot }),
+  select: (state, { robot }) => withoutUnheard({ ...state, selected: robot }, state.selected),
   upload: (state, { what, name, text }) => withUpload(state, what, { name, text, phase: "sending", fault: null }),
   uploaded(state, { what, message, fault: told = null }) {
     const upload = state.uploads[/** @type {What} */ (what)];
@@ -154,6 +154,19 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   notice: (state, { level, text }) => withNotice(state, level, text),
   dismiss: (state, { id }) => ({ ...state, notices: state.notices.filter((notice) => notice.id !== id) }),
 });
+
+/**
+ * What a robot measured is forgotten when it is not followed any more: it would look like what it measures now.
+ *
+ * @param {State} state
+ * @param {string} robot
+ * @returns {State}
+ */
+function withoutUnheard(state, robot) {
+  const known = state.robots[robot];
+  if (known === undefined || isSensed(state, robot)) return state;
+  return { ...state, robots: { ...state.robots, [robot]: { ...known, proximity: {}, ground: {}, raw: {} } } };
+}
 
 /** @param {State} state @param {{ topics: string[] }} message @returns {State} */
 function withChannels(state, { topics }) {
