@@ -29,6 +29,8 @@ if button.center == 1 then
 end
 """
 
+POSE = "window.thymio.state().robot.latest.pose"
+
 
 def robot(page):
     return page.evaluate("window.thymio.partPosition('robot')")
@@ -83,6 +85,25 @@ def test_a_click_on_the_centre_button_reaches_the_program(suite, page, tmp_path)
         " return Math.hypot(now.x - begin.x, now.y - begin.y) > 5; }",
         arg=begin,
     )
+
+
+def test_with_shift_a_mouse_holds_several_buttons(suite, page):
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.locator("#view").focus()
+    page.keyboard.press("f")
+    place = wait_until_settled(page, "button.forward")
+    start = page.evaluate(POSE)
+    pressed = "() => Object.entries(window.thymio.state().robot.buttons).filter(([, is]) => is).map(([name]) => name)"
+    page.keyboard.down("Shift")
+    page.mouse.click(place["x"], place["y"])
+    page.click("[data-button=left]")
+    page.click("[data-button=center]")
+    page.wait_for_function(f"() => ({pressed})().sort().join() === 'center,forward,left'")
+    page.keyboard.up("Shift")
+    page.wait_for_function(f"() => ({pressed})().length === 0")
+    page.mouse.click(place["x"], place["y"], delay=50)
+    page.wait_for_function(f"() => ({pressed})().length === 0")
+    assert page.evaluate(POSE) == start, "a button that is held is not carried"
 
 
 SENSES = """\

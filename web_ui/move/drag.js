@@ -1,4 +1,5 @@
-// Pointers that carry things: in move mode, or with Shift. They come before the buttons and the camera.
+// Pointers that carry things: in move mode, or with Shift, which holds the robots' buttons. They come before the buttons
+// and the camera.
 
 /** @typedef {import("./mover.js").Mover} Mover */
 
@@ -7,8 +8,9 @@
  * @param {HTMLElement} options.element
  * @param {(event: PointerEvent) => import("./mover.js").Ray | null} options.rayOf
  * @param {Mover} options.mover
+ * @param {(event: PointerEvent) => boolean} options.isButton
  */
-export function watchDrags({ element, rayOf, mover }) {
+export function watchDrags({ element, rayOf, mover, isButton }) {
   /** @type {number | null} */ let pointer = null;
   /** @param {PointerEvent} event */
   const isOurs = (event) => {
@@ -20,7 +22,7 @@ export function watchDrags({ element, rayOf, mover }) {
     "pointerdown",
     (event) => {
       const ray = pointer === null && event.button === 0 ? rayOf(event) : null;
-      if (ray === null || !mover.grab(ray, mover.mode || event.shiftKey)) return;
+      if (ray === null || !mover.grab(ray, mover.mode || (event.shiftKey && !isButton(event)))) return;
       pointer = event.pointerId;
       element.setPointerCapture(pointer);
       event.stopImmediatePropagation();

@@ -1,5 +1,7 @@
 // Small tools to build and change elements; a panel writes the document only where a value changed.
 
+import { whenShiftGoes } from "../shift.js";
+
 /**
  * @template {keyof HTMLElementTagNameMap} Tag
  * @param {Tag} tag
@@ -64,7 +66,8 @@ export function setAttribute(element, name, value) {
 }
 
 /**
- * A control that is held: down by pointer, Enter or Space, up again when let go or left.
+ * A control that is held: down by pointer, Enter or Space, up again when let go or left. Clicked with Shift it stays down
+ * as long as that.
  *
  * @param {HTMLElement} element
  * @param {(pressed: boolean) => void} hold
@@ -84,6 +87,11 @@ export function holdable(element, hold) {
     if (event.button !== 0) return;
     element.setPointerCapture(event.pointerId);
     down(event.pointerId);
+  });
+  element.addEventListener("pointerup", ({ shiftKey }) => {
+    if (!shiftKey) return;
+    down("Shift");
+    whenShiftGoes(() => up("Shift"));
   });
   for (const name of /** @type {const} */ (["pointerup", "pointercancel", "lostpointercapture"])) {
     element.addEventListener(name, (event) => up(event.pointerId));

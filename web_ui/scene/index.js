@@ -94,8 +94,13 @@ export class SceneView {
       contextLost(null);
       this.invalidate();
     });
-    watchDrags({ element: canvas, rayOf: (event) => (this.sketch() === null ? this.rayOf(event) : null), mover });
-    watchPointer({
+    watchDrags({
+      element: canvas,
+      rayOf: (event) => (this.sketch() === null ? this.rayOf(event) : null),
+      mover,
+      isButton: (event) => buttons.isAt(event),
+    });
+    const buttons = watchPointer({
       element: canvas,
       camera: () => this.eye,
       targets: () =>

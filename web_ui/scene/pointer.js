@@ -3,6 +3,8 @@
 
 import * as THREE from "three";
 
+import { whenShiftGoes } from "../shift.js";
+
 /** @typedef {{ robot: string, button: string }} Target */
 
 /**
@@ -12,10 +14,12 @@ import * as THREE from "three";
  * @param {() => THREE.Object3D[]} options.targets
  * @param {(target: Target, pressed: boolean) => void} options.press
  * @param {(target: Target | null) => void} options.hover
+ * @returns {{ isAt: (event: PointerEvent) => boolean }}  whether a button is there
  */
 export function watchPointer({ element, camera, targets, press, hover }) {
   const caster = new THREE.Raycaster();
   /** @type {Map<number, Target>} */ const held = new Map();
+  /** @type {Target[]} held as long as Shift is */ let kept = [];
 
   /** @param {PointerEvent} event @returns {Target | null} */
   const targetAt = (event) => {
@@ -30,8 +34,14 @@ export function watchPointer({ element, camera, targets, press, hover }) {
     const target = held.get(event.pointerId);
     if (target === undefined) return;
     held.delete(event.pointerId);
-    press(target, false);
+    if (event.type === "pointerup" && event.shiftKey) keep(target);
+    else press(target, false);
     event.stopImmediatePropagation();
+  };
+  /** @param {Target} target */
+  const keep = (target) => {
+    if (kept.length === 0) whenShiftGoes(() => kept.splice(0).forEach((each) => press(each, false)));
+    kept.push(target);
   };
 
   // Captured, so that the camera's own handlers do not see a press on a button.
@@ -43,6 +53,7 @@ export function watchPointer({ element, camera, targets, press, hover }) {
       event.stopImmediatePropagation();
       element.setPointerCapture(event.pointerId);
       held.set(event.pointerId, target);
+      kept = kept.filter(({ robot, button }) => robot !== target.robot || button !== target.button);
       press(target, true);
     },
     { capture: true },
@@ -53,4 +64,5 @@ export function watchPointer({ element, camera, targets, press, hover }) {
     if (event.pointerType === "mouse" && event.buttons === 0) hover(targetAt(event));
   });
   element.addEventListener("pointerleave", () => hover(null));
+  return { isAt: (event) => targetAt(event) !== null };
 }
