@@ -8,6 +8,7 @@ import { robotColour } from "../state/colours.js";
 import { FlatView } from "./flat.js";
 import { Fleet } from "./fleet.js";
 import { Ghost } from "./ghost.js";
+import { createRenderer, isSoftware } from "./graphics.js";
 import { litScene } from "./lights.js";
 import { Numbers, numbersOf } from "./numbers.js";
 import { photograph } from "./photographer.js";
@@ -16,6 +17,7 @@ import { watchPointer } from "./pointer.js";
 import { Quality } from "./quality.js";
 import { RobotModel } from "./robot.js";
 import { SketchModel } from "./sketch.js";
+import { NameTags } from "./tags.js";
 import { isSensed } from "../state/names.js";
 
 /** @typedef {import("../state/index.js").State} State */
@@ -29,7 +31,6 @@ const FLAT_LABEL_PX = 24;
 /** A robot that is smaller than this, in pixels as they are drawn, is drawn coarsely. */
 const SMALL_PX = 40;
 const SIZE_M = 0.11;
-const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 
 export class SceneView {
   /**
@@ -47,7 +48,7 @@ export class SceneView {
    */
   constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, mover, robotTitle, sketch, contextLost }) {
     this.canvas = canvas;
-    this.labels = labels;
+    this.tags = new NameTags(labels);
     this.state = state;
     this.beforeDraw = beforeDraw;
     this.robotTitle = robotTitle;
@@ -67,7 +68,7 @@ export class SceneView {
     this.isLost = false;
     /** @type {Target | null} */ this.hovered = null;
     /** @type {{ world: State, settle: (picture: HTMLCanvasElement) => void }[]} */ this.sittings = [];
-    /** @type {Map<string, { model: RobotModel, trail: PlaygroundModel, label: HTMLElement, transform: string }>} */ this.robots = new Map();
+    /** @type {Map<string, { model: RobotModel, trail: PlaygroundModel }>} */ this.robots = new Map();
     this.scene = litScene();
     this.playground = new PlaygroundModel(() => this.invalidate());
     this.objects = new PlaygroundModel(() => this.invalidate());
@@ -77,8 +78,7 @@ export class SceneView {
     this.scene.add(this.near.group, this.far.group);
     this.camera = new Camera(canvas, () => this.invalidate());
     this.renderer = createRenderer(canvas);
-    const software = this.renderer !== null && SOFTWARE.test(graphicsName(this.renderer));
-    this.quality = new Quality(software ? 1 : 0);
+    this.quality = new Quality(isSoftware(this.renderer) ? 1 : 0);
     let patience = 0;
     canvas.addEventListener("webglcontextlost", () => {
       contextLost("lost");
@@ -293,12 +293,12 @@ export class SceneView {
 
   /** @param {State} state @param {number} nowMs */
   #updateRobots(state, nowMs) {
-    for (const [name, { model, trail, label }] of [...this.robots]) {
+    for (const [name, { model, trail }] of [...this.robots]) {
       if (name in state.robots) continue;
       this.scene.remove(model.group, trail.group);
       model.dispose();
       trail.dispose();
-      label.remove();
+      this.tags.remove(name);
       this.robots.delete(name);
     }
     let moving = false;
@@ -306,19 +306,15 @@ export class SceneView {
     for (const [name, robot] of Object.entries(state.robots)) {
       let entry = this.robots.get(name);
       if (entry === undefined) {
-        const label = document.createElement("span");
-        entry = { model: new RobotModel(name), trail: new PlaygroundModel(), label, transform: "" };
-        entry.label.className = "robot-label";
-        this.labels.append(entry.label);
+        entry = { model: new RobotModel(name), trail: new PlaygroundModel() };
         this.scene.add(entry.model.group, entry.trail.group);
         this.robots.set(name, entry);
       }
       entry.trail.update(robot.trail);
       moving = entry.model.update(robot, nowMs) || moving;
-      const title = `${robot.sound[0] > 0 || robot.sound[1] > 0 ? "♪ " : ""}${this.robotTitle(name)}`;
-      if (entry.label.textContent !== title) entry.label.textContent = title;
-      entry.label.toggleAttribute("data-coloured", names.length > 1);
-      entry.label.style.setProperty("--colour", robotColour(names, name));
+      const sounds = robot.sound[0] > 0 || robot.sound[1] > 0;
+      const colour = names.length > 1 ? robotColour(names, name) : "";
+      this.tags.show(name, (sounds ? "♪ " : "") + this.robotTitle(name), colour);
     }
     const standing = this.#standing(state, names);
     this.near.update(standing.filter(({ frame }) => !this.#isSmall(frame)));
@@ -351,14 +347,10 @@ export class SceneView {
   }
 
   #placeLabels() {
-    for (const entry of this.robots.values()) {
-      const { model, label } = entry;
-      const place = model.group.visible ? this.#project(model.group.position.clone().setZ(0.115)) : null;
-      if (label.hidden !== (place === null)) label.hidden = place === null;
-      if (place === null) continue;
-      const above = this.isFlat ? FLAT_LABEL_PX : 0;
-      const transform = `translate(${Math.round(place.x)}px, ${Math.round(place.y - above)}px) translate(-50%, -100%)`;
-      if (entry.transform !== transform) label.style.transform = entry.transform = transform;
+    const above = this.isFlat ? FLAT_LABEL_PX : 0;
+    for (const [name, { model }] of this.robots) {
+      const spot = model.group.visible ? this.#project(model.group.position.clone().setZ(0.115)) : null;
+      this.tags.place(name, spot && { x: spot.x, y: spot.y - above });
     }
     const { robots, selected } = this.state();
     const group = this.robots.get(selected)?.model.group;
@@ -400,34 +392,4 @@ export class SceneView {
     this.camera.resize(clientWidth, clientHeight);
     this.invalidate();
   }
-}
-
-/** Null where the browser has no WebGL: panels and d-pad still work. @param {HTMLCanvasElement} canvas */
-function createRenderer(canvas) {
-  try {
-    const renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftware(), powerPreference: "low-power" });
-    renderer.outputColorSpace = THREE.SRGBColorSpace;
-    return renderer;
-  } catch {
-    return null;
-  }
-}
-
-/** Software drawing pays for every sample: asked on a canvas of its own, before the real one is made. */
-function isSoftware() {
-  const probe = document.createElement("canvas").getContext("webgl2");
-  const name = probe === null ? "" : nameOf(probe);
-  probe?.getExtension("WEBGL_lose_context")?.loseContext();
-  return SOFTWARE.test(name);
-}
-
-/** @param {THREE.WebGLRenderer} renderer */
-function graphicsName(renderer) {
-  return nameOf(renderer.getContext());
-}
-
-/** @param {WebGLRenderingContext | WebGL2RenderingContext} gl */
-function nameOf(gl) {
-  const info = gl.getExtension("WEBGL_debug_renderer_info");
-  return info === null ? "" : String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
 }

@@ -1,0 +1,44 @@
+// The robots' names over them: elements of a layer over the canvas, written only where something changed.
+
+/** @typedef {{ x: number, y: number }} Spot  CSS pixels of the layer */
+
+export class NameTags {
+  /** @param {HTMLElement} layer */
+  constructor(layer) {
+    this.layer = layer;
+    /** @type {Map<string, { label: HTMLElement, transform: string, colour: string }>} */ this.tags = new Map();
+  }
+
+  /** @param {string} robot @param {string} title @param {string} colour  of its spot; none if empty */
+  show(robot, title, colour) {
+    let tag = this.tags.get(robot);
+    if (tag === undefined) {
+      tag = { label: document.createElement("span"), transform: "", colour: "" };
+      tag.label.className = "robot-label";
+      this.layer.append(tag.label);
+      this.tags.set(robot, tag);
+    }
+    if (tag.label.textContent !== title) tag.label.textContent = title;
+    if (tag.colour === colour) return;
+    tag.colour = colour;
+    tag.label.toggleAttribute("data-coloured", colour !== "");
+    tag.label.style.setProperty("--colour", colour);
+  }
+
+  /** Its lower middle is to be there; null: out of sight. @param {string} robot @param {Spot | null} spot */
+  place(robot, spot) {
+    const tag = this.tags.get(robot);
+    if (tag === undefined) return;
+    const { label } = tag;
+    if (label.hidden !== (spot === null)) label.hidden = spot === null;
+    if (spot === null) return;
+    const transform = `translate(${Math.round(spot.x)}px, ${Math.round(spot.y)}px) translate(-50%, -100%)`;
+    if (tag.transform !== transform) label.style.transform = tag.transform = transform;
+  }
+
+  /** @param {string} robot */
+  remove(robot) {
+    this.tags.get(robot)?.label.remove();
+    this.tags.delete(robot);
+  }
+}
