@@ -7,11 +7,12 @@ import math
 import pytest
 from geometry_msgs.msg import Twist, Vector3
 from rclpy.serialization import serialize_message
-from std_msgs.msg import Int16MultiArray, String
+from std_msgs.msg import Bool, Int16MultiArray, String
 
 from tests.bridge.studio import Studio
 from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.bridge.vocabulary import JSON, StatusLevel
+from thymio_sim_ros.nodes.foxglove_publishers import ClientPublishers
 
 
 def test_a_clients_twist_reaches_a_subscriber(ros, studio):
@@ -108,3 +109,42 @@ def test_clients_publish_only_where_they_may(ros, bridge):
     with Studio(bridge(client_topic_whitelist=("/cmd_vel",)).port, ros.until) as studio:
         studio.advertise(1, "/other", "std_msgs/msg/Bool")
         assert "client_topic_whitelist" in studio.next(ms.Status).message
+
+
+class Meeting:
+    """A node with one subscriber on every topic, whom its publisher meets at some time."""
+
+    def __init__(self) -> None:
+        self.now_s, self.has_met = 0.0, False
+        self.heard: list[tuple[float, bool]] = []
+
+    def get_publishers_info_by_topic(self, _topic: str) -> list[object]:
+        return []
+
+    get_subscriptions_info_by_topic = get_publishers_info_by_topic
+
+    def create_publisher(self, *_arguments: object) -> Meeting:
+        return self
+
+    def count_subscribers(self, _topic: str) -> int:
+        return 1
+
+    def get_subscription_count(self) -> int:
+        return int(self.has_met)
+
+    def publish(self, message: Bool) -> None:
+        self.heard.append((round(self.now_s, 3), message.data))
+
+
+def test_what_waited_for_a_subscriber_leaves_as_far_apart_as_it_came():
+    node = Meeting()
+    publishers = ClientPublishers(node, lambda _command: None, now_s=lambda: node.now_s)
+    publishers.open(1, ms.ClientChannel(7, "/press/forward", JSON, "std_msgs/Bool"))
+    for ms_later in range(0, 700, 10):
+        node.now_s, node.has_met = ms_later / 1000, ms_later >= 300
+        if ms_later in (0, 120, 400):
+            publishers.publish(1, 7, b'{"data": %s}' % (b"false" if ms_later == 120 else b"true"))
+        publishers.poll()
+    assert node.heard == [(0.3, True), (0.42, False), (0.42, True)]
+    publishers.publish(1, 7, b'{"data": false}')
+    assert node.heard[3:] == [(0.69, False)]

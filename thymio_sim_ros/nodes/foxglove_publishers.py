@@ -27,7 +27,10 @@ __all__ = ["ClientPublishers"]
 
 _HELD = 10
 _SETTLE_S = 1.0
-"""A new publisher holds its last `_HELD` messages until it has met all subscribers, at most this long."""
+"""A new publisher holds its last `_HELD` messages until it has met all subscribers, at most this long.
+
+They leave as far apart as they came: a button that is pressed and let go meanwhile was held all the same.
+"""
 
 _MOTION_TYPES = frozenset(f"geometry_msgs/msg/{name}" for name in ("Twist", "TwistStamped"))
 
@@ -46,7 +49,12 @@ class _Port:
     publisher: Publisher
     settled_s: float
     users: int = 0
-    held: deque[Any] = field(default_factory=lambda: deque(maxlen=_HELD))
+    held: deque[tuple[float, Any]] = field(default_factory=lambda: deque(maxlen=_HELD))
+    """When it came, s, and what."""
+    is_waiting: bool = False
+    late_s: float = 0.0
+    met_s: float = 0.0
+    """What had come when all were met leaves so much later than it came; the rest at once, in order."""
 
 
 class ClientPublishers:
@@ -59,11 +67,14 @@ class ClientPublishers:
         *,
         is_allowed: Callable[[str], bool] = lambda topic: True,
         wake: Callable[[], None] = lambda: None,
+        now_s: Callable[[], float] = time.monotonic,
     ) -> None:
+        """`wake` asks for `poll` soon and again until it has nothing to do."""
         self._node = node
         self._post = post
         self._is_allowed = is_allowed
         self._wake = wake
+        self._now_s = now_s
         self._ports: dict[tuple[str, str], _Port] = {}
         self._channels: dict[tuple[int, int], tuple[_Port, str]] = {}
 
@@ -97,7 +108,7 @@ class ClientPublishers:
         except _RefusalError as error:
             self._refuse(client, f"{port.topic}: {error}")
             return
-        port.held.append(message)
+        port.held.append((self._now_s(), message))
         if not self._flush(port):
             self._wake()
 
@@ -114,14 +125,24 @@ class ClientPublishers:
         self._channels.clear()
 
     def _flush(self, port: _Port) -> bool:
-        """Publish what is held, unless subscribers are known that the publisher has not met yet; whether it did."""
-        if port.held and time.monotonic() < port.settled_s:
-            known = self._node.count_subscribers(port.topic)
-            if not known or port.publisher.get_subscription_count() < known:
-                return False
+        """Publish what is due, unless the publisher has still to meet subscribers; whether nothing is left."""
+        now_s = self._now_s()
+        if port.held and now_s < port.settled_s and not self._has_met_all(port):
+            port.is_waiting = True
+            return False
+        if port.is_waiting:
+            port.is_waiting, port.late_s, port.met_s = False, now_s - port.held[0][0], now_s
         while port.held:
-            port.publisher.publish(port.held.popleft())
+            came_s, message = port.held[0]
+            if came_s <= port.met_s and came_s + port.late_s > now_s:
+                return False
+            port.held.popleft()
+            port.publisher.publish(message)
         return True
+
+    def _has_met_all(self, port: _Port) -> bool:
+        known = self._node.count_subscribers(port.topic)
+        return 0 < known <= port.publisher.get_subscription_count()
 
     def _port(self, channel: ClientChannel) -> _Port:
         topic = channel.topic if channel.topic.startswith("/") else f"/{channel.topic}"
@@ -145,7 +166,7 @@ class ClientPublishers:
         except RCLError as error:
             raise _RefusalError(f"{topic}: cannot publish {type_name} here, it carries another type") from error
         port = self._ports[topic, type_name] = _Port(
-            topic, type_name, message_type, publisher, time.monotonic() + _SETTLE_S
+            topic, type_name, message_type, publisher, self._now_s() + _SETTLE_S
         )
         return port
 
