@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 from aseba_vm.bytecode import signed
@@ -56,15 +57,15 @@ class EventKilled:
     pc: int
 
 
-class _Fault:
+class _Fault(ABC):
     """Why an event ended: a kind of `messages` and its arguments."""
 
     __slots__ = ()
 
     @property
+    @abstractmethod
     def words(self) -> tuple[str, tuple[object, ...]]:
         """The kind, and what its sentence is about; a kind that no table has is its own sentence."""
-        raise NotImplementedError
 
     @property
     def sentence(self) -> str:
