@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import gzip
 import http.client
 import json
+import os
 import socket
 
 import pytest
@@ -23,9 +25,9 @@ def built_page(tmp_path, monkeypatch):
     monkeypatch.setattr(resources, "page", lambda: tmp_path)
 
 
-def get(port, path):
+def get(port, path, **headers):
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
-    connection.request("GET", path)
+    connection.request("GET", path, headers={name.replace("_", "-"): value for name, value in headers.items()})
     response = connection.getresponse()
     body = response.read()
     connection.close()
@@ -42,6 +44,37 @@ def test_the_page_and_its_configuration_are_served(ros, built_page):
     assert json.loads(body)["foxglove_port"] == 1234
     response, _ = get(page.port, "/assets/main.js")
     assert response.headers["Content-Type"].startswith("text/javascript")
+
+
+@pytest.mark.parametrize("wanted", ["gzip", "gzip, deflate, br, zstd", "br;q=1.0, gzip;q=0.8", "deflate,gzip"])
+def test_text_is_compressed_for_who_can_read_it(ros, built_page, tmp_path, wanted):
+    page = ros.live(WebPage(ros.context, WebParams(port=0)))
+    for path, file in (("/", "index.html"), ("/assets/main.js?v=2", "assets/main.js")):
+        response, body = get(page.port, path, Accept_Encoding=wanted)
+        assert (response.status, response.headers["Content-Encoding"]) == (200, "gzip")
+        assert gzip.decompress(body) == (tmp_path / file).read_bytes()
+    (tmp_path / "assets" / "main.js").write_text("export default 1")
+    os.utime(tmp_path / "assets" / "main.js", (2e9, 2e9))
+    response, body = get(page.port, "/assets/main.js", Accept_Encoding=wanted)
+    assert gzip.decompress(body) == b"export default 1"
+    known = response.headers["Last-Modified"]
+    assert get(page.port, "/assets/main.js", Accept_Encoding=wanted, If_Modified_Since=known)[0].status == 304
+
+
+@pytest.mark.parametrize("wanted", ["", "identity", "br", "gzip;q=0", "gzip; q=0.0, br", "x-gzip-like"])
+def test_others_get_text_as_it_is(ros, built_page, wanted):
+    page = ros.live(WebPage(ros.context, WebParams(port=0)))
+    response, body = get(page.port, "/assets/main.js", Accept_Encoding=wanted)
+    assert "Content-Encoding" not in response.headers
+    assert body == b"export {}"
+
+
+def test_what_is_not_there_is_not_there_compressed_either(ros, built_page):
+    page = ros.live(WebPage(ros.context, WebParams(port=0)))
+    for path in ("/assets/none.js", "/%2e%2e/secret.txt", "/assets"):
+        response, body = get(page.port, path, Accept_Encoding="gzip")
+        assert response.status in (301, 404)
+        assert b"not for you" not in body
 
 
 def test_shipped_playgrounds_are_served_with_their_pictures_inside(ros, built_page):
