@@ -67,12 +67,27 @@ def test_a_port_in_use_is_one_line(capsys, option, whose, others):
 
 
 @pytest.mark.parametrize(
-    "arguments", [("--port", "http"), ("--port", "70000"), ("--real-time-factor", "fast"), ("--nonsense",), ("extra",)]
+    "arguments",
+    [
+        ("--port", "http"),
+        ("--port", "70000"),
+        ("--address", "school"),
+        ("--address", "::"),
+        ("--real-time-factor", "fast"),
+        ("--nonsense",),
+        ("extra",),
+    ],
 )
 def test_bad_arguments_exit_with_2(capsys, arguments):
     with pytest.raises(SystemExit, match="2"):
         cli.main(arguments)
     assert "error" in capsys.readouterr().err
+
+
+def test_an_address_of_another_computer_is_one_line(capsys):
+    line = refused(capsys, "--address", "192.0.2.1")
+    assert "192.0.2.1" in line
+    assert "the page" in line
 
 
 @pytest.mark.parametrize("command", [["--help"], ["runner", "--help"]])

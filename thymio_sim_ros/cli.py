@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import ipaddress
 import json
 import os
 import sys
@@ -23,6 +24,7 @@ from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.program import ProgramError, ThymioProgram
 from thymio_sim_ros.device.settings import Settings, SettingsError
+from thymio_sim_ros.greeting import greeting
 from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_program
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
@@ -75,6 +77,7 @@ def start_suite(argv: Sequence[str]) -> int:
         device=_device(options),
         motor_model=options.motors,
         proximity_model=options.proximity,
+        address=options.address,
         port=options.port,
         foxglove_port=options.foxglove_port,
         web=not (options.no_web or options.headless),
@@ -88,9 +91,9 @@ def start_suite(argv: Sequence[str]) -> int:
     playground, _ = _check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
     robots = [robot.name for robot in playground.robots]
     if suite.web:
-        _check_port(ADDRESS, suite.port, "the page", "--port")
+        _check_port(suite.address, suite.port, "the page", "--port")
     if suite.foxglove:
-        _check_port("localhost", suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
+        _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
     _check_ros()
     # A class room's robots stay apart, unless somebody has chosen otherwise (ros-packaging.md section 4).
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
@@ -100,7 +103,7 @@ def start_suite(argv: Sequence[str]) -> int:
     from thymio_sim_ros.nodes import all_nodes  # loads rcl
 
     try:
-        return all_nodes.run(suite, [], on_ready=lambda: print(_greeting(suite, robots), flush=True))
+        return all_nodes.run(suite, [], on_ready=lambda: print(greeting(suite, robots), flush=True))
     finally:
         leftovers.remove_new(before)
 
@@ -192,6 +195,14 @@ def _suite_parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     _add_world_options(parser)
+    parser.add_argument(
+        "--address",
+        type=_address,
+        default=Suite.address,
+        metavar="IPV4",
+        help="where page and bridge listen; 0.0.0.0 lets everybody on the network open the page and steer the robots "
+        "(default: %(default)s)",
+    )
     parser.add_argument("--port", type=_port, default=Suite.port, help="port of the page (default: %(default)s)")
     parser.add_argument(
         "--foxglove-port", type=_port, default=Suite.foxglove_port, help="port of the bridge (default: %(default)s)"
@@ -300,6 +311,15 @@ def _program(options: argparse.Namespace) -> str:
     return NO_PROGRAM if options.behaviour else Suite.program
 
 
+def _address(text: str) -> str:
+    try:
+        return text if text == ADDRESS else str(ipaddress.IPv4Address(text))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(
+            f"'{text}' found, expected {ADDRESS}, 0.0.0.0 for the whole network, or an IPv4 number of this computer"
+        ) from error
+
+
 def _port(text: str) -> int:
     if not text.isdecimal() or not 1 <= int(text) <= 65535:
         raise argparse.ArgumentTypeError(f"'{text}' is no port; expected a number from 1 to 65535")
@@ -338,7 +358,8 @@ def _check_port(address: str, port: int, whose: str, option: str) -> None:
         for listener in listen(address, port):
             listener.close()
     except OSError as error:
-        raise UsageError(f"port {port} of {whose}: {error.strerror}; choose another with {option}") from error
+        options = option if address == ADDRESS else f"{option} or --address"
+        raise UsageError(f"port {port} of {whose}: {error.strerror}; choose another with {options}") from error
 
 
 def _check_ros() -> None:
@@ -347,11 +368,3 @@ def _check_ros() -> None:
             "ROS 2 is not installed here: on Linux x86-64 run `pip install 'thymio_sim_ros[ros]'`, elsewhere source a "
             "ROS 2 Jazzy installation; `thymio-sim runner` works without"
         )
-
-
-def _greeting(suite: Suite, robots: Sequence[str]) -> str:
-    """The lines a person needs."""
-    page = f"http://localhost:{suite.port}/" if suite.web else "none (started without it)"
-    foxglove = f"ws://localhost:{suite.foxglove_port}" if suite.foxglove else "none (started without it)"
-    layout = f"\nLayout    {foxglove_layout.hint(robots)}" if suite.foxglove else ""
-    return f"Page      {page}\nFoxglove  {foxglove}{layout}\nStop      Ctrl-C"

@@ -10,7 +10,7 @@ from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
 
 HTTP_PORT = 8080
 FOXGLOVE_PORT = 8765
-ADDRESS = "127.0.0.1"
+ADDRESS = "localhost"
 """Loopback: whoever wants the network asks for it."""
 
 
@@ -20,6 +20,7 @@ class Suite:
 
     `playground`: shipped name, path or JSON text; `program`: behaviour or path; `behaviour`: what the robot is
     switched on with instead, the program then waiting in its menu; `log`: file of a run log, empty for none.
+    `address`: where page and bridge listen, `ADDRESS` or an IPv4 number.
     `cmd_vel_timeout_s`: browser teleop sends nothing on release, hence half a second (ros-interface.md section 13).
     """
 
@@ -29,6 +30,7 @@ class Suite:
     device: DeviceOptions = DEFAULTS
     motor_model: str = MOTOR_MODELS[0]
     proximity_model: str = PROXIMITY_MODELS[0]
+    address: str = ADDRESS
     port: int = HTTP_PORT
     foxglove_port: int = FOXGLOVE_PORT
     web: bool = True

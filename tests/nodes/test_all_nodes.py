@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+import urllib.request
+
+import pytest
+from websockets.sync.client import connect
+
+from tests.processes import free_port
+from thymio_sim_ros.bridge import SUBPROTOCOLS
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.nodes import all_nodes
 from thymio_sim_ros.suite import Suite
@@ -18,3 +25,21 @@ def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):
     (robot,) = runtime.robots
     assert robot.device.layout == "playground"
     assert robot.device.get_variable("sd.present") == (1,)
+
+
+def test_a_page_that_was_opened_from_elsewhere_reaches_the_bridge_if_everybody_may(ros):
+    here, elsewhere = "127.0.0.1", "127.0.0.2"
+    for address, hosts in (("localhost", [here]), ("0.0.0.0", [here, elsewhere])):
+        suite = Suite(playground="base", program="none", address=address, port=0, foxglove_port=free_port())
+        _, _, bridge, page = (ros.live(life) for life in all_nodes.lives(ros.context, suite))
+        for host in (here, elsewhere):
+            opening = {"subprotocols": SUBPROTOCOLS, "origin": f"http://{host}:{page.port}"}
+            if host in hosts:
+                urllib.request.urlopen(f"http://{host}:{page.port}/config.json", timeout=10).close()
+                with connect(f"ws://{host}:{bridge.port}", **opening) as connection:
+                    assert connection.subprotocol == SUBPROTOCOLS[0]
+                continue
+            with pytest.raises(OSError, match="refused"):
+                urllib.request.urlopen(f"http://{host}:{page.port}/config.json", timeout=10)
+            with pytest.raises(ConnectionRefusedError), connect(f"ws://{host}:{bridge.port}", **opening):
+                pass

@@ -34,6 +34,7 @@ ARGUMENTS = {
     "real_time_factor": ("1.0", "simulated seconds per second; 0: as fast as possible"),
     "cmd_vel_timeout": ("0.0", "seconds after which a velocity command ends; 0: never"),
     "driver_compat": ("false", "report ranges as the existing Thymio driver does (-1 for nothing)"),
+    "address": ("localhost", "where page and bridge listen; 0.0.0.0: the whole network"),
     "port": ("8080", "TCP port of the page"),
     "foxglove_port": ("8765", "TCP port of the Foxglove bridge"),
     "web": ("true", "serve the page"),
@@ -73,8 +74,14 @@ def generate_launch_description() -> LaunchDescription:
         "events": ParameterValue(value["events"], value_type=str),
         "use_sim_time": True,
     }
-    bridge = {"port": ParameterValue(value["foxglove_port"], value_type=int), "use_sim_time": True}
+    address = ParameterValue(value["address"], value_type=str)
+    bridge = {
+        "address": address,
+        "port": ParameterValue(value["foxglove_port"], value_type=int),
+        "use_sim_time": True,
+    }
     page = {
+        "address": address,
         "port": ParameterValue(value["port"], value_type=int),
         "foxglove_port": ParameterValue(value["foxglove_port"], value_type=int),
         "use_sim_time": True,

@@ -45,11 +45,11 @@ def lives(context: Context, suite: Suite) -> Iterator[Host]:
     if suite.foxglove:
         from thymio_sim_ros.nodes.foxglove_node import FoxgloveBridge
 
-        yield FoxgloveBridge(context=context, port=suite.foxglove_port, use_sim_time=True)
+        yield FoxgloveBridge(context=context, address=suite.address, port=suite.foxglove_port, use_sim_time=True)
     if suite.web:
         from thymio_sim_ros.nodes.web_node import WebPage, WebParams
 
-        yield WebPage(context, WebParams(port=suite.port, foxglove_port=suite.foxglove_port))
+        yield WebPage(context, WebParams(address=suite.address, port=suite.port, foxglove_port=suite.foxglove_port))
 
 
 def run(suite: Suite, args: Sequence[str] | None = None, *, on_ready: Callable[[], None] = lambda: None) -> int:

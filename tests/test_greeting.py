@@ -1,0 +1,44 @@
+"""What is printed at the start: places that can be opened, from here and from other computers."""
+
+from __future__ import annotations
+
+import ipaddress
+import socket
+
+import pytest
+
+from thymio_sim_ros import greeting
+from thymio_sim_ros.suite import Suite
+
+
+@pytest.mark.parametrize("address", ["localhost", "127.0.0.1"])
+def test_on_this_computer_only(address):
+    told = greeting.greeting(Suite(address=address), ["thymio"]).splitlines()
+    assert told[:2] == ["Page      http://localhost:8080/", "Foxglove  ws://localhost:8765"]
+
+
+def test_for_the_whole_network(monkeypatch):
+    monkeypatch.setattr(greeting, "own_address", lambda: "10.1.2.3")
+    told = greeting.greeting(Suite(address="0.0.0.0", port=80, foxglove_port=81), ["thymio"]).splitlines()
+    assert told[0] == "Page      http://localhost:80/, from other computers http://10.1.2.3:80/"
+    assert told[1] == "Foxglove  ws://localhost:81, from other computers ws://10.1.2.3:81"
+
+
+def test_on_one_address():
+    assert "Page      http://10.1.2.3:8080/\n" in greeting.greeting(Suite(address="10.1.2.3"), ["thymio"])
+
+
+def test_without_page_and_bridge():
+    told = greeting.greeting(Suite(web=False, foxglove=False), ["thymio"])
+    assert told == "Page      none (started without it)\nFoxglove  none (started without it)\nStop      Ctrl-C"
+
+
+def test_this_computer_has_a_number_or_a_name(monkeypatch):
+    found = greeting.own_address()
+    assert found == socket.gethostname() or ipaddress.IPv4Address(found)
+
+    def unreachable(*_arguments):
+        raise OSError("Network is unreachable")
+
+    monkeypatch.setattr(greeting.socket.socket, "connect", unreachable)
+    assert greeting.own_address() == socket.gethostname()
