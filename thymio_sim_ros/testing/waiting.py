@@ -43,5 +43,5 @@ def _lambda(condition: Callable[[], Any], line: int) -> str:
             continue
         found = [node for node in ast.walk(tree) if isinstance(node, ast.Lambda) and node.lineno + begin - 1 == line]
         segment = ast.get_source_segment(text, found[0].body) if found else None
-        return segment or source.strip()
+        return segment or ""  # another text of that name, as that of `python -c`
     return source.strip()
