@@ -1,18 +1,17 @@
-"""Readings ↔ messages as plain functions."""
+"""Readings → messages as plain functions."""
 
 from __future__ import annotations
 
 import math
 
 import pytest
-from geometry_msgs.msg import Quaternion, Twist, Vector3
+from geometry_msgs.msg import Quaternion
 from sensor_msgs.msg import JointState, LaserScan, Range
 
-from thymio_sim_ros.nodes import command_values, convert, sensor_topics
-from thymio_sim_ros.nodes.command_values import CommandError
+from thymio_sim_ros.nodes import convert, sensor_topics
 from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.names import RobotNames, ros_names, topic_word
-from thymio_sim_ros.sim import commands, readings
+from thymio_sim_ros.sim import readings
 from thymio_sim_ros.sim.geometry import Pose, Tilt
 from thymio_sim_ros.sim.geometry import Twist as BodyMotion
 from thymio_sim_ros.sim.sensors import all_sensors
@@ -105,32 +104,6 @@ def test_leds_are_labelled_parts_of_one_array():
     message = encode("led/state", readings.LedReading(0, (), (("top", (32, 16, 0)), ("ground", (0, 32)))))
     assert [(dim.label, dim.size) for dim in message.layout.dim] == [("top", 3), ("ground", 2)]
     assert list(message.data) == [1.0, 0.5, 0.0, 0.0, 1.0]
-
-
-@pytest.mark.parametrize("level", range(33))
-def test_a_level_survives_the_way_over_a_topic(level):
-    assert command_values.led_levels("remote", [level / commands.LED_FULL]).levels == (level,)
-
-
-@pytest.mark.parametrize("value", [math.nan, math.inf])
-def test_numbers_that_are_not_finite_are_refused(value):
-    with pytest.raises(CommandError, match=r"linear\.x"):
-        command_values.body_twist(Twist(linear=Vector3(x=value)), 0)
-    with pytest.raises(CommandError, match="finite"):
-        command_values.wheel_velocities([0.0, value], 0)
-    with pytest.raises(CommandError, match="finite"):
-        command_values.led_levels("remote", [value])
-
-
-def test_arrays_of_the_wrong_length_are_refused():
-    with pytest.raises(CommandError, match="3 values found, expected 8 intensities"):
-        command_values.led_levels("circle", [1.0, 1.0, 1.0])
-    with pytest.raises(CommandError, match="left, right"):
-        command_values.motor_targets([1])
-
-
-def test_intensities_are_clamped():
-    assert command_values.led_levels("ground", [-3.0, 7.0]).levels == (0, 32)
 
 
 @pytest.mark.parametrize("yaw", [-3.0, -0.5, 0.0, 1.0, 3.1])
