@@ -28,6 +28,20 @@ def test_on_one_address():
     assert "Page      http://10.1.2.3:8080/\n" in greeting.greeting(Suite(address="10.1.2.3"), ["thymio"])
 
 
+@pytest.mark.parametrize(
+    ("address", "told"),
+    [
+        ("::1", "ws://localhost:8765"),
+        ("::", "ws://localhost:8765, from other computers ws://10.1.2.3:8765"),
+        ("fd00::7", "ws://[fd00::7]:8765"),
+        ("class-pc", "ws://class-pc:8765"),
+    ],
+)
+def test_other_addresses(monkeypatch, address, told):
+    monkeypatch.setattr(greeting, "own_address", lambda: "10.1.2.3")
+    assert greeting.places("ws", address, 8765) == told
+
+
 def test_without_page_and_bridge():
     told = greeting.greeting(Suite(web=False, foxglove=False), ["thymio"])
     assert told == "Page      none (started without it)\nFoxglove  none (started without it)\nStop      Ctrl-C"

@@ -7,19 +7,20 @@ import socket
 from collections.abc import Sequence
 
 from thymio_sim_ros import foxglove_layout
-from thymio_sim_ros.suite import ADDRESS, Suite
+from thymio_sim_ros.suite import Suite
 
-__all__ = ["greeting", "own_address"]
+__all__ = ["greeting", "own_address", "places"]
 
 _SOMEWHERE = ("192.0.2.1", 9)
 """Of a network that nobody has (RFC 5737); nothing is sent there."""
+_LOCALHOST = ("127.0.0.1", "::1")
 _NONE = "none (started without it)"
 
 
 def greeting(suite: Suite, robots: Sequence[str]) -> str:
     """The lines a person needs."""
-    page = _places("http", suite.address, suite.port, "/") if suite.web else _NONE
-    foxglove = _places("ws", suite.address, suite.foxglove_port) if suite.foxglove else _NONE
+    page = places("http", suite.address, suite.port, "/") if suite.web else _NONE
+    foxglove = places("ws", suite.address, suite.foxglove_port) if suite.foxglove else _NONE
     layout = f"\nLayout    {foxglove_layout.hint(robots)}" if suite.foxglove else ""
     return f"Page      {page}\nFoxglove  {foxglove}{layout}\nStop      Ctrl-C"
 
@@ -34,9 +35,16 @@ def own_address() -> str:
         return str(probe.getsockname()[0])
 
 
-def _places(scheme: str, address: str, port: int, path: str = "") -> str:
-    if address == ADDRESS or ipaddress.ip_address(address).is_loopback:
-        return f"{scheme}://localhost:{port}{path}"
-    if not ipaddress.ip_address(address).is_unspecified:
+def places(scheme: str, address: str, port: int, path: str = "") -> str:
+    """Where something is that listens on an address: name, number, or `0.0.0.0` and `::` for the whole network."""
+    here = f"{scheme}://localhost:{port}{path}"
+    try:
+        number = ipaddress.ip_address(address)
+    except ValueError:
         return f"{scheme}://{address}:{port}{path}"
-    return f"{scheme}://localhost:{port}{path}, from other computers {scheme}://{own_address()}:{port}{path}"
+    if address in _LOCALHOST:
+        return here
+    if number.is_unspecified:
+        return f"{here}, from other computers {scheme}://{own_address()}:{port}{path}"
+    host = f"[{address}]" if number.version == 6 else address
+    return f"{scheme}://{host}:{port}{path}"

@@ -13,6 +13,7 @@ import uuid
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
+from urllib.parse import quote
 
 from rclpy.clock import Clock, JumpThreshold, TimeJump
 from rclpy.clock_type import ClockType
@@ -27,6 +28,7 @@ from thymio_sim_ros.bridge import ServerInfo, ServerSettings, ServerThread
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge.messages import AssetResponse
 from thymio_sim_ros.bridge.vocabulary import CDR, JSON
+from thymio_sim_ros.greeting import places
 from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes.foxglove_assets import AssetError, load_asset
 from thymio_sim_ros.nodes.foxglove_calls import Calls
@@ -94,10 +96,9 @@ class FoxgloveBridge:
     def greeting(self) -> str:
         """Where to connect, for a person."""
         scheme = "wss" if self.params.tls else "ws"
-        host = f"[{self.address}]" if ":" in self.address else self.address
-        host = "localhost" if self.address in ("127.0.0.1", "0.0.0.0", "::1", "::") else host
-        link = f"https://app.foxglove.dev/?ds=foxglove-websocket&ds.url={scheme}%3A%2F%2F{host}%3A{self.port}"
-        return f"Foxglove: {scheme}://{host}:{self.port} or {link}"
+        told = places(scheme, self.address, self.port)
+        url = quote(told.partition(",")[0], safe="")
+        return f"Foxglove: {told} or https://app.foxglove.dev/?ds=foxglove-websocket&ds.url={url}"
 
     def turn(self, executor: Executor) -> None:
         """Handle what is due; returns after `SPIN_SLICE_S` at the latest."""

@@ -27,6 +27,7 @@ from rclpy.node import Node
 import thymio_sim_ros
 from thymio_sim_ros import resources
 from thymio_sim_ros.gallery import Gallery
+from thymio_sim_ros.greeting import places
 from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, greeted, run_main
 from thymio_sim_ros.nodes.params import param
@@ -184,8 +185,7 @@ class WebPage:
     @property
     def greeting(self) -> str:
         """Where to look, for a person."""
-        host = "localhost" if self.params.address in ("127.0.0.1", "0.0.0.0") else self.params.address
-        return f"Page: http://{host}:{self.port}/"
+        return f"Page: {places('http', self.params.address, self.port, '/')}"
 
     def turn(self, executor: Executor) -> None:
         """Nothing but parameters to answer."""
