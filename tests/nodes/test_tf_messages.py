@@ -213,7 +213,11 @@ def test_a_latched_message_reaches_who_comes_later() -> None:
 
 
 def test_several_nodes_of_one_process_may_come_and_go() -> None:
-    with _peers("first", "second", "viewer") as (first, second, viewer):
+    with _peers("first", "second", "viewer") as peers:
+        # A participant that comes while another one's publisher goes may never hear of its next one: one time in twenty
+        # with Fast DDS 2.14, never in 200 when all know each other before.
+        _until(lambda: all(len(peer.node.get_node_names()) == len(peers) for peer in peers), *peers)
+        first, second, viewer = peers
         early = first.publisher("/tf")
         first.node.destroy_publisher(early)
         # Latched: the publisher that went may still be counted as one of two when the viewer comes.
