@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from thymio_sim_ros import foxglove_layout
 from thymio_sim_ros.suite import Suite
 
-__all__ = ["greeting", "own_address", "places"]
+__all__ = ["greeting", "own_address", "places", "urls"]
 
 _SOMEWHERE = ("192.0.2.1", 9)
 """Of a network that nobody has (RFC 5737); nothing is sent there."""
@@ -36,15 +36,25 @@ def own_address() -> str:
 
 
 def places(scheme: str, address: str, port: int, path: str = "") -> str:
-    """Where something is that listens on an address: name, number, or `0.0.0.0` and `::` for the whole network."""
-    here = f"{scheme}://localhost:{port}{path}"
+    """Where something is that listens on an address, for a person."""
+    return ", from other computers ".join(urls(scheme, address, port, path))
+
+
+def urls(scheme: str, address: str, port: int, path: str = "") -> list[str]:
+    """The same for programs; `address` is a name or a number.
+
+    Of the whole network (`0.0.0.0`, `::`) that for this computer comes first, then that for others.
+    """
+    hosts = [address]
     try:
         number = ipaddress.ip_address(address)
     except ValueError:
-        return f"{scheme}://{address}:{port}{path}"
-    if address in _LOCALHOST:
-        return here
-    if number.is_unspecified:
-        return f"{here}, from other computers {scheme}://{own_address()}:{port}{path}"
-    host = f"[{address}]" if number.version == 6 else address
-    return f"{scheme}://{host}:{port}{path}"
+        pass
+    else:
+        if address in _LOCALHOST:
+            hosts = ["localhost"]
+        elif number.is_unspecified:
+            hosts = ["localhost", own_address()]
+        elif number.version == 6:
+            hosts = [f"[{address}]"]
+    return [f"{scheme}://{host}:{port}{path}" for host in hosts]

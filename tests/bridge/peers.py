@@ -6,12 +6,13 @@ import asyncio
 import base64
 import os
 import socket
-from collections.abc import AsyncIterator, Callable, Coroutine
+from collections.abc import AsyncIterator, Callable, Coroutine, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
 from typing import Any, TypeVar
 
 from websockets.asyncio.client import ClientConnection, connect
+from websockets.typing import Origin, Subprotocol
 
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerInfo, ServerSettings, wire
 from thymio_sim_ros.bridge import events as ev
@@ -100,10 +101,12 @@ class Bridge:
 
     @asynccontextmanager
     async def client(
-        self, *, subprotocols: tuple[str, ...] = SUBPROTOCOLS, origin: str | None = None
+        self, *, subprotocols: Sequence[Subprotocol] = SUBPROTOCOLS, origin: str | None = None
     ) -> AsyncIterator[Client]:
         """A connected client."""
-        async with connect(self.url, subprotocols=subprotocols, origin=origin, max_size=None) as connection:  # type: ignore[arg-type]  # plain strings
+        async with connect(
+            self.url, subprotocols=subprotocols, origin=None if origin is None else Origin(origin), max_size=None
+        ) as connection:
             yield Client(connection)
 
     def publish(self, *payloads: bytes) -> None:

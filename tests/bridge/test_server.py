@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.typing import Subprotocol
 
 from tests.bridge.certificates import make_certificate
 from tests.bridge.peers import CHANNEL, DEADLINE_S, Client, StalledClient, bridge, run
@@ -31,7 +32,7 @@ KILOBYTE = bytes(1024)
 )
 def test_both_names_of_the_protocol_are_spoken(offered: tuple[str, ...], accepted: str) -> None:
     async def scenario() -> str | None:
-        async with bridge() as server, server.client(subprotocols=offered) as client:
+        async with bridge() as server, server.client(subprotocols=[*map(Subprotocol, offered)]) as client:
             return client.connection.subprotocol
 
     assert run(scenario()) == accepted
@@ -48,7 +49,7 @@ def test_a_client_comes_by_either_version_of_tls(tmp_path: Path, version: ssl.TL
     async def scenario() -> ms.ServerInfo:
         async with bridge(ServerSettings(tls=tls)) as server:
             address = f"wss://localhost:{server.port}"
-            async with connect(address, subprotocols=SUBPROTOCOLS, ssl=trust) as connection:  # type: ignore[arg-type]  # plain strings
+            async with connect(address, subprotocols=SUBPROTOCOLS, ssl=trust) as connection:
                 return await Client(connection).next(ms.ServerInfo)
 
     assert run(scenario()).name == "test"

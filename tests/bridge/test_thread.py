@@ -90,7 +90,7 @@ def test_without_ipv6_the_other_loopback_is_enough(monkeypatch: pytest.MonkeyPat
 @pytest.mark.skipif(not HAS_IPV6, reason="no IPv6 here")
 def test_a_client_may_come_by_ipv6() -> None:
     server, _ = start()
-    with connect(f"ws://[::1]:{server.port}", subprotocols=SUBPROTOCOLS) as client:  # type: ignore[arg-type]  # plain strings
+    with connect(f"ws://[::1]:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         assert isinstance(wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.ServerInfo)
         assert server.client_count == 1
     server.close()
@@ -110,7 +110,7 @@ def test_answers_are_not_held_back_by_nagles_algorithm() -> None:
 def test_commands_of_another_thread_arrive_in_order() -> None:
     server, sink = start()
     server.post(ev.AddChannels((CHANNEL,)))
-    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:  # type: ignore[arg-type]  # plain strings
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         for number in range(100):
@@ -127,7 +127,7 @@ def test_commands_of_another_thread_arrive_in_order() -> None:
 def test_data_and_other_commands_do_not_overtake_each_other() -> None:
     server, sink = start()
     server.post(ev.AddChannels((CHANNEL,)))
-    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:  # type: ignore[arg-type]  # plain strings
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         for number in range(200):
@@ -158,7 +158,7 @@ def test_commands_do_not_wait_for_a_busy_event_loop() -> None:
     sink = Busy()
     server = ServerThread(ServerInfo("test", ()), sink, port=0)
     server.post(ev.AddChannels((CHANNEL,)))
-    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:  # type: ignore[arg-type]  # plain strings
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         server.post(ev.Data(1, 7, b"x"))
@@ -178,7 +178,7 @@ def test_data_of_another_thread_arrives_by_tls_too(tmp_path: Path) -> None:
     sink = Sink()
     server = ServerThread(ServerInfo("test", ()), sink, port=0, settings=ServerSettings(tls=tls))
     server.post(ev.AddChannels((CHANNEL,)))
-    with connect(f"wss://localhost:{server.port}", subprotocols=SUBPROTOCOLS, ssl=trusting(cert)) as client:  # type: ignore[arg-type]  # plain strings
+    with connect(f"wss://localhost:{server.port}", subprotocols=SUBPROTOCOLS, ssl=trusting(cert)) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         for number in range(100):
@@ -200,7 +200,7 @@ def test_a_command_that_cannot_be_told_harms_neither_its_sender_nor_later_ones(
 ) -> None:
     server, sink = start()
     server.post(ev.AddChannels((CHANNEL,)))
-    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:  # type: ignore[arg-type]  # plain strings
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         server.post(ev.Tell(1, ms.ParameterValues((ms.Parameter("/n.p", float("nan")),))))
@@ -227,7 +227,7 @@ def test_a_thread_that_sends_without_a_pause_keeps_nobody_away() -> None:
         with ExitStack() as clients:
             for _ in range(2):
                 client = clients.enter_context(
-                    connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS, close_timeout=0)  # type: ignore[arg-type]  # plain strings
+                    connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS, close_timeout=0)
                 )
                 client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
                 while not isinstance(wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
@@ -242,7 +242,7 @@ def test_closing_ends_the_thread_and_says_goodbye_to_clients() -> None:
     before = set(threading.enumerate())
     server, _ = start()
     started = set(threading.enumerate()) - before
-    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:  # type: ignore[arg-type]  # plain strings
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         client.recv(timeout=DEADLINE_S)
         server.close()
         with pytest.raises(ConnectionClosed, match="1001"):

@@ -252,5 +252,5 @@ def _header(headers: Headers, name: str) -> str | None:
 def _select_subprotocol(_connection: ServerConnection, offered: Sequence[Subprotocol]) -> Subprotocol:
     for name in SUBPROTOCOLS:
         if name in offered:
-            return Subprotocol(name)
+            return name
     raise NegotiationError(f"offer one of the sub-protocols {', '.join(SUBPROTOCOLS)}")

@@ -14,6 +14,7 @@ from foxglove_websocket.types import (  # type: ignore[import-untyped]  # ships 
     ClientBinaryOpcode,
     StatusLevel,
 )
+from websockets.typing import Subprotocol
 
 __all__ = [
     "ASSET_OPCODE",
@@ -27,7 +28,7 @@ __all__ = [
     "StatusLevel",
 ]
 
-SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
+SUBPROTOCOLS = (Subprotocol("foxglove.sdk.v1"), Subprotocol("foxglove.websocket.v1"))
 """Two names of one wire format, the preferred first."""
 
 ASSET_OPCODE = 4

@@ -28,7 +28,7 @@ from thymio_sim_ros.bridge import ServerInfo, ServerSettings, ServerThread
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge.messages import AssetResponse
 from thymio_sim_ros.bridge.vocabulary import CDR, JSON
-from thymio_sim_ros.greeting import places
+from thymio_sim_ros.greeting import places, urls
 from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes.foxglove_assets import AssetError, load_asset
 from thymio_sim_ros.nodes.foxglove_calls import Calls
@@ -96,9 +96,9 @@ class FoxgloveBridge:
     def greeting(self) -> str:
         """Where to connect, for a person."""
         scheme = "wss" if self.params.tls else "ws"
-        told = places(scheme, self.address, self.port)
-        url = quote(told.partition(",")[0], safe="")
-        return f"Foxglove: {told} or https://app.foxglove.dev/?ds=foxglove-websocket&ds.url={url}"
+        place = scheme, self.address, self.port
+        link = f"https://app.foxglove.dev/?ds=foxglove-websocket&ds.url={quote(urls(*place)[0], safe='')}"
+        return f"Foxglove: {places(*place)} or {link}"
 
     def turn(self, executor: Executor) -> None:
         """Handle what is due; returns after `SPIN_SLICE_S` at the latest."""
