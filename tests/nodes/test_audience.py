@@ -68,3 +68,14 @@ def test_time_may_jump_back():
     audience = Audience()
     audience.join(Heard("pose"))
     assert [audience.due_ns(now * MS) for now in (90, 0, 60)] == [100 * MS, 50 * MS, 100 * MS]
+
+
+def test_a_sensor_of_every_tick_makes_each_tick_due():
+    audience = Audience()
+    audience.join(Heard("proximity"))
+    audience.join(Heard("motor"))
+    assert [audience.due_ns(now * MS) for now in (0, 10, 90)] == [10 * MS, 20 * MS, 100 * MS]
+    audience.leave(Heard("motor"))
+    assert audience.due_ns(0) == 100 * MS
+    audience.join(Heard("motor", every_ns=50 * MS))
+    assert audience.due_ns(0) == 50 * MS

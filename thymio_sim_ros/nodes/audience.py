@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from thymio_sim_ros.sim.clock import NEVER_NS, next_due_ns
+from thymio_sim_ros.sim.clock import NEVER_NS, TICK_NS, next_due_ns
 from thymio_sim_ros.sim.sensors import all_sensors
 
 __all__ = ["Audience", "Heard"]
@@ -33,6 +33,8 @@ class Audience:
         self._schedule = {sensor.name: (sensor.period_ns, sensor.phase_ns) for sensor in sensors}
         self._counts: Counter[Heard] = Counter()
         self._since_ns, self._due_ns = 0, 0
+        self._is_due_always = False
+        """Whether each tick gives a reading that is sent."""
         self.sensors: frozenset[str] = frozenset()
 
     def join(self, topic: Heard) -> None:
@@ -50,6 +52,8 @@ class Audience:
 
     def due_ns(self, now_ns: int) -> int:
         """The first tick after now that gives a regular reading that is sent; `NEVER_NS` without any."""
+        if self._is_due_always:
+            return now_ns + TICK_NS
         if not self._since_ns <= now_ns < self._due_ns:
             self._since_ns = now_ns
             self._due_ns = min((self._next_ns(topic, now_ns) for topic in self._counts), default=NEVER_NS)
@@ -65,4 +69,8 @@ class Audience:
 
     def _change(self) -> None:
         self.sensors = frozenset(topic.sensor for topic in self._counts)
+        self._is_due_always = any(
+            topic.is_regular and max(self._schedule[topic.sensor][0], topic.every_ns) <= TICK_NS
+            for topic in self._counts
+        )
         self._due_ns = 0

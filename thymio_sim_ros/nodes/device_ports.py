@@ -23,7 +23,7 @@ from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.device.status import OFF
-from thymio_sim_ros.nodes import command_topics, driver_senses, plugin_topics, qos
+from thymio_sim_ros.nodes import command_topics, direct, driver_senses, plugin_topics, qos
 from thymio_sim_ros.nodes.event_ports import EventPorts
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.robot_ports import WARN_EVERY_S
@@ -237,13 +237,13 @@ class DevicePorts:
             return driver_senses.subscribe(self._node, self.names, self._feed)
         return [
             self._node.create_subscription(
-                Int16MultiArray, self.names.topic(f"raw/{sensor}"), self._feeder(sensor), qos.SENSOR
+                Int16MultiArray, self.names.topic(f"raw/{sensor}"), self._feeder(sensor), qos.SENSOR, raw=True
             )
             for sensor in sensor_names()
         ]
 
-    def _feeder(self, sensor: str) -> Callable[[Int16MultiArray], None]:
-        return lambda message: self._feed(sensor, message.data)
+    def _feeder(self, sensor: str) -> Callable[[bytes], None]:
+        return lambda message: self._feed(sensor, direct.words_of(message))
 
     def _feed(self, sensor: str, words: Sequence[int]) -> None:
         try:

@@ -15,7 +15,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import Trigger
 
-from thymio_sim_ros.nodes import qos, sensor_topics
+from thymio_sim_ros.nodes import direct, qos, sensor_topics
 from thymio_sim_ros.nodes.audience import Audience, Heard
 from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.nodes.convert import ConvertOptions
@@ -71,6 +71,8 @@ class _Outlet:
     publisher: Any = None
     send: Callable[[bytes], None] = lambda _data: None
     """Sends a serialised message."""
+    count: Callable[[], int] = lambda: 0
+    """Tells how many listen."""
     is_sent: bool = False
     last: Any = None
     template: Template | None = None
@@ -163,7 +165,7 @@ class RobotPorts:
         for outlets in self._outlets.values():
             for outlet in outlets:
                 if not outlet.row.always:
-                    self._send(outlet, wanted=outlet.publisher.get_subscription_count() > 0)
+                    self._send(outlet, wanted=outlet.count() > 0)
 
     def tell_place(self, now_ns: int, pose: Pose, tilt: Tilt) -> None:
         """Say where the robot stands while time does, for those who come late."""
@@ -196,8 +198,7 @@ class RobotPorts:
         topic, outlet = self.names.topic(row.topic), _Outlet(row, heard, next_ns=heard.every_ns)
         profile = qos.overridable(self._node, topic, row.profile)
         outlet.publisher = self._node.create_publisher(row.type, topic, **profile)
-        # `publish` first asks what it was given, which costs as much as sending to nobody.
-        outlet.send = getattr(outlet.publisher.handle, "publish_raw", outlet.publisher.publish)
+        outlet.send, outlet.count = direct.sender(outlet.publisher), direct.counter(outlet.publisher)
         self._outlets[heard.sensor].append(outlet)
         self._send(outlet, wanted=row.always)
 

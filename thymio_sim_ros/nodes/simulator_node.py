@@ -238,6 +238,8 @@ class Simulator:
         if now_ns < self._soon_ns:
             return 1
         ticks = min(self._most_put_off, (self._audience.due_ns(now_ns) - now_ns) // TICK_NS)
+        if ticks <= 1:
+            return ticks
         clock_ns = self._world_ports.clock_due_ns
         return ticks if clock_ns is None else min(ticks, self._pacer.ticks_until(clock_ns))
 

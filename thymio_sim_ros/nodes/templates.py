@@ -66,6 +66,11 @@ class Template:
         fresh = deserialize_message(serialize_message(message), type(message))
         return template if repr(filled) == repr(fresh) else None
 
+    def at(self, stamp_ns: int) -> bytes:
+        """The message with this stamp and nothing else changed."""
+        _STAMP.pack_into(self._data, _STAMP_AT, *divmod(stamp_ns, SECOND_NS))
+        return bytes(self._data)
+
     def fill(self, reading: Any) -> bytes:
         """The message of a reading."""
         data = self._data

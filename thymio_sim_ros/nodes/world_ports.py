@@ -17,11 +17,12 @@ from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros import resources
-from thymio_sim_ros.nodes import qos
+from thymio_sim_ros.nodes import direct, qos
 from thymio_sim_ros.nodes.headers import SECOND_NS, stamp
 from thymio_sim_ros.nodes.markers import playground_markers
 from thymio_sim_ros.nodes.names import MAP_FRAME, RobotNames
 from thymio_sim_ros.nodes.occupancy import occupancy
+from thymio_sim_ros.nodes.templates import Patch, Template
 from thymio_sim_ros.sim import playground as playgrounds
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
 from thymio_sim_ros.sim.scene import ObjectSnapshot
@@ -131,6 +132,10 @@ class WorldPorts:
         }
         self._clock_gap_ns = round(CLOCK_GAP * SECOND_NS / clock_rate_hz)
         self._is_clock_heard = False
+        self._clock = Template(Patch(()), Clock(), None)
+        clock = self._publishers.get("/clock")
+        self._send_clock = direct.sender(clock) if clock is not None else None
+        self._count_clock = direct.counter(clock) if clock is not None else None
         self._map_frame = map_frame
         self._publishers["~/playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
         self._last_clock_ns = self._last_objects_ns = 0
@@ -144,16 +149,15 @@ class WorldPorts:
     def publish_clock(self, now_ns: int, *, last: bool) -> None:
         """Simulated time; limited by its rate of wall time unless it is the `last` one for a while."""
         wall_ns = time.monotonic_ns()
-        clock, due_ns = self._publishers.get("/clock"), self.clock_due_ns
-        if clock is None or not (last or (due_ns is not None and wall_ns >= due_ns)):
+        due_ns = self.clock_due_ns
+        if self._send_clock is None or not (last or (due_ns is not None and wall_ns >= due_ns)):
             return
         self._last_clock_ns = wall_ns
-        clock.publish(Clock(clock=stamp(now_ns)))
+        self._send_clock(self._clock.at(now_ns))
 
     def look(self) -> None:
         """Find out whether somebody hears the clock now."""
-        clock = self._publishers.get("/clock")
-        self._is_clock_heard = clock is not None and clock.get_subscription_count() > 0
+        self._is_clock_heard = self._count_clock is not None and self._count_clock() > 0
 
     def publish_state(self, state: WorldState) -> None:
         """Latched state as JSON."""
@@ -170,15 +174,16 @@ class WorldPorts:
     def publish_objects(self, world: World, *, last: bool) -> None:
         """Latched markers of movable things and doors, when they have moved.
 
-        At most 20 Hz of wall time, unless it is the `last` one for a while.
+        They are looked at at most 20 times a second of wall time, unless it is the `last` time for a while.
         """
         wall_ns = time.monotonic_ns()
         if not (last or wall_ns - self._last_objects_ns >= OBJECTS_GAP_NS):
             return
+        self._last_objects_ns = wall_ns
         shown = (world.playground, world.objects)
         if shown == self._shown:
             return
-        self._shown, self._last_objects_ns = shown, wall_ns
+        self._shown = shown
         solids = {solid.name: solid for solid in world.playground.solids if not solid.is_fixed}
         placed = [solids[thing.name].at(thing.pose) for thing in world.objects if not thing.is_fallen]
         self._publishers["/markers/objects"].publish(playground_markers(placed, self._map_frame))
