@@ -8,6 +8,7 @@ from std_srvs.srv import SetBool
 
 from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.nodes import foxglove_assets
+from thymio_sim_ros.nodes.foxglove_graph import connection_graph
 
 
 def flip(request, response):
@@ -59,3 +60,35 @@ def test_a_mesh_of_an_installed_package_is_fetched(studio, monkeypatch, tmp_path
     monkeypatch.setattr(foxglove_assets, "share_folders", lambda: [tmp_path])
     studio.send(ms.FetchAsset("package://robot/body.stl", 4))
     assert studio.next(ms.AssetResponse) == ms.AssetResponse(4, bytes(range(256)) * 1000)
+
+
+def test_nodes_of_one_name_are_all_in_the_graph(ros, studio):
+    twins = [Node("twin", context=ros.context, enable_rosout=False) for _ in range(2)]
+    for twin, topic in zip(twins, ("/left", "/right"), strict=True):
+        twin.create_publisher(String, topic, 10)
+        studio.channel(topic)
+    studio.send(ms.SubscribeConnectionGraph())
+    found = {}
+    while not {"/left", "/right"} <= found.keys():
+        update = studio.next(ms.ConnectionGraphUpdate)
+        found |= {item.name: item.publisher_ids for item in update.published_topics}
+    assert found["/left"] == found["/right"] == ("/twin",)
+    for twin in twins:
+        twin.destroy_node()
+
+
+def test_a_node_that_has_just_left_is_not_in_the_graph(ros):
+    class Late:
+        """A node that still finds the name of one that is gone."""
+
+        def __getattr__(self, name):
+            return getattr(ros.node, name)
+
+        def get_node_names_and_namespaces(self):
+            return [("gone", "/"), *ros.node.get_node_names_and_namespaces()]
+
+    ros.node.create_publisher(String, "/chat", 10)
+    ros.until(lambda: ros.node.count_publishers("/chat"), what="the publisher in the graph")
+    graph = connection_graph(Late(), ["/chat"], [])
+    assert graph.published == {"/chat": ("/test",)}
+    assert graph.subscribed == graph.services == {}

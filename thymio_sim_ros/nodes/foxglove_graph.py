@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from rclpy.node import Node
+from rclpy.node import Node, NodeNameNonExistentError
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from thymio_sim_ros.bridge.graph import ConnectionGraph
@@ -38,23 +38,49 @@ def visible(
 
 
 def connection_graph(node: Node, topics: Iterable[str], services: Iterable[str]) -> ConnectionGraph:
-    """Who publishes, subscribes and answers the named topics and services."""
-    topics = list(topics)
-    wanted = set(services)
-    providers: dict[str, set[str]] = {}
-    for name, namespace in node.get_node_names_and_namespaces():
-        for service, _ in node.get_service_names_and_types_by_node(name, namespace):
-            if service in wanted:
-                providers.setdefault(service, set()).add(_full(name, namespace))
-    return ConnectionGraph(
-        published={topic: names for topic in topics if (names := _names(node.get_publishers_info_by_topic(topic)))},
-        subscribed={topic: names for topic in topics if (names := _names(node.get_subscriptions_info_by_topic(topic)))},
-        services={service: tuple(sorted(names)) for service, names in sorted(providers.items())},
-    )
+    """Who publishes, subscribes and answers the named topics and services.
+
+    Nodes are asked, not topics: they are far fewer.
+    """
+    topics, wanted = list(topics), set(services)
+    nodes = node.get_node_names_and_namespaces()
+    distinct = set(nodes)
+    publishers, subscribers, providers = (_By(names) for names in (topics, topics, wanted))
+    for name, namespace in distinct:
+        try:
+            publishers.add(name, namespace, node.get_publisher_names_and_types_by_node(name, namespace))
+            subscribers.add(name, namespace, node.get_subscriber_names_and_types_by_node(name, namespace))
+            providers.add(name, namespace, node.get_service_names_and_types_by_node(name, namespace))
+        except NodeNameNonExistentError:
+            continue  # it has just left
+    if len(distinct) < len(nodes):  # of nodes of one name only one answers
+        for topic in topics:
+            publishers.add_all(topic, node.get_publishers_info_by_topic(topic))
+            subscribers.add_all(topic, node.get_subscriptions_info_by_topic(topic))
+    return ConnectionGraph(publishers.sorted(), subscribers.sorted(), providers.sorted())
 
 
-def _names(infos: Sequence[TopicEndpointInfo]) -> tuple[str, ...]:
-    return tuple(sorted({_full(info.node_name, info.node_namespace) for info in infos if info.node_name != _NO_NODES}))
+class _By:
+    """Nodes by the names that they use, of which some are wanted."""
+
+    def __init__(self, wanted: Iterable[str]) -> None:
+        self._nodes: dict[str, set[str]] = {name: set() for name in wanted}
+
+    def add(self, name: str, namespace: str, used: Iterable[tuple[str, Sequence[str]]]) -> None:
+        """A node uses these names, which come with their types."""
+        for topic, _ in used:
+            if topic in self._nodes:
+                self._nodes[topic].add(_full(name, namespace))
+
+    def add_all(self, topic: str, infos: Iterable[TopicEndpointInfo]) -> None:
+        """All who use one of them."""
+        self._nodes[topic].update(
+            _full(info.node_name, info.node_namespace) for info in infos if info.node_name != _NO_NODES
+        )
+
+    def sorted(self) -> dict[str, tuple[str, ...]]:
+        """As a graph has it: without names that nobody uses."""
+        return {name: tuple(sorted(nodes)) for name, nodes in self._nodes.items() if nodes}
 
 
 def _full(name: str, namespace: str) -> str:
