@@ -118,8 +118,8 @@ def visit(browser: Browser, address: str, size: tuple[int, int]) -> tuple[Page, 
 def drawing(browser: Browser, page: Page, robots: int, seconds: float, fineness: str) -> tuple[float, float]:
     """Pictures per second, and the browser's CPU time for each in ms, once all robots drive."""
     page.wait_for_function(
-        "(count) => Object.values(window.thymio.state().robots).filter(({wheelSpeeds}) => wheelSpeeds.right > 0).length"
-        " === count",
+        "(count) => Object.values(window.thymio.state().robots).filter(({previous, latest}) =>"
+        " previous && latest && previous.pose.yaw !== latest.pose.yaw).length === count",
         arg=robots,
     )
     page.select_option("#quality", fineness)

@@ -14,7 +14,7 @@ import { Client } from "./protocol/client.js";
 import { SceneView } from "./scene/index.js";
 import { Speaker } from "./sound/speaker.js";
 import { snapshot } from "./state/index.js";
-import { CROWD, isWatched, PARAMETERS } from "./state/names.js";
+import { isWatched, PARAMETERS, watchedFor } from "./state/names.js";
 import { Store } from "./state/store.js";
 
 const DEFAULT_PORT = 8765;
@@ -144,8 +144,7 @@ async function main() {
   store.subscribe(() => editor.redraw());
   let watched = "";
   store.subscribe(() => {
-    const { robots, selected } = store.state;
-    const now = Object.keys(robots).length > CROWD ? selected : "*";
+    const now = watchedFor(store.state);
     if (now === watched) return;
     watched = now;
     client.refresh();

@@ -292,6 +292,7 @@ test("of a crowd, beams and values are asked of the selected robot only", () => 
   /** @param {number} count */
   const state = (count) => ({
     selected: "r1",
+    simulator: null,
     robots: Object.fromEntries(Array.from({ length: count }, (_, number) => [`r${number}`, NEW_ROBOT])),
   });
   const topics = ["/r0/ground_truth/odom", "/r0/led/state", "/r0/raw/proximity", "/r1/raw/proximity", "/markers"];

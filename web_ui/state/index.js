@@ -2,8 +2,9 @@
 // Pure: no clock, no socket, no document; a message carries what it needs.
 
 import { applyMarkers } from "./markers.js";
-import { PARAMETERS, isSensed, splitTopic } from "./names.js";
+import { PARAMETERS, TRANSFORMS, isSensed, splitTopic } from "./names.js";
 import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
+import { placedBy } from "./transforms.js";
 
 /** @typedef {import("./robot.js").Robot} Robot */
 /** @typedef {import("./robot.js").Program} Program */
@@ -199,7 +200,7 @@ function isThere({ simulator }, robot) {
 function withTopic(state, { topic, value, nowMs = 0 }) {
   const part = splitTopic(topic);
   if (part === null) return state;
-  if (part.robot === null) return GLOBAL_STEPS[part.name](state, value);
+  if (part.robot === null) return GLOBAL_STEPS[part.name](state, value, nowMs);
   if (part.name === "aseba/status")
     return { ...state, programs: { ...state.programs, [part.robot]: readStatus(value) } };
   if (!isThere(state, part.robot)) return state;
@@ -207,7 +208,8 @@ function withTopic(state, { topic, value, nowMs = 0 }) {
   return { ...state, robots: { ...state.robots, [part.robot]: robot } };
 }
 
-const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any) => State>} */ ({
+const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any, nowMs: number) => State>} */ ({
+  [TRANSFORMS]: placedBy,
   "/markers": (state, value) => ({ ...state, markers: applyMarkers(state.markers, value.markers) }),
   "/markers/objects": (state, value) => ({ ...state, objects: applyMarkers(state.objects, value.markers) }),
   "/simulator/state"(state, value) {

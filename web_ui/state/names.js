@@ -6,7 +6,11 @@ export const PROXIMITY = ["left", "center_left", "center", "center_right", "righ
 export const GROUND = ["left", "right"];
 export const BUTTONS = ["forward", "left", "center", "right", "backward"];
 
+/** Where all robots are. */
+export const TRANSFORMS = "/tf";
+
 export const GLOBAL_TOPICS = [
+  TRANSFORMS,
   "/markers",
   "/markers/objects",
   "/simulator/state",
@@ -43,11 +47,26 @@ export const CROWD = 4;
 
 /** What every robot is drawn by. */
 const DRAWN = /^(?:ground_truth|joint_states|led|buttons|pen|sound|aseba)\b/;
+/** What the transforms tell as well while time goes on. */
+const PLACED = /^(?:ground_truth|joint_states)\b/;
+
+/** @typedef {{ isByTransforms: boolean }} Placed */
+/**
+ * @typedef {object} Watching   what of the state decides what is asked for
+ * @property {Readonly<Record<string, Placed>>} robots
+ * @property {string} selected
+ * @property {{ paused: boolean } | null} simulator
+ */
+
+/** @param {Pick<Watching, "robots">} state */
+function isCrowd({ robots }) {
+  return Object.keys(robots).length > CROWD;
+}
 
 /**
  * Whether beams and values of a robot are followed.
  *
- * @param {{ robots: Readonly<Record<string, unknown>>, selected: string }} state
+ * @param {Pick<Watching, "selected"> & { robots: Readonly<Record<string, unknown>> }} state
  * @param {string} robot
  */
 export function isSensed({ robots, selected }, robot) {
@@ -57,12 +76,23 @@ export function isSensed({ robots, selected }, robot) {
 /**
  * Whether the page wants to hear a topic now.
  *
- * @param {{ robots: Readonly<Record<string, unknown>>, selected: string }} state
+ * @param {Watching} state
  * @param {string} topic
  */
 export function isWatched(state, topic) {
   const part = splitTopic(topic);
-  return part !== null && (part.robot === null || DRAWN.test(part.name) || isSensed(state, part.robot));
+  if (part === null) return false;
+  if (part.robot === null) return topic !== TRANSFORMS || isCrowd(state);
+  if (isSensed(state, part.robot)) return true;
+  if (PLACED.test(part.name) && state.robots[part.robot]?.isByTransforms && !state.simulator?.paused) return false;
+  return DRAWN.test(part.name);
+}
+
+/** Another text whenever `isWatched` may say something else of the same topics. @param {Watching} state */
+export function watchedFor(state) {
+  if (!isCrowd(state)) return "";
+  const placed = Object.values(state.robots).filter(({ isByTransforms }) => isByTransforms).length;
+  return `${state.selected} ${placed} ${state.simulator?.paused}`;
 }
 
 export const PARAMETERS = /** @type {const} */ ({

@@ -30,6 +30,7 @@ import { BUTTONS } from "./names.js";
  * @property {ArrayLike<number> | null} wave                     period of its tones
  * @property {ArrayLike<number> | null} samples                  of its last sound that is no tone
  * @property {ReadonlyMap<string, Marker>} trail                 what its pen has drawn
+ * @property {boolean} isByTransforms                            whether the common transforms tell where it is
  */
 
 /** @type {Robot} */
@@ -47,6 +48,7 @@ export const NEW_ROBOT = {
   wave: null,
   samples: null,
   trail: new Map(),
+  isByTransforms: false,
 };
 
 /** One row per topic, or per folder of topics (then `leaf` is the rest of the name). */
@@ -81,14 +83,22 @@ export function reduceRobot(robot, name, value, nowMs) {
 }
 
 /** @param {any} odometry @param {number} nowMs @returns {PoseSample} */
-function poseSample(odometry, nowMs) {
-  const { position, orientation: q } = odometry.pose.pose;
+function poseSample({ header, pose }, nowMs) {
+  const { sec, nanosec } = header.stamp;
+  const { position, orientation } = pose.pose;
+  return { pose: poseOf(position, orientation), stampNs: sec * 1e9 + nanosec, arrivedMs: nowMs };
+}
+
+/**
+ * @param {{ x: number, y: number, z: number }} place
+ * @param {{ x: number, y: number, z: number, w: number }} q
+ * @returns {Pose}
+ */
+export function poseOf({ x, y, z }, q) {
   const yaw = Math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
-  const { sec, nanosec } = odometry.header.stamp;
   const roll = Math.atan2(2 * (q.w * q.x + q.y * q.z), 1 - 2 * (q.x * q.x + q.y * q.y));
   const pitch = Math.asin(Math.max(-1, Math.min(1, 2 * (q.w * q.y - q.z * q.x))));
-  const { x, y, z } = position;
-  return { pose: { x, y, z, yaw, roll, pitch }, stampNs: sec * 1e9 + nanosec, arrivedMs: nowMs };
+  return { x, y, z, yaw, roll, pitch };
 }
 
 /** @param {Robot} robot @param {any} value */

@@ -1,0 +1,60 @@
+"""A crowd in the page: all robots move in the picture, though few topics tell where they are."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+pytest.importorskip("playwright.sync_api")
+
+from tests.web_ui.page_support import MARKS, open_page
+
+pytestmark = MARKS
+
+NAMES = [f"thymio_{number}" for number in range(6)]
+ALL_TURN = """(count) => Object.values(window.thymio.state().robots).filter(({previous, latest}) =>
+    previous && latest && previous.pose.yaw !== latest.pose.yaw).length === count"""
+PLACED = "() => Object.entries(window.thymio.state().robots).filter(([, {isByTransforms}]) => isByTransforms).length"
+STANDS = """([name, x, y]) => {
+    const pose = window.thymio.state().robots[name].latest?.pose;
+    return pose && Math.hypot(pose.x - x, pose.y - y) < 0.01;
+}"""
+
+
+@pytest.fixture
+def crowd(suite, page, tmp_path) -> Any:
+    """Six robots that drive small circles."""
+    shapes = [{"kind": "rectangle", "size_x_m": 3.0, "size_y_m": 1.0, "color": "#eef2f6"}]
+    robots = [{"name": name, "x_m": -1.2 + 0.5 * number, "y_m": 0.0} for number, name in enumerate(NAMES)]
+    world, program = tmp_path / "crowd.json", tmp_path / "circle.aesl"
+    world.write_text(json.dumps({"format": 1, "title": "Crowd", "shapes": shapes, "robots": robots}))
+    program.write_text("motor.left.target = 100\nmotor.right.target = 200\n")
+    open_page(page, suite("--playground", str(world), "--program", str(program)))
+    page.wait_for_function(ALL_TURN, arg=len(NAMES))
+    return page
+
+
+def test_all_robots_of_a_crowd_move_by_the_transforms_they_share(crowd):
+    crowd.wait_for_function(f"() => ({PLACED})() === 5")
+    selected = crowd.evaluate("() => window.thymio.state().selected")
+    assert selected == NAMES[0]
+    crowd.get_by_role("group", name="Robot", exact=True).get_by_role("button", name=NAMES[3]).click()
+    crowd.wait_for_function(f"() => ({PLACED})() === 6")
+    stamps = crowd.evaluate("() => Object.values(window.thymio.state().robots).map(({latest}) => latest.stampNs)")
+    later = (
+        "(stamps) => Object.values(window.thymio.state().robots).every(({latest}, at) => latest.stampNs > stamps[at])"
+    )
+    crowd.wait_for_function(later, arg=stamps)
+    assert crowd.evaluate("() => window.thymio.state().robot.raw.motor !== undefined")
+
+
+def test_who_comes_while_time_stands_still_sees_where_all_stand(crowd, other_page):
+    crowd.wait_for_function(f"() => ({PLACED})() === 5")
+    crowd.get_by_role("button", name="Pause").click()
+    crowd.wait_for_function("() => window.thymio.state().simulator.paused")
+    stood = crowd.evaluate("() => Object.values(window.thymio.state().robots).map(({latest}) => latest.pose)")
+    open_page(other_page, crowd.url)
+    for name, pose in zip(NAMES, stood, strict=True):
+        other_page.wait_for_function(STANDS, arg=[name, pose["x"], pose["y"]])
