@@ -371,3 +371,23 @@ def test_without_a_card_files_cannot_be_opened_and_sounds_not_played():
         device.run(BUDGET)
     assert device.take_notices() == ["no card: p1.wav"]
     assert device.get_variable("status") == (-1,)
+
+
+def test_a_device_is_due_for_events_and_for_the_robots_own_rules():
+    device = device_with("onevent prox\nmotor.left.target = 100")
+    device.advance(1_000_000_000)
+    assert device.is_due
+    device.take_commands()
+    assert not device.is_due
+    device.advance(1_010_000_000)
+    device.feed("motor", (1, 2, 3, 4))
+    assert not device.is_due
+    device.feed("ground", GROUND)
+    device.feed("proximity", NEAR)
+    assert device.is_due
+    device.run(BUDGET)
+    assert device.is_due
+    assert MotorTargets(100, 0) in device.take_commands()
+    assert not device.is_due
+    device.advance(1_200_000_000)
+    assert device.is_due

@@ -101,6 +101,16 @@ class AsebaDevice:
         return (vm.is_active or self._queue.waits or self._are_periods_new) and not vm.is_step_by_step
 
     @property
+    def is_due(self) -> bool:
+        """Whether `run` or `take_commands` has anything to do."""
+        return self.is_busy or self._is_changed or self._are_rules_due
+
+    @property
+    def _are_rules_due(self) -> bool:
+        """Whether the robot's own rules look at its variables in this period of theirs still."""
+        return not 0 <= self._now_ns - self._rules_ns < PERIOD_NS
+
+    @property
     def status(self) -> DeviceStatus:
         """How the machine is."""
         if self._fault is not None:
@@ -256,7 +266,7 @@ class AsebaDevice:
         First native calls, then what the robot's own rules show, since a program may just have taken them over, then
         changed variables.
         """
-        if not 0 <= self._now_ns - self._rules_ns < PERIOD_NS:
+        if self._are_rules_due:
             self._rules_ns = self._now_ns - self._now_ns % PERIOD_NS
             if self._state != OFF and (self._inputs.is_news or self._rules.is_moving):
                 self._inputs.is_news = False

@@ -36,9 +36,9 @@ class Bus:
         self._is_settling = False
         self._network = AsebaNetwork(node, self._hear_others)
 
-    def settle(self, ports: DevicePorts) -> None:
-        """Let a robot take its turn, then those that it wakes, for some rounds."""
-        self._woken[ports] = None
+    def settle(self, *robots: DevicePorts) -> None:
+        """Let robots take their turns, then those that they wake, for some rounds."""
+        self._woken.update(dict.fromkeys(robots))
         if self._is_settling:
             return
         self._is_settling = True

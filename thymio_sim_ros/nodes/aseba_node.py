@@ -22,10 +22,11 @@ from rclpy.duration import Duration
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from std_msgs.msg import String
+from std_msgs.msg import Int16MultiArray, String
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.behaviour_host import MENU
+from thymio_sim_ros.device.bindings import sensor_names
 from thymio_sim_ros.device.card import CardError
 from thymio_sim_ros.device.fleet import Member, Share
 from thymio_sim_ros.device.layout import THYMIO
@@ -40,6 +41,7 @@ from thymio_sim_ros.nodes.check_service import CheckService
 from thymio_sim_ros.nodes.device_ports import DevicePorts, Wishes
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.raw_topic import Decoder
 
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
@@ -47,6 +49,7 @@ SIMULATOR_STATE = "/simulator/state"
 DIAGNOSTICS_S = 1.0
 
 NO_OVERRIDES: Mapping[str, Any] = MappingProxyType({})
+_SENSORS = frozenset(sensor_names())
 PROGRAM_ERRORS = (ProgramError, resources.ResourceError, OSError)
 
 
@@ -82,6 +85,11 @@ class AsebaRuntime:
         self.robots: list[DevicePorts] = []
         self._accepted: _Accepted | None = None
         self._is_declaring = False
+        self._raw: Any = None
+        """The subscription to the integers of all robots of the simulator."""
+        self._has_heard = False
+        """Whether anything came by it."""
+        self._decoder = Decoder()
         try:
             self._start(defaults or RuntimeParams())
         except (OptionError, WrongValueError, CardError, SettingsError, *PROGRAM_ERRORS) as error:
@@ -179,6 +187,7 @@ class AsebaRuntime:
             options=self._options.for_robot(name, alone=alone),
             wishes=self._wishes(name),
             has_driver=self.params.robot_topics == "driver",
+            is_fed=self._raw is not None,
         )
 
     def _share_out(self, new: Sequence[str]) -> None:
@@ -206,15 +215,42 @@ class AsebaRuntime:
     def _on_simulator_state(self, message: String) -> None:
         """Another playground may have other robots; they come and go while it runs."""
         try:
-            names = [str(robot["name"]) for robot in json.loads(message.data)["robots"]]
+            told = json.loads(message.data)
+            names, raw = [str(robot["name"]) for robot in told["robots"]], str(told.get("raw", ""))
         except (ValueError, KeyError, TypeError) as error:
             self._warn(f"{SIMULATOR_STATE} refused: {error!r}")
             return
+        self._listen_to("" if self.params.robot_topics == "driver" else raw)
         if names != [ports.names.name for ports in self.robots]:
             try:
                 self._set_robots(names)
             except (CardError, SettingsError, *PROGRAM_ERRORS) as error:
                 self.node.get_logger().error(f"robots {', '.join(names)}: {error}")
+
+    def _listen_to(self, topic: str) -> None:
+        """Hear the integers of all robots at once where a simulator tells them; else each robot has its topics."""
+        if self._raw is not None and self._raw.topic_name != topic:
+            self.node.destroy_subscription(self._raw)
+            self._raw, self._has_heard = None, False
+        if self._raw is None and topic:
+            self._raw = self.node.create_subscription(Int16MultiArray, topic, self._on_raw, qos.EVENTS, raw=True)
+        for ports in self.robots:
+            ports.is_fed = self._raw is not None
+
+    def _on_raw(self, data: bytes) -> None:
+        """A tick of the simulator: all that was measured is there before anybody takes a turn, as in the runner."""
+        self._has_heard = True
+        robots = {ports.names.name: ports for ports in self.robots if ports.is_fed}
+        fed: dict[DevicePorts, None] = {}
+        try:
+            for robot, sensor, words in self._decoder.decode(data):
+                if robot in robots and sensor in _SENSORS:
+                    robots[robot].feed(sensor, words)
+                    fed[robots[robot]] = None
+        except (ValueError, RuntimeError) as error:
+            self._warn(f"the integers of all robots refused: {error}")
+        now_ns = self.node.get_clock().now().nanoseconds
+        self._bus.settle(*[ports for ports in fed if ports.is_due(now_ns)])
 
     def _on_jump(self, jump: TimeJump) -> None:
         """Time went back: the simulator was reset, and so are the robots' machines."""
@@ -232,6 +268,8 @@ class AsebaRuntime:
         self._publish_statuses([ports.status.message])
 
     def _publish_diagnostics(self) -> None:
+        if self._has_heard and not self.node.count_publishers(self._raw.topic_name):
+            self._listen_to("")  # the simulator has gone; another robot may come
         self._publish_statuses([ports.status.message for ports in self.robots])
 
     def _publish_statuses(self, statuses: Iterable[DiagnosticStatus]) -> None:

@@ -53,8 +53,8 @@ class Wishes:
 class Surroundings(Protocol):
     """What a robot needs of the others."""
 
-    def settle(self, ports: DevicePorts, /) -> None:
-        """Something happened to this robot: let it take turns, and those that it wakes."""
+    def settle(self, *robots: DevicePorts) -> None:
+        """Something happened to these robots: let them take turns, and those that they wake."""
 
     def pass_on(self, sender: DevicePorts, event: str, args: Sequence[int], /) -> None:
         """A robot emitted an event: tell the others."""
@@ -79,7 +79,9 @@ class DevicePorts:
         options: DeviceOptions = DEFAULTS,
         wishes: Wishes | None = None,
         has_driver: bool = False,
+        is_fed: bool = False,
     ) -> None:
+        """`has_driver`: it has the topics of the ROS driver; `is_fed` as the property."""
         self.names = names
         self.number = number
         self.device = AsebaDevice(node_id=number, options=options)
@@ -90,7 +92,7 @@ class DevicePorts:
         self._wishes = wishes or Wishes()
         self._program = self._own = self._host.program
         self._is_closed = False
-        self._has_driver = has_driver
+        self._has_driver, self._is_fed = has_driver, is_fed
         self._outputs = {
             row.topic: (row.encode, node.create_publisher(row.type, names.topic(row.topic), row.profile))
             for row in (*command_topics.ROWS, *plugin_topics.rows())
@@ -102,10 +104,8 @@ class DevicePorts:
         self.status = StatusPorts(node, names, number=number)
         self._events = EventPorts(node, names, lambda event, args: around.emit(self, event, args), self.warn)
         self._variables = VariablePorts(node, names, self.device, self.run, language=self._wishes.language)
-        self._subscriptions = self._sense()
-        self._subscriptions.append(
-            node.create_subscription(Empty, names.topic("shutdown"), self._on_shutdown, qos.EVENTS)
-        )
+        self._shutdown = node.create_subscription(Empty, names.topic("shutdown"), self._on_shutdown, qos.EVENTS)
+        self._senses = self._sense()
         controls = {
             "run": self.device.resume,
             "pause": self.device.pause,
@@ -118,6 +118,19 @@ class DevicePorts:
             node.create_service(Trigger, names.topic(f"aseba/{word}"), self._controller(word, act))
             for word, act in controls.items()
         ]
+
+    @property
+    def is_fed(self) -> bool:
+        """Whether who has it calls `feed`; else its own topics do."""
+        return self._is_fed
+
+    @is_fed.setter
+    def is_fed(self, is_fed: bool) -> None:
+        if is_fed != self._is_fed:
+            for subscription in self._senses:
+                self._node.destroy_subscription(subscription)
+            self._is_fed = is_fed
+            self._senses = self._sense()
 
     @property
     def is_busy(self) -> bool:
@@ -166,6 +179,18 @@ class DevicePorts:
         self.device.receive_event(event, args, source=source)
         return True
 
+    def feed(self, sensor: str, words: Sequence[int]) -> None:
+        """Store what a sensor measured; `run` or `is_due` comes next."""
+        try:
+            self.device.feed(sensor, words)
+        except ValueError as error:
+            self.warn(f"raw/{sensor} refused: {error}")
+
+    def is_due(self, now_ns: int) -> bool:
+        """Whether there is anything to do now for a robot that has been fed."""
+        self.device.advance(now_ns)
+        return self.device.is_due
+
     def run(self) -> None:
         """Something happened: take turns; nothing once it is closed, as messages may still come."""
         if not self._is_closed:
@@ -207,7 +232,7 @@ class DevicePorts:
             ports.close()
         for service in self._services:
             self._node.destroy_service(service)
-        for subscription in self._subscriptions:
+        for subscription in (self._shutdown, *self._senses):
             self._node.destroy_subscription(subscription)
         for _, publisher in self._outputs.values():
             self._node.destroy_publisher(publisher)
@@ -234,7 +259,9 @@ class DevicePorts:
 
     def _sense(self) -> list[Any]:
         if self._has_driver:
-            return driver_senses.subscribe(self._node, self.names, self._feed)
+            return driver_senses.subscribe(self._node, self.names, self._sensed)
+        if self._is_fed:
+            return []
         return [
             self._node.create_subscription(
                 Int16MultiArray, self.names.topic(f"raw/{sensor}"), self._feeder(sensor), qos.SENSOR, raw=True
@@ -243,14 +270,10 @@ class DevicePorts:
         ]
 
     def _feeder(self, sensor: str) -> Callable[[bytes], None]:
-        return lambda message: self._feed(sensor, direct.words_of(message))
+        return lambda message: self._sensed(sensor, direct.words_of(message))
 
-    def _feed(self, sensor: str, words: Sequence[int]) -> None:
-        try:
-            self.device.feed(sensor, words)
-        except ValueError as error:
-            self.warn(f"raw/{sensor} refused: {error}")
-            return
+    def _sensed(self, sensor: str, words: Sequence[int]) -> None:
+        self.feed(sensor, words)
         self.run()
 
     def _on_shutdown(self, _message: Empty) -> None:

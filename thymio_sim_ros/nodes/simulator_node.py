@@ -27,6 +27,7 @@ from thymio_sim_ros.nodes.audience import Audience
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.raw_topic import RawTopic
 from thymio_sim_ros.nodes.robot_inputs import Moment
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
 from thymio_sim_ros.nodes.roster import Roster
@@ -91,6 +92,7 @@ class Simulator:
             map_frame=self.params.map_frame,
         )
         self._audience = Audience(self.params.periods_ns)
+        self._raw = RawTopic(self._world_ports.raw, self._audience)
         self._transforms = Transforms(self.node, self._audience, self.params.transform_options)
         self._port_options = replace(self.params.port_options, extra=driver_topics.found(self.node))
         self._roster = Roster(self._ports, self.params.naming)
@@ -205,6 +207,7 @@ class Simulator:
         self._looked_ns = time.monotonic_ns()
         self._look_every_ns = max(LOOK_EVERY_NS, 100 * LOOK_NS * self._roster.topics)
         self._roster.look()
+        self._raw.look()
         self._transforms.look()
         self._world_ports.look()
 
@@ -215,8 +218,10 @@ class Simulator:
             for robot, sensor, reading in rows_of(result.readings, self._audience.sensors):
                 ports = self._roster[robot]
                 ports.publish(sensor, reading)
+                self._raw.take(ports.names.name, sensor, reading)
                 if sensor == TRANSFORMING:
                     self._transforms.take(ports.names, reading, self.world.robots[robot].wheels.angles_rad)
+            self._raw.flush()
             self._transforms.flush()
             if self.paused:
                 self._world_ports.publish_clock(result.now_ns, last=True)
@@ -354,6 +359,7 @@ class Simulator:
             now_ns=self.world.now_ns,
             movables=self.world.movables,
             robots=self.names,
+            raw=self._world_ports.raw.topic_name,
         )
 
     def _publish_state(self) -> None:

@@ -7,13 +7,14 @@ import logging
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from nav_msgs.msg import OccupancyGrid
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
-from std_msgs.msg import String
+from std_msgs.msg import Int16MultiArray, String
 from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros import resources
@@ -54,8 +55,14 @@ TOPICS: Mapping[str, WorldTopic] = {
     "~/state": WorldTopic(
         String,
         "1, change",
-        "JSON: playground, paused, factors, seed, ns, robots, things that can be moved",
+        "JSON: playground, paused, factors, seed, ns, robots, things that can be moved, the topic `~/raw`",
         qos.LATCHED,
+    ),
+    "~/raw": WorldTopic(
+        Int16MultiArray,
+        "≤ 100",
+        "Aseba's integers of all robots: a dimension `robot/sensor` for each reading",
+        qos.EVENTS,
     ),
     "~/playgrounds": WorldTopic(String, "once", "JSON: shipped playgrounds with titles and descriptions", qos.LATCHED),
     "/markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.LATCHED, "map"),
@@ -87,6 +94,8 @@ class WorldState:
     now_ns: int
     robots: Mapping[str, RobotNames]
     movables: tuple[str, ...] = ()
+    raw: str = ""
+    """Where the integers of all robots are told."""
 
     def as_json(self) -> str:
         """The text of `~/state`."""
@@ -140,6 +149,11 @@ class WorldPorts:
         self._publishers["~/playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
         self._last_clock_ns = self._last_objects_ns = 0
         self._shown: tuple[Playground, tuple[ObjectSnapshot, ...]] | None = None
+
+    @property
+    def raw(self) -> Any:
+        """The publisher of all robots' integers."""
+        return self._publishers["~/raw"]
 
     @property
     def clock_due_ns(self) -> int | None:
