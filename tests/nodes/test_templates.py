@@ -14,6 +14,7 @@ from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.templates import Patch, Span, Template
 from thymio_sim_ros.sim import readings
+from thymio_sim_ros.sim.commands import LED_GROUPS
 from thymio_sim_ros.sim.geometry import Pose, Tilt, Twist
 
 PATCHED = [(sensor, row) for sensor in reference.own_sensors() for row in sensor_topics.rows_of(sensor) if row.patch]
@@ -38,6 +39,10 @@ def reading_of(sensor, seed):
         return readings.AccelerometerReading(stamp, words)
     if sensor.name == "battery":
         return readings.BatteryReading(stamp, words, 3.5 + 0.125 * seed, 0.25 * seed, seed % 2 == 0)
+    if sensor.name == "leds":
+        levels = iter(range(seed, 100 + seed))
+        groups = ((group, tuple(next(levels) % 33 for _ in range(size))) for group, size in LED_GROUPS.items())
+        return readings.LedReading(stamp, (), tuple(groups))
     return readings.PlainReading(stamp, words)
 
 

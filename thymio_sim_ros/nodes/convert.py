@@ -30,7 +30,7 @@ from thymio_sim_ros.nodes import patches
 from thymio_sim_ros.nodes.headers import SECOND_NS, stamped
 from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
 from thymio_sim_ros.nodes.patches import LASER_OFFSET_M, PROXIMITY_MIN_M
-from thymio_sim_ros.sim import commands, readings
+from thymio_sim_ros.sim import readings
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt, Twist
 from thymio_sim_ros.sim.tones import VOLUME_OFF
 
@@ -174,7 +174,7 @@ def leds(reading: readings.LedReading, _names: RobotNames, _options: ConvertOpti
     """Every light, a labelled dimension for each group."""
     return Float32MultiArray(
         layout=layout((group, len(levels)) for group, levels in reading.groups),
-        data=[level / commands.LED_FULL for _, levels in reading.groups for level in levels],
+        data=patches.led_levels(reading),
     )
 
 

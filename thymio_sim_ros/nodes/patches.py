@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 
 from thymio_sim_ros.nodes.templates import Patch, Span
 from thymio_sim_ros.sim import readings, thymio2
+from thymio_sim_ros.sim.commands import LED_FULL, LED_GROUPS
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt, Twist
 
 __all__ = [
@@ -18,6 +19,7 @@ __all__ = [
     "JOINTS",
     "JOY",
     "LASER",
+    "LEDS",
     "ODOMETRY",
     "RAYS",
     "TEMPERATURE",
@@ -25,6 +27,7 @@ __all__ = [
     "below_m",
     "below_patch",
     "laser_m",
+    "led_levels",
     "ray_lines",
     "rotation",
     "seen_m",
@@ -151,6 +154,11 @@ def _odometry_patch(
 _COVARIANCE_BYTES = 36 * 8
 
 
+def led_levels(reading: readings.LedReading) -> list[float]:
+    """How bright every light is, 0…1."""
+    return [level / LED_FULL for _, levels in reading.groups for level in levels]
+
+
 def words_patch(count: int) -> Patch | None:
     """Of so many words; None for none."""
     if not count:
@@ -177,6 +185,10 @@ TRUTH = _odometry_patch(
 JOINTS = Patch((Span(struct.Struct("<2dI4x2d"), _joint_numbers, behind=8),))
 """Two positions, two velocities, and no effort, which is aligned all the same."""
 LASER = Patch((Span(struct.Struct("<5fI5f"), _laser_numbers),))
+LEDS = Patch(
+    (Span(struct.Struct(f"<{sum(LED_GROUPS.values())}f"), lambda reading, _options: led_levels(reading)),),
+    has_stamp=False,
+)
 RAYS = Patch((Span(struct.Struct("<42dI56f"), _ray_numbers, behind=69),))
 """Points and colors; behind them a texture, texts and a mesh, all empty."""
 IMU = Patch((Span(struct.Struct("<3d"), lambda reading, _options: reading.acceleration_m_s2, behind=9 * 8),))

@@ -128,8 +128,11 @@ class RobotPorts:
 
     def publish(self, sensor: str, reading: Reading) -> None:
         """Send one reading on every topic made from it."""
+        sent = self._sent.get(sensor)
+        if not sent:
+            return
         stamp_ns, content = reading.stamp_ns, self._content()
-        for outlet in self._sent.get(sensor, ()):
+        for outlet in sent:
             every_ns = outlet.heard.every_ns
             if every_ns:
                 if stamp_ns < outlet.next_ns:

@@ -158,6 +158,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             "brightness 0…1 of every light, a labelled dimension for each group",
             profile=qos.LATCHED,
             always=True,
+            patch=patches.LEDS,
         ),
     ),
     "accelerometer": (
