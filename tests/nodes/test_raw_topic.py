@@ -153,3 +153,8 @@ def test_a_message_that_is_none_ends_nothing(ros, simulation, runtime):
     node._on_raw(b"\0\1\0\0nonsense")
     before = get_variables(ros, "motors")[0][0]
     sim.until(lambda: get_variables(ros, "motors")[0][0] > before)
+
+
+def test_a_robot_that_no_simulator_tells_of_is_heard_by_its_own_topics(ros, runtime):
+    runtime(COUNTER, robots=["anna"])
+    told_by_single_topics(ros, speed=8)

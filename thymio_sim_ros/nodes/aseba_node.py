@@ -45,7 +45,7 @@ from thymio_sim_ros.nodes.raw_topic import Decoder
 
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
-SIMULATOR_STATE = "/simulator/state"
+SIMULATOR_STATE, SIMULATOR_RAW = "/simulator/state", "/simulator/raw"
 DIAGNOSTICS_S = 1.0
 
 NO_OVERRIDES: Mapping[str, Any] = MappingProxyType({})
@@ -87,8 +87,6 @@ class AsebaRuntime:
         self._is_declaring = False
         self._raw: Any = None
         """The subscription to the integers of all robots of the simulator."""
-        self._has_heard = False
-        """Whether anything came by it."""
         self._decoder = Decoder()
         try:
             self._start(defaults or RuntimeParams())
@@ -139,6 +137,8 @@ class AsebaRuntime:
         self._check = CheckService(
             node, layout=self.params.layout, robots=lambda: [ports.names.name for ports in self.robots]
         )
+        if self.params.follow_simulator and self.params.robot_topics != "driver":
+            self._listen_to(SIMULATOR_RAW)  # it may say something else; hundreds of subscriptions are not made in vain
         self._set_robots(self.params.robots)
         if self.params.follow_simulator:
             node.create_subscription(String, SIMULATOR_STATE, self._on_simulator_state, qos.LATCHED)
@@ -231,7 +231,7 @@ class AsebaRuntime:
         """Hear the integers of all robots at once where a simulator tells them; else each robot has its topics."""
         if self._raw is not None and self._raw.topic_name != topic:
             self.node.destroy_subscription(self._raw)
-            self._raw, self._has_heard = None, False
+            self._raw = None
         if self._raw is None and topic:
             self._raw = self.node.create_subscription(Int16MultiArray, topic, self._on_raw, qos.EVENTS, raw=True)
         for ports in self.robots:
@@ -239,7 +239,6 @@ class AsebaRuntime:
 
     def _on_raw(self, data: bytes) -> None:
         """A tick of the simulator: all that was measured is there before anybody takes a turn, as in the runner."""
-        self._has_heard = True
         robots = {ports.names.name: ports for ports in self.robots if ports.is_fed}
         fed: dict[DevicePorts, None] = {}
         try:
@@ -268,8 +267,8 @@ class AsebaRuntime:
         self._publish_statuses([ports.status.message])
 
     def _publish_diagnostics(self) -> None:
-        if self._has_heard and not self.node.count_publishers(self._raw.topic_name):
-            self._listen_to("")  # the simulator has gone; another robot may come
+        if self._raw is not None and not self.node.count_publishers(self._raw.topic_name):
+            self._listen_to("")  # there is no simulator, or none any more; a robot of another kind may be there
         self._publish_statuses([ports.status.message for ports in self.robots])
 
     def _publish_statuses(self, statuses: Iterable[DiagnosticStatus]) -> None:
