@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 
 import pytest
 from nav_msgs.msg import Odometry
@@ -169,3 +171,34 @@ def test_an_argument_that_is_not_of_ros_is_answered_and_nothing_starts(capfd, ar
     out, err = capfd.readouterr()
     assert "--ros-args -p PARAMETER:=VALUE" in (out if code == 0 else err)
     assert (f"argument '{argument}' found" in err) == bool(code)
+
+
+SLOW_TO_CLOSE = """
+import sys, threading
+from rclpy.node import Node
+from thymio_sim_ros.nodes import life
+
+class Slow:
+    def __init__(self, context):
+        self.node = Node("slow", context=context)
+
+    def turn(self, executor):
+        raise RuntimeError("enough")
+
+    def end(self):
+        print("ended")
+
+    def close(self):
+        threading.Event().wait()
+
+life.CLOSE_S = 0.1
+sys.exit(life.run_main(lambda context: [Slow(context)], []))
+"""
+
+
+def test_a_process_that_dds_does_not_let_go_ends_without_it(ros_domain):
+    ended = subprocess.run(
+        [sys.executable, "-c", SLOW_TO_CLOSE], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (ended.returncode, ended.stdout) == (1, "ended\n")
+    assert "RuntimeError: enough" in ended.stderr

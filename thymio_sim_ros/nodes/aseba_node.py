@@ -110,8 +110,13 @@ class AsebaRuntime:
             for ports in busy:
                 ports.run()
 
+    def end(self) -> None:
+        """Stop the wheels that programs drive."""
+        for ports in self.robots:
+            ports.halt()
+
     def close(self) -> None:
-        """Stop the wheels that a program drives, then destroy the node."""
+        """Stop the wheels, then destroy the node."""
         self._jumps.unregister()
         for ports in self.robots:
             ports.close()

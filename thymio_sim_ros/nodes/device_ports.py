@@ -222,12 +222,17 @@ class DevicePorts:
         """Publish variables that changed."""
         self._variables.look()
 
+    def halt(self) -> None:
+        """The robot does not go on without its program: wheels stop, and nothing runs any more."""
+        if not self._is_closed:
+            self._is_closed = True
+            self.device.stop()
+            for command in self.device.take_commands():
+                self._send(command)
+
     def close(self) -> None:
-        """The robot does not go on without its program: wheels stop; its topics and services go."""
-        self._is_closed = True
-        self.device.stop()
-        for command in self.device.take_commands():
-            self._send(command)
+        """`halt` it; its topics and services go."""
+        self.halt()
         for ports in (self._events, self._variables, self.status):
             ports.close()
         for service in self._services:

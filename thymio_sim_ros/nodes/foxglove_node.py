@@ -104,10 +104,14 @@ class FoxgloveBridge:
         """Handle what is due; returns after `SPIN_SLICE_S` at the latest."""
         executor.spin_once(timeout_sec=SPIN_SLICE_S)
 
-    def close(self) -> None:
-        """End server, thread and node; call it when nobody turns the executor any more."""
+    def end(self) -> None:
+        """End server and thread; call it when nobody turns the executor any more."""
         self._mailbox.close()
         self._server.close()
+
+    def close(self) -> None:
+        """End all that it opened, and the node."""
+        self.end()
         self._jump_handle.unregister()
         self._topics.close()
         self._publishers.end()

@@ -8,11 +8,13 @@ The shutdown pattern is the one of ros-packaging.md section 5 that always exits 
 from __future__ import annotations
 
 import gc
+import os
 import signal
 import sys
 import threading
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 from typing import Protocol
@@ -37,6 +39,11 @@ SPIN_SLICE_S = 0.1
 """Longest wait in one spin: the events executor needs finite time-outs (ros-packaging.md section 3)."""
 
 
+CLOSE_S = 4.0
+"""Longest time for leaving the graph: Fast DDS compares each endpoint with all others once more, which takes a minute
+with a hundred robots. `ros2 launch` kills after 10 s, and whoever pressed Ctrl-C does not wait that long."""
+
+
 class StartError(Exception):
     """A node cannot start for a reason that the user can mend; the text is one line."""
 
@@ -51,8 +58,11 @@ class Life(Protocol):
     def turn(self, executor: Executor) -> None:
         """Handle what is due; returns after `SPIN_SLICE_S` at the latest."""
 
+    def end(self) -> None:
+        """Nobody turns it any more: let wheels stand, close files and what people connect to. Twice does no harm."""
+
     def close(self) -> None:
-        """End everything that was opened, last opened first."""
+        """`end` it, and take everything out of the graph."""
 
 
 class Host(Life, Protocol):
@@ -127,11 +137,19 @@ class Threads:
         """Let `wait` return; safe in a signal handler."""
         self._ended.set()
 
-    def close(self) -> None:
-        """Stop all threads, then close the lives, last started first."""
+    def end(self) -> None:
+        """Stop all threads, then end the lives, last started first; once."""
+        if self._stop.is_set():
+            return
         self._stop.set()
         for _, thread in self._running:
             thread.join()
+        for life, _ in reversed(self._running):
+            life.end()
+
+    def close(self) -> None:
+        """`end` them, then close them in the same order."""
+        self.end()
         for life, _ in reversed(self._running):
             life.close()
         self._running.clear()
@@ -156,7 +174,8 @@ def run_main(
     """Run the lives that `build` gives until SIGINT or SIGTERM; the exit code.
 
     Each life gets its thread as soon as it is built; `on_ready` is called when all run. A `StartError` is one
-    line on stderr and exit code 2, with nothing left running; arguments that are not of ROS likewise.
+    line on stderr and exit code 2, with nothing left running; arguments that are not of ROS likewise. Where DDS takes
+    longer than `CLOSE_S` to forget all endpoints, the process ends without it.
     """
     words = sys.argv if args is None else ["", *args]
     stray = _stray(words[1:])
@@ -173,6 +192,7 @@ def run_main(
     signal.signal(signal.SIGINT, end)
     signal.signal(signal.SIGTERM, end)
     remove_half_made_ports()
+    code = 1
     try:
         rclpy.init(
             args=None if args is None else list(args), context=context, signal_handler_options=SignalHandlerOptions.NO
@@ -181,15 +201,36 @@ def run_main(
             threads.start(life)
         on_ready()
         threads.wait()
-        return 1 if threads.failure else 0
+        code = 1 if threads.failure else 0
     except StartError as error:
         print(f"thymio-sim: {error}", file=sys.stderr)
-        return 2
+        code = 2
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
-        threads.close()
-        context.try_shutdown()
+        threads.end()
+        with _at_most(CLOSE_S, code):
+            threads.close()
+            context.try_shutdown()
+    return code
+
+
+@contextmanager
+def _at_most(seconds: float, code: int) -> Iterator[None]:
+    """End the process with this code if what is done meanwhile takes longer; nothing that matters may be left to it."""
+
+    def leave() -> None:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
+
+    timer = threading.Timer(seconds, leave)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 def _stray(words: Sequence[str]) -> list[str]:

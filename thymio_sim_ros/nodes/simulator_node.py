@@ -194,10 +194,15 @@ class Simulator:
         """A message wanted more than the robot can do; the diagnostics tell how many."""
         self._limited += 1
 
-    def close(self) -> None:
-        """Destroy the node; the world goes with it, and its log ends."""
+    def end(self) -> None:
+        """The log ends."""
         if self._log is not None:
             self._log.close()
+            self._log = None
+
+    def close(self) -> None:
+        """Destroy the node; the world goes with it."""
+        self.end()
         if self._interfaces is not None:
             self._interfaces.close()
         self.node.destroy_node()

@@ -191,11 +191,15 @@ class WebPage:
         """Nothing but parameters to answer."""
         executor.spin_once(timeout_sec=SPIN_SLICE_S)
 
-    def close(self) -> None:
-        """Close the port, end the thread, destroy the node."""
+    def end(self) -> None:
+        """Close the port, end the thread."""
         self._server.shutdown()
         self._server.server_close()
         self._thread.join()
+
+    def close(self) -> None:
+        """The same, and destroy the node."""
+        self.end()
         self.node.destroy_node()
 
 
