@@ -14,6 +14,8 @@ const STRIPS = /** @type {const} */ (["bottom_left", "bottom_right"]);
 const GLOW = 4.2; // size of the halo of a full light, in radii
 const BEFORE_M = 0.0004; // of the halo before its disc
 const FAR = 2.5; // size of a light that is seen from far, in radii: without halo, and only while it shines
+/** Those seen from far; the others are on the sides and under the nose, and some of them shine all the time. */
+const SEEN_FROM_FAR = new Set(["circle", "buttons", "proximity"]);
 
 const UP = new THREE.Vector3(0, 0, 1);
 
@@ -49,7 +51,8 @@ export function createLeds({ robots, fine }) {
       LIGHTS.forEach((light, index) => {
         const level = robot.leds[light.group]?.[light.index] ?? 0;
         const size = light.radius * (1.4 + GLOW * Math.sqrt(level));
-        discs.put(slot, index, fine || level > 0 ? places[index] : null);
+        const shown = fine || (level > 0 && SEEN_FROM_FAR.has(light.group));
+        discs.put(slot, index, shown ? places[index] : null);
         discs.tint(slot, index, colour.copy(OFF).lerp(full[index], Math.sqrt(level)));
         halos.put(slot, index, fine && level > 0 ? facing(light, size, BEFORE_M) : null);
         halos.tint(slot, index, full[index]);
