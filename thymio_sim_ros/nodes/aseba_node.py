@@ -156,6 +156,7 @@ class AsebaRuntime:
         )
         self._wall = Clock(clock_type=ClockType.STEADY_TIME)
         node.create_timer(DIAGNOSTICS_S, self._publish_diagnostics, clock=self._wall)
+        node.create_timer(DIAGNOSTICS_S, self._see_who_tells, clock=self._wall)
         self._looks = node.create_timer(1.0 / self.params.watch_rate, self._look, clock=self._wall)
 
     # -- robots
@@ -242,6 +243,11 @@ class AsebaRuntime:
         for ports in self.robots:
             ports.is_fed = self._raw is not None
 
+    def _see_who_tells(self) -> None:
+        """There may be no simulator, or none any more, and a robot of another kind instead."""
+        if self._raw is not None and not self.node.count_publishers(self._raw.topic_name):
+            self._listen_to("")
+
     def _on_raw(self, data: bytes) -> None:
         """A tick of the simulator: all that was measured is there before anybody takes a turn, as in the runner."""
         robots = {ports.names.name: ports for ports in self.robots if ports.is_fed}
@@ -272,8 +278,6 @@ class AsebaRuntime:
         self._publish_statuses([ports.status.message])
 
     def _publish_diagnostics(self) -> None:
-        if self._raw is not None and not self.node.count_publishers(self._raw.topic_name):
-            self._listen_to("")  # there is no simulator, or none any more; a robot of another kind may be there
         self._publish_statuses([ports.status.message for ports in self.robots])
 
     def _publish_statuses(self, statuses: Iterable[DiagnosticStatus]) -> None:
