@@ -142,8 +142,12 @@ class AsebaRuntime:
         self._check = CheckService(
             node, layout=self.params.layout, robots=lambda: [ports.names.name for ports in self.robots]
         )
-        if self.params.follow_simulator and self.params.robot_topics != "driver":
-            self._listen_to(SIMULATOR_RAW)  # it may say something else; hundreds of subscriptions are not made in vain
+        if (
+            self.params.follow_simulator
+            and self.params.robot_topics != "driver"
+            and node.count_publishers(SIMULATOR_RAW)
+        ):
+            self._listen_to(SIMULATOR_RAW)  # it will say so; subscriptions for a hundred robots are not made in vain
         self._set_robots(self.params.robots)
         if self.params.follow_simulator:
             node.create_subscription(String, SIMULATOR_STATE, self._on_simulator_state, qos.LATCHED)
@@ -244,7 +248,7 @@ class AsebaRuntime:
             ports.is_fed = self._raw is not None
 
     def _see_who_tells(self) -> None:
-        """There may be no simulator, or none any more, and a robot of another kind instead."""
+        """There may be no simulator any more, and a robot of another kind instead."""
         if self._raw is not None and not self.node.count_publishers(self._raw.topic_name):
             self._listen_to("")
 
