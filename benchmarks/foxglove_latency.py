@@ -75,7 +75,7 @@ def serve_ours(port: int, rate: float, size: int) -> None:
     channel = messages.Channel(1, CHANNEL["topic"], "cdr", "t", CHANNEL["schema"], "ros2msg")
     server.post(events.AddChannels((channel,)))
     for _ in ticks(rate):
-        server.post(events.Data(1, 0, payload(size)))
+        server.publish(1, 0, payload(size))
 
 
 def serve_foxglove_websocket(port: int, rate: float, size: int) -> None:

@@ -111,7 +111,8 @@ class Bridge:
 
     def publish(self, *payloads: bytes) -> None:
         """Publish on the channel, times 0, 1, 2, …"""
-        self.server.apply(ev.Data(CHANNEL.id, time_ns, payload) for time_ns, payload in enumerate(payloads))
+        for time_ns, payload in enumerate(payloads):
+            self.server.publish(CHANNEL.id, time_ns, payload)
 
     async def until(self, condition: Callable[[], bool]) -> None:
         """Give way until the condition is true."""
@@ -128,7 +129,7 @@ async def bridge(settings: ServerSettings | None = None) -> AsyncIterator[Bridge
     server = BridgeServer(board, sink, settings)
     (listener,) = listen("127.0.0.1", 0)
     await server.start([listener])
-    server.apply([ev.AddChannels((CHANNEL,))])
+    server.carry_out(ev.AddChannels((CHANNEL,)))
     try:
         yield Bridge(server, sink, listener.getsockname()[1])
     finally:

@@ -143,7 +143,7 @@ def test_a_flood_of_control_answers_to_a_stalled_client_is_bounded() -> None:
         limit = 1 << 14
         async with bridge(ServerSettings(buffer_limit=limit)) as server, server.client() as other:
             await other.subscribe(1)
-            server.server.apply([ev.ParametersChanged((ms.Parameter("/n.p", "x" * limit),))])
+            server.server.carry_out(ev.ParametersChanged((ms.Parameter("/n.p", "x" * limit),)))
             stalled = StalledClient(server.port)
             await stalled.connect()
             async with asyncio.timeout(DEADLINE_S):

@@ -102,7 +102,8 @@ def test_new_and_vanished_channels_are_told_to_all() -> None:
         async with bridge() as server, server.client() as one, server.client() as two:
             for client in (one, two):
                 assert await client.next(ms.Advertise) == ms.Advertise((CHANNEL,))
-            server.server.apply([ev.AddChannels((added,)), ev.RemoveChannels((11,))])
+            server.server.carry_out(ev.AddChannels((added,)))
+            server.server.carry_out(ev.RemoveChannels((11,)))
             for client in (one, two):
                 assert await client.next(ms.Advertise) == ms.Advertise((added,))
                 assert await client.next(ms.Unadvertise) == ms.Unadvertise((11,))
@@ -244,7 +245,7 @@ def test_a_slow_connection_is_told_so_once() -> None:
                 server.publish(KILOBYTE)
             await stalled.say(ms.FetchAsset("end", 1))
             await server.sink.until(lambda events: len(events) == 2)
-            server.server.apply([ev.Tell(1, ms.Status(StatusLevel.INFO, "end"))])
+            server.server.carry_out(ev.Tell(1, ms.Status(StatusLevel.INFO, "end")))
             texts = []
             while "end" not in texts:
                 texts.append((await stalled.next(ms.Status)).message)
@@ -264,7 +265,7 @@ def test_a_client_that_lets_even_control_messages_pile_up_is_cut_off() -> None:
             await server.until(lambda: server.server.client_count == 1)
             text = "x" * LIMIT
             for _ in range(200):
-                server.server.apply([ev.Tell(1, ms.Status(StatusLevel.INFO, text))])
+                server.server.carry_out(ev.Tell(1, ms.Status(StatusLevel.INFO, text)))
             await server.until(lambda: server.server.client_count == 0)
             stalled.abort()
 

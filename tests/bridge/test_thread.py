@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import socket
 import ssl
+import subprocess
+import sys
 import threading
 from contextlib import ExitStack
 from pathlib import Path
@@ -114,7 +116,7 @@ def test_commands_of_another_thread_arrive_in_order() -> None:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         for number in range(100):
-            server.post(ev.Data(1, number, b"x"))
+            server.publish(1, number, b"x")
         times: list[int] = []
         while len(times) < 100:
             message = wire.decode_server(client.recv(timeout=DEADLINE_S))
@@ -133,7 +135,7 @@ def test_data_and_other_commands_do_not_overtake_each_other() -> None:
         for number in range(200):
             for _ in range(number % 3):
                 server.post(ev.Tell(1, ms.Status(StatusLevel.INFO, str(number))))
-            server.post(ev.Data(1, number, b"x"))
+            server.publish(1, number, b"x")
         told: list[str] = []
         while told.count("data 199") < 1:
             message = wire.decode_server(client.recv(timeout=DEADLINE_S))
@@ -161,7 +163,7 @@ def test_commands_do_not_wait_for_a_busy_event_loop() -> None:
     with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
-        server.post(ev.Data(1, 7, b"x"))
+        server.publish(1, 7, b"x")
         server.post(ev.Tell(1, ms.Status(StatusLevel.INFO, "told")))
         while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
             pass
@@ -182,7 +184,7 @@ def test_data_of_another_thread_arrives_by_tls_too(tmp_path: Path) -> None:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         for number in range(100):
-            server.post(ev.Data(1, number, number.to_bytes(4, "little") * 500))
+            server.publish(1, number, number.to_bytes(4, "little") * 500)
         numbers: list[int] = []
         while len(numbers) < 100:
             message = wire.decode_server(client.recv(timeout=DEADLINE_S))
@@ -204,7 +206,7 @@ def test_a_command_that_cannot_be_told_harms_neither_its_sender_nor_later_ones(
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         server.post(ev.Tell(1, ms.ParameterValues((ms.Parameter("/n.p", float("nan")),))))
-        server.post(ev.Data(1, 7, b"x"))
+        server.publish(1, 7, b"x")
         while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
             pass
         assert message.time_ns == 7
@@ -219,7 +221,7 @@ def test_a_thread_that_sends_without_a_pause_keeps_nobody_away() -> None:
 
     def send() -> None:
         while not is_enough.is_set():
-            server.post(ev.Data(1, 0, bytes(100)))
+            server.publish(1, 0, bytes(100))
 
     sender = threading.Thread(target=send)
     sender.start()
@@ -236,6 +238,42 @@ def test_a_thread_that_sends_without_a_pause_keeps_nobody_away() -> None:
         is_enough.set()
         sender.join()
         server.close()
+
+
+COUNTING = """
+import sys
+from websockets.sync.client import connect
+from thymio_sim_ros.bridge import SUBPROTOCOLS, wire
+from thymio_sim_ros.bridge import messages as ms
+
+with connect(f"ws://127.0.0.1:{sys.argv[1]}", subprotocols=SUBPROTOCOLS, close_timeout=0) as client:
+    client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+    count = 0
+    while count < int(sys.argv[2]):
+        frame = client.recv()
+        count += isinstance(frame, bytes)
+    print("done")
+"""
+
+
+def test_a_client_that_reads_on_gets_a_fair_part_of_what_comes_too_fast() -> None:
+    count, most_per_arrival = 10_000, 100
+    server, sink = start()
+    server.post(ev.AddChannels((CHANNEL,)))
+    command = [sys.executable, "-c", COUNTING, str(server.port), str(count)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as client:
+        assert client.stdout is not None
+        watch = threading.Thread(target=client.wait)
+        watch.start()
+        number = 0
+        while watch.is_alive() and number < count * most_per_arrival:
+            number += sink.subscribed.is_set()
+            server.publish(1, number, bytes(1000))
+        client.kill()
+        watch.join()
+        arrived = client.stdout.read()
+    server.close()
+    assert arrived, f"fewer than {count} of {number} messages arrived"
 
 
 def test_closing_ends_the_thread_and_says_goodbye_to_clients() -> None:

@@ -1,4 +1,4 @@
-"""Turns of two threads."""
+"""Turns of several threads."""
 
 from __future__ import annotations
 
@@ -9,34 +9,62 @@ from thymio_sim_ros.bridge.turn import Turn
 DEADLINE_S = 20.0
 
 
-def test_a_turn_is_taken_only_when_it_is_free() -> None:
+def test_one_at_a_time_has_the_turn() -> None:
     turn = Turn()
-    assert turn.take()
-    assert not turn.take()
-    turn.give_back()
-    with turn:
-        assert not turn.take()
-    assert turn.take()
+    count, rounds = 0, 2000
+
+    def add() -> None:
+        nonlocal count
+        for number in range(rounds):
+            if number % 2:
+                with turn:
+                    seen = count
+                    count = seen + 1
+            else:
+                turn.take()
+                seen = count
+                count = seen + 1
+                turn.give_back()
+
+    threads = [threading.Thread(target=add) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(DEADLINE_S)
+    assert count == len(threads) * rounds
 
 
-def test_nobody_takes_a_turn_for_which_another_waits() -> None:
+def test_who_waits_has_the_turn_before_one_who_comes_back_at_once() -> None:
     turn = Turn()
-    has_it, may_end = threading.Event(), threading.Event()
+    has_had_it, is_enough = threading.Event(), threading.Event()
 
-    def wait_for_it() -> None:
+    def take_it_again_and_again() -> None:
+        while not is_enough.is_set():
+            with turn:
+                pass
+
+    restless = threading.Thread(target=take_it_again_and_again)
+    restless.start()
+
+    def take_it_once() -> None:
+        for _ in range(50):
+            with turn:
+                pass
+        has_had_it.set()
+
+    patient = threading.Thread(target=take_it_once)
+    patient.start()
+    came = has_had_it.wait(DEADLINE_S)
+    is_enough.set()
+    patient.join()
+    restless.join()
+    assert came
+
+
+def test_an_error_ends_a_turn() -> None:
+    turn = Turn()
+    try:
         with turn:
-            has_it.set()
-            assert may_end.wait(DEADLINE_S)
-
-    assert turn.take()
-    waiter = threading.Thread(target=wait_for_it)
-    waiter.start()
-    while not has_it.is_set():  # as often as one likes, once it waits no more
-        turn.give_back()
-        if not turn.take():
-            break
-    assert has_it.wait(DEADLINE_S)
-    assert not turn.take()
-    may_end.set()
-    waiter.join()
-    assert turn.take()
+            raise ValueError
+    except ValueError:
+        turn.take()

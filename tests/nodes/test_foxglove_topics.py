@@ -106,7 +106,7 @@ def test_publishers_are_asked_for_their_qos_when_their_number_has_changed_and_el
     names = ("/one", "/two")
     first = {name: ros.node.create_publisher(String, name, 10) for name in names}
     commands = []
-    topics = Topics(ros.node, commands.append, lambda: 0)
+    topics = Topics(ros.node, commands.append, lambda *_data: None, lambda: 0)
     topics.update({name: ["std_msgs/msg/String"] for name in names})
     for channel in commands[0].channels:
         topics.want(channel.id)

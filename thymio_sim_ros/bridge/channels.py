@@ -27,6 +27,10 @@ MAX_REFUSALS = 8
 """Refusals told for one frame: a frame full of nonsense must not cost the others their time."""
 
 
+Routes = tuple[tuple[int, int], ...]
+"""Clients, and their numbers for what they get."""
+
+
 @dataclass(frozen=True, slots=True)
 class Letter:
     """A message and the clients that get it."""
@@ -64,19 +68,22 @@ class Switchboard:
         self._services: dict[int, ms.Service] = {}
         self._parameters: dict[str, ms.Parameter] = {}
         self._graph = ConnectionGraph()
-        self._kept: dict[int, deque[ev.Data]] = {}
-        self._routes: dict[int, tuple[tuple[int, int], ...]] = {}
+        self.kept: dict[int, deque[ev.Data]] = {}
+        """What newcomers get of each channel of which something is kept."""
+        self.routed: dict[int, Routes] = {}
+        """As `routes`, without channels that nobody gets; a new tuple at every change. Not to be changed from outside.
+        """
         self._time_ns = 0
 
     # --- what the server asks ---
 
-    def routes(self, channel_id: int) -> tuple[tuple[int, int], ...]:
+    def routes(self, channel_id: int) -> Routes:
         """(client, subscription id) of everybody who gets the channel's messages."""
-        return self._routes.get(channel_id, ())
+        return self.routed.get(channel_id, ())
 
     def keep(self, data: ev.Data) -> None:
         """Remember a message for newcomers where its channel is kept; repetitions once."""
-        kept = self._kept.get(data.channel_id)
+        kept = self.kept.get(data.channel_id)
         if kept is not None and all(data.payload != old.payload for old in kept):
             kept.append(data)
 
@@ -114,7 +121,7 @@ class Switchboard:
         return outcome
 
     def apply(self, command: ev.Command) -> list[Letter]:
-        """What follows from a command; `Data` is the server's own business (`routes`, `keep`)."""
+        """What follows from a command."""
         letters: list[Letter] = []
         _FROM_OWNER[type(command)](self, command, letters)
         return letters
@@ -138,7 +145,7 @@ class Switchboard:
                 subscriptions[item.id] = item.channel_id
                 subscribed.add(item.channel_id)
                 self._route(item.channel_id, (*self.routes(item.channel_id), (client, item.id)), outcome)
-                for data in self._kept.get(item.channel_id, ()):
+                for data in self.kept.get(item.channel_id, ()):
                     outcome.tell(client, ms.MessageData(item.id, data.time_ns, data.payload))
         self._clients[client] = replace(state, subscriptions=subscriptions)
 
@@ -237,8 +244,8 @@ class Switchboard:
     def _remove_channels(self, command: ev.RemoveChannels, letters: list[Letter]) -> None:
         for channel_id in command.channel_ids:
             self._channels.pop(channel_id, None)
-            self._kept.pop(channel_id, None)
-            for client, subscription_id in self._routes.pop(channel_id, ()):
+            self.kept.pop(channel_id, None)
+            for client, subscription_id in self.routed.pop(channel_id, ()):
                 state = self._clients[client]
                 left = {key: value for key, value in state.subscriptions.items() if key != subscription_id}
                 ended = (*state.ended[-MAX_ENDED:], subscription_id)
@@ -246,11 +253,11 @@ class Switchboard:
         self._tell_all(ms.Unadvertise(command.channel_ids), letters)
 
     def _keep_last(self, command: ev.KeepLast, letters: list[Letter]) -> None:
-        if command.depth and command.channel_id in self._routes:
-            kept = self._kept.get(command.channel_id, ())
-            self._kept[command.channel_id] = deque(kept, maxlen=command.depth)
+        if command.depth and command.channel_id in self.routed:
+            kept = self.kept.get(command.channel_id, ())
+            self.kept[command.channel_id] = deque(kept, maxlen=command.depth)
         else:
-            self._kept.pop(command.channel_id, None)
+            self.kept.pop(command.channel_id, None)
 
     def _add_services(self, command: ev.AddServices, letters: list[Letter]) -> None:
         self._services.update((service.id, service) for service in command.services)
@@ -299,7 +306,7 @@ class Switchboard:
         self._set_graph(ev.SetGraph(self._graph), letters)
 
     def _repeat_kept(self, command: ev.RepeatKept, letters: list[Letter]) -> None:
-        for channel_id, kept in self._kept.items():
+        for channel_id, kept in self.kept.items():
             letters += (
                 Letter((client,), ms.MessageData(subscription_id, self._time_ns, data.payload))
                 for client, subscription_id in self.routes(channel_id)
@@ -320,16 +327,16 @@ class Switchboard:
         known = (self._parameters[name] for name in names if name in self._parameters)
         return ms.ParameterValues(tuple(known), request_id)
 
-    def _route(self, channel_id: int, routes: tuple[tuple[int, int], ...], outcome: Outcome) -> None:
+    def _route(self, channel_id: int, routes: Routes, outcome: Outcome) -> None:
         """Set who gets a channel; tells the owner of its first and of its last subscriber."""
-        was_wanted = channel_id in self._routes
+        was_wanted = channel_id in self.routed
         if routes:
-            self._routes[channel_id] = routes
+            self.routed[channel_id] = routes
             if not was_wanted:
                 outcome.events.append(ev.ChannelWanted(channel_id))
         elif was_wanted:
-            del self._routes[channel_id]
-            self._kept.pop(channel_id, None)
+            del self.routed[channel_id]
+            self.kept.pop(channel_id, None)
             outcome.events.append(ev.ChannelUnwanted(channel_id))
 
     def _unroute(self, client: int, channel_id: int, outcome: Outcome) -> None:

@@ -207,7 +207,6 @@ Command = (
     AddChannels
     | RemoveChannels
     | KeepLast
-    | Data
     | AddServices
     | RemoveServices
     | ParametersChanged

@@ -8,20 +8,37 @@ from __future__ import annotations
 
 import struct
 
-__all__ = ["binary_head", "framed"]
+from thymio_sim_ros.bridge.vocabulary import BinaryOpcode
+from thymio_sim_ros.bridge.wire import DATA_HEAD_SIZE, data_head
+
+__all__ = ["binary_head", "data_frame", "framed"]
 
 _TEXT = 0x81
 _BINARY = 0x82
 """An opcode with the bit that says that the message ends with this frame."""
 
+_MESSAGE_DATA = int(BinaryOpcode.MESSAGE_DATA)
+
 _SHORT = struct.Struct("!BB")
 _MEDIUM = struct.Struct("!BBH")
 _LONG = struct.Struct("!BBQ")
+_MEDIUM_DATA = struct.Struct("<BBBBBIQ")
+"""Both heads in one; the length as two bytes, since the rest is little-endian."""
 
 
 def binary_head(size: int) -> bytes:
     """What stands before a binary message of `size` bytes."""
     return _head(_BINARY, size)
+
+
+def data_frame(subscription_id: int, time_ns: int, payload: bytes) -> bytes:
+    """The frame of a `MessageData`: hot path."""
+    size = DATA_HEAD_SIZE + len(payload)
+    if 126 <= size < 1 << 16:
+        return (
+            _MEDIUM_DATA.pack(_BINARY, 126, size >> 8, size & 0xFF, _MESSAGE_DATA, subscription_id, time_ns) + payload
+        )
+    return binary_head(size) + data_head(subscription_id, time_ns) + payload
 
 
 def framed(message: str | bytes) -> bytes:

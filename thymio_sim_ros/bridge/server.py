@@ -1,9 +1,9 @@
 """The asyncio side: sockets around the switchboard, on the current API of `websockets`.
 
-Everything here runs in one event loop, but for commands, which another thread may carry out itself (`apply_now`).
-Switchboard and outlets therefore belong to whoever has the turn: the loop while it handles something, else the thread
-that has a command. Nothing waits for a client: each has its `Outlet`; reading pauses for a client while the owner of
-the data is behind, which slows that client only.
+Everything here runs in one event loop, but for commands and messages, which any thread gives to the kernel itself.
+Switchboard and outlets therefore belong to whoever has the turn, which nobody keeps while it waits for something.
+Nothing waits for a client: each has its `Outlet`; reading pauses for a client while the owner of the data is behind,
+which slows that client only.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ import asyncio
 import itertools
 import logging
 import ssl
-import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from http import HTTPStatus
@@ -25,23 +24,24 @@ from websockets.exceptions import ConnectionClosed, NegotiationError
 from websockets.http11 import Request, Response
 from websockets.typing import Subprotocol
 
-from thymio_sim_ros.bridge.channels import Letter, Switchboard
+from thymio_sim_ros.bridge.channels import Letter, Routes, Switchboard
 from thymio_sim_ros.bridge.errors import FrameError
-from thymio_sim_ros.bridge.events import Command, Data, Event
-from thymio_sim_ros.bridge.framing import binary_head, framed
+from thymio_sim_ros.bridge.events import Command, Data, Event, RemoveChannels
+from thymio_sim_ros.bridge.framing import framed
 from thymio_sim_ros.bridge.messages import Status, Time, Unsubscribe
 from thymio_sim_ros.bridge.origins import is_allowed
-from thymio_sim_ros.bridge.outlet import Outlet
+from thymio_sim_ros.bridge.outlet import Outlet, Way
 from thymio_sim_ros.bridge.transport import SharedConnection
 from thymio_sim_ros.bridge.turn import Turn
 from thymio_sim_ros.bridge.vocabulary import SUBPROTOCOLS, StatusLevel
-from thymio_sim_ros.bridge.wire import DATA_HEAD_SIZE, data_head, decode_client, encode_server
+from thymio_sim_ros.bridge.wire import decode_client, encode_server
 
 __all__ = ["BridgeServer", "EventSink", "ServerSettings"]
 
 _FLUSH_PERIOD_S = 0.01
 _FULL_PAUSE_S = 0.005
 _CLOSE_S = 0.3
+_NO_WAYS: tuple[Routes, tuple[Way, ...]] = ((), ())
 _TIME_SLOT = -1
 """Where an outlet keeps the newest time; no subscription has this id."""
 
@@ -73,10 +73,17 @@ class ServerSettings:
 
 
 class BridgeServer:
-    """A Foxglove server on its listening sockets. Methods belong to the event loop's thread, but for `apply_now`."""
+    """A Foxglove server on its listening sockets.
+
+    `carry_out` and `publish` may be called by any thread, as long as the event loop has not been closed before `close`;
+    the other methods belong to the event loop's.
+    """
 
     def __init__(self, board: Switchboard, sink: EventSink, settings: ServerSettings | None = None) -> None:
         self._board = board
+        self._routed, self._kept = board.routed, board.kept
+        self._ways: dict[int, tuple[Routes, tuple[Way, ...]]] = {}
+        """How the data of channels get to those who are routed, as long as these are the same."""
         self._sink = sink
         self._settings = settings or ServerSettings()
         self._log = logging.getLogger(__name__)
@@ -128,47 +135,37 @@ class BridgeServer:
         """Connected clients."""
         return len(self._outlets)
 
-    def apply(self, commands: Iterable[Command]) -> None:
-        """Carry out commands in order; they are taken while it is the loop's turn."""
+    def carry_out(self, command: Command) -> None:
+        """Do what the owner of the data wants; in any thread."""
         with self._turn:
-            for command in commands:
-                self._apply(command)
+            try:
+                self._deliver(self._board.apply(command))
+            except Exception:
+                # Our own mistake must not end the owner's thread: what clients have not been told of it is lost.
+                self._log.exception("%s failed", type(command).__name__)
+            if isinstance(command, RemoveChannels):
+                self._ways.clear()
 
-    def apply_now(self, command: Command) -> bool:
-        """Carry out a command in the calling thread, unless the loop is at work; returns whether it was done."""
-        if not self._turn.take():
-            return False
+    def publish(self, channel_id: int, time_ns: int, payload: bytes) -> None:
+        """Send a message to everybody who gets the channel; in any thread. Hot path."""
+        self._turn.take()
         try:
-            self._apply(command)
+            routes = self._routed.get(channel_id)
+            if routes is None:
+                return  # nothing is kept either: it would be old when somebody comes
+            if channel_id in self._kept:
+                self._board.keep(Data(channel_id, time_ns, payload))
+            known, ways = self._ways.get(channel_id, _NO_WAYS)
+            if known is not routes:
+                ways = tuple(self._outlets[client].way(subscription_id) for client, subscription_id in routes)
+                self._ways[channel_id] = (routes, ways)
+            for send in ways:
+                if not send(time_ns, payload):
+                    self._see_to_flushing()
+        except Exception:
+            self._log.exception("a message of channel %d failed", channel_id)
         finally:
             self._turn.give_back()
-        return True
-
-    def _apply(self, command: Command) -> None:
-        try:
-            if isinstance(command, Data):
-                self._publish(command)
-            else:
-                self._deliver(self._board.apply(command))
-        except Exception:
-            # Our own mistake must not end the owner's thread: what clients have not been told of it is lost.
-            self._log.exception("%s failed", type(command).__name__)
-
-    def _publish(self, data: Data) -> None:
-        """Hot path: one frame per distinct subscription id."""
-        self._board.keep(data)
-        routes = self._board.routes(data.channel_id)
-        if not routes:
-            return
-        now_s = time.monotonic()
-        head = binary_head(DATA_HEAD_SIZE + len(data.payload))
-        frames: dict[int, bytes] = {}
-        for client, subscription_id in routes:
-            frame = frames.get(subscription_id)
-            if frame is None:
-                frame = frames[subscription_id] = head + data_head(subscription_id, data.time_ns) + data.payload
-            if not self._outlets[client].data(subscription_id, frame, now_s):
-                self._see_to_flushing()
 
     def _see_to_flushing(self) -> None:
         if not self._flush_is_due:
@@ -181,7 +178,7 @@ class BridgeServer:
             for client in letter.clients:
                 if not isinstance(letter.message, Time):
                     self._outlets[client].control(frame)
-                elif not self._outlets[client].data(_TIME_SLOT, frame, time.monotonic()):
+                elif not self._outlets[client].data(_TIME_SLOT, frame):
                     self._see_to_flushing()
 
     def _flush_soon(self) -> None:
@@ -213,6 +210,7 @@ class BridgeServer:
         finally:
             with self._turn:
                 del self._outlets[client]
+                self._ways.clear()  # they would keep what is gone
                 events = self._board.leave(client)
             self._tell(events)
 

@@ -1,4 +1,4 @@
-"""The event loop's thread. Whoever has a command carries it out; while the loop is at work, it waits for the loop."""
+"""The event loop's thread. Whoever has a command or a message takes it to the sockets itself."""
 
 from __future__ import annotations
 
@@ -6,22 +6,14 @@ import asyncio
 import errno
 import socket
 import threading
-from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 
 from thymio_sim_ros.bridge.channels import Switchboard
-from thymio_sim_ros.bridge.events import Command, Data
+from thymio_sim_ros.bridge.events import Command
 from thymio_sim_ros.bridge.messages import ServerInfo
 from thymio_sim_ros.bridge.server import BridgeServer, EventSink, ServerSettings
 
 __all__ = ["ServerThread", "listen"]
-
-_MAX_WAITING = 10_000
-"""Commands that may wait for the loop before further data is dropped."""
-
-_BATCH = 100
-"""Commands that the loop carries out at a time."""
-
 
 _LOOPBACK = ("127.0.0.1", "::1")
 """What `localhost` means: a browser may try either first."""
@@ -100,8 +92,8 @@ class ServerThread:
     ) -> None:
         self._listeners = listen(address, port)
         self._server = BridgeServer(Switchboard(info), sink, settings)
-        self._waiting: deque[Command] = deque()
-        self._wake_is_due = False
+        self.publish: Callable[[int, int, bytes], None] = self._server.publish
+        """Send a message of a channel: its id, time in ns and payload; from any thread."""
         self._loop = asyncio.new_event_loop()
         self._stop = asyncio.Event()
         self._thread = threading.Thread(target=self._run, name="foxglove-server", daemon=True)
@@ -117,15 +109,8 @@ class ServerThread:
         return self._server.client_count
 
     def post(self, command: Command) -> None:
-        """Carry out a command, or hand it to the loop; order is kept. Any one thread at a time."""
-        if self._is_closed or (not self._waiting and self._server.apply_now(command)):
-            return
-        if isinstance(command, Data) and len(self._waiting) >= _MAX_WAITING:
-            return
-        self._waiting.append(command)
-        if not self._wake_is_due:
-            self._wake_is_due = True
-            self._loop.call_soon_threadsafe(self._drain)
+        """Carry out a command; from any thread."""
+        self._server.carry_out(command)
 
     def close(self) -> None:
         """End the server, its connections and the thread."""
@@ -134,19 +119,6 @@ class ServerThread:
         self._is_closed = True
         self._loop.call_soon_threadsafe(self._stop.set)
         self._thread.join()
-
-    def _drain(self) -> None:
-        """Carry out some of what waits; clients have their turn before the rest, which may grow as fast."""
-        self._server.apply(self._taken())
-        self._wake_is_due = False
-        if self._waiting:
-            self._wake_is_due = True
-            self._loop.call_soon(self._drain)
-
-    def _taken(self) -> Iterator[Command]:
-        """What waits, taken one by one: nobody may overtake a command that is neither here nor carried out."""
-        for _ in range(min(len(self._waiting), _BATCH)):
-            yield self._waiting.popleft()
 
     def _run(self) -> None:
         try:

@@ -22,8 +22,8 @@ __all__ = ["SharedConnection", "SharedTransport"]
 class SharedTransport(asyncio.Transport):
     """A transport of the event loop; `offer`, `write`, `abort` and `get_write_buffer_size` are open to all threads.
 
-    Invariant: bytes leave in the order of the calls. They wait here, then in the loop's transport; nobody
-    gives the kernel anything while something waits.
+    Invariant: bytes leave in the order of the calls. What the kernel does not take waits here; whoever writes next, or
+    the loop when there is room, tries again. With TLS what waits goes to the loop's transport.
     """
 
     def __init__(self, inner: asyncio.Transport, loop: asyncio.AbstractEventLoop) -> None:
@@ -31,12 +31,14 @@ class SharedTransport(asyncio.Transport):
         self._inner = inner
         self._loop = loop
         self._lock = threading.Lock()
-        self._waiting: list[bytes] = []
-        self._waiting_size = 0
+        self._waiting = bytearray()
         self._is_ended = False
+        self._is_loop_told = False
+        """Whether the loop sees to what waits."""
         # With TLS only the loop's transport can make the bytes; else a descriptor of our own, valid until `release`.
         is_plain = inner.get_extra_info("sslcontext") is None
         self._socket: socket.socket | None = inner.get_extra_info("socket").dup() if is_plain else None
+        self._is_plain = is_plain
 
     def write(self, data: bytes | bytearray | memoryview) -> None:
         """Send; what cannot be sent at once waits. Does nothing when the connection is ending."""
@@ -45,50 +47,80 @@ class SharedTransport(asyncio.Transport):
     def offer(self, data: bytes, limit: int) -> bool:
         """The same unless more than `limit` bytes wait already; returns whether they did not."""
         with self._lock:
-            before = self._waiting_size + self._inner.get_write_buffer_size()
-            if before > limit:
-                return False
-            if self._is_ended or self._inner.is_closing():
+            if self._is_ended:
                 return True
-            rest = data if before or self._socket is None else _send(self._socket, data)
-            if rest:
-                if not self._waiting:
-                    self._loop.call_soon_threadsafe(self._hand_over)
-                self._waiting.append(rest)
-                self._waiting_size += len(rest)
+            if self._is_plain and (not self._waiting or self._push()):
+                sent = self._send(data)
+                if sent == len(data):
+                    return True
+                data = data[sent:]
+            elif self.get_write_buffer_size() > limit:
+                return False
+            self._waiting += data
+            if not self._is_loop_told:
+                self._is_loop_told = True
+                self._loop.call_soon_threadsafe(self._see_to_it)
             return True
 
     def get_write_buffer_size(self) -> int:
         """Bytes that the kernel has not taken yet."""
-        return self._waiting_size + self._inner.get_write_buffer_size()
+        return len(self._waiting) + self._inner.get_write_buffer_size()
 
     def abort(self) -> None:
         """End the connection at once, without what waits."""
-        self._end()
+        with self._lock:
+            self._end()
         self._loop.call_soon_threadsafe(self._inner.abort)
 
     def release(self) -> None:
-        """Give the descriptor back: the connection is gone, or the client would not hear of it."""
-        self._end()
+        """Give the descriptor back, or the client would not hear that the connection is gone. In the loop's thread."""
         with self._lock:
+            self._end()
             if self._socket is not None:
+                self._loop.remove_writer(self._socket)
                 self._socket.close()
                 self._socket = None
 
     def _end(self) -> None:
+        self._is_ended = True
+        self._waiting.clear()
+
+    def _send(self, data: bytes | bytearray) -> int:
+        """Give the kernel as much as it takes, and say how much that was."""
+        assert self._socket is not None
+        try:
+            return self._socket.send(data)
+        except (BlockingIOError, InterruptedError):
+            return 0
+        except OSError:
+            return len(data)  # the connection is lost: the loop finds out by reading and ends it
+
+    def _push(self) -> bool:
+        """Try to send what waits; whether nothing does any more."""
+        del self._waiting[: self._send(self._waiting)]
+        return not self._waiting
+
+    def _see_to_it(self) -> None:
+        """Let the loop send what waits."""
         with self._lock:
-            self._is_ended = True
-            self._waiting.clear()
-            self._waiting_size = 0
+            if self._socket is not None:
+                self._loop.add_writer(self._socket, self._go_on)
+            else:
+                self._is_loop_told = False
+                self._hand_over()
+
+    def _go_on(self) -> None:
+        """There is room."""
+        with self._lock:
+            if self._socket is not None and self._push():
+                self._is_loop_told = False
+                self._loop.remove_writer(self._socket)
 
     def _hand_over(self) -> None:
         """Leave what waits to the loop's transport."""
-        with self._lock:
-            rest = b"".join(self._waiting)
-            self._waiting.clear()
-            self._waiting_size = 0
-            if rest and not self._inner.is_closing():
-                self._inner.write(rest)
+        if self._waiting and not self._inner.is_closing():
+            self._inner.write(bytes(self._waiting))
+        self._waiting.clear()
 
     # --- what only the event loop's thread calls ---
 
@@ -111,8 +143,9 @@ class SharedTransport(asyncio.Transport):
         self._inner.close()
 
     def _finish(self) -> None:
-        self._hand_over()
-        self._end()
+        with self._lock:
+            self._hand_over()
+            self._end()
 
     def is_closing(self) -> bool:
         """Whether the connection is ending."""
@@ -160,13 +193,3 @@ class SharedConnection(ServerConnection):
         """The client is gone."""
         super().connection_lost(exc)
         self.transport.release()
-
-
-def _send(connection: socket.socket, data: bytes) -> bytes:
-    """Give the kernel as much as it takes; returns the rest."""
-    try:
-        return data[connection.send(data) :]
-    except (BlockingIOError, InterruptedError):
-        return data
-    except OSError:
-        return b""  # the connection is lost: the loop finds out by reading and ends it

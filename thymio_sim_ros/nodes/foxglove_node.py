@@ -150,6 +150,7 @@ class FoxgloveBridge:
         self._topics = Topics(
             self.node,
             post,
+            self._server.publish,
             self._now_ns,
             min_depth=values.min_qos_depth,
             max_depth=values.max_qos_depth,

@@ -10,7 +10,7 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
-from thymio_sim_ros.bridge.events import AddChannels, Command, Data, KeepLast, RemoveChannels
+from thymio_sim_ros.bridge.events import AddChannels, Command, KeepLast, RemoveChannels
 from thymio_sim_ros.bridge.messages import Channel
 from thymio_sim_ros.bridge.vocabulary import CDR
 from thymio_sim_ros.nodes.foxglove_qos import Reception, reception
@@ -43,6 +43,7 @@ class Topics:
         self,
         node: Node,
         post: Callable[[Command], None],
+        publish: Callable[[int, int, bytes], None],
         now_ns: Callable[[], int],
         *,
         min_depth: int = 10,
@@ -51,6 +52,7 @@ class Topics:
     ) -> None:
         self._node = node
         self._post = post
+        self._publish = publish
         self._now_ns = now_ns
         self._depths = {"min_depth": min_depth, "max_depth": max_depth}
         self._is_best_effort = is_best_effort
@@ -134,12 +136,12 @@ class Topics:
         return reception(publishers, **self._depths, best_effort=self._is_best_effort(name))
 
     def _subscribe(self, topic: _Topic, fitting: Reception) -> None:
-        channel_id, now_ns, post = topic.channel.id, self._now_ns, self._post
+        channel_id, now_ns, publish = topic.channel.id, self._now_ns, self._publish
 
         def forward(payload: bytes) -> None:
-            post(Data(channel_id, now_ns(), payload))
+            publish(channel_id, now_ns(), payload)
 
-        post(KeepLast(channel_id, fitting.kept))
+        self._post(KeepLast(channel_id, fitting.kept))
         try:
             topic.subscription = self._node.create_subscription(
                 topic.message_type, topic.channel.topic, forward, fitting.profile, raw=True
