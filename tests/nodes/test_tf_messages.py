@@ -314,6 +314,7 @@ def test_a_type_built_here_equals_the_compiled_one_and_talks_to_it() -> None:
 def test_transforms_arrive_from_another_process() -> None:
     program = """
         import sys
+        import threading
         import rclpy
         from rclpy.node import Node
         from thymio_sim_ros.nodes.tf_messages import TFMessage, Transform, encode
@@ -323,9 +324,9 @@ def test_transforms_arrive_from_another_process() -> None:
         publisher = node.create_publisher(TFMessage, "/tf", 10)
         transform = Transform(5, "odom", "base_link", (1.0, 2.0, 3.0), (0.0, 0.0, 0.0, 1.0))
         node.create_timer(0.05, lambda: publisher.publish(encode([transform])))
-        while rclpy.ok() and publisher.get_subscription_count() == 0:
-            rclpy.spin_once(node, timeout_sec=0.1)
-        while rclpy.ok() and publisher.get_subscription_count() > 0:
+        is_enough = threading.Event()
+        threading.Thread(target=lambda: (sys.stdin.read(), is_enough.set())).start()
+        while not is_enough.is_set():
             rclpy.spin_once(node, timeout_sec=0.1)
         node.destroy_node()
         rclpy.try_shutdown()
@@ -333,12 +334,13 @@ def test_transforms_arrive_from_another_process() -> None:
     with _peers("viewer") as (viewer,):
         environment = os.environ | {"ROS_DOMAIN_ID": str(viewer.context.get_domain_id())}
         viewer.listen("/tf")
-        process = subprocess.Popen([sys.executable, "-c", textwrap.dedent(program)], env=environment)
+        command = [sys.executable, "-c", textwrap.dedent(program)]
+        process = subprocess.Popen(command, env=environment, stdin=subprocess.PIPE)
         try:
             _until(lambda: bool(viewer.received), viewer)
             (endpoint,) = viewer.node.get_publishers_info_by_topic("/tf")
-            viewer.close()
-            assert process.wait(timeout=20) == 0
+            process.communicate(timeout=20)  # closes its standard input
+            assert process.returncode == 0
         finally:
             process.kill()
             process.wait()
