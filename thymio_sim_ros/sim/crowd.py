@@ -73,7 +73,7 @@ class Crowd:
         for robot in self._robots:
             robot.shared_wheels = self.wheels
         self._sure = np.zeros((3, len(self._robots)))
-        """Where each robot has looked for an edge, and how far away that may be at least."""
+        """Where each robot has looked for an edge, and the square of how far away that may be at least."""
         self._acts: list[tuple[Act, list[Any], _Actors]] = []
         for tasks in zip(*(robot.tasks for robot in self._robots), strict=True):
             if (update_all := tasks[0].update_all) is not None:
@@ -126,11 +126,12 @@ class Crowd:
 
     def look_down(self, footing: Footing) -> None:
         """Let those fall who have no floor under their origins; the others look again when they have gone that far."""
-        x, y = self.fleet.poses[:, :2].T
-        sure_x, sure_y, sure_m = self._sure
-        for index in np.flatnonzero(np.hypot(x - sure_x, y - sure_y) >= sure_m).tolist():
-            sure_x[index], sure_y[index] = x[index], y[index]
-            sure_m[index] = self._robots[index].balance.stand(footing, float(x[index]), float(y[index]))
+        places = self.fleet.poses.T[:2]
+        ways = places - self._sure[:2]
+        ways *= ways
+        for index in (ways[0] + ways[1] >= self._sure[2]).nonzero()[0].tolist():
+            x, y = places[:, index].tolist()
+            self._sure[:, index] = x, y, self._robots[index].balance.stand(footing, x, y) ** 2
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
         """What the rays of all robots meet now (`Raycaster.cast`)."""

@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim.geometry import Pose, Twist
+from thymio_sim_ros.sim.kernel.counting import Counting
+from thymio_sim_ros.sim.kernel.memory import is_available
 from thymio_sim_ros.sim.motor_control import WheelControl
 from thymio_sim_ros.sim.thymio2 import WHEEL_RADIUS_M, WHEEL_TRACK_M
 
@@ -98,8 +100,11 @@ class WheelArrays:
     The arrays are the truth, and each `Wheels` may be read, and changed, after `tell` until the next `drive` or `roll`.
     """
 
-    def __init__(self, wheels: Sequence[Wheels]) -> None:
+    def __init__(self, wheels: Sequence[Wheels], *, is_compiled: bool | None = None) -> None:
+        """`is_compiled`: by kernels, or with numpy; None: by kernels where they are available. Nothing else differs."""
         self._wheels = tuple(wheels)
+        self._is_compiled = is_available() if is_compiled is None else is_compiled
+        self._counting: Counting | None = None
         self.is_told = True
         """Whether the wheels are the truth just now."""
         self._given: Values | None = None
@@ -167,6 +172,8 @@ class WheelArrays:
         self._speeds = _rows([wheels.speeds_m_s for wheels in self._wheels], 2)
         self._angles = _rows([wheels.angles_rad for wheels in self._wheels], 2)
         self._odometry = _rows([wheels.place for wheels in self._wheels], 3)
+        if self._counting is not None:
+            self._counting.odometry[:], self._counting.angles[:] = self._odometry, self._angles
 
     def drive(self, commanded: Values, slip: Values, limit_m_s: float) -> None:
         """As `Wheels.drive`. An array that is given again has not been changed."""
@@ -182,6 +189,9 @@ class WheelArrays:
     def roll(self, covered_m_s: Values, dt_s: float) -> None:
         """As `Wheels.roll`."""
         self.take()
+        if self._is_compiled:
+            self._roll_compiled(covered_m_s, dt_s)
+            return
         self._speeds = speeds = covered_m_s - self._ground
         speeds += self._commanded
         left, right = speeds
@@ -199,6 +209,13 @@ class WheelArrays:
         place += before[:2]
         np.add(before[2], turn, out=self._odometry[2])
         self._angles = self._angles + speeds * (dt_s / WHEEL_RADIUS_M)
+
+    def _roll_compiled(self, covered_m_s: Values, dt_s: float) -> None:
+        counting = self._counting
+        if counting is None or counting.dt_s != dt_s:
+            counting = self._counting = Counting(len(self._wheels), dt_s)
+            counting.odometry[:], counting.angles[:] = self._odometry, self._angles
+        self._speeds, self._odometry, self._angles = counting.roll(covered_m_s, self._ground, self._commanded)
 
 
 def _rows(values: Sequence[Sequence[float]], width: int) -> Values:

@@ -17,6 +17,8 @@ import pymunk
 
 from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.kernel.memory import is_available
+from thymio_sim_ros.sim.physics.compiled import CompiledEngaged, Driving
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS
 from thymio_sim_ros.sim.physics.doors import DoorBody
 from thymio_sim_ros.sim.physics.engaged import Engaged
@@ -47,7 +49,11 @@ class Fleet:
         movables: Sequence[MovableBody],
         doors: Sequence[DoorBody],
         lookout: Lookout,
+        *,
+        is_compiled: bool | None = None,
     ) -> None:
+        """`is_compiled`: by kernels, or with numpy; None: by kernels where they are available. Nothing else differs."""
+        compiled = is_available() if is_compiled is None else is_compiled
         self._space, self._bodies, self._lookout = space, tuple(bodies), lookout
         self._movables, self._doors = tuple(movables), tuple(doors)
         count = len(self._bodies)
@@ -65,7 +71,8 @@ class Fleet:
         self._rolling = np.zeros((4, count))
         """Speed and rate of turn that the wheels give in this tick, and the turn in half a sub-step and in a whole."""
         self._is_engaged = np.zeros(count, dtype=bool)
-        self._engaged = Engaged(self._bodies, _NOBODY)
+        self._driving = Driving(count, len(self._bodies) + len(movables) + len(doors) + 1) if compiled else None
+        self._engaged = self._engage(_NOBODY)
         self._reader = Reader(space)
         self._look_round_in = self._looks = 0
         self._was_restless = False
@@ -189,6 +196,12 @@ class Fleet:
 
     def _glide(self) -> Values:
         """As `RobotBody.glide`, whatever else may happen to them; the yaws before it."""
+        if self._driving is not None:
+            self._driving.driven[:] = self.driven
+            self._driving.glide()
+            yaws: Values = self._now[2]
+            self._now = self._driving.now.copy()
+            return yaws
         left, right = self.driven
         self._rolling = rolling = np.empty_like(self._rolling)
         speed, spin, half_turn, turn = rolling
@@ -226,6 +239,8 @@ class Fleet:
                 self._is_touching[self._index[body]] = bool(body.touching)
             self.changed.clear()
             self._touching = np.flatnonzero(self._is_touching)
+            if self._driving is not None:
+                self._driving.is_touching[:] = self._is_touching
 
     def _look_round(self, *, is_restless: bool) -> None:
         """Engage those who may reach something; all when there is no telling. Let others go, though not every time."""
@@ -255,7 +270,7 @@ class Fleet:
                 body.take_over(Pose(x_m, y_m, yaw), speed, spin, is_free=True)
                 body.engage(self._space)
         self._is_engaged = is_wanted
-        self._engaged = Engaged(self._bodies, np.flatnonzero(is_wanted))
+        self._engaged = self._engage(np.flatnonzero(is_wanted))
 
     def _take(self) -> None:
         """Read what the bodies are."""
@@ -269,7 +284,9 @@ class Fleet:
         self._now[_SPEED] = [body.speed_m_s for body in self._bodies]
         self._now[_SPIN] = [body.spin_rad_s for body in self._bodies]
         self._is_engaged = np.array([body.is_engaged for body in self._bodies], dtype=bool)
-        self._engaged = Engaged(self._bodies, np.flatnonzero(self._is_engaged))
+        self._engaged = self._engage(np.flatnonzero(self._is_engaged))
+        if self._driving is not None:
+            self._driving.now[:], self._driving.stands[:] = self._now, self._stands
         self._loads = loads = [movable for movable in self._movables if not movable.is_fallen]
         things = [(load.pose.x_m, load.pose.y_m, load.reach_m) for load in loads]
         self._things = np.array(things).reshape(-1, 3).T
@@ -277,6 +294,12 @@ class Fleet:
         self._load_state = np.full((len(self._loads), 6), np.nan)
         self._is_load_moving = any(load.is_moving for load in self._loads)
         self._is_load_fast = any(load.is_fast for load in self._loads)
+
+    def _engage(self, numbers: Indices) -> Engaged | CompiledEngaged:
+        """Those with these numbers."""
+        if self._driving is not None:
+            return CompiledEngaged(self._driving, self._bodies, numbers)
+        return Engaged(self._bodies, numbers)
 
     def _settle_loads(self) -> None:
         """Tell things that have moved."""

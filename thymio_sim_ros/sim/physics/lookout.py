@@ -13,6 +13,8 @@ import numpy.typing as npt
 
 from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.frames import Frames
+from thymio_sim_ros.sim.kernel import reach
+from thymio_sim_ros.sim.kernel.memory import KernelMemory, is_available
 from thymio_sim_ros.sim.physics.quiet import LONGEST_WAY_M, SAFE_M, THING_SHARE
 from thymio_sim_ros.sim.rays import Obstacle
 
@@ -35,17 +37,23 @@ def _circle() -> tuple[float, float]:
 
 
 _MIDDLE_M, _RADIUS_M = _circle()
+_THING_REACH_M = _RADIUS_M + (1.0 + THING_SHARE) * _WAY_M + SAFE_M
+_ROBOT_REACH_M = 2 * (_RADIUS_M + _WAY_M) + SAFE_M
+"""What is beyond this from a thing's circle, or from another robot, is not near."""
 
 
 class Lookout:
     """Looks round among fixed obstacles, which stay, robots and things, which are told."""
 
-    def __init__(self, fixed: Sequence[Obstacle]) -> None:
+    def __init__(self, fixed: Sequence[Obstacle], *, is_compiled: bool | None = None) -> None:
+        """`is_compiled`: by a kernel, or with numpy; None: by a kernel where there is one. Nothing else differs."""
+        self._is_compiled = is_available() if is_compiled is None else is_compiled
+        self._watch: _Watch | None = None
         rows = Frames(fixed).rows[:, :6]
         reach_m = np.full((len(rows), 1), _RADIUS_M + _WAY_M + SAFE_M)
-        x, y, cos, sin, half_x, half_y, reach = self._fixed = np.concatenate((rows, reach_m), axis=1).T
-        wide_x = np.abs(cos) * half_x + np.abs(sin) * half_y + reach
-        wide_y = np.abs(sin) * half_x + np.abs(cos) * half_y + reach
+        x, y, cos, sin, half_x, half_y, far = self._fixed = np.concatenate((rows, reach_m), axis=1).T
+        wide_x = np.abs(cos) * half_x + np.abs(sin) * half_y + far
+        wide_y = np.abs(sin) * half_x + np.abs(cos) * half_y + far
         self._bounds = np.stack((x - wide_x, x + wide_x, y, wide_y))
 
     def near(self, poses: Values, stands: Flags, things: Values) -> Flags:
@@ -56,6 +64,10 @@ class Lookout:
         fixed, loose, count = self._fixed.shape[1], things.shape[1], poses.shape[1]
         x, y, yaw = poses
         x, y = x + np.cos(yaw) * _MIDDLE_M, y + np.sin(yaw) * _MIDDLE_M
+        if self._is_compiled:
+            if self._watch is None or self._watch.room != (count, loose):
+                self._watch = _Watch(self._fixed, self._bounds, count, loose)
+            return self._watch.near(x, y, stands, things)
         order = np.argsort(x, kind="stable")
         sorted_x = x[order]
 
@@ -63,14 +75,14 @@ class Lookout:
         targets[2] = 1.0
         targets[:, :fixed] = self._fixed
         targets[:2, fixed : fixed + loose], targets[0, fixed + loose :], targets[1, fixed + loose :] = things[:2], x, y
-        reach = targets[6]
-        np.add(things[2], _RADIUS_M + (1.0 + THING_SHARE) * _WAY_M + SAFE_M, out=reach[fixed : fixed + loose])
-        np.multiply(stands, 2 * (_RADIUS_M + _WAY_M) + SAFE_M, out=reach[fixed + loose :])
+        reaches = targets[6]
+        np.add(things[2], _THING_REACH_M, out=reaches[fixed : fixed + loose])
+        np.multiply(stands, _ROBOT_REACH_M, out=reaches[fixed + loose :])
         left, right, middle, wide = bounds = np.empty((4, targets.shape[1]))
         bounds[:, :fixed] = self._bounds
-        np.subtract(targets[0, fixed:], reach[fixed:], out=left[fixed:])
-        np.add(targets[0, fixed:], reach[fixed:], out=right[fixed:])
-        middle[fixed:], wide[fixed:] = targets[1, fixed:], reach[fixed:]
+        np.subtract(targets[0, fixed:], reaches[fixed:], out=left[fixed:])
+        np.add(targets[0, fixed:], reaches[fixed:], out=right[fixed:])
+        middle[fixed:], wide[fixed:] = targets[1, fixed:], reaches[fixed:]
 
         first = sorted_x.searchsorted(left)
         counts = sorted_x.searchsorted(right, side="right") - first
@@ -80,11 +92,42 @@ class Lookout:
         is_near &= target - (fixed + loose) != robot
         target, robot = target[is_near], robot[is_near]
 
-        tx, ty, cos, sin, half_x, half_y, reach = targets[:, target]
+        tx, ty, cos, sin, half_x, half_y, far = targets[:, target]
         dx, dy = x[robot] - tx, y[robot] - ty
         along = np.maximum(np.abs(cos * dx + sin * dy) - half_x, 0.0)
         across = np.maximum(np.abs(cos * dy - sin * dx) - half_y, 0.0)
         found = np.zeros(count, dtype=bool)
-        found[robot[along * along + across * across < reach * reach]] = True
+        found[robot[along * along + across * across < far * far]] = True
         found &= stands
         return found
+
+
+class _Watch:
+    """The kernel for so many robots and things: its arrays, and how it is called."""
+
+    def __init__(self, fixed: Values, bounds: Values, robots: int, things: int) -> None:
+        floats = [(2,), (robots,), (robots,), fixed.shape, bounds.shape, (3, things)]
+        ints = [(len(reach.COUNTS),), (robots,), (robots,), (robots,)]
+        memory = KernelMemory(
+            sum(KernelMemory.room(shape, np.float64) for shape in floats)
+            + sum(KernelMemory.room(shape, np.int32) for shape in ints)
+        )
+        self.room = (robots, things)
+        sizes, self._x, self._y, own_fixed, own_bounds, self._things = (
+            memory.array(shape, np.float64) for shape in floats
+        )
+        counts, self._stands, order, self._found = (memory.array(shape, np.int32) for shape in ints)
+        counts[:] = robots, fixed.shape[1], things
+        sizes[:] = _ROBOT_REACH_M, _THING_REACH_M
+        own_fixed[:], own_bounds[:], order[:] = fixed, bounds, np.arange(robots)
+        self._memory = memory
+        self._call = memory.bind(
+            reach, reach.near, counts, sizes, self._x, self._y, self._stands, own_fixed, own_bounds, self._things,
+            order, self._found,
+        )  # fmt: skip
+
+    def near(self, x: Values, y: Values, stands: Flags, things: Values) -> Flags:
+        """As `Lookout.near`, with the middles of the circles."""
+        self._x[:], self._y[:], self._stands[:], self._things[:] = x, y, stands, things
+        self._call()
+        return self._found.astype(bool)
