@@ -213,7 +213,7 @@ class WheelArrays:
     def _roll_compiled(self, covered_m_s: Values, dt_s: float) -> None:
         counting = self._counting
         if counting is None or counting.dt_s != dt_s:
-            counting = self._counting = Counting(len(self._wheels), dt_s)
+            counting = self._counting = Counting(len(self._wheels), dt_s, WHEEL_TRACK_M, WHEEL_RADIUS_M)
             counting.odometry[:], counting.angles[:] = self._odometry, self._angles
         self._speeds, self._odometry, self._angles = counting.roll(covered_m_s, self._ground, self._commanded)
 

@@ -16,7 +16,7 @@ Values = npt.NDArray[np.float64]
 class Counting:
     """What is counted on wheels: `odometry` and `angles`, which `roll` changes."""
 
-    def __init__(self, robots: int, dt_s: float) -> None:
+    def __init__(self, robots: int, dt_s: float, track_m: float, radius_m: float) -> None:
         pair, lone = (2, robots), (robots,)
         shapes = (pair, pair, pair, pair, (3, robots), pair, lone, lone, lone)
         memory = KernelMemory(sum(KernelMemory.room(shape, np.float64) for shape in shapes))
@@ -27,12 +27,13 @@ class Counting:
         self._memory = memory
         self.dt_s = dt_s
         self._turn = memory.bind(
-            rolling, rolling.turn, robots, dt_s, self._covered, self._ground, self._commanded, self.odometry,
+            rolling, rolling.turn, robots, dt_s, track_m, self._covered, self._ground, self._commanded, self.odometry,
             self._speeds, self._headings,
         )  # fmt: skip
         self._roll = memory.bind(
-            rolling, rolling.roll, robots, dt_s, self._speeds, self._cosines, self._sines, self.odometry, self.angles
-        )
+            rolling, rolling.roll, robots, dt_s, track_m, radius_m, self._speeds, self._cosines, self._sines,
+            self.odometry, self.angles,
+        )  # fmt: skip
 
     def roll(self, covered: Values, ground: Values, commanded: Values) -> tuple[Values, Values, Values]:
         """A tick, as `WheelArrays.roll`; the speeds at the rim, odometry and angles after it."""

@@ -6,30 +6,27 @@ Arrays have a row for each value, a column for each robot.
 from __future__ import annotations
 
 from thymio_sim_ros.sim.kernel.language import Floats
-from thymio_sim_ros.sim.thymio2 import WHEEL_RADIUS_M, WHEEL_TRACK_M
 
 __all__ = ["KERNELS", "roll", "turn"]
 
 KERNELS = ("turn", "roll")
 
-_TRACK_M = WHEEL_TRACK_M
-_RADIUS_M = WHEEL_RADIUS_M
-
 
 def turn(
-    count: int, dt_s: float, covered: Floats, ground: Floats, commanded: Floats, odometry: Floats, speeds: Floats,
-    headings: Floats,
+    count: int, dt_s: float, track_m: float, covered: Floats, ground: Floats, commanded: Floats, odometry: Floats,
+    speeds: Floats, headings: Floats,
 ) -> None:  # fmt: skip
     """Speeds at the rim, and the mean heading of the tick by the odometry."""
     for wheel in range(2 * count):
         speeds[wheel] = covered[wheel] - ground[wheel] + commanded[wheel]
     for robot in range(count):
-        headings[robot] = (speeds[count + robot] - speeds[robot]) / _TRACK_M * dt_s / 2.0 + odometry[2 * count + robot]
+        headings[robot] = (speeds[count + robot] - speeds[robot]) / track_m * dt_s / 2.0 + odometry[2 * count + robot]
 
 
 def roll(
-    count: int, dt_s: float, speeds: Floats, cosines: Floats, sines: Floats, odometry: Floats, angles: Floats
-) -> None:
+    count: int, dt_s: float, track_m: float, radius_m: float, speeds: Floats, cosines: Floats, sines: Floats,
+    odometry: Floats, angles: Floats,
+) -> None:  # fmt: skip
     """Odometry and how far the wheels have turned."""
     for robot in range(count):
         left = speeds[robot]
@@ -37,6 +34,6 @@ def roll(
         way = (left + right) * (dt_s / 2.0)
         odometry[robot] = cosines[robot] * way + odometry[robot]
         odometry[count + robot] = sines[robot] * way + odometry[count + robot]
-        odometry[2 * count + robot] = odometry[2 * count + robot] + (right - left) / _TRACK_M * dt_s
+        odometry[2 * count + robot] = odometry[2 * count + robot] + (right - left) / track_m * dt_s
     for wheel in range(2 * count):
-        angles[wheel] = angles[wheel] + speeds[wheel] * (dt_s / _RADIUS_M)
+        angles[wheel] = angles[wheel] + speeds[wheel] * (dt_s / radius_m)
