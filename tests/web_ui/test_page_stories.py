@@ -32,6 +32,12 @@ def choose(page: Any, label: str, option: str) -> None:
     box.select_option(label=option)
 
 
+def choose_behaviour(page: Any, option: str, about: str) -> None:
+    """Choose one of the robot's own, and wait until the page says what it does: then the robot runs it."""
+    choose(page, "Built-in behaviour", option)
+    playwright.expect(page.get_by_text(about, exact=True)).to_be_visible()
+
+
 def robot_button(page: Any, name: str) -> Any:
     """One of the robot's five, not a key of the remote control."""
     return page.get_by_role("group", name="Buttons of the robot").get_by_role("button", name=name)
@@ -45,8 +51,7 @@ def wait_until_moved(page: Any, far_m: float, act: Any) -> None:
 
 
 def test_the_basic_mode_drives_by_the_arrows(class_page):
-    choose(class_page, "Built-in behaviour", "Thesis: basic (white)")
-    playwright.expect(class_page.get_by_text("Arrows drive until something is in the way.")).to_be_visible()
+    choose_behaviour(class_page, "Thesis: basic (white)", "Arrows drive until something is in the way.")
     wait_until_moved(class_page, 0.05, robot_button(class_page, "Forward").click)
     class_page.get_by_role("banner").get_by_role("button", name="Stop").click()
     class_page.wait_for_function("() => Math.abs(window.thymio.state().robot.wheelSpeeds.left) < 0.1")
@@ -56,7 +61,8 @@ def test_the_explorer_finds_its_way_among_obstacles(class_page):
     class_page.get_by_role("button", name="Gallery").click()
     class_page.get_by_role("dialog").get_by_role("button", name="Obstacle").first.click()
     class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'obstacle'")
-    choose(class_page, "Built-in behaviour", "Thesis: explorer (orange)")
+    about = "Forward starts, obstacles are avoided, backward stops."
+    choose_behaviour(class_page, "Thesis: explorer (orange)", about)
     wait_until_moved(class_page, 0.2, robot_button(class_page, "Forward").click)
     playwright.expect(class_page.get_by_text("running", exact=True).first).to_be_visible()
 
@@ -64,7 +70,8 @@ def test_the_explorer_finds_its_way_among_obstacles(class_page):
 def test_the_track_follower_goes_along_the_track(class_page):
     class_page.get_by_role("combobox", name="Choose a playground").select_option(label="Borderless")
     class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'borderless'")
-    choose(class_page, "Built-in behaviour", "Thesis: track follower (pink)")
+    about = "Forward starts along the track, backward stops."
+    choose_behaviour(class_page, "Thesis: track follower (pink)", about)
     wait_until_moved(class_page, 0.3, robot_button(class_page, "Forward").click)
 
 
