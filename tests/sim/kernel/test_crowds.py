@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 
 from tests.sim.builders import shipped
-from tests.sim.kernel.engines import run_by_python
 from tests.sim.test_crowd import busy
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
 from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.physics.lookout import Lookout
 from thymio_sim_ros.sim.playground import Playground
 from thymio_sim_ros.sim.primitives import Box, Solid
@@ -47,13 +45,6 @@ def steps(monkeypatch: pytest.MonkeyPatch, scene: Playground, elsewhere: Pose, *
         yield told.encode() + b"".join(np.ascontiguousarray(part + 0.0).tobytes() for part in values)
         if tick % 50 == 7:
             yield repr([(robot.pose, robot.wheels.odometry) for robot in world.robots.values()]).encode()
-
-
-@pytest.fixture(params=["compiled", "by Python"])
-def kernels(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    if request.param != "compiled":
-        monkeypatch.setattr(KernelMemory, "bind", run_by_python)
-    return str(request.param)
 
 
 @pytest.mark.usefixtures("kernels")

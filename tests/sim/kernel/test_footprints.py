@@ -7,9 +7,7 @@ import random
 import numpy as np
 import pytest
 
-from tests.sim.kernel.engines import run_by_python
 from thymio_sim_ros.sim.ground import Ground
-from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.primitives import Color, Floor, Paint
 
 SIDE_M = 0.6
@@ -30,13 +28,6 @@ def grounds(dice: random.Random) -> list[Ground]:
     floors = [Floor(f"floor {number}", area(dice, SIDE_M), color(dice)) for number in range(3)]
     paints = [Paint(f"paint {number}", area(dice, 0.1), color(dice)) for number in range(60)]
     return [Ground(floors, paints, is_compiled=is_compiled) for is_compiled in (False, True)]
-
-
-@pytest.fixture(params=["compiled", "by Python"])
-def kernels(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    if request.param != "compiled":
-        monkeypatch.setattr(KernelMemory, "bind", run_by_python)
-    return str(request.param)
 
 
 @pytest.mark.usefixtures("kernels")

@@ -9,23 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.sim.kernel.engines import run_by_python
 from tests.sim.test_raycaster import FAN, scatter, things
 from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.raycaster import Raycaster
 from thymio_sim_ros.sim.rays import Obstacle
 
 
 def rows(poses: Sequence[Pose]) -> Any:
     return np.array([(pose.x_m, pose.y_m, pose.yaw_rad) for pose in poses]).reshape(-1, 3)
-
-
-@pytest.fixture(params=["compiled", "by Python"])
-def kernels(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    if request.param != "compiled":
-        monkeypatch.setattr(KernelMemory, "bind", run_by_python)
-    return str(request.param)
 
 
 @pytest.mark.usefixtures("kernels")

@@ -96,14 +96,9 @@ class Casting:
         floats = [(len(self._sizes),), *(part.shape for part in given)]
         floats += [(robots, 3), (2, robots), (total, 7), (loose + robots, 2), (planes, 3), (robots * sensors, count)]
         ints = [(len(rays.COUNTS),), (total,), (robots + 1,), (pairs,), (planes + 1,), (robots * sensors,)]
-        memory = KernelMemory(
-            sum(KernelMemory.room(shape, np.float64) for shape in floats)
-            + sum(KernelMemory.room(shape, np.int32) for shape in ints)
-        )
-        sizes, *fixed, poses, turns, frames, was, plane_rows, distances = (
-            memory.array(shape, np.float64) for shape in floats
-        )
-        counts, kinds, first, near, side_numbers, numbers = (memory.array(shape, np.int32) for shape in ints)
+        memory, float_arrays, int_arrays = KernelMemory.holding(floats, ints)
+        sizes, *fixed, poses, turns, frames, was, plane_rows, distances = float_arrays
+        counts, kinds, first, near, side_numbers, numbers = int_arrays
         sizes[:] = self._sizes
         for part, values in zip(fixed, given, strict=True):
             part[:] = values

@@ -19,10 +19,8 @@ class Counting:
     def __init__(self, robots: int, dt_s: float, track_m: float, radius_m: float) -> None:
         pair, lone = (2, robots), (robots,)
         shapes = (pair, pair, pair, pair, (3, robots), pair, lone, lone, lone)
-        memory = KernelMemory(sum(KernelMemory.room(shape, np.float64) for shape in shapes))
-        self._covered, self._ground, self._commanded, self._speeds, self.odometry, self.angles, *rest = (
-            memory.array(shape, np.float64) for shape in shapes
-        )
+        memory, arrays, _ = KernelMemory.holding(shapes)
+        self._covered, self._ground, self._commanded, self._speeds, self.odometry, self.angles, *rest = arrays
         self._headings, self._cosines, self._sines = rest
         self._memory = memory
         self.dt_s = dt_s

@@ -7,7 +7,7 @@ depends on it. A kernel that reads beyond its arrays would not be noticed here: 
 from __future__ import annotations
 
 import importlib.util
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from types import ModuleType
 from typing import Any, TypeVar
@@ -51,6 +51,14 @@ class KernelMemory:
         self._base = self._bytes.ctypes.data
         self._used = 0
         runtime.serve(self)
+
+    @classmethod
+    def holding(cls, floats: Sequence[Shape], ints: Sequence[Shape] = ()) -> tuple[KernelMemory, list[Any], list[Any]]:
+        """A memory for just these arrays, and the arrays: of float64, and of int32."""
+        kinds = [(shape, np.float64) for shape in floats], [(shape, np.int32) for shape in ints]
+        memory = cls(sum(cls.room(shape, kind) for part in kinds for shape, kind in part))
+        found = [[memory.array(shape, kind) for shape, kind in part] for part in kinds]
+        return memory, found[0], found[1]
 
     @staticmethod
     def room(shape: Shape, kind: type[np.generic]) -> int:

@@ -6,6 +6,7 @@ Both give the same bits (tests/sim/kernel/test_crowds.py).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -42,16 +43,11 @@ class Driving:
             "counts": (len(driving.COUNTS),),
             **dict.fromkeys(("stands", "is_touching", "numbers", "touching", "held", "rows"), (robots,)),
         }
-        size = sum(KernelMemory.room(shape, np.float64) for shape in floats.values())
-        size += sum(KernelMemory.room(shape, np.int32) for shape in ints.values())
-        self._memory = KernelMemory(size)
-        self._arrays: dict[str, npt.NDArray[Any]] = {
-            **{name: self._memory.array(shape, np.float64) for name, shape in floats.items()},
-            **{name: self._memory.array(shape, np.int32) for name, shape in ints.items()},
-        }
+        self._memory, *arrays = KernelMemory.holding(tuple(floats.values()), tuple(ints.values()))
+        self._arrays: dict[str, npt.NDArray[Any]] = dict(zip((*floats, *ints), chain(*arrays), strict=True))
         self.counts = self._arrays["counts"]
         self.counts[_ROBOTS] = robots
-        self.driven, self.now, self.rolling = (self._arrays[name] for name in ("driven", "now", "rolling"))
+        self.driven, self.now = self._arrays["driven"], self._arrays["now"]
         self.stands, self.is_touching = self._arrays["stands"], self._arrays["is_touching"]
         self._headings = self._arrays["headings"][:SUB_STEPS]
         self._cosines, self._sines = self._arrays["cosines"], self._arrays["sines"]

@@ -108,15 +108,10 @@ class _Watch:
     def __init__(self, fixed: Values, bounds: Values, robots: int, things: int) -> None:
         floats = [(2,), (robots,), (robots,), fixed.shape, bounds.shape, (3, things)]
         ints = [(len(reach.COUNTS),), (robots,), (robots,), (robots,)]
-        memory = KernelMemory(
-            sum(KernelMemory.room(shape, np.float64) for shape in floats)
-            + sum(KernelMemory.room(shape, np.int32) for shape in ints)
-        )
+        memory, float_arrays, int_arrays = KernelMemory.holding(floats, ints)
         self.room = (robots, things)
-        sizes, self._x, self._y, own_fixed, own_bounds, self._things = (
-            memory.array(shape, np.float64) for shape in floats
-        )
-        counts, self._stands, order, self._found = (memory.array(shape, np.int32) for shape in ints)
+        sizes, self._x, self._y, own_fixed, own_bounds, self._things = float_arrays
+        counts, self._stands, order, self._found = int_arrays
         counts[:] = robots, fixed.shape[1], things
         sizes[:] = _ROBOT_REACH_M, _THING_REACH_M
         own_fixed[:], own_bounds[:], order[:] = fixed, bounds, np.arange(robots)
@@ -130,4 +125,5 @@ class _Watch:
         """As `Lookout.near`, with the middles of the circles."""
         self._x[:], self._y[:], self._stands[:], self._things[:] = x, y, stands, things
         self._call()
-        return self._found.astype(bool)
+        found: Flags = self._found.astype(bool)
+        return found
