@@ -117,7 +117,7 @@ def test_things_that_move_are_seen_where_they_are() -> None:
     caster = Raycaster(fixed, loose)
     for step in range(5):
         loose = things(dice, 5, 1.0) if step % 2 else loose
-        caster.move(loose)
+        caster.move(dict(enumerate(loose)))
         assert close(all_at_once(caster, poses, FAN), one_by_one(poses, [*fixed, *loose], FAN))
 
 
@@ -125,12 +125,12 @@ def test_what_is_gone_or_fallen_is_not_seen_and_sees_nothing() -> None:
     dice = random.Random(6)
     loose, poses = things(dice, 8, 1.0), scatter(dice, 6, 1.0)
     caster = Raycaster([], loose)
-    caster.move([None, *loose[1:]], fallen={2})
+    caster.move({0: None}, fallen={2})
     left = [pose for index, pose in enumerate(poses) if index != 2]
     found = all_at_once(caster, poses, FAN)
     assert found[4:6] == [[math.inf] * 4] * 2
     assert close(found[:4] + found[6:], one_by_one(left, loose[1:], FAN))
-    caster.move(loose)
+    caster.move(dict(enumerate(loose)))
     assert close(all_at_once(caster, poses, FAN), one_by_one(poses, loose, FAN))
 
 

@@ -135,7 +135,7 @@ class Crowd:
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
         """What the rays of all robots meet now (`Raycaster.cast`)."""
-        self._caster.move(self.shared.physics.loose(), frozenset(self.fleet.fallen.tolist()))
+        self._caster.move(self.shared.physics.moved(), self.fleet.fallen.tolist())
         return self._caster.cast(self.poses, fan)
 
     def measure(self, due: Sequence[int]) -> Columns:

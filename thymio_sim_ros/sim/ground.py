@@ -89,23 +89,21 @@ class Ground:
         place = (cell_y % _TILE_CELLS, cell_x % _TILE_CELLS)
         return GroundSample(tile[0].item(place), tile[1].item(place))
 
-    def sample_all(self, x_m: _Values, y_m: _Values) -> tuple[_Values, _Values]:
-        """`sample` for many places at once: reflectances and floors, the same to the last bit."""
+    def sample_under(self, poses: _Values, points: _Values) -> tuple[_Values, _Values]:
+        """`sample` at points of many robots' frames, to the last bit: reflectances and floors by robot and point.
+
+        Rows of `poses` are x, y, yaw, those of `points` x, y.
+        """
         if self._is_compiled:
-            found = self._sampled(x_m, y_m)
+            found = self._sampled(poses, points)
             if found is not None:
                 return found
-        cells_x = np.floor(x_m / self._cell_m).astype(np.intp)
-        cells_y = np.floor(y_m / self._cell_m).astype(np.intp)
-        colors = self._plain_colors(cells_x // _TILE_CELLS, cells_y // _TILE_CELLS)
-        reflectance, floor = self._picture.greys[colors], (colors != 0).astype(float)
-        mixed = np.flatnonzero(colors == _MIXED)
-        if len(mixed):
-            height, width = self._picture.pixels.shape
-            columns = self._taps(cells_x[mixed], self._picture.origin[0], width)
-            rows = self._taps(cells_y[mixed], self._picture.origin[1], height)
-            reflectance[mixed], floor[mixed] = self._footprints(rows, columns)
-        return reflectance, floor
+        x, y, yaw = poses.T[:, :, None]
+        cos, sin = np.cos(yaw), np.sin(yaw)
+        xs = x + cos * points[:, 0] - sin * points[:, 1]
+        ys = y + sin * points[:, 0] + cos * points[:, 1]
+        reflectance, floor = self._sample_all(xs.ravel(), ys.ravel())
+        return reflectance.reshape(xs.shape), floor.reshape(xs.shape)
 
     def color_at(self, x_m: float, y_m: float) -> Color | None:
         """The color of a place, or None where there is no floor."""
@@ -132,13 +130,28 @@ class Ground:
             self._tiles.clear()
             self._plain[:] = _UNKNOWN
 
-    def _sampled(self, x_m: _Values, y_m: _Values) -> tuple[_Values, _Values] | None:
+    def _sample_all(self, x_m: _Values, y_m: _Values) -> tuple[_Values, _Values]:
+        """At many places at once, with numpy."""
+        cells_x = np.floor(x_m / self._cell_m).astype(np.intp)
+        cells_y = np.floor(y_m / self._cell_m).astype(np.intp)
+        colors = self._plain_colors(cells_x // _TILE_CELLS, cells_y // _TILE_CELLS)
+        reflectance, floor = self._picture.greys[colors], (colors != 0).astype(float)
+        mixed = (colors == _MIXED).nonzero()[0]
+        if len(mixed):
+            height, width = self._picture.pixels.shape
+            columns = self._taps(cells_x[mixed], self._picture.origin[0], width)
+            rows = self._taps(cells_y[mixed], self._picture.origin[1], height)
+            reflectance[mixed], floor[mixed] = self._footprints(rows, columns)
+        return reflectance, floor
+
+    def _sampled(self, poses: _Values, points: _Values) -> tuple[_Values, _Values] | None:
         """By the kernel; None when there are tiles that are not known."""
-        if self._sampling is None or self._sampling.places != len(x_m):
+        if self._sampling is None or not self._sampling.is_for(len(poses), points):
             picture = self._picture
             steps = (np.arange(_TAPS) - _TAPS // 2) * _TAP_STEP_M
             self._sampling = Sampling(
-                len(x_m),
+                len(poses),
+                points,
                 picture.pixels,
                 self._plain,
                 picture.greys,
@@ -147,7 +160,7 @@ class Ground:
             )
             picture.move_to(self._sampling.pixels, self._sampling.greys)
             self._plain = self._sampling.tiles
-        return self._sampling.sample(x_m, y_m)
+        return self._sampling.sample(poses)
 
     def _tiles_that_see(self, area: Area) -> list[tuple[int, int]]:
         """Tiles with a footprint that reaches into an area of the picture."""
@@ -161,10 +174,10 @@ class Ground:
     def _plain_colors(self, tiles_x: _Indices, tiles_y: _Indices) -> _Indices:
         """The only color that each of these tiles sees, or _MIXED."""
         last_row, last_column = (size - 1 for size in self._plain.shape)
-        rows = np.clip(tiles_y - self._corner[1], 0, last_row)  # beyond them there is no floor
-        columns = np.clip(tiles_x - self._corner[0], 0, last_column)
+        rows = _within(tiles_y - self._corner[1], 0, last_row)  # beyond them there is no floor
+        columns = _within(tiles_x - self._corner[0], 0, last_column)
         colors = self._plain[rows, columns]
-        unknown = np.flatnonzero(colors == _UNKNOWN)
+        unknown = (colors == _UNKNOWN).nonzero()[0]
         if len(unknown) > _MANY:
             self._survey()
             return self._plain_colors(tiles_x, tiles_y)
@@ -243,7 +256,7 @@ class Ground:
         """Pixel of each tap of cells along one axis, kept one pixel round the picture."""
         places = (cells[:, None] + 0.5) * self._cell_m + (np.arange(_TAPS) - _TAPS // 2)[None, :] * _TAP_STEP_M
         pixels = np.floor(places / self.pixel_m).astype(np.intp) - origin
-        return np.clip(pixels, -1, size)
+        return _within(pixels, -1, size)
 
     def _weigh(self, values: _Values, rows: _Indices, columns: _Indices) -> _Values:
         """The weighted mean over the taps, summed in their order: along the columns, then along the rows."""
@@ -254,6 +267,12 @@ class Ground:
         for tap in range(1, _TAPS):
             blurred += self._weights[tap] * across.take(rows[:, tap], axis=0)
         return blurred
+
+
+def _within(numbers: _Indices, low: int, high: int) -> _Indices:
+    """As `numpy.clip`, at a third of the time for few numbers."""
+    found: _Indices = np.minimum(np.maximum(numbers, low), high)
+    return found
 
 
 def _over_floor(grey: _Values, missing: _Values) -> tuple[_Values, _Values]:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol, TypeVar
-
-import numpy as np
+from typing import Any, Protocol, TypeVar
 
 from thymio_sim_ros.sim.actuators.hand import HandState
 from thymio_sim_ros.sim.geometry import Tilt
@@ -58,12 +56,13 @@ class Together(Protocol):
 class Group:
     """Satisfies `GroupView`."""
 
-    __slots__ = ("_crowd", "_evens", "_noise", "_robots", "_views", "notes")
+    __slots__ = ("_crowd", "_evens", "_noise", "_robots", "_views", "memory", "notes")
 
     def __init__(self, crowd: Together, robots: Sequence[Robot], views: Sequence[SensorView]) -> None:
         self._crowd, self._robots, self._views = crowd, robots, views
         self._noise: NormalBank | None = None
         self._evens: UniformBank | None = None
+        self.memory: dict[str, Any] = {}
         self.notes = Notes([view.memory for view in views])
 
     def __len__(self) -> int:
@@ -142,9 +141,4 @@ class Group:
         return self._crowd.cast(fan)
 
     def ground_at(self, places: Values) -> tuple[Values, Values]:
-        x, y, yaw = self._crowd.poses.T[:, :, None]
-        cos, sin = np.cos(yaw), np.sin(yaw)
-        xs = x + cos * places[:, 0] - sin * places[:, 1]
-        ys = y + sin * places[:, 0] + cos * places[:, 1]
-        reflectances, floors = self._crowd.shared.ground.sample_all(xs.ravel(), ys.ravel())
-        return reflectances.reshape(xs.shape), floors.reshape(xs.shape)
+        return self._crowd.shared.ground.sample_under(self._crowd.poses, places)

@@ -15,12 +15,17 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from thymio_sim_ros.sim.kernel.dealing import Dealing
+from thymio_sim_ros.sim.kernel.memory import is_available
+
 __all__ = ["Noise", "NormalBank", "UniformBank"]
 
 Values = npt.NDArray[np.float64]
 
 _BLOCK = 128
 """Numbers that a bank draws ahead for each user; even, since normal numbers come in pairs."""
+_WIDTH = 2 * _BLOCK
+"""Numbers that a bank of normal ones keeps for each user: a block that is being used, and the one behind it."""
 
 
 class Noise:
@@ -118,27 +123,31 @@ class UniformBank:
 class NormalBank:
     """Normal numbers for many users."""
 
-    def __init__(self, noises: Sequence[Noise]) -> None:
+    def __init__(self, noises: Sequence[Noise], *, is_compiled: bool | None = None) -> None:
+        """`is_compiled`: dealt out by a kernel, or with numpy; None: by a kernel where there is one. Same numbers."""
         self._noises = noises
-        self._evens = np.zeros((len(noises), 2 * _BLOCK))
-        self._numbers = np.zeros((len(noises), 2 * _BLOCK))
-        self._used = np.full(len(noises), 2 * _BLOCK)
+        self._is_compiled = is_available() if is_compiled is None else is_compiled
+        self._dealing: Dealing | None = None
+        self._evens = np.zeros((len(noises), _WIDTH))
+        self._numbers = np.zeros((len(noises), _WIDTH))
+        self._used: npt.NDArray[np.integer] = np.full(len(noises), _WIDTH)
         """How many of each row; a user who has used one of a pair starts with the other."""
         for row, noise in enumerate(noises):
             pending = noise.take_pending()
             if pending is not None:
-                self._used[row], self._numbers[row, -1] = 2 * _BLOCK - 1, pending
+                self._used[row], self._numbers[row, -1] = _WIDTH - 1, pending
 
     def draw(self, users: npt.NDArray[np.intp], sigma: float) -> Values:
         """`Noise.gauss` for each of these users, who stand in order; the same one at most `_BLOCK` times."""
         if len(users) == 0 or not self._noises[0].enabled:
             return np.zeros(len(users))
-        before = np.arange(len(users)) - np.searchsorted(users, users)
-        counts = np.bincount(users, minlength=len(self._noises))
-        if (self._used + counts).max() > 2 * _BLOCK:
+        deal = self._deal_compiled if self._is_compiled else self._deal
+        dealt = deal(users)
+        if dealt is None:
             self._refill(np.flatnonzero(self._used >= _BLOCK))
-        drawn: Values = self._numbers[users, self._used[users] + before] * sigma
-        self._used += counts
+            dealt = deal(users)
+            assert dealt is not None  # everybody has a block now
+        drawn: Values = dealt * sigma
         return drawn
 
     def give_back(self) -> None:
@@ -146,7 +155,27 @@ class NormalBank:
         for row, (noise, used) in enumerate(zip(self._noises, self._used.tolist(), strict=True)):
             pending = float(self._numbers[row, used]) if used % 2 else None
             noise.give_back(self._evens[row, used + used % 2 :].tolist(), pending)
-        self._used[:] = 2 * _BLOCK
+        self._used[:] = _WIDTH
+
+    def _deal(self, users: npt.NDArray[np.intp]) -> Values | None:
+        """The next number for each turn of a user; None when one has too few left."""
+        before = np.arange(len(users)) - np.searchsorted(users, users)
+        counts = np.bincount(users, minlength=len(self._noises))
+        if (self._used + counts).max() > _WIDTH:
+            return None
+        dealt: Values = self._numbers[users, self._used[users] + before]
+        self._used += counts
+        return dealt
+
+    def _deal_compiled(self, users: npt.NDArray[np.intp]) -> Values | None:
+        """As `_deal`."""
+        dealing = self._dealing
+        if dealing is None or dealing.most < len(users):
+            dealing = Dealing(*self._numbers.shape, most=2 * len(users))
+            dealing.numbers[:], dealing.used[:] = self._numbers, self._used
+            self._numbers, self._used = dealing.numbers, dealing.used
+            self._dealing = dealing  # not before: whoever owned the numbers keeps them until they are copied
+        return dealing.deal(users)
 
     def _refill(self, rows: npt.NDArray[np.intp]) -> None:
         """A new block behind the last one of each of these users; the one before it is used.

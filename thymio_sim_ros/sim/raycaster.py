@@ -7,7 +7,7 @@ half of it. From the pairs those in the robot's reach remain, then those near a 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -73,27 +73,24 @@ class Raycaster:
         self._kernels: dict[Fan, Casting] = {}
         self._frames = Frames([*fixed, *loose])
         self._fixed = len(fixed)
-        self._loose = list(loose)
         self._fallen: frozenset[int] = frozenset()
         self._lists: dict[Fan, tuple[Values, Indices, Indices]] = {}
         """For each fan: where loose things and robots were, and the pairs that were near then."""
 
-    def move(self, loose: Sequence[Obstacle | None], fallen: Collection[int] = ()) -> None:
-        """The things that can move, each at its place of old or elsewhere, in their first order; None for what is gone.
+    def move(self, moved: Mapping[int, Obstacle | None], fallen: Collection[int] = ()) -> None:
+        """Loose things that are elsewhere now, by their numbers; None for what is gone.
 
         Robots with the numbers in `fallen` neither see anything nor are seen.
         """
-        if fallen != self._fallen:
+        if len(fallen) != len(self._fallen) or not self._fallen.issuperset(fallen):
             self._fallen = frozenset(fallen)
             self._lists.clear()
-        for index, obstacle in enumerate(loose):
-            if obstacle is not self._loose[index]:
-                self._loose[index] = obstacle
-                row = self._frames.rows[self._fixed + index]
-                size = row[4:].copy()
-                self._frames.put(self._fixed + index, obstacle)
-                if np.abs(row[4:] - size).max() > _SAME_M:
-                    self._lists.clear()
+        for number, obstacle in moved.items():
+            row = self._frames.rows[self._fixed + number]
+            size = row[4:].copy()
+            self._frames.put(self._fixed + number, obstacle)
+            if np.abs(row[4:] - size).max() > _SAME_M:
+                self._lists.clear()
 
     def cast(self, poses: Values, fan: Fan) -> tuple[Indices, Values]:
         """Rays of robots at `poses` (rows x, y, yaw): which sensors see anything, and how far each of their rays goes.
@@ -111,7 +108,7 @@ class Raycaster:
         near = frames[thing]
         dx, dy = poses[robot, 0] - near[:, 0], poses[robot, 1] - near[:, 1]
         x, y = near[:, 2] * dx + near[:, 3] * dy, near[:, 2] * dy - near[:, 3] * dx
-        hits = np.flatnonzero((np.abs(x) - near[:, 4] <= fan.reach_m) & (np.abs(y) - near[:, 5] <= fan.reach_m))
+        hits = ((np.abs(x) - near[:, 4] <= fan.reach_m) & (np.abs(y) - near[:, 5] <= fan.reach_m)).nonzero()[0]
         if len(hits) == 0:
             return _NOTHING, np.zeros((0, rays))
         robot, thing, near, x, y = robot[hits], thing[hits], near[hits], x[hits], y[hits]
@@ -133,13 +130,13 @@ class Raycaster:
         distances = self._meet(sx[:, None], sy[:, None], c * rx - s * ry, s * rx + c * ry, near, kind)
 
         distances = np.where(distances < limit * (1.0 + 1e-12), distances, math.inf)
-        seen = np.flatnonzero((distances < math.inf).any(axis=1))
+        seen = np.nonzero(distances.min(axis=1) < math.inf)[0]
         if len(seen) == 0:
             return _NOTHING, np.zeros((0, rays))
         number = robot[pair[seen]] * sensors + sensor[seen]
         order = np.argsort(number, kind="stable")
         number = number[order]
-        first = np.flatnonzero(np.diff(number, prepend=-1))
+        first = np.diff(number, prepend=-1).nonzero()[0]
         return number[first], np.minimum.reduceat(distances[seen[order]], first, axis=0)
 
     def _cast_compiled(self, poses: Values, fan: Fan) -> tuple[Indices, Values]:
@@ -211,7 +208,7 @@ class Raycaster:
         """How far rays go until they enter the obstacle in whose frame they are; inf if they don't."""
         distances = np.empty(dx.shape)
         for this in (np.flatnonzero(np.bincount(kind - DISC)) + DISC).tolist():
-            rows = np.flatnonzero(kind == this)
+            rows = (kind == this).nonzero()[0]
             ray = (x[rows], y[rows], dx[rows], dy[rows])
             if this == DISC:
                 distances[rows] = _meet_discs(*ray, near[rows, 4, None])
@@ -232,7 +229,7 @@ def _facing(
     ax, ay = c * ax - s * ay, s * ax + c * ay
     radius = np.sqrt(near[:, 4] * near[:, 4] + near[:, 5] * near[:, 5])
     ahead, aside = -(ax * x + ay * y), np.abs(ax * y - ay * x)
-    facing = np.flatnonzero((aside * fan.cos[sensor] - ahead * fan.sin[sensor] <= radius) & (ahead >= -radius))
+    facing = ((aside * fan.cos[sensor] - ahead * fan.sin[sensor] <= radius) & (ahead >= -radius)).nonzero()[0]
     return pair[facing], sensor[facing]
 
 

@@ -148,6 +148,11 @@ class GroupView(Protocol):
         ...
 
     @property
+    def memory(self) -> dict[str, Any]:
+        """What the sensor keeps for as long as these robots are together, empty at the start; it is not given back."""
+        ...
+
+    @property
     def notes(self) -> Notes:
         """The sensor's own notes on all robots."""
         ...

@@ -23,8 +23,9 @@ def test_a_ground_reads_as_measured(scene: Scene) -> None:
     places = [pose.place(place) for place in thymio2.GROUND_SENSORS]
     samples = [ground.sample(*place) for place in places]
     assert [response(sample) for sample in samples] == pytest.approx(scene["noiseless"], abs=2)
-    reflectances, floors = ground.sample_all(*np.array(places).T)
-    assert list(zip(reflectances.tolist(), floors.tolist(), strict=True)) == [
+    poses = np.array([(pose.x_m, pose.y_m, pose.yaw_rad)])
+    reflectances, floors = ground.sample_under(poses, np.array(thymio2.GROUND_SENSORS))
+    assert list(zip(reflectances[0].tolist(), floors[0].tolist(), strict=True)) == [
         (sample.reflectance, sample.floor) for sample in samples
     ]
 

@@ -31,6 +31,7 @@ def arithmetic(given: Floats, found: Floats) -> None:
     found[6] = square(a) - 2
     found[7] += a
     found[7] *= 2
+    found[8] = round(a * 4) + round(b * 4 + 0.5)
 
 
 def integers(given: Ints, found: Ints) -> None:

@@ -38,11 +38,13 @@ def test_random_grounds_are_seen_bit_for_bit_while_they_are_drawn_on(seed: int) 
     seen = set[float]()
     for step in range(8):
         count = 100 if step % 3 else 160
-        places = np.array([(dice.uniform(-0.05, 0.65), dice.uniform(-0.05, 0.65)) for _ in range(count)]).T
-        (greys, floors), (same_greys, same_floors) = (ground.sample_all(*places) for ground in both)
+        poses = np.array([(dice.uniform(-0.05, 0.65), dice.uniform(-0.05, 0.65), dice.random()) for _ in range(count)])
+        points = np.array([(dice.uniform(-0.05, 0.05), dice.uniform(-0.05, 0.05)) for _ in range(1 + step % 2)])
+        (greys, floors), (same_greys, same_floors) = (ground.sample_under(poses, points) for ground in both)
+        assert greys.shape == (count, len(points))
         assert same_greys.tolist() == greys.tolist()
         assert same_floors.tolist() == floors.tolist()
-        seen.update(greys.tolist())
+        seen.update(greys.ravel().tolist())
         line = [dice.uniform(0.0, SIDE_M) for _ in range(4)]
         pen = None if step == 5 else color(dice)
         for ground in both:

@@ -38,9 +38,14 @@ def both(kernel: Callable[..., None], *arguments: Any, room: tuple[int, type[np.
 def test_floats_come_out_bit_for_bit(kernel: Callable[..., None], seed: int) -> None:
     dice = random.Random(seed)
     given = np.array([dice.uniform(-2, 2) if kernel is samples.arithmetic else dice.random() for _ in range(8)])
-    mine, compiled = both(kernel, given, room=(8, np.float64))
+    mine, compiled = both(kernel, given, room=(9, np.float64))
     assert compiled == mine
     assert any(mine)
+
+
+def test_halves_are_rounded_to_even() -> None:
+    found = [both(samples.arithmetic, np.array([half, 0.0]), room=(9, np.float64)) for half in (0.125, 0.375, -0.625)]
+    assert [compiled[8] for _, compiled in found] == [mine[8] for mine, _ in found] == [0.0, 2.0, -2.0]
 
 
 @pytest.mark.parametrize("a", [-7, 0, 5])

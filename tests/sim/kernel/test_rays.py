@@ -31,7 +31,7 @@ def test_random_scenes_come_out_bit_for_bit(seed: int) -> None:
         if step == 6:
             gone = frozenset({0})
         (sensors, distances), (same_sensors, same_distances) = (
-            (caster.move(now, gone), caster.cast(rows(poses), FAN))[1] for caster in casters
+            (caster.move(dict(enumerate(now)), gone), caster.cast(rows(poses), FAN))[1] for caster in casters
         )
         assert same_sensors.tolist() == sensors.tolist()
         assert same_distances.tolist() == distances.tolist()

@@ -34,7 +34,7 @@ def wall(away_m: float) -> Solid:
 
 def thing(away_m: float) -> MovableBody:
     solid = Solid("thing", Pose(REACH_M + away_m + 0.03, 0.0, 0.0), Disc(0.03), 0.1, GREY, Load(0.1, 0.3, 0.02))
-    return MovableBody(solid, pymunk.Body(body_type=pymunk.Body.STATIC))
+    return MovableBody(solid, pymunk.Body(body_type=pymunk.Body.STATIC), set())
 
 
 def test_a_wall_is_as_far_as_a_robot_can_go() -> None:

@@ -1,4 +1,4 @@
-"""Kernel: what footprints on the ground see. The sums of `Ground.sample_all`, operation by operation."""
+"""Kernel: what footprints on the ground see. The sums of `Ground.sample_under`, operation by operation."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import math
 
 from thymio_sim_ros.sim.kernel.language import Floats, Ints, Words
 
-__all__ = ["COUNTS", "KERNELS", "TAPS", "sample"]
+__all__ = ["COUNTS", "KERNELS", "TAPS", "sample", "spots"]
 
-KERNELS = ("taps", "sample")
+KERNELS = ("spots", "taps", "sample")
 
 TAPS = 9
 COUNTS = (
@@ -24,6 +24,18 @@ _CELL, _PIXEL, _STEPS, _WEIGHTS = 0, 1, 2, 2 + TAPS
 _UNKNOWN, _MIXED = -2, -1
 _ALL = 1.0 - 1e-9
 _TAPS = TAPS
+
+
+def spots(robots: int, count: int, poses: Floats, turns: Floats, points: Floats, xs: Floats, ys: Floats) -> None:
+    """Where points of the robots' frames are; `turns` are cosines, then sines, of the robots' yaws."""
+    for robot in range(robots):
+        cos = turns[robot]
+        sin = turns[robots + robot]
+        for point in range(count):
+            along = points[2 * point]
+            aside = points[2 * point + 1]
+            xs[robot * count + point] = poses[3 * robot] + cos * along - sin * aside
+            ys[robot * count + point] = poses[3 * robot + 1] + sin * along + cos * aside
 
 
 def taps(cell: int, origin: int, size: int, sizes: Floats, found: Ints, first: int) -> None:

@@ -3,8 +3,9 @@
 A kernel is a plain function of numbers and flat arrays. Every parameter has one of the types below, locals take the
 type of their first value. There are assignments, `if`, `while`, `for … in range(…)`, `break`, `continue`, `return`; the
 operators of numbers, comparisons, `and`, `or`, `not`, conditional expressions; `min`, `max`, `abs`, `int`, `float`,
-`math.sqrt`, `math.floor`; numbers of the module, and its other kernels. Floats are IEEE doubles and every operation is
-rounded as Python's is, so that both give the same bits; integers have 32 bits. NaN and the sign of 0 do not count.
+`round`, `math.sqrt`, `math.floor`; numbers of the module, and its other kernels. Floats are IEEE doubles and every
+operation is rounded as Python's is, so that both give the same bits; integers have 32 bits. NaN and the sign of 0 do
+not count.
 """
 
 from __future__ import annotations
@@ -252,6 +253,8 @@ class _Function:
                 return self._as(self._value(value), "f64", node), "f64"
             case ast.Name(id="int"), [value]:
                 return f"(i32.trunc_sat_f64_s {self._as(self._value(value), 'f64', node)})", "i32"
+            case ast.Name(id="round"), [value]:
+                return f"(i32.trunc_sat_f64_s (f64.nearest {self._as(self._value(value), 'f64', node)}))", "i32"
             case ast.Attribute(value=ast.Name(id="math"), attr="sqrt"), [value]:
                 return f"(f64.sqrt {self._as(self._value(value), 'f64', node)})", "f64"
             case ast.Attribute(value=ast.Name(id="math"), attr="floor"), [value]:

@@ -18,45 +18,57 @@ Tiles = npt.NDArray[np.int32]
 
 
 class Sampling:
-    """So many places on a ground. Invariant: what is drawn into its `pixels` and noted in its `tiles` is seen."""
+    """Points of robots on a ground. Invariant: what is drawn into its `pixels` and noted in its `tiles` is seen."""
 
     def __init__(
         self,
-        places: int,
+        robots: int,
+        points: Values,
         pixels: Pixels,
         tiles: Tiles,
         greys: Values,
         sizes: Sequence[float],
         counts: Sequence[int],
     ) -> None:
-        """`counts` and `sizes` as the kernel has them, without the number of places and answers.
+        """Rows of `points` are x, y in a robot's frame.
 
+        `counts` and `sizes` are those of the kernel, but for the number of places and the answers.
         Pixels, tiles and greys are copied; whoever changes them changes those of this object from now on.
         """
-        floats = [(len(sizes),), (places,), (places,), greys.shape, (places,), (places,)]
+        each = (robots, len(points))
+        floats = [(len(sizes),), (robots, 3), (2, robots), points.shape, each, each, greys.shape, each, each]
         ints = [(len(footprints.COUNTS),), tiles.shape, (2 * footprints.TAPS,)]
         memory = KernelMemory(
             sum(KernelMemory.room(shape, np.float64) for shape in floats)
             + sum(KernelMemory.room(shape, np.int32) for shape in ints)
             + KernelMemory.room(pixels.shape, np.uint16)
         )
-        self.places = places
-        own_sizes, self._x, self._y, self.greys, self._reflectances, self._floors = (
+        own_sizes, self._poses, self._turns, self._points, xs, ys, self.greys, self._reflectances, self._floors = (
             memory.array(shape, np.float64) for shape in floats
         )
         self._counts, self.tiles, near = (memory.array(shape, np.int32) for shape in ints)
         self.pixels = memory.array(pixels.shape, np.uint16)
-        self._counts[:-1] = places, *counts
-        own_sizes[:] = sizes
+        self._counts[:-1] = xs.size, *counts
+        own_sizes[:], self._points[:] = sizes, points
         self.pixels[:], self.tiles[:], self.greys[:] = pixels, tiles, greys
         self._memory = memory
-        self._call = memory.bind(
-            footprints, footprints.sample, self._counts, own_sizes, self._x, self._y, self.tiles, self.pixels,
+        self._go = memory.bind(
+            footprints, footprints.spots, robots, len(points), self._poses, self._turns, self._points, xs, ys
+        )
+        self._see = memory.bind(
+            footprints, footprints.sample, self._counts, own_sizes, xs, ys, self.tiles, self.pixels,
             self.greys, near, self._reflectances, self._floors,
         )  # fmt: skip
 
-    def sample(self, x_m: Values, y_m: Values) -> tuple[Values, Values] | None:
-        """As `Ground.sample_all`, of exactly so many places; None when a tile is not known."""
-        self._x[:], self._y[:] = x_m, y_m
-        self._call()
+    def is_for(self, robots: int, points: Values) -> bool:
+        """Whether it is for these points of so many robots."""
+        return len(self._poses) == robots and np.array_equal(self._points, points)
+
+    def sample(self, poses: Values) -> tuple[Values, Values] | None:
+        """As `Ground.sample_under`; None when a tile is not known."""
+        self._poses[:] = poses
+        np.cos(self._poses[:, 2], out=self._turns[0])
+        np.sin(self._poses[:, 2], out=self._turns[1])
+        self._go()
+        self._see()
         return None if self._counts[-1] else (self._reflectances.copy(), self._floors.copy())

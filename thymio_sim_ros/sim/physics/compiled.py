@@ -140,8 +140,9 @@ class CompiledEngaged:
         counts[_EARLIER] = earlier
         self._driving.settle()
 
-    def held(self) -> tuple[Indices, Values]:
+    def note(self, now: Values) -> Indices:
         """As `Engaged`."""
         self._driving.note()
-        numbers = self.numbers[self._held.nonzero()[0]]
-        return numbers, self._driving.now[:, numbers]
+        now[:] = self._driving.now
+        numbers: Indices = self.numbers[self._held.nonzero()[0]]
+        return numbers

@@ -7,6 +7,7 @@ Its way goes as half a cosine: (1 - cos(π p / T)) / 2 of it is done when it has
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pymunk
 
@@ -22,9 +23,11 @@ __all__ = ["DoorBody"]
 class DoorBody:
     """One door. Invariant: `pose` is where it is after the last tick."""
 
-    __slots__ = ("_obstacle", "_opening_s", "_solid", "body", "is_moving", "pose", "reach_m", "shape")
+    __slots__ = ("_moved", "_obstacle", "_opening_s", "_solid", "body", "is_moving", "pose", "reach_m", "shape")
 
-    def __init__(self, solid: Solid) -> None:
+    def __init__(self, solid: Solid, moved: set[Any]) -> None:
+        """`moved`: where it adds itself when rays see it elsewhere."""
+        self._moved = moved
         assert solid.slide is not None
         self._solid = solid
         self._opening_s = 0.0
@@ -77,6 +80,7 @@ class DoorBody:
         self.body.angular_velocity = (pose.yaw_rad - self.pose.yaw_rad) / TICK_S
         self.pose = pose
         self._obstacle = obstacle_of(self._solid.at(pose))
+        self._moved.add(self)
 
     def end_tick(self) -> None:
         """Be exactly there, at rest."""

@@ -117,11 +117,13 @@ class Engaged:
         self._covered[0] += (speed - half) / SUB_STEPS
         self._covered[1] += (speed + half) / SUB_STEPS
 
-    def held(self) -> tuple[Indices, Values]:
-        """The numbers of those held, and what has become of them.
+    def note(self, now: Values) -> Indices:
+        """Write what has become of those held to their columns of the fleet; their numbers.
 
         Rows x, y, yaw, speed along the heading, rate of turn, speed over ground at the left and the right wheel.
         """
         state, held = self._state, self._held.nonzero()[0]
         found = np.concatenate((state[:3], self._speed[None], state[5:], self._covered))
-        return self.numbers[held], found[:, held]
+        numbers: Indices = self.numbers[held]
+        now[:, numbers] = found[:, held]
+        return numbers

@@ -181,8 +181,7 @@ class Fleet:
     def end_tick(self) -> None:
         """As `RobotBody.end_tick`, and of everything that was pushed or slides."""
         if self._engaged.is_anybody_held:
-            self._held, became = self._engaged.held()
-            self._now[:, self._held] = became
+            self._held = self._engaged.note(self._now)
         elif self._is_load_moving or self._was_restless:
             self._reader.read()
         else:
@@ -238,7 +237,7 @@ class Fleet:
             for body in self.changed:
                 self._is_touching[self._index[body]] = bool(body.touching)
             self.changed.clear()
-            self._touching = np.flatnonzero(self._is_touching)
+            self._touching = self._is_touching.nonzero()[0]
             if self._driving is not None:
                 self._driving.is_touching[:] = self._is_touching
 
@@ -308,9 +307,11 @@ class Fleet:
             self._load_rows = self._reader.rows([movable.body for movable in self._loads])
         loads = self._reader.state[self._load_rows]
         self._is_load_moving = self._is_load_fast = False
-        if loads.tobytes() == self._load_state.tobytes():
+        columns = loads.shape[1]
+        changed = dict.fromkeys(place // columns for place in (loads != self._load_state).ravel().nonzero()[0].tolist())
+        if not changed:
             return
-        for index in np.flatnonzero((loads != self._load_state).any(axis=1)).tolist():
+        for index in changed:
             load = self._loads[index]
             load.settle(*loads[index].tolist())
             self._is_load_moving |= load.is_moving

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
+from typing import Any
 
 from thymio_sim_ros.sim.nearby import Nearby
 from thymio_sim_ros.sim.physics.doors import DoorBody
@@ -16,8 +17,9 @@ __all__ = ["Gates"]
 class Gates:
     """Doors by name, in the order of the playground, and the areas that open them."""
 
-    def __init__(self, solids: Iterable[Solid], triggers: Iterable[Trigger]) -> None:
-        self._doors = {solid.name: DoorBody(solid) for solid in solids if solid.slide is not None}
+    def __init__(self, solids: Iterable[Solid], triggers: Iterable[Trigger], moved: set[Any]) -> None:
+        """`moved`: as `DoorBody` has it."""
+        self._doors = {solid.name: DoorBody(solid, moved) for solid in solids if solid.slide is not None}
         self._areas = tuple((trigger, *trigger.middle, trigger.reach_m) for trigger in triggers)
 
     @property

@@ -8,6 +8,7 @@ The floor holds its turning as if all of its weight lay at the load's lever.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pymunk
 
@@ -34,6 +35,7 @@ class MovableBody:
     """
 
     __slots__ = (
+        "_moved",
         "_obstacle",
         "_solid",
         "body",
@@ -46,7 +48,9 @@ class MovableBody:
         "shape",
     )
 
-    def __init__(self, solid: Solid, floor: pymunk.Body) -> None:
+    def __init__(self, solid: Solid, floor: pymunk.Body, moved: set[Any]) -> None:
+        """`moved`: where it adds itself when rays see it elsewhere, or no more."""
+        self._moved = moved
         load = solid.load
         assert load is not None
         self._solid = solid
@@ -98,6 +102,7 @@ class MovableBody:
     def fall(self) -> None:
         """Be gone, until it is placed."""
         self.is_fallen, self.is_moving, self.is_fast = True, False, False
+        self._moved.add(self)
 
     def end_tick(self) -> None:
         """Tell the new pose, if it has moved."""
@@ -123,3 +128,4 @@ class MovableBody:
     def _show(self, pose: Pose) -> None:
         self.pose = pose
         self._obstacle = None
+        self._moved.add(self)

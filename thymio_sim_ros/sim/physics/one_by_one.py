@@ -1,13 +1,14 @@
 """Single bodies of a space set, and all of them read, by the functions with which pymunk does so (`pymunk.batch`).
 
-The one that sets a single body is not public; where a pymunk has none, the public properties do the same, ten times
-slower.
+The one that sets a single body is not public, nor is calling the one that reads without preparing it anew; where a
+pymunk has none, what is public does the same, more slowly.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import repeat
 from typing import Any
 
@@ -54,17 +55,15 @@ class Setter:
         """An array that pymunk reads, and its way to it."""
         rows, buffer = np.zeros((len(self._handles), columns)), batch.Buffer()
         buffer.set_float_buf(rows)
-        data = _chipmunk_cffi.ffi.new("pmBatchedData *")
-        data.floatArray, data.intArray, data.fields = buffer._float_arr, buffer._int_arr, fields.value
-        return rows, buffer, data
+        return rows, buffer, _data(fields, buffer)
 
 
 class Reader:
     """Reads all bodies of a space."""
 
     def __init__(self, space: pymunk.Space) -> None:
-        self._space = space
         self._buffer = batch.Buffer()
+        self._each = _prepared_reader(space, self._buffer)
         self._ids = b""
         self.order = 0
         """Another number whenever the rows are in another order."""
@@ -74,7 +73,7 @@ class Reader:
     def read(self) -> None:
         """Read anew."""
         self._buffer.clear()
-        batch.get_space_bodies(self._space, _STATE, self._buffer)
+        self._each()
         self.state = np.frombuffer(self._buffer.float_buf()).reshape(-1, 6)
         ids = bytes(self._buffer.int_buf())
         if ids != self._ids:
@@ -85,6 +84,22 @@ class Reader:
         """Where in `state` some bodies of the space are."""
         rows = {number: row for row, number in enumerate(np.frombuffer(self._ids, dtype=np.uintp).tolist())}
         return np.array([rows[body.id] for body in bodies], dtype=np.intp)
+
+
+def _prepared_reader(space: pymunk.Space, buffer: batch.Buffer) -> Callable[[], object]:
+    """What reads all bodies of a space into a buffer."""
+    each = getattr(_chipmunk_cffi.lib, "cpSpaceEachBody", None)
+    if each is None or not hasattr(_chipmunk_cffi.lib, "pmSpaceBodyGetIteratorFuncBatched"):
+        return partial(batch.get_space_bodies, space, _STATE, buffer)
+    function = _chipmunk_cffi.ffi.addressof(_chipmunk_cffi.lib, "pmSpaceBodyGetIteratorFuncBatched")
+    return partial(each, space._space, function, _data(_STATE, buffer))
+
+
+def _data(fields: batch.BodyFields, buffer: batch.Buffer) -> Any:
+    """How pymunk is told to read from a buffer, or to write to it."""
+    data = _chipmunk_cffi.ffi.new("pmBatchedData *")
+    data.floatArray, data.intArray, data.fields = buffer._float_arr, buffer._int_arr, fields.value
+    return data
 
 
 def set_by_properties(bodies: Sequence[pymunk.Body], motion: Values) -> None:

@@ -53,17 +53,20 @@ class Physics:
         self._touches = Touches(self._space, self._tell_fleet, do_things_bounce=bouncing)
         self._robots: dict[RobotBody, None] = {}
         self._movables: dict[str, MovableBody] = {}
-        self._gates = Gates(solids, triggers)
+        self._moved: set[MovableBody | DoorBody] = set()
+        """Things that rays see elsewhere than when `moved` was called last."""
+        self._gates = Gates(solids, triggers, self._moved)
         self._fleet: Fleet | None = None
         for solid in solids:
             if solid.load is not None:
-                self._movables[solid.name] = movable = MovableBody(solid, self._space.static_body)
+                self._movables[solid.name] = movable = MovableBody(solid, self._space.static_body, self._moved)
                 self._add(solid.name, movable.shape, movable.body, *movable.joints)
             elif solid.slide is not None:
                 door = self._gates.doors[solid.name]
                 self._add(solid.name, door.shape, door.body)
             else:
                 self._add(solid.name, self._fixed_shape(solid))
+        self._numbers = {body: number for number, body in enumerate(self.objects)}
         self.fixed: tuple[Obstacle, ...] = tuple(obstacle_of(solid) for solid in solids if solid.is_fixed)
         """What rays see of everything that never moves."""
         self._nearby = Nearby(self.fixed)
@@ -81,9 +84,15 @@ class Physics:
         return self._gates.doors
 
     def loose(self) -> list[Obstacle | None]:
-        """What rays see of movables, then of doors; None for what has fallen."""
-        found = [None if movable.is_fallen else movable.obstacle for movable in self._movables.values()]
-        return [*found, *(door.obstacle for door in self.doors.values())]
+        """What rays see of `objects`; None for what has fallen."""
+        self._moved.clear()
+        return [_seen(body) for body in self.objects]
+
+    def moved(self) -> dict[int, Obstacle | None]:
+        """As `loose`, of those whose place has changed since that or this was called last, by their numbers there."""
+        found = {self._numbers[body]: _seen(body) for body in self._moved}
+        self._moved.clear()
+        return found
 
     def add_robot(self, name: str, pose: Pose) -> RobotBody:
         """A robot's body, at rest at a pose."""
@@ -217,3 +226,8 @@ class Physics:
     def _tell_fleet(self, robot: RobotBody) -> None:
         if self._fleet is not None:
             self._fleet.changed.add(robot)
+
+
+def _seen(body: MovableBody | DoorBody) -> Obstacle | None:
+    """What rays see of a thing."""
+    return None if body.is_fallen else body.obstacle

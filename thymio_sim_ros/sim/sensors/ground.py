@@ -68,9 +68,11 @@ def _measure_all(group: GroupView) -> Later:
     now_ns = group.now_ns
     reflectances, floors = group.ground_at(_PLACES)
     values = (floors * units.ground_responses(reflectances)).ravel()
-    over_floor = np.flatnonzero(floors)
+    over_floor = floors.ravel().nonzero()[0]
     values[over_floor] += group.noise.draw(over_floor // 2, GROUND_NOISE)
-    counts = np.rint(np.clip(values, 0.0, units.GROUND_FULL)).astype(int).reshape(-1, 2)
+    np.minimum(values, units.GROUND_FULL, out=values)
+    np.maximum(values, 0.0, out=values)
+    counts = np.rint(values, out=values).astype(np.int32).reshape(-1, 2)
     lights = [room.ambient_light for room in group.states(RoomState)]
     covers = [state.ground for state in group.states(CoverState)]
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import reduce
 
 import numpy as np
 
@@ -23,9 +24,11 @@ from thymio_sim_ros.sim import thymio2, units
 from thymio_sim_ros.sim.actuators.cover import CoverState, covered
 from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.columns import Later
+from thymio_sim_ros.sim.kernel.memory import is_available
 from thymio_sim_ros.sim.raycaster import Fan, Values
 from thymio_sim_ros.sim.readings import ProximityReading
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.sensors._counting import Counting
 from thymio_sim_ros.sim.thymio2 import (
     PROXIMITY_HEIGHT_M,
     PROXIMITY_NOISE,
@@ -77,7 +80,7 @@ def responses(distances_m: Values, model: str) -> Values:
     if model == "cone":
         found = units.proximity_responses(distances_m * _COSINES[model])
         found[distances_m > PROXIMITY_RANGE_M] = 0.0
-        mean: Values = found.sum(axis=1) / distances_m.shape[1]
+        mean: Values = reduce(np.add, found.T) / distances_m.shape[1]  # one after the other, as the kernel does
         return mean
     right, centre, left = distances_m.T
     slanted = centre / _COS_CONE
@@ -124,11 +127,16 @@ def _ranges(counts: Sequence[int]) -> tuple[float, ...]:
 def _measure_all(group: GroupView) -> Later:
     now_ns, model = group.now_ns, group.proximity_model
     sensors, distances = group.cast(_FANS[model])
-    counts = np.zeros((len(group), _COUNT), dtype=int)
-    if len(sensors):
-        values = responses(distances, model) + group.noise.draw(sensors // _COUNT, PROXIMITY_NOISE)
+    noise = group.noise.draw(sensors // _COUNT, PROXIMITY_NOISE)
+    if is_available():
+        counting = group.memory.get("counting")
+        if counting is None:
+            counting = group.memory["counting"] = Counting(len(group) * _COUNT, model, _COSINES[model])
+        counts = counting.count(sensors, distances, noise).reshape(-1, _COUNT)
+    else:
+        counts = np.zeros((len(group), _COUNT), dtype=np.int32)
+        values = responses(distances, model) + noise
         counts.ravel()[sensors] = np.rint(np.minimum(np.maximum(values, 0.0), units.PROXIMITY_FULL))
-
     covers = [state.proximity for state in group.states(CoverState)]
 
     def make(robot: int) -> ProximityReading:

@@ -1,0 +1,50 @@
+"""Kernel: counts of many proximity sensors. The sums of `sensors/proximity.py` on arrays, operation by operation."""
+
+from __future__ import annotations
+
+import math
+
+from thymio_sim_ros.sim import thymio2, units
+from thymio_sim_ros.sim.kernel.language import Floats, Ints
+from thymio_sim_ros.sim.units import proximity_response
+
+__all__ = ["COUNTS", "KERNELS", "MODELS", "proximity", "proximity_response"]
+
+KERNELS = ("proximity_response", "proximity")
+
+COUNTS = ("sensors", "rays", "model", "seen")
+_SENSORS, _RAYS, _MODEL, _SEEN = range(len(COUNTS))
+MODELS = ("default", "enki", "cone")
+"""What the numbers of models mean."""
+_DEFAULT, _ENKI, _CONE = range(len(MODELS))
+
+_FAR = math.inf
+_FULL = float(units.PROXIMITY_FULL)
+_RANGE_M = thymio2.PROXIMITY_RANGE_M
+_COS_CONE = math.cos(thymio2.PROXIMITY_HALF_CONE_RAD)
+
+
+def proximity(counts: Ints, cosines: Floats, numbers: Ints, distances: Floats, noise: Floats, found: Ints) -> None:
+    """What every sensor counts: of those that see anything the `numbers`, distances of their rays and noise."""
+    for sensor in range(counts[_SENSORS]):
+        found[sensor] = 0
+    rays = counts[_RAYS]
+    for row in range(counts[_SEEN]):
+        if counts[_MODEL] == _CONE:
+            value = 0.0
+            for ray in range(rays):
+                distance = distances[row * rays + ray]
+                if distance <= _RANGE_M:
+                    value += proximity_response(distance * cosines[ray])
+            value = value / rays
+        else:
+            right = distances[3 * row]
+            centre = distances[3 * row + 1]
+            left = distances[3 * row + 2]
+            slanted = centre / _COS_CONE
+            if counts[_MODEL] == _DEFAULT and centre < _FAR:
+                right = slanted if right == _FAR else right
+                left = slanted if left == _FAR else left
+            value = proximity_response(right) + proximity_response(centre) + proximity_response(left)
+            value = value - 2.0 * proximity_response(slanted)
+        found[numbers[row]] = round(min(max(value + noise[row], 0.0), _FULL))
