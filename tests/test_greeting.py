@@ -56,3 +56,10 @@ def test_this_computer_has_a_number_or_a_name(monkeypatch):
 
     monkeypatch.setattr(greeting.socket.socket, "connect", unreachable)
     assert greeting.own_address() == socket.gethostname()
+
+
+@pytest.mark.parametrize(
+    ("robots", "told"), [(1, None), (20, None), (50, "Start     50 robots: this takes about 17 s")]
+)
+def test_who_has_to_wait_is_told_for_how_long(robots: int, told: str | None) -> None:
+    assert greeting.patience(robots) == told

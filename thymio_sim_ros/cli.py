@@ -24,7 +24,7 @@ from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.program import ProgramError, ThymioProgram
 from thymio_sim_ros.device.settings import Settings, SettingsError
-from thymio_sim_ros.greeting import greeting
+from thymio_sim_ros.greeting import greeting, patience
 from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_program
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
@@ -95,6 +95,8 @@ def start_suite(argv: Sequence[str]) -> int:
     if suite.foxglove:
         _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
     _check_ros()
+    if (wait := patience(len(robots))) is not None:
+        print(wait, flush=True)
     # A class room's robots stay apart, unless somebody has chosen otherwise (ros-packaging.md section 4).
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     from thymio_sim_ros.nodes import leftovers

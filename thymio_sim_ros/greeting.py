@@ -9,12 +9,16 @@ from collections.abc import Sequence
 from thymio_sim_ros import foxglove_layout
 from thymio_sim_ros.suite import Suite
 
-__all__ = ["greeting", "own_address", "places", "urls"]
+__all__ = ["greeting", "own_address", "patience", "places", "urls"]
 
 _SOMEWHERE = ("192.0.2.1", 9)
 """Of a network that nobody has (RFC 5737); nothing is sent there."""
 _LOCALHOST = ("127.0.0.1", "::1")
 _NONE = "none (started without it)"
+_HUNDRED_S = 67.0
+"""How long a hundred robots take to start in one process, where DDS compares each of their topics with all others; it
+goes with the square of their number (measured, docs/performance.md)."""
+_LONG_S = 5.0
 
 
 def greeting(suite: Suite, robots: Sequence[str]) -> str:
@@ -23,6 +27,12 @@ def greeting(suite: Suite, robots: Sequence[str]) -> str:
     foxglove = places("ws", suite.address, suite.foxglove_port) if suite.foxglove else _NONE
     layout = f"\nLayout    {foxglove_layout.hint(robots)}" if suite.foxglove else ""
     return f"Page      {page}\nFoxglove  {foxglove}{layout}\nStop      Ctrl-C"
+
+
+def patience(robots: int) -> str | None:
+    """A line for somebody who has to wait before there is anything to see; None when it is not long."""
+    seconds = _HUNDRED_S * (robots / 100) ** 2
+    return None if seconds < _LONG_S else f"Start     {robots} robots: this takes about {seconds:.0f} s"
 
 
 def own_address() -> str:
