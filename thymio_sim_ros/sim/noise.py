@@ -99,25 +99,30 @@ class UniformBank:
         self._noises = noises
         self._numbers = np.zeros((0, len(noises)))
         self._used = 0
+        self._limits: tuple[float, float] | None = None
+        self._between = self._numbers
+        """The numbers as they are between these limits."""
 
     def draw(self, low: float, high: float, count: int) -> Values:
-        """`Noise.uniform` so many times: a row for each time, a column for each user."""
+        """`Noise.uniform` so many times: a row for each time, a column for each user; not to be written to."""
         if not self._noises or not self._noises[0].enabled:
             return np.full((count, len(self._noises)), (low + high) / 2)
         while self._used + count > len(self._numbers):
             fresh = evens([noise.draw_ahead(_BLOCK) for noise in self._noises]).T
             self._numbers = np.concatenate((self._numbers[self._used :], fresh))
             self._used = 0
+            self._limits = None
+        if self._limits != (low, high):
+            self._limits = (low, high)
+            self._between = self._numbers * (high - low) + low
         first, self._used = self._used, self._used + count
-        drawn: Values = self._numbers[first : self._used] * (high - low)
-        drawn += low
-        return drawn
+        return self._between[first : self._used]
 
     def give_back(self) -> None:
         """Let every user draw for himself again."""
         for noise, numbers in zip(self._noises, self._numbers[self._used :].T.tolist(), strict=True):
             noise.give_back(numbers)
-        self._numbers, self._used = np.zeros((0, len(self._noises))), 0
+        self._numbers, self._used, self._limits = np.zeros((0, len(self._noises))), 0, None
 
 
 class NormalBank:

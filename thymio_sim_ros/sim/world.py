@@ -32,6 +32,7 @@ from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
 __all__ = ["TICK_NS", "StepResult", "World"]
 
 _TICK_S = TICK_NS * 1e-9
+_NOT_SURE = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +93,8 @@ class World:
         for start in self.playground.robots:
             self._add(start)
         self._posted: list[tuple[str, Command]] = []
+        self._sure: dict[str, tuple[float, float, float]] = {}
+        """Where each thing was when an edge was looked for, and how far away that is at least."""
         self._gather()
 
     @property
@@ -242,7 +245,13 @@ class World:
         return contacts
 
     def _drop_over_edge(self, movable: MovableBody) -> None:
-        if self._footing.clearance_m(movable.pose.x_m, movable.pose.y_m) < 0.0:
+        x, y = movable.pose.x_m, movable.pose.y_m
+        sure_x, sure_y, sure_m = self._sure.get(movable.name, _NOT_SURE)
+        if math.hypot(x - sure_x, y - sure_y) < sure_m:
+            return
+        clearance_m = self._footing.clearance_m(x, y)
+        self._sure[movable.name] = (x, y, clearance_m)
+        if clearance_m < 0.0:
             self._physics.drop_movable(movable)
 
     def _run_sensors(self, now_ns: int) -> Sequence[tuple[str, str, Reading]]:

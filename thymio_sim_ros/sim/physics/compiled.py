@@ -51,9 +51,8 @@ class Driving:
         self.stands, self.is_touching = self._arrays["stands"], self._arrays["is_touching"]
         self._headings = self._arrays["headings"][:SUB_STEPS]
         self._cosines, self._sines = self._arrays["cosines"], self._arrays["sines"]
-        self._head, self._glide = self._bound(driving.head), self._bound(driving.glide)
-        self.begin, self.aim, self.lack = (self._bound(one) for one in (driving.begin, driving.aim, driving.lack))
-        self.push, self.settle, self.note = (self._bound(one) for one in (driving.push, driving.settle, driving.note))
+        self._head, self._go = self._bound(driving.head), self._bound(driving.go)
+        self.lack, self.push, self.settle = (self._bound(one) for one in (driving.lack, driving.push, driving.settle))
 
     def array(self, name: str) -> npt.NDArray[Any]:
         """One of the arrays."""
@@ -63,22 +62,23 @@ class Driving:
         names = parameters(kernel)[0]
         return self._memory.bind(driving, kernel, *(self._arrays[name] for name in names))
 
-    def glide(self) -> None:
-        """As `Fleet` without kernels: all of `now` after a tick with `driven`."""
+    def go(self) -> None:
+        """As `Fleet` without kernels: all of `now` after a tick with `driven`; and the engaged begin theirs."""
         self._head()
         np.cos(self._headings, out=self._cosines)
         np.sin(self._headings, out=self._sines)
-        self._glide()
+        self._go()
 
 
 class CompiledEngaged:
     """As `Engaged`, of a fleet that glides by the same `Driving`; one at a time."""
 
-    def __init__(self, driving_: Driving, bodies: Sequence[RobotBody], numbers: Indices) -> None:
+    def __init__(self, driving_: Driving, bodies: Sequence[RobotBody], numbers: Indices, setter: Setter) -> None:
         self.numbers = numbers
         self._driving, self._counts = driving_, driving_.counts
         self._bodies = [bodies[number].body for number in numbers.tolist()]
-        self._setter = Setter(self._bodies)
+        self._setter = setter
+        setter.choose(self._bodies)
         self._order = 0
         self._is_anybody_touching = False
         count = len(numbers)
@@ -108,14 +108,12 @@ class CompiledEngaged:
         return bool(self._counts[_HELD])
 
     def begin_tick(self, _driven: Values, _rolling: Values, _yaw: Values, touching: Flags | None) -> None:
-        """As `Engaged`; what the fleet knows is in the arrays already."""
+        """As `Engaged`; what the fleet knows is in the arrays already, and they have begun."""
         self._is_anybody_touching = touching is not None
-        self._driving.begin()
 
     def push(self) -> None:
         """As `Engaged`."""
         driving_ = self._driving
-        driving_.aim()
         np.cos(self._aims, out=self._cos)
         np.sin(self._aims, out=self._sin)
         driving_.lack()
@@ -142,7 +140,6 @@ class CompiledEngaged:
 
     def note(self, now: Values) -> Indices:
         """As `Engaged`."""
-        self._driving.note()
         now[:] = self._driving.now
         numbers: Indices = self.numbers[self._held.nonzero()[0]]
         return numbers

@@ -10,9 +10,9 @@ from thymio_sim_ros.sim.kernel.language import Floats, Ints
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS
 from thymio_sim_ros.sim.physics.robots import MOMENT_KG_M2, PUSH_N_S_M
 
-__all__ = ["COUNTS", "KERNELS", "aim", "begin", "glide", "head", "lack", "note", "push", "settle"]
+__all__ = ["COUNTS", "KERNELS", "go", "head", "lack", "push", "settle"]
 
-KERNELS = ("head", "glide", "begin", "aim", "lack", "push", "settle", "note")
+KERNELS = ("head", "glide", "begin", "aim", "go", "lack", "push", "take_over", "note", "settle")
 
 COUNTS = ("robots", "engaged", "earlier", "is_anybody_touching", "is_anybody_held")
 """What each of `counts` is: `earlier` sub-steps of this tick are done; the last two are answers, too."""
@@ -105,6 +105,17 @@ def aim(
         aims[index] = heading
 
 
+def go(
+    counts: Ints, driven: Floats, rolling: Floats, cosines: Floats, sines: Floats, now: Floats, headings: Floats,
+    is_touching: Ints, numbers: Ints, touching: Ints, held: Ints, yaws: Floats, covered: Floats, state: Floats,
+    aims: Floats,
+) -> None:  # fmt: skip
+    """All glide, and the engaged begin a tick and aim."""
+    glide(counts, driven, rolling, cosines, sines, now)
+    begin(counts, headings, is_touching, numbers, touching, held, yaws, covered)
+    aim(counts, rolling, numbers, touching, yaws, state, aims)
+
+
 def lack(
     counts: Ints, rolling: Floats, numbers: Ints, touching: Ints, state: Floats, ways_x: Floats, ways_y: Floats,
     speeds: Floats, pushes_x: Floats, pushes_y: Floats,
@@ -143,12 +154,12 @@ def push(
             wanted[6 * index + 5] = (speeds[3 * index + 2] - state[6 * index + 5]) * _TURN_N_M_S
 
 
-def settle(
+def take_over(
     counts: Ints, driven: Floats, rolling: Floats, is_touching: Ints, numbers: Ints, rows: Ints, bodies: Floats,
     ways_x: Floats, ways_y: Floats, touching: Ints, held: Ints, yaws: Floats, covered: Floats, state: Floats,
     along: Floats,
 ) -> None:  # fmt: skip
-    """After a sub-step: take over what contacts have made of the push. `bodies` count only when somebody is held."""
+    """What contacts have made of the push. `bodies` count only when somebody is held."""
     count = counts[_ROBOTS]
     counts[_TOUCHING] = 0
     for index in range(counts[_ENGAGED]):
@@ -188,3 +199,18 @@ def note(counts: Ints, numbers: Ints, held: Ints, state: Floats, along: Floats, 
             now[4 * count + robot] = state[6 * index + 5]
             now[5 * count + robot] = covered[2 * index]
             now[6 * count + robot] = covered[2 * index + 1]
+
+
+def settle(
+    counts: Ints, driven: Floats, rolling: Floats, is_touching: Ints, numbers: Ints, rows: Ints, bodies: Floats,
+    ways_x: Floats, ways_y: Floats, touching: Ints, held: Ints, yaws: Floats, covered: Floats, state: Floats,
+    along: Floats, now: Floats, aims: Floats,
+) -> None:  # fmt: skip
+    """After a sub-step: take over what contacts have made of the push, and aim for the next one."""
+    take_over(
+        counts, driven, rolling, is_touching, numbers, rows, bodies, ways_x, ways_y, touching, held, yaws, covered,
+        state, along,
+    )  # fmt: skip
+    if counts[_HELD] != 0:
+        note(counts, numbers, held, state, along, covered, now)
+    aim(counts, rolling, numbers, touching, yaws, state, aims)

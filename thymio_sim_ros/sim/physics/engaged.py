@@ -26,15 +26,16 @@ class Engaged:
     touch something, or have done so in this tick: what becomes of them is read from the engine.
     """
 
-    def __init__(self, bodies: Sequence[RobotBody], numbers: Indices) -> None:
-        """Those of the bodies with these numbers."""
+    def __init__(self, bodies: Sequence[RobotBody], numbers: Indices, setter: Setter) -> None:
+        """Those of the bodies with these numbers, whom the setter sets from now on."""
         self.numbers = numbers
         self._bodies = [bodies[number].body for number in numbers.tolist()]
         self._rows: Indices = np.zeros(0, dtype=np.intp)
         self._order = 0
         """Where the reader has them, and in which order of its own."""
         count = len(numbers)
-        self._setter = Setter(self._bodies)
+        self._setter = setter
+        setter.choose(self._bodies)
         self._state = np.zeros((6, count))
         """Rows x, y, yaw, vx, vy, rate of turn; of those who touch something, as the engine has them."""
         for column, number in enumerate(numbers.tolist()):

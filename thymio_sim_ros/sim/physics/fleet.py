@@ -19,12 +19,12 @@ from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.kernel.memory import is_available
 from thymio_sim_ros.sim.physics.compiled import CompiledEngaged, Driving
-from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS
+from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, Contact
 from thymio_sim_ros.sim.physics.doors import DoorBody
 from thymio_sim_ros.sim.physics.engaged import Engaged
 from thymio_sim_ros.sim.physics.lookout import LOOK_ROUND_TICKS, Lookout
 from thymio_sim_ros.sim.physics.movables import MovableBody
-from thymio_sim_ros.sim.physics.one_by_one import Reader
+from thymio_sim_ros.sim.physics.one_by_one import Reader, Setter
 from thymio_sim_ros.sim.physics.robots import RobotBody
 
 __all__ = ["Fleet"]
@@ -63,6 +63,8 @@ class Fleet:
         """To be filled with those for whom a contact begins or ends."""
         self._begun: set[RobotBody] = set()
         """Who may have a contact that is new."""
+        self._contacts: tuple[Contact, ...] | None = None
+        """None when they may have changed."""
         self._index = {body: index for index, body in enumerate(self._bodies)}
         self._is_touching = np.zeros(count, dtype=bool)
         self._touching = self._held = self._fallen = _NOBODY
@@ -72,8 +74,8 @@ class Fleet:
         """Speed and rate of turn that the wheels give in this tick, and the turn in half a sub-step and in a whole."""
         self._is_engaged = np.zeros(count, dtype=bool)
         self._driving = Driving(count, len(self._bodies) + len(movables) + len(doors) + 1) if compiled else None
+        self._setter, self._reader = Setter(), Reader(space)
         self._engaged = self._engage(_NOBODY)
-        self._reader = Reader(space)
         self._look_round_in = self._looks = 0
         self._was_restless = False
         self._loads: list[MovableBody] = []
@@ -152,6 +154,8 @@ class Fleet:
         if self._look_round_in == 0 or is_restless != self._was_restless:
             self._look_round(is_restless=is_restless)
         self._look_round_in -= 1
+        if self._begun:
+            self._contacts = None
         for body in self._begun:
             for key, contact in body.touching.items():
                 if contact.is_new:
@@ -189,15 +193,18 @@ class Fleet:
         if self._loads:
             self._settle_loads()
 
-    def touching(self) -> list[RobotBody]:
-        """Robots that touch something."""
-        return [self._bodies[index] for index in self._touching.tolist()]
+    def contacts(self) -> tuple[Contact, ...]:
+        """All contacts, by robot and in the order in which they began."""
+        if self._contacts is None or self.changed:
+            touching = (self._bodies[index].touching for index in self._touching.tolist())
+            self._contacts = tuple(contact for own in touching for contact in own.values())
+        return self._contacts
 
     def _glide(self) -> Values:
         """As `RobotBody.glide`, whatever else may happen to them; the yaws before it."""
         if self._driving is not None:
             self._driving.driven[:] = self.driven
-            self._driving.glide()
+            self._driving.go()
             yaws: Values = self._now[2]
             self._now = self._driving.now.copy()
             return yaws
@@ -233,6 +240,7 @@ class Fleet:
 
     def _look_at_contacts(self) -> None:
         if self.changed:
+            self._contacts = None
             self._begun.update(self.changed)
             for body in self.changed:
                 self._is_touching[self._index[body]] = bool(body.touching)
@@ -297,8 +305,8 @@ class Fleet:
     def _engage(self, numbers: Indices) -> Engaged | CompiledEngaged:
         """Those with these numbers."""
         if self._driving is not None:
-            return CompiledEngaged(self._driving, self._bodies, numbers)
-        return Engaged(self._bodies, numbers)
+            return CompiledEngaged(self._driving, self._bodies, numbers, self._setter)
+        return Engaged(self._bodies, numbers, self._setter)
 
     def _settle_loads(self) -> None:
         """Tell things that have moved."""

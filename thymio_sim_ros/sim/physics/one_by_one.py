@@ -31,12 +31,15 @@ _STATE = _Fields.BODY_ID | _Fields.POSITION | _Fields.ANGLE | SPEEDS
 class Setter:
     """Sets some bodies of a space; those that are not named sleep on."""
 
-    def __init__(self, bodies: Sequence[pymunk.Body]) -> None:
-        self._bodies = bodies
+    def __init__(self, bodies: Sequence[pymunk.Body] = ()) -> None:
         self._function = getattr(_chipmunk_cffi.lib, "pmSpaceBodySetIteratorFuncBatched", None)
-        if self._function is not None:
-            self._handles = [body._body for body in bodies]
-            self._prepared: dict[int, tuple[Values, batch.Buffer, Any]] = {}
+        self._prepared: dict[int, tuple[Values, batch.Buffer, Any]] = {}
+        self.choose(bodies)
+
+    def choose(self, bodies: Sequence[pymunk.Body]) -> None:
+        """Set these from now on."""
+        self._bodies = bodies
+        self._handles = [] if self._function is None else [body._body for body in bodies]
 
     def set(self, fields: batch.BodyFields, motion: Values) -> None:
         """As `set_by_properties`; `fields` are those of the columns."""
@@ -44,16 +47,16 @@ class Setter:
             set_by_properties(self._bodies, motion)
             return
         prepared = self._prepared.get(fields.value)
-        if prepared is None:
-            prepared = self._prepared[fields.value] = self._prepare(fields, motion.shape[1])
+        if prepared is None or len(prepared[0]) < len(motion):
+            prepared = self._prepared[fields.value] = self._prepare(fields, motion)
         rows, buffer, data = prepared
-        rows[:] = motion
+        rows[: len(motion)] = motion
         buffer._float_arr.num = 0  # it is read from its beginning
         deque(map(self._function, self._handles, repeat(data)), maxlen=0)
 
-    def _prepare(self, fields: batch.BodyFields, columns: int) -> tuple[Values, batch.Buffer, Any]:
-        """An array that pymunk reads, and its way to it."""
-        rows, buffer = np.zeros((len(self._handles), columns)), batch.Buffer()
+    def _prepare(self, fields: batch.BodyFields, motion: Values) -> tuple[Values, batch.Buffer, Any]:
+        """An array that pymunk reads, with room for twice as many bodies, and its way to it."""
+        rows, buffer = np.zeros((2 * len(motion), motion.shape[1])), batch.Buffer()
         buffer.set_float_buf(rows)
         return rows, buffer, _data(fields, buffer)
 
@@ -65,6 +68,7 @@ class Reader:
         self._buffer = batch.Buffer()
         self._each = _prepared_reader(space, self._buffer)
         self._ids = b""
+        self._id_of: dict[pymunk.Body, int] = {}
         self.order = 0
         """Another number whenever the rows are in another order."""
         self.state = np.zeros((0, 6))
@@ -83,7 +87,11 @@ class Reader:
     def rows(self, bodies: Sequence[pymunk.Body]) -> Indices:
         """Where in `state` some bodies of the space are."""
         rows = {number: row for row, number in enumerate(np.frombuffer(self._ids, dtype=np.uintp).tolist())}
-        return np.array([rows[body.id] for body in bodies], dtype=np.intp)
+        known = self._id_of
+        for body in bodies:
+            if body not in known:
+                known[body] = body.id
+        return np.array([rows[known[body]] for body in bodies], dtype=np.intp)
 
 
 def _prepared_reader(space: pymunk.Space, buffer: batch.Buffer) -> Callable[[], object]:

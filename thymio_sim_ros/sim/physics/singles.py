@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import pymunk
 
 from thymio_sim_ros.sim.nearby import Nearby
+from thymio_sim_ros.sim.physics.contact import Contact
 from thymio_sim_ros.sim.physics.movables import MovableBody
 from thymio_sim_ros.sim.physics.quiet import quiet_ticks
 from thymio_sim_ros.sim.physics.robots import RobotBody
@@ -82,9 +83,9 @@ class Singles:
         for movable in self._movables.values():
             movable.end_tick()
 
-    def touching(self) -> list[RobotBody]:
-        """Robots that touch something."""
-        return [robot for robot in self._engaged if robot.touching]
+    def contacts(self) -> tuple[Contact, ...]:
+        """All contacts, by robot and in the order in which they began."""
+        return tuple(contact for robot in self._engaged for contact in robot.touching.values())
 
     def _look_round(self, robot: RobotBody, *, is_restless: bool) -> int:
         """A number for `_calm`."""

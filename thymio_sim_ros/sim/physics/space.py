@@ -174,7 +174,7 @@ class Physics:
         if needs_engine:
             driver.end_tick()
         self._gates.end_tick()
-        return tuple(contact for robot in driver.touching() for contact in robot.touching.values())
+        return driver.contacts()
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
         """What a robot's rays may meet within `reach_m` of its origin, at least `height_m` high."""
