@@ -165,13 +165,11 @@ class Physics:
         self._gates.begin_tick(self._nearby)
         driver = self._fleet or self._singles
         driver.begin_tick(do_doors_move=not self._gates.are_still)
-        needs_engine = driver.needs_engine
-        for earlier in range(SUB_STEPS):
-            driver.push()
-            if needs_engine:
+        if driver.needs_engine:
+            for earlier in range(SUB_STEPS):
+                driver.push()
                 self._space.step(SUB_STEP_S)
-            driver.settle(earlier)
-        if needs_engine:
+                driver.settle(earlier)
             driver.end_tick()
         self._gates.end_tick()
         return driver.contacts()
