@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 import random
 from collections.abc import Iterator
+from itertools import groupby
 from typing import Any
 
 import pytest
@@ -17,6 +19,7 @@ from thymio_sim_ros.sim.commands import (
     BodyTwist,
     Clap,
     MotorTargets,
+    MoveObject,
     MoveRobot,
     PlayTone,
     PressButton,
@@ -77,14 +80,15 @@ def play(monkeypatch: pytest.MonkeyPatch, crowd: int, scene: Playground, **optio
     return steps
 
 
-def assert_same(one: list[StepResult], other: list[StepResult]) -> None:
+def assert_same(one: list[StepResult], other: list[StepResult], *, within: float = 1e-9) -> None:
     for a, b in zip(one, other, strict=True):
         names = [[(robot, sensor) for robot, sensor, _ in step.readings] for step in (a, b)]
         assert names[0] == names[1]
         for (_, _, left), (_, _, right) in zip(a.readings, b.readings, strict=True):
             assert left.words == right.words
-            assert list(numbers(left)) == pytest.approx(list(numbers(right)), abs=1e-9)
-        assert [contact.other for contact in a.contacts] == [contact.other for contact in b.contacts]
+            assert list(numbers(left)) == pytest.approx(list(numbers(right)), abs=within)
+        told = [[(contact.robot, contact.other, contact.is_new) for contact in step.contacts] for step in (a, b)]
+        assert told[0] == told[1]
 
 
 def numbers(value: Any) -> Iterator[float]:
@@ -117,6 +121,51 @@ def test_one_robot_may_be_a_crowd(monkeypatch: pytest.MonkeyPatch) -> None:
         world.post("thymio", MotorTargets(300, 250))
         runs.append(run(world, 5.0))
     assert_same(*runs)
+
+
+def test_things_that_are_pushed_moved_opened_or_gone_are_seen_where_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    door = {
+        "kind": "door", "name": "gate", "closed_x_m": 0.14, "closed_y_m": -1.0, "opened_x_m": 0.14, "opened_y_m": -1.6,
+        "move_s": 1.0, "size_x_m": 0.02, "size_y_m": 0.3, "height_m": 0.1, "color": "#808080",
+    }  # fmt: skip
+    area = {
+        "kind": "activation", "x_m": -1.0, "y_m": 0.15, "size_x_m": 0.1, "size_y_m": 0.1, "door": "gate",
+        "area_m": [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]],
+    }  # fmt: skip
+    light = {"mass_kg": 0.02}
+    pushed, carried = box(0.14, 0.0, 0.05, 0.05) | light, box(0.14, 1.0, 0.05, 0.05) | light | {"name": "carried"}
+    scene = make(
+        [FLOOR, door, area, pushed, carried, box(1.95, 0.0, 0.05, 0.05) | light],
+        [
+            {"name": "pusher", "x_m": 0.0, "y_m": 0.0},
+            {"name": "bystander", "x_m": 0.4, "y_m": 0.17, "yaw_rad": -math.pi / 2},
+            {"name": "before_carried", "x_m": 0.0, "y_m": 1.0},
+            {"name": "before_gate", "x_m": 0.0, "y_m": -1.0},
+            {"name": "opener", "x_m": -1.0, "y_m": 0.0},
+            {"name": "at_the_edge", "x_m": 1.82, "y_m": 0.0},
+        ],
+    )
+    runs = []
+    for crowd in (ONE_BY_ONE, AT_ONCE):
+        monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+        world = World(scene)
+        steps = []
+        for tick in range(300):
+            if tick == 0:
+                world.post("pusher", MotorTargets(250, 250))
+                world.post("at_the_edge", MotorTargets(250, 250))
+            if tick == 110:
+                world.post("at_the_edge", MotorTargets(0, 0))
+            if tick in (100, 200):
+                world.post("carried", MoveObject(1.2 if tick == 100 else 0.14, 1.0, 0.0))
+            steps.append(world.step())
+        runs.append(steps)
+    assert_same(*runs, within=1e-7)  # who pushes for long adds up what is rounded
+    expected = {"bystander": [0, 1], "before_carried": [1, 0, 1], "before_gate": [1, 0], "at_the_edge": [1, 0]}
+    for robot, seen in expected.items():
+        rows = (row for step in runs[1] for row in step.readings if row[:2] == (robot, "proximity"))
+        counts = [max(reading.words) for _, _, reading in rows]
+        assert [int(is_seen) for is_seen, _ in groupby(count > 0 for count in counts)] == seen, robot
 
 
 def test_commands_of_a_crowd_time_out_and_motor_models_change_as_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:

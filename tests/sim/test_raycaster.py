@@ -130,7 +130,12 @@ def test_what_is_gone_or_fallen_is_not_seen_and_sees_nothing() -> None:
     found = all_at_once(caster, poses, FAN)
     assert found[4:6] == [[math.inf] * 4] * 2
     assert close(found[:4] + found[6:], one_by_one(left, loose[1:], FAN))
-    caster.move(dict(enumerate(loose)))
+    caster.move(dict(enumerate(loose)), fallen={3})
+    left = [pose for index, pose in enumerate(poses) if index != 3]
+    found = all_at_once(caster, poses, FAN)
+    assert found[6:8] == [[math.inf] * 4] * 2
+    assert close(found[:6] + found[8:], one_by_one(left, loose, FAN))
+    caster.move({})
     assert close(all_at_once(caster, poses, FAN), one_by_one(poses, loose, FAN))
 
 

@@ -127,6 +127,20 @@ def test_rays_see_a_thing_where_it_is_now() -> None:
     assert (before > 4000, pushed > 4000, sense(world, "proximity").words[2]) == (True, True, 0)
 
 
+def test_a_thing_that_is_elsewhere_or_gone_is_told_once() -> None:
+    world = quiet(crate(0.5), can(-0.5))
+    physics = world._physics
+    one, other = physics.loose()
+    assert physics.moved() == {}
+    first, second = physics.movables.values()
+    physics.place(second, Pose(-0.6, 0.1, 0.0))
+    assert physics.moved() == {1: second.obstacle}
+    assert (first.obstacle, second.obstacle is other) == (one, False)
+    physics.drop_movable(first)
+    assert physics.moved() == {0: None}
+    assert physics.moved() == {}
+
+
 def test_the_contact_names_the_thing() -> None:
     world = quiet(crate(0.15))
     send(world, MotorTargets(300, 300))

@@ -61,6 +61,15 @@ def test_without_pymunks_function_the_properties_do_it(monkeypatch: pytest.Monke
     assert [body.angular_velocity for body in bodies] == [2.0, 5.0]
 
 
+def test_a_setter_may_choose_other_bodies_and_more_of_them() -> None:
+    bodies = space(9)[1]
+    setter = Setter(bodies[:1])
+    setter.set(SPEEDS, np.ones((1, 3)))
+    setter.choose(bodies[1:])
+    setter.set(SPEEDS, np.arange(24.0).reshape(8, 3))
+    assert [body.angular_velocity for body in bodies] == [1.0, *(3.0 * index + 2 for index in range(8))]
+
+
 def test_bodies_that_are_not_named_sleep_on() -> None:
     found, bodies = space(2)
     found.sleep_time_threshold = 0.1
@@ -82,7 +91,15 @@ def test_a_sleeping_body_that_is_set_moves() -> None:
     assert bodies[0].position.x == pytest.approx(0.1)
 
 
-def test_a_reader_finds_bodies_in_whatever_order_the_space_has_them() -> None:
+@pytest.mark.parametrize("is_prepared", [True, False])
+def test_a_reader_finds_bodies_in_whatever_order_the_space_has_them(
+    is_prepared: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Nothing:
+        lib = None
+
+    if not is_prepared:
+        monkeypatch.setattr(one_by_one, "_chipmunk_cffi", Nothing)
     found, bodies = space(4)
     Setter(bodies).set(SPEEDS, np.arange(12.0).reshape(4, 3))
     reader = Reader(found)
