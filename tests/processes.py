@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import select
 import signal
@@ -13,6 +14,11 @@ from pathlib import Path
 
 START_S = 60.0
 END_S = 20.0
+
+_PORTS = range(20_000, 32_000)
+"""Below those that systems choose themselves: from 32 768 on, or 49 152."""
+_STRIDE = 1009
+_taken = itertools.count()
 
 
 class Process:
@@ -74,7 +80,16 @@ def wait_for_port(port: int) -> None:
 
 
 def free_port() -> int:
-    """A TCP port of loopback that nobody uses now."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    """A TCP port of loopback that nobody uses now, and that no system gives to somebody who asks for any.
+
+    Such a one could go to a server of another test before the program that is told to use it has started; processes
+    begin to count at places of their own, and take none twice.
+    """
+    while True:
+        port = _PORTS[0] + (os.getpid() * _STRIDE + next(_taken)) % len(_PORTS)
+        with socket.socket() as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+            except OSError:
+                continue
+        return port
