@@ -10,7 +10,7 @@ import pytest
 
 from thymio_sim_ros.sim.noise import Noise, NormalBank
 from thymio_sim_ros.sim.sensors import proximity
-from thymio_sim_ros.sim.sensors._counting import Counting
+from thymio_sim_ros.sim.sensors._counts import ProximityCounts
 from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS, PROXIMITY_RANGE_M
 from thymio_sim_ros.sim.units import PROXIMITY_FULL
 
@@ -58,7 +58,7 @@ def test_proximity_counts_bit_for_bit(model: str) -> None:
     dice = random.Random(3)
     cosines = proximity._COSINES[model]
     sensors = 21
-    counting = Counting(sensors, model, cosines)
+    counting = ProximityCounts(sensors, model, cosines)
     seen = set[int]()
     for _ in range(300):
         numbers = np.array(sorted(dice.sample(range(sensors), dice.randint(0, sensors))), dtype=np.intp)

@@ -8,20 +8,19 @@ from thymio_sim_ros.sim import thymio2, units
 from thymio_sim_ros.sim.kernel.language import Floats, Ints
 from thymio_sim_ros.sim.units import proximity_response
 
-__all__ = ["COUNTS", "KERNELS", "MODELS", "proximity", "proximity_response"]
+__all__ = ["COS_CONE", "COUNTS", "KERNELS", "proximity", "proximity_response"]
 
 KERNELS = ("proximity_response", "proximity")
 
 COUNTS = ("sensors", "rays", "model", "seen")
 _SENSORS, _RAYS, _MODEL, _SEEN = range(len(COUNTS))
-MODELS = ("default", "enki", "cone")
-"""What the numbers of models mean."""
-_DEFAULT, _ENKI, _CONE = range(len(MODELS))
+"""`model` is its number among `PROXIMITY_MODELS`."""
+_DEFAULT, _CONE = map(thymio2.PROXIMITY_MODELS.index, ("default", "cone"))
 
 _FAR = math.inf
 _FULL = float(units.PROXIMITY_FULL)
 _RANGE_M = thymio2.PROXIMITY_RANGE_M
-_COS_CONE = math.cos(thymio2.PROXIMITY_HALF_CONE_RAD)
+COS_CONE = math.cos(thymio2.PROXIMITY_HALF_CONE_RAD)
 
 
 def proximity(counts: Ints, cosines: Floats, numbers: Ints, distances: Floats, noise: Floats, found: Ints) -> None:
@@ -41,7 +40,7 @@ def proximity(counts: Ints, cosines: Floats, numbers: Ints, distances: Floats, n
             right = distances[3 * row]
             centre = distances[3 * row + 1]
             left = distances[3 * row + 2]
-            slanted = centre / _COS_CONE
+            slanted = centre / COS_CONE
             if counts[_MODEL] == _DEFAULT and centre < _FAR:
                 right = slanted if right == _FAR else right
                 left = slanted if left == _FAR else left

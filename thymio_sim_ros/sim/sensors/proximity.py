@@ -28,7 +28,8 @@ from thymio_sim_ros.sim.kernel.memory import is_available
 from thymio_sim_ros.sim.raycaster import Fan, Values
 from thymio_sim_ros.sim.readings import ProximityReading
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sensors._counting import Counting
+from thymio_sim_ros.sim.sensors._counts import ProximityCounts
+from thymio_sim_ros.sim.sensors._kernels import COS_CONE
 from thymio_sim_ros.sim.thymio2 import (
     PROXIMITY_HEIGHT_M,
     PROXIMITY_NOISE,
@@ -41,7 +42,6 @@ __all__ = ["SENSOR", "response", "responses"]
 
 _COUNT = len(PROXIMITY_POSES)
 _CONE_RAD = thymio2.PROXIMITY_HALF_CONE_RAD
-_COS_CONE = math.cos(_CONE_RAD)
 _RAYS = {"default": 3, "enki": 3, "cone": 9}
 _ANGLES_RAD = {
     model: tuple(-_CONE_RAD + 2 * _CONE_RAD * ray / (count - 1) for ray in range(count))
@@ -68,7 +68,7 @@ def response(distances_m: Sequence[float], model: str) -> float:
         straight = map(float.__mul__, distances_m, _COSINES[model])
         return math.fsum(map(_within_range, distances_m, straight)) / len(distances_m)
     right, centre, left = distances_m
-    slanted = centre / _COS_CONE
+    slanted = centre / COS_CONE
     if model != "enki" and centre < math.inf:
         right, left = min(right, slanted) if right == math.inf else right, slanted if left == math.inf else left
     total = units.proximity_response(right) + units.proximity_response(centre) + units.proximity_response(left)
@@ -83,7 +83,7 @@ def responses(distances_m: Values, model: str) -> Values:
         mean: Values = reduce(np.add, found.T) / distances_m.shape[1]  # one after the other, as the kernel does
         return mean
     right, centre, left = distances_m.T
-    slanted = centre / _COS_CONE
+    slanted = centre / COS_CONE
     if model != "enki":
         right, left = (np.where(np.isinf(side) & ~np.isinf(centre), slanted, side) for side in (right, left))
     of = units.proximity_responses(np.stack((right, centre, left, slanted)))
@@ -129,10 +129,10 @@ def _measure_all(group: GroupView) -> Later:
     sensors, distances = group.cast(_FANS[model])
     noise = group.noise.draw(sensors // _COUNT, PROXIMITY_NOISE)
     if is_available():
-        counting = group.memory.get("counting")
-        if counting is None:
-            counting = group.memory["counting"] = Counting(len(group) * _COUNT, model, _COSINES[model])
-        counts = counting.count(sensors, distances, noise).reshape(-1, _COUNT)
+        kernel = group.memory.get("counts")
+        if kernel is None:
+            kernel = group.memory["counts"] = ProximityCounts(len(group) * _COUNT, model, _COSINES[model])
+        counts = kernel.count(sensors, distances, noise).reshape(-1, _COUNT)
     else:
         counts = np.zeros((len(group), _COUNT), dtype=np.int32)
         values = responses(distances, model) + noise

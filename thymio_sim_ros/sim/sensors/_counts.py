@@ -7,17 +7,18 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.sensors import _kernels
 
-__all__ = ["Counting"]
+__all__ = ["ProximityCounts"]
 
 Values = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
 Counts = npt.NDArray[np.int32]
 
 
-class Counting:
+class ProximityCounts:
     """So many sensors of one model whose rays have these cosines to the axis."""
 
     def __init__(self, sensors: int, model: str, cosines: Sequence[float]) -> None:
@@ -27,7 +28,7 @@ class Counting:
         )
         own_cosines, self._distances, self._noise = floats
         self._counts, self._numbers, self._found = ints
-        self._counts[:-1] = sensors, rays, _kernels.MODELS.index(model)
+        self._counts[:-1] = sensors, rays, thymio2.PROXIMITY_MODELS.index(model)
         own_cosines[:] = cosines
         self._memory = memory
         self._call = memory.bind(
