@@ -102,6 +102,18 @@ def test_without_ros_it_says_where_to_get_it(capsys, monkeypatch):
     assert "runner" in refused(capsys, "--headless")
 
 
+def test_a_look_at_the_ports_lets_nobody_in_who_would_then_find_nobody(capsys, monkeypatch):
+    """A browser that waits for the page took the first answer of its port for the page."""
+
+    class Socket(socket.socket):
+        def listen(self, *_backlog):
+            pytest.fail("listens before there is a page")
+
+    monkeypatch.setattr(socket, "socket", Socket)
+    monkeypatch.setattr(cli.importlib.util, "find_spec", lambda _name: None)
+    assert "ROS 2 is not installed" in refused(capsys)
+
+
 def test_the_runner_repeats_itself_bit_for_bit(capsys):
     outputs = []
     for seed in ("3", "3", "4"):

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import thymio_sim_ros
 from thymio_sim_ros import convert, foxglove_layout, resources
-from thymio_sim_ros.bridge.thread import listen
+from thymio_sim_ros.bridge.thread import check_free
 from thymio_sim_ros.device.card import Card, CardError
 from thymio_sim_ros.device.events import FIRMWARE, POLICIES
 from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
@@ -357,8 +357,7 @@ def _check_files(playground: str, program: str, behaviour: str, layout: str) -> 
 
 def _check_port(address: str, port: int, whose: str, option: str) -> None:
     try:
-        for listener in listen(address, port):
-            listener.close()
+        check_free(address, port)
     except OSError as error:
         options = option if address == ADDRESS else f"{option} or --address"
         raise UsageError(f"port {port} of {whose}: {error.strerror}; choose another with {options}") from error

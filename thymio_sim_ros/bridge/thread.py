@@ -13,7 +13,7 @@ from thymio_sim_ros.bridge.events import Command
 from thymio_sim_ros.bridge.messages import ServerInfo
 from thymio_sim_ros.bridge.server import BridgeServer, EventSink, ServerSettings
 
-__all__ = ["ServerThread", "listen"]
+__all__ = ["ServerThread", "check_free", "listen"]
 
 _LOOPBACK = ("127.0.0.1", "::1")
 """What `localhost` means: a browser may try either first."""
@@ -24,53 +24,68 @@ _NOT_HERE = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
 _TRIES = 20
 """Free ports tried before giving up, where one must be free on two addresses."""
 
+_BACKLOG = 128
+"""So many clients may wait to be let in."""
+
 
 def listen(address: str, port: int) -> list[socket.socket]:
     """Listening sockets, all on one port; port 0: any free one. `localhost` is the loopback of IPv4 and of IPv6.
 
     Raises OSError that names address and port.
     """
+    return _sockets(address, port, do_listen=True)
+
+
+def check_free(address: str, port: int) -> None:
+    """Raise what `listen` would raise now. Nobody is let in meanwhile, who would then find nobody."""
+    for bound in _sockets(address, port, do_listen=False):
+        bound.close()
+
+
+def _sockets(address: str, port: int, *, do_listen: bool) -> list[socket.socket]:
+    addresses = _LOOPBACK if address == "localhost" else (address,)
     for is_last in (number == _TRIES for number in range(1, _TRIES + 1)):
         try:
-            return _listen(_LOOPBACK if address == "localhost" else (address,), port)
+            return _all_bound(addresses, port, do_listen=do_listen)
         except OSError as error:
             if port or is_last or error.errno != errno.EADDRINUSE:
                 raise
     raise AssertionError("the last try returns or raises")
 
 
-def _listen(addresses: Sequence[str], port: int) -> list[socket.socket]:
-    listeners: list[socket.socket] = []
+def _all_bound(addresses: Sequence[str], port: int, *, do_listen: bool) -> list[socket.socket]:
+    sockets: list[socket.socket] = []
     for address in addresses:
         try:
-            listener = _listen_on(address, port)
+            bound = _bound(address, port, do_listen=do_listen)
         except OSError as error:
-            if listeners and error.errno in _NOT_HERE:
+            if sockets and error.errno in _NOT_HERE:
                 continue
-            for listener in listeners:
-                listener.close()
+            for bound in sockets:
+                bound.close()
             raise
-        listeners.append(listener)
-        port = listener.getsockname()[1]
-    return listeners
+        sockets.append(bound)
+        port = bound.getsockname()[1]
+    return sockets
 
 
-def _listen_on(address: str, port: int) -> socket.socket:
+def _bound(address: str, port: int, *, do_listen: bool) -> socket.socket:
     try:
         info = socket.getaddrinfo(address or None, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
         family, kind, protocol, _, endpoint = info[0]
         # socket.create_server leaves the protocol at 0, and asyncio then leaves Nagle on: 40 ms per answer (measured).
-        listener = socket.socket(family, kind, protocol)
+        bound = socket.socket(family, kind, protocol)
     except OSError as error:
         raise _named(error, address, port) from error
     try:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listener.bind(endpoint)
-        listener.listen(128)
+        bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        bound.bind(endpoint)
+        if do_listen:
+            bound.listen(_BACKLOG)
     except OSError as error:
-        listener.close()
+        bound.close()
         raise _named(error, address, port) from error
-    return listener
+    return bound
 
 
 def _named(error: OSError, address: str, port: int) -> OSError:
