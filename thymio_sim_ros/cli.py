@@ -304,7 +304,7 @@ def _device(options: argparse.Namespace) -> DeviceOptions:
 
 
 def _path(text: str) -> Path:
-    return Path(text).expanduser()
+    return resources.expanded(text)
 
 
 def _program(options: argparse.Namespace) -> str:

@@ -95,10 +95,19 @@ def page() -> Path | None:
     return None
 
 
+def expanded(text: str) -> Path:
+    """A path with the home folder for ~; of a user that this machine does not know, the text as it is."""
+    path = Path(text)
+    try:
+        return path.expanduser()
+    except RuntimeError:
+        return path
+
+
 def _find(name: str, shipped: dict[str, Path], kind: str) -> Path:
     if name in shipped:
         return shipped[name]
-    path = Path(name).expanduser()
+    path = expanded(name)
     if path.is_file():
         return path
     if path.is_dir():

@@ -76,6 +76,28 @@ def test_an_event_that_cannot_be_is_refused_with_a_warning(ros, runtime, message
     assert get_variables(ros, "times") == [[0]]
 
 
+def test_one_warning_does_not_hide_another(ros, runtime):
+    runtime(HEAR)
+    logs = ros.collect(Log, "/rosout")
+    emit = ros.publisher(Int16MultiArray, "/aseba/emit")
+    for number in range(20):
+        emit.publish(event("pong", number))
+    emit.publish(event("ping", 1, 2, 3))
+    logged(ros, logs, "event ping refused: 3 values found, expected at most 2")
+    assert sum("event pong refused" in log.msg for log in logs) == 1
+
+
+def test_an_event_whose_name_is_too_long_for_a_topic_has_none(ros, runtime):
+    node = runtime("var a", robots=["anna"], follow_simulator=False)
+    logs = ros.collect(Log, "/rosout")
+    name = "e" * 250
+    assert set_parameters(
+        ros, {"script.source": program(f"var {'v' * 245} = 7", (name, 0)), "watch": ["v" * 245]}
+    ).successful
+    logged(ros, logs, f"event {name} has a name that is too long for a topic: use aseba/events and aseba/emit")
+    assert node.robots[0].program.events
+
+
 def test_robots_hear_each_other_but_not_themselves(ros, runtime):
     runtime(HEAR, **TWO)
     told = ros.collect(Int16MultiArray, "/anna/aseba/events/ping")

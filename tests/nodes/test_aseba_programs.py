@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 from std_msgs.msg import String
@@ -90,7 +91,15 @@ def test_constants_are_parameters_for_all_and_for_one(ros, runtime):
         ("script.constants.7up", 7, "a program cannot use the name '7up'"),
         ("breakpoints", [0], "[0] found, expected lines from 1 on"),
         ("breakpoints", list(range(1, 18)), "17 breakpoints found, expected at most 16"),
+        ("breakpoints", 4, "4 found, expected a list of lines"),
+        ("breakpoints", None, "breakpoints: nothing found, expected a value"),
+        ("robots.anna.breakpoints", 4, "4 found, expected a list of lines"),
         ("watch", [3], "[3] found, expected a list of names"),
+        ("watch", "me", "'me' found, expected a list of names"),
+        ("watch", None, "watch: nothing found, expected a value"),
+        ("robots.anna.watch", "me", "'me' found, expected a list of names"),
+        ("local_events", True, "True found, expected a list of names"),
+        ("script.path", "~nobody-knows/x.aesl", "~nobody-knows/x.aesl"),
         ("robots.anna.script.source", 3, "Wrong parameter type, expected 'Type.STRING'"),
         ("robots.absent.script.source", 3, "3 found, expected text"),
         ("robots.absent.script.source", "var 3", "line 1, column 5"),
@@ -104,6 +113,20 @@ def test_a_value_that_cannot_be_is_refused_with_its_reason(ros, runtime, name, v
     result = set_parameters(ros, {name: value})
     assert not result.successful
     assert found in result.reason
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "found"),
+    [
+        ("watch", "me", "found 'me', expected a list"),
+        ("breakpoints", 4, "found 4, expected a list"),
+        ("robots", ["/anna"], "'/anna' found, expected a namespace such as 'anna', or ''"),
+        ("robots", ["an na"], "'an na' found, expected a namespace"),
+    ],
+)
+def test_a_value_from_the_command_line_that_cannot_be_is_told_in_one_line(ros, name, value, found):
+    with pytest.raises(StartError, match=re.escape(found)):
+        AsebaRuntime(ros.context, overrides={name: value})
 
 
 def test_the_last_of_path_and_text_counts(ros, runtime):

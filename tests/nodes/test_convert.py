@@ -85,6 +85,8 @@ def test_odometry_and_truth_have_their_frames_and_covariances():
     assert (odometry.twist.twist.linear.x, truth.twist.twist.angular.z) == (0.1, 0.4)
     assert min(odometry.pose.covariance) >= 0.0
     assert sum(truth.pose.covariance) == 0.0
+    sure = ConvertOptions(pose_covariance=(0.0,) * 6, twist_covariance=(1.0, 2.0, 3.0, 4.0, 5.0, 6.0))
+    assert list(encode("odom", reading, options=sure).twist.covariance[::7]) == [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
 
 
 @pytest.mark.parametrize("tilt", [Tilt(0.0, 0.8), Tilt(0.8, 0.0), Tilt(-0.3, 0.4), Tilt(0.0, 0.0)])

@@ -11,6 +11,7 @@ from nav_msgs.msg import Odometry
 from rcl_interfaces.srv import SetParameters
 from rclpy.context import Context
 from rclpy.impl.rcutils_logger import RcutilsLogger
+from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32MultiArray, Int16MultiArray, String
@@ -19,7 +20,7 @@ from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros.nodes import qos, tf_messages
 from thymio_sim_ros.nodes.aseba_node import AsebaRuntime
-from thymio_sim_ros.nodes.life import greeted, run_main
+from thymio_sim_ros.nodes.life import MOST_FAULTS, drive, greeted, run_main
 from thymio_sim_ros.nodes.simulator_node import Simulator
 from thymio_sim_ros.nodes.web_node import WebPage, WebParams
 from thymio_sim_ros.nodes.world_services import SERVICES
@@ -118,6 +119,37 @@ def test_a_new_playground_goes_back_in_time_and_keeps_the_program(ros, simulatio
     assert ros.call(SetParameters, "/simulator/set_parameters", request).results[0].successful
     ros.until(lambda: json.loads(states[-1].data)["playground"] == "base")
     sim.until(lambda: 0 < top(state) < 3, seconds=3.0)
+
+
+class Stumbling:
+    """A life whose first turns fail."""
+
+    def __init__(self, node, faults):
+        self.node, self.faults, self.turns = node, faults, 0
+
+    def turn(self, executor):
+        self.turns += 1
+        executor.spin_once(timeout_sec=0.0)
+        if self.turns <= self.faults:
+            raise ZeroDivisionError("nobody thought of it")
+
+
+def test_a_fault_of_ours_does_not_end_a_node(ros, monkeypatch):
+    told = []
+    monkeypatch.setattr(RcutilsLogger, "error", lambda self, text, **_: told.append(text))
+    life = Stumbling(Node("stumbling", context=ros.context), faults=MOST_FAULTS - 1)
+    drive(life, ros.context, lambda: life.turns == MOST_FAULTS + 1)
+    assert len(told) == MOST_FAULTS - 1
+    assert all("nobody thought of it" in text for text in told)
+    life.node.destroy_node()
+
+
+def test_but_a_node_that_does_nothing_else_ends(ros):
+    life = Stumbling(Node("stumbling", context=ros.context), faults=1000)
+    with pytest.raises(ZeroDivisionError):
+        drive(life, ros.context, lambda: life.turns == 1000)
+    assert life.turns == MOST_FAULTS
+    life.node.destroy_node()
 
 
 def test_nothing_of_a_simulator_is_left_in_the_graph(ros, simulation):

@@ -9,11 +9,12 @@ import math
 import pytest
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist, TwistStamped, Vector3
 from nav_msgs.msg import Odometry
+from rcl_interfaces.msg import Log
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, LaserScan, Range
-from std_msgs.msg import Bool, ColorRGBA, Float32, Float32MultiArray, Float64MultiArray, Int16MultiArray, String
+from std_msgs.msg import Bool, ColorRGBA, Empty, Float32, Float32MultiArray, Float64MultiArray, Int16MultiArray, String
 from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import Marker, MarkerArray
@@ -60,6 +61,66 @@ def test_cmd_vel_moves_the_robot(ros, simulation):
     assert (last.header.frame_id, last.child_frame_id) == ("odom", "base_link")
     assert last.twist.twist.linear.x == pytest.approx(0.1, rel=0.05)
     assert abs(last.pose.pose.position.y) < 0.02
+
+
+def test_a_fault_of_ours_stops_the_world_and_says_so_and_the_node_lives(ros, simulation, monkeypatch):
+    sim = simulation()
+    logs, states = ros.collect(Log, "/rosout"), ros.collect(String, "/simulator/state")
+
+    def fail():
+        raise ZeroDivisionError("nobody thought of it")
+
+    monkeypatch.setattr(sim.simulator.world, "step", fail)
+    assert sim.simulator.paused
+    answer = ros.call(Trigger, "/simulator/step", Trigger.Request())
+    ros.until(lambda: any("the world stopped at 0 ns" in log.msg and "in fail" in log.msg for log in logs))
+    assert not answer.success
+    monkeypatch.undo()
+    assert ros.call(Trigger, "/simulator/step", Trigger.Request()).success
+    ros.until(lambda: states and json.loads(states[-1].data)["paused"])
+
+
+def test_what_is_latched_is_told_anew_after_a_reset(ros, simulation):
+    sim = simulation()
+    ros.publisher(Bool, "/pen/down").publish(Bool(data=True))
+    ros.publisher(Float32MultiArray, "/sound/tone").publish(Float32MultiArray(data=[440.0, 1000.0]))
+    ros.publisher(Twist, "/cmd_vel").publish(forward(0.1))
+    sounds, trails = (
+        ros.collect(Float32MultiArray, "/sound/state"),
+        ros.collect(MarkerArray, "/pen/trail", latched=True),
+    )
+    sim.until(lambda: sounds and sounds[-1].data[0] > 0 and trails and len(trails[-1].markers) > 1)
+    assert ros.call(Trigger, "/simulator/reset", Trigger.Request()).success
+    late_sounds = ros.collect(Float32MultiArray, "/sound/state", latched=True)
+    late_trails = ros.collect(MarkerArray, "/pen/trail", latched=True)
+    ros.until(lambda: late_sounds and late_trails)
+    assert list(late_sounds[-1].data) == [0.0, 0.0, 1.0]
+    assert [marker.action for marker in late_trails[-1].markers] == [Marker.DELETEALL]
+    ros.until(lambda: list(sounds[-1].data) == [0.0, 0.0, 1.0] and len(trails[-1].markers) == 1)
+
+
+def test_a_robot_that_is_shut_down_is_silent(ros, simulation):
+    sim = simulation()
+    sounds = ros.collect(Float32MultiArray, "/sound/state")
+    ros.publisher(Bool, "/alarm").publish(Bool(data=True))
+    sim.until(lambda: sounds and sounds[-1].data[0] > 0)
+    ros.publisher(Empty, "/shutdown").publish(Empty())
+    sim.until(lambda: sounds[-1].data[0] == 0)
+    before = len(sounds)
+    sim.step(7.0)
+    assert len(sounds) == before
+
+
+@pytest.mark.parametrize(("topic", "huge"), [("/initialpose", 1e200), ("/initialpose", math.nan)])
+def test_a_heading_without_measure_is_refused(ros, simulation, topic, huge):
+    sim = simulation()
+    message = PoseWithCovarianceStamped()
+    message.pose.pose.orientation.z = huge
+    before = sim.world.robots["thymio"].pose
+    logs = ros.collect(Log, "/rosout")
+    ros.publisher(PoseWithCovarianceStamped, topic).publish(message)
+    ros.until(lambda: any("not finite" in log.msg for log in logs))
+    assert sim.world.robots["thymio"].pose == before
 
 
 def test_a_stamped_command_turns_the_robot(ros, simulation):

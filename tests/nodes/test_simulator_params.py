@@ -7,6 +7,7 @@ import json
 import pytest
 from geometry_msgs.msg import Twist, TwistStamped, Vector3
 from nav_msgs.msg import OccupancyGrid, Odometry
+from rcl_interfaces.msg import Log
 from rcl_interfaces.srv import DescribeParameters, SetParameters
 from rclpy.parameter import Parameter
 from rclpy.qos import ReliabilityPolicy
@@ -14,7 +15,7 @@ from sensor_msgs.msg import JointState, Range
 from std_msgs.msg import Int16MultiArray, String
 from visualization_msgs.msg import MarkerArray
 
-from thymio_sim_ros.nodes import params, tf_messages
+from thymio_sim_ros.nodes import params, simulator_node, tf_messages
 from thymio_sim_ros.nodes.life import StartError
 from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
 
@@ -54,6 +55,26 @@ def test_a_refused_value_says_why_and_changes_nothing(ros, simulation, name, val
     assert not result.successful
     assert reason in result.reason
     assert sim.simulator.params == before
+
+
+def test_a_fault_of_ours_in_reading_a_playground_is_a_refusal(ros, simulation, monkeypatch):
+    """A file that nobody thought of must not end the simulator of a class."""
+    sim = simulation()
+    logs = ros.collect(Log, "/rosout")
+
+    def fail(_value):
+        raise ZeroDivisionError("nobody thought of it")
+
+    monkeypatch.setattr(simulator_node, "load_playground", fail)
+    result = set_parameter(ros, "playground", "strange.json")
+    assert (result.successful, result.reason) == (False, "ZeroDivisionError: nobody thought of it")
+    ros.until(lambda: any("in fail" in log.msg for log in logs))
+    sim.step(1)
+
+
+def test_a_home_folder_that_is_not_there_is_no_playground(ros, simulation):
+    simulation()
+    assert "no playground '~nobody-knows/x.json'" in set_parameter(ros, "playground", "~nobody-knows/x.json").reason
 
 
 @pytest.mark.parametrize(

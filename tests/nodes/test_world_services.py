@@ -87,6 +87,9 @@ def test_a_robot_that_was_spawned_measures_and_obeys(ros, simulation):
         ("anna", ParameterValue(), "anna: found nothing, expected [x, y, yaw] in m and rad"),
         ("an na", numbers(-0.5, 0.5), "name: found 'an na', expected a ROS name"),
         ("anna", numbers(math.nan, 0.5), "x_m: found nan"),
+        ("anna", numbers(-0.5, 0.5, math.nan), "yaw_rad: found nan"),
+        ("raw", numbers(-0.5, 0.5), "the name 'raw' is taken by topics of the robot that has no name"),
+        ("anna", ParameterValue(type=42), "anna: a value of unknown type 42 found"),
     ],
 )
 def test_a_robot_that_cannot_be_is_refused_with_a_reason(ros, simulation, name, value, reason):
@@ -112,6 +115,19 @@ def test_robots_and_things_are_put_somewhere(ros, simulation):
     thymio, crate, post = poses(ros, "thymio", "crate", "post")
     assert (thymio, crate, post) == ([-0.5, 0.0, 1.0], [0.25, 0.25, 0.0], [])
     assert "'post' is in its way" in ask(ros, "set_poses", crate=numbers(0.0, 0.5))["crate"]
+
+
+@pytest.mark.parametrize("place", [numbers(-0.5, 0.5, math.nan), numbers(math.inf, 0.5)])
+def test_a_place_that_is_none_is_refused_and_the_world_goes_on(ros, simulation, place):
+    sim = simulation(playground=json.dumps(json.loads(ROOM) | {"shapes": json.loads(ROOM)["shapes"][:1]}))
+    assert "expected finite numbers" in ask(ros, "set_poses", thymio=place)["thymio"]
+    sim.step(0.1)
+
+
+def test_two_are_not_put_into_one_another_by_one_request(ros, simulation):
+    simulation(playground=ROOM)
+    reasons = ask(ros, "set_poses", thymio=numbers(-0.5, 0.5), crate=numbers(-0.5, 0.5))
+    assert reasons == {"thymio": "", "crate": "'crate' cannot stand at -0.500, 0.500 m: 'thymio' is in its way"}
 
 
 def transform(child, x, y, yaw=0.0, frame="map"):

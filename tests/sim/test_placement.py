@@ -170,9 +170,42 @@ def test_a_robot_may_be_turned_on_its_own_place() -> None:
     assert world.robots["thymio"].pose.yaw_rad == pytest.approx(1.0, abs=1e-6)
 
 
-def test_a_place_that_is_no_number_is_refused() -> None:
+def test_a_place_where_something_will_stand_in_the_next_step_is_not_free() -> None:
+    world = build()
+    world.post("crate", MoveObject(-1.0, 1.0, 0.0))
+    with pytest.raises(PlacementError, match="'crate' is in its way"):
+        world.post("thymio", MoveRobot(-1.0, 1.0, 0.0))
+    with pytest.raises(PlacementError, match="'crate' is in its way"):
+        world.spawn(RobotStart("late", -1.0, 1.0))
+    world.spawn(RobotStart("late", -0.5, 0.0))
+    world.step()
+    assert world.robots["late"].pose == Pose(-0.5, 0.0, 0.0)
+    assert crate(world) == Pose(-1.0, 1.0, 0.0)
+
+
+@pytest.mark.parametrize("place", [(math.nan, 0.0, 0.0), (0.0, math.inf, 0.0), (0.0, 0.0, math.nan)])
+def test_a_place_that_is_no_number_is_refused(place: tuple[float, float, float]) -> None:
+    world = World(make([{"kind": "rectangle", "size_x_m": 4, "size_y_m": 4, "color": GREY}, CRATE]))
     with pytest.raises(ValueError, match="expected finite numbers"):
-        send(build(), MoveRobot(math.nan, 0.0, 0.0))
+        send(world, MoveRobot(*place))
+    with pytest.raises(ValueError, match="expected finite numbers"):
+        world.post("crate", MoveObject(*place))
+    with pytest.raises(ValueError, match=r"found (nan|inf)"):
+        world.spawn(RobotStart("late", *place))
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        RobotStart("late", 150.0, 0.0),
+        RobotStart("late", 0.2, -0.3, 7.0),
+        RobotStart("not a name", 0.2, -0.3),
+    ],
+)
+def test_a_robot_that_no_file_may_hold_is_not_spawned(start: RobotStart) -> None:
+    """A log of the run would keep it, and could not be read again."""
+    with pytest.raises(ValueError, match="expected"):
+        build().spawn(start)
 
 
 @pytest.mark.parametrize(("name", "command"), [("crate", MotorTargets(0, 0)), ("thymio", MoveObject(0, 0, 0))])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import json
 import struct
@@ -31,9 +32,9 @@ OURS = json.dumps(
 PICTURE = png([[WHITE, BLACK]])
 
 
-def archive(**files: bytes | str) -> bytes:
+def archive(method: int = zipfile.ZIP_DEFLATED, /, **files: bytes | str) -> bytes:
     out = io.BytesIO()
-    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as packed:
+    with zipfile.ZipFile(out, "w", method) as packed:
         for name, content in files.items():
             packed.writestr(name, content)
     return out.getvalue()
@@ -114,6 +115,17 @@ def test_a_damaged_archive_is_refused() -> None:
     assert refused(bytes(data)).path == "mine.zip"
 
 
+@pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_an_archive_damaged_anywhere_is_refused_or_read(method: int) -> None:
+    whole = archive(method, **{"world.xml": WORLD, "ground.png": PICTURE})
+    for place in range(len(whole)):
+        for value in (0x00, 0x7F, 0xFF):
+            data = bytearray(whole)
+            data[place] = value
+            with contextlib.suppress(PlaygroundError):  # any other error fails the test
+                playground.loads(bytes(data), "mine.zip")
+
+
 def test_an_encrypted_archive_is_refused() -> None:
     data = bytearray(archive(**{"world.xml": WORLD}))
     for signature, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
@@ -135,6 +147,9 @@ def test_a_file_that_is_too_large_is_refused() -> None:
     [
         ('{"title": "NaN",\n "format": NaN}', "t: line 2, column 12: found NaN, expected finite numbers"),
         ('{"format": [1, -Infinity]}', "t: line 1, column 16: found -Infinity, expected finite numbers"),
+        ('{"a\\ud800": 1}', "t: line 1, column 2: found half a character, expected whole characters"),
+        ('{"format": "\\ude00"}', "t: line 1, column 12: found half a character, expected whole characters"),
+        ('{"format": "\\ud83e\\udd16 \\\\ud800"}', "t: format: found '\U0001f916 \\\\ud800', expected 1"),
         ('{"format": 1,\n', "t: line 2, column 1: found the end of the text, expected JSON (Expecting property name"),
         (
             '{"format": 1 "title": ""}',

@@ -69,12 +69,13 @@ class Bus:
         sizes = {robot: _size(robot, event) for robot in robots}
         fits = {robot: size for robot, size in sizes.items() if size is not None and len(args) <= size}
         too_small = [size for size in sizes.values() if size is not None and len(args) > size]
+        about = f"event {event}"
         if is_internal(event):
-            ports.warn(f"event {event} refused: it stays inside the robot")
+            ports.warn(about, "refused: it stays inside the robot")
         elif too_small:
-            ports.warn(f"event {event} refused: {len(args)} values found, expected at most {min(too_small)}")
+            ports.warn(about, f"refused: {len(args)} values found, expected at most {min(too_small)}")
         elif not fits and not (self.reaches_all and self._network.has_others):
-            ports.warn(f"event {event} refused: the program declares {_declared(ports)}")
+            ports.warn(about, f"refused: the program declares {_declared(ports)}")
         else:
             for robot, size in fits.items():
                 robot.hear(event, [*args, *[0] * (size - len(args))], source=COMPUTER)

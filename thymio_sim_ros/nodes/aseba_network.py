@@ -10,7 +10,7 @@ from rclpy.node import Node
 from std_msgs.msg import Int16MultiArray
 
 from thymio_sim_ros.nodes import convert, qos
-from thymio_sim_ros.nodes.robot_ports import WARN_EVERY_S
+from thymio_sim_ros.nodes.warner import Warner
 
 __all__ = ["TOPIC", "AsebaNetwork", "Telegram"]
 
@@ -32,8 +32,7 @@ class AsebaNetwork:
     """Sends what happens here to other runtimes, and tells what comes from them."""
 
     def __init__(self, node: Node, hear: Callable[[Telegram], None]) -> None:
-        self._node = node
-        self._hear = hear
+        self._hear, self._warn = hear, Warner(node)
         self._own = uuid.uuid4().hex
         self._publisher = node.create_publisher(Int16MultiArray, TOPIC, qos.EVENTS)
         node.create_subscription(Int16MultiArray, TOPIC, self._on_message, qos.EVENTS)
@@ -53,10 +52,8 @@ class AsebaNetwork:
     def _on_message(self, message: Int16MultiArray) -> None:
         labels: Sequence[str] = [dimension.label for dimension in message.layout.dim]
         if len(labels) != 2 or len(message.data) < HEAD:
-            text = (
-                f"{TOPIC} refused: {len(labels)} labels and {len(message.data)} values found, expected 2 and 3 or more"
-            )
-            self._node.get_logger().warning(text, throttle_duration_sec=WARN_EVERY_S)
+            found = f"{len(labels)} labels and {len(message.data)} values found"
+            self._warn(TOPIC, f"refused: {found}, expected 2 and 3 or more")
         elif labels[1] != self._own:
             source, channel, network, *args = message.data
             self._hear(Telegram(labels[0], source, (channel, network), tuple(args)))

@@ -42,6 +42,7 @@ from thymio_sim_ros.nodes.device_ports import DevicePorts, Wishes
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.raw_topic import Decoder
+from thymio_sim_ros.nodes.warner import Warner
 
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
@@ -87,7 +88,7 @@ class AsebaRuntime:
         self._is_declaring = False
         self._raw: Any = None
         """The subscription to the integers of all robots of the simulator."""
-        self._decoder = Decoder()
+        self._decoder, self._warn = Decoder(), Warner(self.node)
         try:
             self._start(defaults or RuntimeParams())
         except (OptionError, WrongValueError, CardError, SettingsError, *PROGRAM_ERRORS) as error:
@@ -228,7 +229,7 @@ class AsebaRuntime:
             told = json.loads(message.data)
             names, raw = [str(robot["name"]) for robot in told["robots"]], str(told.get("raw", ""))
         except (ValueError, KeyError, TypeError) as error:
-            self._warn(f"{SIMULATOR_STATE} refused: {error!r}")
+            self._warn(SIMULATOR_STATE, f"refused: {error!r}")
             return
         self._listen_to("" if self.params.robot_topics == "driver" else raw)
         if names != [ports.names.name for ports in self.robots]:
@@ -262,7 +263,7 @@ class AsebaRuntime:
                     robots[robot].feed(sensor, words)
                     fed[robots[robot]] = None
         except (ValueError, RuntimeError) as error:
-            self._warn(f"the integers of all robots refused: {error}")
+            self._warn(SIMULATOR_RAW, f"refused: {error}")
         now_ns = self.node.get_clock().now().nanoseconds
         self._bus.settle(*[ports for ports in fed if ports.is_due(now_ns)])
 
@@ -289,9 +290,6 @@ class AsebaRuntime:
             message = DiagnosticArray(status=list(statuses))
             message.header.stamp = self.node.get_clock().now().to_msg()
             self._diagnostics.publish(message)
-
-    def _warn(self, text: str) -> None:
-        self.node.get_logger().warning(text, throttle_duration_sec=5.0)
 
     # -- parameters
 

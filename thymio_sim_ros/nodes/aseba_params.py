@@ -5,14 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence, Sized
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
+from rclpy.exceptions import InvalidNamespaceException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.validate_namespace import validate_namespace
 
 from aseba_vm.lexer import is_name
 from aseba_vm.vm import MAX_BREAKPOINTS
+from thymio_sim_ros import resources
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes.params import param
@@ -99,7 +101,7 @@ class RuntimeParams:
     @property
     def options(self) -> DeviceOptions:
         """What these say about the robots; OptionError for a choice that does not exist."""
-        folders = (Path(text).expanduser() if text else None for text in (self.card, self.settings))
+        folders = (resources.expanded(text) if text else None for text in (self.card, self.settings))
         return DeviceOptions(self.layout, self.events, *folders)
 
 
@@ -139,6 +141,9 @@ def check_value(name: str, value: Any) -> None:
     """Raise WrongValueError for a free parameter that does not exist or cannot have this value."""
     if name == "local_events":
         _check_strings(name, value)
+    if name == "robots":
+        for robot in value:
+            _check_namespace(name, robot)
     match = _FREE.fullmatch(name)
     if match is None:
         return
@@ -180,8 +185,15 @@ def _check_constant(name: str, constant: str, value: Any) -> None:
         raise WrongValueError(f"{name}: {value!r} found, expected a whole number from -32768 to 32767")
 
 
+def _check_namespace(name: str, robot: str) -> None:
+    try:
+        validate_namespace(f"/{robot}")
+    except InvalidNamespaceException as error:
+        raise WrongValueError(f"{name}: {robot!r} found, expected a namespace such as 'anna', or ''") from error
+
+
 def _check_lines(name: str, value: Any) -> None:
-    lines = list(value or ())
+    lines = _list(name, value, "lines")
     if any(isinstance(line, bool) or not isinstance(line, int) or line < 1 for line in lines):
         raise WrongValueError(f"{name}: {lines} found, expected lines from 1 on")
     if len(lines) > MAX_BREAKPOINTS:
@@ -189,6 +201,13 @@ def _check_lines(name: str, value: Any) -> None:
 
 
 def _check_strings(name: str, value: Any) -> None:
-    names = list(value or ())
+    names = _list(name, value, "names")
     if any(not isinstance(item, str) for item in names):
         raise WrongValueError(f"{name}: {names} found, expected a list of names")
+
+
+def _list(name: str, value: Any, of: str) -> list[Any]:
+    """The items of a list; one that was never set has none."""
+    if isinstance(value, str | bytes | int | float):  # a bool is an int
+        raise WrongValueError(f"{name}: {value!r} found, expected a list of {of}")
+    return list(value or ())

@@ -76,7 +76,11 @@ def _answer(question: Question) -> tuple[bool, str]:
 def _values(parameters: Sequence[ParameterMsg]) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for message in parameters:
-        parameter = Parameter.from_parameter_msg(message)
+        try:
+            parameter = Parameter.from_parameter_msg(message)
+        except ValueError as error:
+            kind = message.value.type
+            raise _RequestError(f"{message.name}: a value of unknown type {kind} found") from error
         if parameter.name not in _TYPES:
             raise _RequestError(f"parameter '{parameter.name}' found, expected one of {', '.join(_TYPES)}")
         is_empty_list = parameter.value is not None and parameter.type_.name.endswith("ARRAY") and not parameter.value

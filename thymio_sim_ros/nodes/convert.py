@@ -74,8 +74,11 @@ def quaternion(yaw_rad: float, tilt: Tilt = LEVEL) -> Quaternion:
 
 
 def yaw_of(rotation: Quaternion) -> float:
-    """Yaw in rad of any unit quaternion."""
-    return math.atan2(2 * (rotation.w * rotation.z + rotation.x * rotation.y), 1 - 2 * (rotation.y**2 + rotation.z**2))
+    """Yaw in rad of any unit quaternion; of one without measure, not a number."""
+    x, y, z, w = rotation.x, rotation.y, rotation.z, rotation.w
+    if not math.isfinite(x * x + y * y + z * z + w * w):
+        return math.nan
+    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 
 def proximity_range(
@@ -146,27 +149,27 @@ def joints(reading: readings.MotorReading, names: RobotNames, _options: ConvertO
 
 def odometry(reading: readings.PoseReading, names: RobotNames, options: ConvertOptions) -> Odometry:
     """Where the wheels have brought the robot by their count."""
-    message = _odometry_message(reading.odometry, reading.odometry_twist, options.pose_covariance, options)
+    message = _odometry_message(reading.odometry, reading.odometry_twist)
+    message.pose.covariance[::7] = options.pose_covariance
+    message.twist.covariance[::7] = options.twist_covariance
     message.child_frame_id = names.frame("base_link")
     return stamped(message, reading.stamp_ns, names.frame("odom"))
 
 
-def truth(reading: readings.PoseReading, names: RobotNames, options: ConvertOptions) -> Odometry:
+def truth(reading: readings.PoseReading, names: RobotNames, _options: ConvertOptions) -> Odometry:
     """Where the robot really is."""
-    message = _odometry_message(reading.truth, reading.truth_twist, (0.0,) * 6, options)
+    message = _odometry_message(reading.truth, reading.truth_twist)
     message.pose.pose.orientation = quaternion(reading.truth.yaw_rad, reading.tilt)
     message.child_frame_id = names.frame("base_link")
     return stamped(message, reading.stamp_ns, names.frame(MAP_FRAME))
 
 
-def _odometry_message(pose: Pose, twist: Twist, covariance: tuple[float, ...], options: ConvertOptions) -> Odometry:
+def _odometry_message(pose: Pose, twist: Twist) -> Odometry:
     message = Odometry()
     message.pose.pose = PoseMsg(position=Point(x=pose.x_m, y=pose.y_m), orientation=quaternion(pose.yaw_rad))
-    message.pose.covariance[::7] = covariance
     message.twist = TwistWithCovariance()
     message.twist.twist.linear.x = twist.linear_m_s
     message.twist.twist.angular.z = twist.angular_rad_s
-    message.twist.covariance[::7] = options.twist_covariance if any(covariance) else covariance
     return message
 
 

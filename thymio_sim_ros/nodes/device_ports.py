@@ -26,9 +26,9 @@ from thymio_sim_ros.device.status import OFF
 from thymio_sim_ros.nodes import command_topics, direct, driver_senses, plugin_topics, qos
 from thymio_sim_ros.nodes.event_ports import EventPorts
 from thymio_sim_ros.nodes.names import RobotNames
-from thymio_sim_ros.nodes.robot_ports import WARN_EVERY_S
 from thymio_sim_ros.nodes.status_ports import Loaded, StatusPorts, place
 from thymio_sim_ros.nodes.variable_ports import VariablePorts
+from thymio_sim_ros.nodes.warner import Warner
 from thymio_sim_ros.sim.commands import Command
 
 __all__ = ["DevicePorts", "Surroundings", "Wishes"]
@@ -101,6 +101,7 @@ class DevicePorts:
         if has_driver:
             publisher = node.create_publisher(Twist, names.topic("cmd_vel"), qos.COMMAND)
             self._outputs["motor/target"] = (driver_senses.twist_of, publisher)
+        self.warn = Warner(node)
         self.status = StatusPorts(node, names, number=number)
         self._events = EventPorts(node, names, lambda event, args: around.emit(self, event, args), self.warn)
         self._variables = VariablePorts(node, names, self.device, self.run, language=self._wishes.language)
@@ -184,7 +185,7 @@ class DevicePorts:
         try:
             self.device.feed(sensor, words)
         except ValueError as error:
-            self.warn(f"raw/{sensor} refused: {error}")
+            self.warn(self.names.topic(f"raw/{sensor}"), f"refused: {error}")
 
     def is_due(self, now_ns: int) -> bool:
         """Whether there is anything to do now for a robot that has been fed."""
@@ -241,10 +242,6 @@ class DevicePorts:
             self._node.destroy_subscription(subscription)
         for _, publisher in self._outputs.values():
             self._node.destroy_publisher(publisher)
-
-    def warn(self, text: str) -> None:
-        """Tell a user, not too often."""
-        self._node.get_logger().warning(text, throttle_duration_sec=WARN_EVERY_S)
 
     def _begin(self, *, with_events: bool = True) -> None:
         """The program is another or begins anew, or other things of it are wanted."""

@@ -18,11 +18,14 @@ __all__ = ["Emit", "EventPorts", "unlike"]
 Emit = Callable[[str, list[int]], None]
 """An event that somebody in ROS emits: name, values."""
 
+_LONGEST_TOPIC = 247
+"""Of a full name, in characters; DDS refuses longer ones."""
+
 
 class EventPorts:
     """The pair for any event, and a pair for each event of the program. They come and go with it."""
 
-    def __init__(self, node: Node, names: RobotNames, emit: Emit, warn: Callable[[str], None]) -> None:
+    def __init__(self, node: Node, names: RobotNames, emit: Emit, warn: Callable[[str, str], None]) -> None:
         self.words: Mapping[str, str] = {}
         self._node = node
         self._names = names
@@ -39,12 +42,11 @@ class EventPorts:
         """Have the topics of this program's events, and of these local ones."""
         self._close_program()
         events = [event for event, _ in program.events if not is_internal(event)]
-        self.words, unfit = unlike([*events, *local_events])
-        for event, word in unfit.items():
-            self._warn(f"event {event} shares the topic name {word} with another: use aseba/events and aseba/emit")
+        self.words, unfit = unlike([*events, *local_events], self._topic)
+        for event, why in unfit.items():
+            self._warn(f"event {event}", f"{why}: use aseba/events and aseba/emit")
         for event, word in self.words.items():
-            topic = self._names.topic(f"aseba/events/{word}")
-            self._publishers[event] = self._node.create_publisher(Int16MultiArray, topic, qos.EVENTS)
+            self._publishers[event] = self._node.create_publisher(Int16MultiArray, self._topic(word), qos.EVENTS)
             if event in events:
                 topic = self._names.topic(f"aseba/emit/{word}")
                 subscription = self._node.create_subscription(Int16MultiArray, topic, self._emitter(event), qos.EVENTS)
@@ -72,19 +74,30 @@ class EventPorts:
         self._publishers.clear()
         self._subscriptions.clear()
 
+    def _topic(self, word: str) -> str:
+        return self._names.topic(f"aseba/events/{word}")
+
     def _emitter(self, event: str) -> Callable[[Int16MultiArray], None]:
         return lambda message: self._emit(event, list(message.data))
 
     def _on_any_emit(self, message: Int16MultiArray) -> None:
         if len(message.layout.dim) != 1:
-            self._warn("aseba/emit refused: layout.dim[0].label must be the name of the event")
+            self._warn("aseba/emit", "refused: layout.dim[0].label must be the name of the event")
             return
         self._emit(message.layout.dim[0].label, list(message.data))
 
 
-def unlike(names: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
-    """Name → its word in topics, for those that have a word to themselves, and for those that share one."""
+def unlike(names: Sequence[str], topic: Callable[[str], str]) -> tuple[dict[str, str], dict[str, str]]:
+    """Name → its word in topics, for those that can have a topic to themselves; for the others why not.
+
+    `topic` makes the whole name of a topic from such a word.
+    """
     words = {name: topic_word(name) for name in names}
     taken = list(words.values())
-    alone = {name: word for name, word in words.items() if taken.count(word) == 1}
-    return alone, {name: word for name, word in words.items() if name not in alone}
+    unfit = {}
+    for name, word in words.items():
+        if taken.count(word) > 1:
+            unfit[name] = f"shares the topic name {word} with another"
+        elif len(topic(word)) > _LONGEST_TOPIC:
+            unfit[name] = "has a name that is too long for a topic"
+    return {name: word for name, word in words.items() if name not in unfit}, unfit

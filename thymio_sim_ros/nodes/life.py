@@ -39,6 +39,9 @@ SPIN_SLICE_S = 0.1
 """Longest wait in one spin: the events executor needs finite time-outs (ros-packaging.md section 3)."""
 
 
+MOST_FAULTS = 10
+"""Turns that fail one after the other before a node gives up."""
+
 CLOSE_S = 4.0
 """Longest time for leaving the graph: Fast DDS compares each endpoint with all others once more, which takes a minute
 with a hundred robots. `ros2 launch` kills after 10 s, and whoever pressed Ctrl-C does not wait that long."""
@@ -101,12 +104,24 @@ def _nothing() -> None:
 
 
 def drive(life: Life, context: Context, stop: Callable[[], bool]) -> None:
-    """Turn a life on an executor of its own until `stop` says so or the context ends."""
+    """Turn a life on an executor of its own until `stop` says so or the context ends.
+
+    A fault of our own in a callback is logged and does not end a node that a class works with; `MOST_FAULTS` turns in a
+    row that fail do.
+    """
     executor = make_executor(context)
     executor.add_node(life.node)
+    faults = 0
     try:
         while not stop() and context.ok():
-            life.turn(executor)
+            try:
+                life.turn(executor)
+                faults = 0
+            except Exception:  # rclpy raises what a callback raises
+                faults += 1
+                if faults >= MOST_FAULTS or not context.ok():
+                    raise
+                life.node.get_logger().error(f"a fault of ours, and on it goes:\n{traceback.format_exc()}")
     finally:
         executor.remove_node(life.node)
         executor.shutdown()

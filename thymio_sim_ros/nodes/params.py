@@ -94,6 +94,8 @@ class Declared:
     def refusal(self, value: Any) -> str:
         """Why this value is refused, or nothing; what a descriptor refuses is not asked here."""
         said = self.metadata
+        if value is None:
+            return f"{self.name}: nothing found, expected a value"
         if said["choices"] and value not in said["choices"]:
             return f"{self.name} is '{value}', expected {' or '.join(said['choices'])}"
         if isinstance(value, float) and not math.isfinite(value):
@@ -201,6 +203,8 @@ def declare_array(node: Node, name: str, kind: Parameter.Type, text: str, defaul
     """
     node.declare_parameter(name, None, ParameterDescriptor(description=text, dynamic_typing=True))
     found = node.get_parameter(name).value
+    if isinstance(found, str | bytes | int | float):
+        raise StartError(f"parameter {name} of {node.get_name()}: found {found!r}, expected a list")
     value = list(default if found is None else found)
     node.set_parameters([Parameter(name, kind, value)] if not value else [Parameter(name, value=value)])
     return value

@@ -72,7 +72,7 @@ def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
             "shutdown",
             Empty,
             _shutdown,
-            "the robot off: wheels, lights, sound and its program, until `aseba/run` or a reset",
+            "wheels, lights, sound and alarm off, the program until `aseba/run` or a reset; later commands are obeyed",
             qos.EVENTS,
         ),
         RobotInput(
@@ -119,7 +119,8 @@ def _leds_off(_message: Empty, _moment: Moment) -> Sequence[Command]:
 
 
 def _shutdown(message: Empty, moment: Moment) -> Sequence[Command]:
-    return (commands.MotorTargets(0, 0), commands.StopSound(), *_leds_off(message, moment))
+    quiet = (commands.SetAlarm(False), commands.StopSound())
+    return (commands.MotorTargets(0, 0), *quiet, *_leds_off(message, moment))
 
 
 def _pose(message: PoseWithCovarianceStamped, _moment: Moment) -> Sequence[Command]:

@@ -25,6 +25,7 @@ from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.robot_inputs import Moment, RobotInput, robot_inputs
 from thymio_sim_ros.nodes.sensor_topics import Row
 from thymio_sim_ros.nodes.templates import Template
+from thymio_sim_ros.nodes.warner import Warner
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.geometry import Pose, Tilt, Twist
@@ -32,11 +33,9 @@ from thymio_sim_ros.sim.placement import PlacementError
 from thymio_sim_ros.sim.readings import PoseReading, Reading
 from thymio_sim_ros.sim.sensors import all_sensors
 
-__all__ = ["DESCRIBED", "DESCRIPTION", "SERVICES", "WARN_EVERY_S", "PortOptions", "RobotPorts"]
+__all__ = ["DESCRIBED", "DESCRIPTION", "SERVICES", "PortOptions", "RobotPorts", "first_words"]
 
 Post = Callable[[Command], None]
-
-WARN_EVERY_S = 5.0
 
 DESCRIPTION = "robot_description"
 DESCRIBED = (String, "the robot as URDF, made of primitives, with turning wheels")
@@ -46,6 +45,13 @@ SERVICES: Mapping[str, tuple[type, str]] = {
     "reset_odometry": (Trigger, "the odometry starts again from zero: `odom -> base_link` jumps once"),
 }
 """Type and meaning of every service of a robot."""
+
+
+def first_words() -> frozenset[str]:
+    """First words of a robot's topics, where there is more than one, and of what a program adds."""
+    rows = (row.topic for sensor in all_sensors() for row in sensor_topics.rows_of(sensor))
+    topics = (*rows, *(one.topic for one in robot_inputs()), "aseba/")
+    return frozenset(topic.partition("/")[0] for topic in topics if "/" in topic)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +81,8 @@ class _Outlet:
     """Tells how many listen."""
     is_sent: bool = False
     last: Any = None
+    is_stale: bool = False
+    """Whether it has told what a reset undoes without a word of the sensor."""
     template: Template | None = None
 
 
@@ -104,6 +112,7 @@ class RobotPorts:
         self._content, self._moment = content, moment
         self._on_refusal, self._on_limit = on_refusal, on_limit
         self._limited: set[str] = set()
+        self._warn = Warner(node)
         self._audience = audience
         self._outlets: dict[str, list[_Outlet]] = {sensor.name: [] for sensor in all_sensors()}
         self._sent: dict[str, tuple[_Outlet, ...]] = {}
@@ -152,6 +161,7 @@ class RobotPorts:
                 continue
             if row.patch is not None:
                 outlet.template = Template.checked(row.patch, message, reading, content)
+            outlet.is_stale = row.profile == qos.LATCHED
             outlet.publisher.publish(message)
 
     @property
@@ -179,10 +189,14 @@ class RobotPorts:
                 outlet.publisher.publish(outlet.row.encode(reading, self.names, self._content()))
 
     def forget(self) -> None:
-        """Send the next reading of every kind, also an unchanged one: the world was reset."""
-        for outlets in self._outlets.values():
+        """Send the next reading of every kind, also an unchanged one: the world was reset. What is latched ends now."""
+        for sensor, outlets in self._outlets.items():
             for outlet in outlets:
                 outlet.last, outlet.next_ns = None, outlet.heard.every_ns
+                if outlet.is_stale and sensor in sensor_topics.AT_START:
+                    outlet.is_stale = False
+                    message = outlet.row.encode(sensor_topics.AT_START[sensor], self.names, self._content())
+                    outlet.publisher.publish(message)
 
     def close(self) -> None:
         """Take all topics and services of this robot out of the graph."""
@@ -223,9 +237,7 @@ class RobotPorts:
                     self._tell_limit(one, beyond)
             except (CommandError, PlacementError) as error:
                 self._on_refusal()
-                self._node.get_logger().warning(
-                    f"{self.names.topic(one.topic)} refused: {error}", throttle_duration_sec=WARN_EVERY_S
-                )
+                self._warn(self.names.topic(one.topic), f"refused: {error}")
 
         return take
 

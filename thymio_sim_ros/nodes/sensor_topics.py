@@ -33,7 +33,9 @@ from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
 from thymio_sim_ros.nodes.templates import Patch
 from thymio_sim_ros.sim import commands
+from thymio_sim_ros.sim.readings import LoudspeakerReading, PenReading, Reading
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.tones import TRIANGLE
 
 JOINTS, TRUTH = "joint_states", "ground_truth/odom"
 
@@ -229,6 +231,13 @@ ROWS: dict[str, tuple[Row, ...]] = {
     ),
 }
 """Sensor name → topics in SI units. Besides, every sensor that Aseba sees has `raw/<sensor>`."""
+
+
+AT_START: Mapping[str, Reading] = {
+    "pen": PenReading(0, (), False, (0.0, 0.0, 0.0), 0.0, False, ()),
+    "loudspeaker": LoudspeakerReading(0, (), 0, 0.0, 0, TRIANGLE, b"", 0),
+}
+"""What these sensors, which tell changes only, would say of a robot that has done nothing yet."""
 
 
 def rows_of(sensor: Sensor) -> tuple[Row, ...]:

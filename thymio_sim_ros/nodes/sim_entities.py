@@ -161,7 +161,7 @@ class Entities:
         x, y, yaw = self._place(header, pose, SPAWN_POSE_INVALID)
         try:
             start = fields.read(RobotStart, {"name": name, "x_m": x, "y_m": y, "yaw_rad": yaw}, "")
-            self._simulator.world.spawn(start)
+            self._simulator.spawn(start)
         except FieldError as error:
             raise RefusedError(NAME_INVALID if error.key == "name" else SPAWN_POSE_INVALID, str(error)) from error
         except PlacementError as error:

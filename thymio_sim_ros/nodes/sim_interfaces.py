@@ -14,7 +14,7 @@ from rclpy.node import Node
 from thymio_sim_ros import resources
 from thymio_sim_ros.nodes.sim_answers import FAILED, UNSUPPORTED, Act, Offer, RefusedError, answering, resource
 from thymio_sim_ros.nodes.sim_entities import SPAWNABLE, Entities
-from thymio_sim_ros.nodes.world_services import Controlled, presently
+from thymio_sim_ros.nodes.world_services import STOPPED_BY_ITSELF, Controlled, presently
 from thymio_sim_ros.sim import playground as playgrounds
 from thymio_sim_ros.sim.playground import PlaygroundError
 
@@ -150,7 +150,8 @@ class SimInterfaces:
             raise RefusedError(
                 FAILED, f"{request.steps} steps found, expected at most {MOST_STEPS}; more by the action"
             )
-        self._simulator.step(request.steps)
+        if not self._simulator.step(request.steps):
+            raise RefusedError(FAILED, STOPPED_BY_ITSELF)
 
     def _reset(self, request: Any, _response: Any) -> None:
         if request.scope not in EVERYTHING:

@@ -9,7 +9,7 @@ from rclpy.action.server import ActionServer, CancelResponse
 from rclpy.node import Node
 
 from thymio_sim_ros.nodes.sim_answers import FAILED, OK
-from thymio_sim_ros.nodes.world_services import Controlled
+from thymio_sim_ros.nodes.world_services import STOPPED_BY_ITSELF, Controlled
 
 __all__ = ["StepsAction"]
 
@@ -36,7 +36,9 @@ class StepsAction:
             if not self._simulator.paused:
                 goal.abort()
                 return self._told(result, f"the world is running after {done} of {steps} steps: pause it first")
-            self._simulator.step(1)
+            if not self._simulator.step(1):
+                goal.abort()
+                return self._told(result, f"{STOPPED_BY_ITSELF}, after {done} of {steps} steps")
             goal.publish_feedback(self._kind.Feedback(completed_steps=done + 1, remaining_steps=steps - done - 1))
             await _Turn()
         goal.succeed()

@@ -9,8 +9,8 @@ sections 4, 5 and 10.
 
 from __future__ import annotations
 
-import sys
 import time
+import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
@@ -22,7 +22,7 @@ from rclpy.parameter import Parameter
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.nodes import dds_profile, driver_topics, params, sim_interfaces
+from thymio_sim_ros.nodes import dds_profile, driver_topics, params, robot_ports, sim_interfaces
 from thymio_sim_ros.nodes.audience import Audience
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
@@ -39,7 +39,7 @@ from thymio_sim_ros.runlog import RunLog
 from thymio_sim_ros.sim.clock import TICK_NS, Pacer
 from thymio_sim_ros.sim.columns import rows_of
 from thymio_sim_ros.sim.commands import Command
-from thymio_sim_ros.sim.playground import Playground, PlaygroundError
+from thymio_sim_ros.sim.playground import Playground, PlaygroundError, RobotStart
 from thymio_sim_ros.sim.world import World
 
 __all__ = ["Simulator", "SimulatorParams", "main"]
@@ -170,11 +170,19 @@ class Simulator:
         self._world_ports.publish_clock(self.world.now_ns, last=True)
         self._publish_state()
 
-    def step(self, ticks: int | None = None) -> None:
-        """So many ticks, or those of one `~/step`."""
-        self._guard(lambda: self.advance(self.params.step_ticks if ticks is None else ticks))
+    def step(self, ticks: int | None = None) -> bool:
+        """So many ticks, or those of one `~/step`; whether the world could go so far."""
+        is_done = self._guard(lambda: self.advance(self.params.step_ticks if ticks is None else ticks))
         self._world_ports.publish_clock(self.world.now_ns, last=True)
         self._publish_state()
+        return is_done
+
+    def spawn(self, start: RobotStart) -> None:
+        """Add a robot. ValueError as of the world, and for a name that topics of a robot without a name begin with."""
+        has_nameless = any(not names.name for names in self.names.values())
+        if has_nameless and start.name in robot_ports.first_words():
+            raise ValueError(f"the name '{start.name}' is taken by topics of the robot that has no name")
+        self.world.spawn(start)
 
     def reset(self) -> None:
         """World, time and noise as at the start."""
@@ -253,14 +261,16 @@ class Simulator:
         clock_ns = self._world_ports.clock_due_ns
         return ticks if clock_ns is None else min(ticks, self._pacer.ticks_until(clock_ns))
 
-    def _guard(self, act: Callable[[], None]) -> None:
-        """Our own bug in the core: log it, pause, stay alive for inspection (architecture section 12)."""
+    def _guard(self, act: Callable[[], None]) -> bool:
+        """Whether it went well. Our own bug in the core: log it, pause, stay alive (architecture section 12)."""
         try:
             act()
         except Exception:
-            self.node.get_logger().error(f"the world stopped at {self.world.now_ns} ns", exc_info=sys.exc_info())
+            self.node.get_logger().error(f"the world stopped at {self.world.now_ns} ns:\n{traceback.format_exc()}")
             self.paused = True
             self._publish_state()
+            return False
+        return True
 
     def _set_pace(self) -> None:
         factor = self.params.real_time_factor
@@ -382,6 +392,9 @@ class Simulator:
                 self._accepted = name, self._new_world(playground, params.updated(self.params, parameters))
             except (PlaygroundError, resources.ResourceError, StartError, OSError) as error:
                 return SetParametersResult(successful=False, reason=str(error))
+            except Exception as error:  # our own fault in reading a file: a class goes on without it
+                self.node.get_logger().error(f"the playground cannot be read:\n{traceback.format_exc()}")
+                return SetParametersResult(successful=False, reason=f"{type(error).__name__}: {error}")
         return SetParametersResult(successful=True)
 
     def _apply_parameters(self, parameters: list[Parameter]) -> None:

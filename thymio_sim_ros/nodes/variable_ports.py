@@ -64,13 +64,12 @@ class VariablePorts:
         self._places = sorted(((name, *place) for name, place in places.items()), key=lambda item: item[1])
         self._layout = convert.layout([(name, size) for name, _, size in self._places])
         self._last_table = []
-        words, _ = unlike([name for name in dict.fromkeys(watch) if name in places])
+        words, _ = unlike([name for name in dict.fromkeys(watch) if name in places], self._topic)
         for name in [name for name in self._watched if name not in words]:
             self._node.destroy_publisher(self._watched.pop(name))
         for name, word in words.items():
             if name not in self._watched:
-                topic = self._names.topic(f"aseba/variables/{word}")
-                self._watched[name] = self._node.create_publisher(Int16MultiArray, topic, qos.LATCHED)
+                self._watched[name] = self._node.create_publisher(Int16MultiArray, self._topic(word), qos.LATCHED)
         self._told.clear()
 
     def look(self) -> None:
@@ -89,6 +88,9 @@ class VariablePorts:
             self._node.destroy_publisher(publisher)
         for service in self._services:
             self._node.destroy_service(service)
+
+    def _topic(self, word: str) -> str:
+        return self._names.topic(f"aseba/variables/{word}")
 
     def _publish_table(self) -> None:
         words = self._device.memory()

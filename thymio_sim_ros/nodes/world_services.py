@@ -20,7 +20,7 @@ from std_srvs.srv import SetBool, Trigger
 from thymio_sim_ros.nodes import convert, qos
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.names import RobotNames
-from thymio_sim_ros.nodes.robot_ports import WARN_EVERY_S
+from thymio_sim_ros.nodes.warner import Warner
 from thymio_sim_ros.sim import fields, playground_text
 from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
 from thymio_sim_ros.sim.fields import FieldError
@@ -55,6 +55,7 @@ SERVICES: Mapping[str, Service] = {
 PLACE = "~/place"
 """The topic that does what `~/set_poses` does, for what a viewer drags."""
 
+STOPPED_BY_ITSELF = "the world stopped by a fault of ours: see the simulator's log"
 PLACED = "put a robot or a movable thing there: its name, or a robot's frame, is `child_frame_id`"
 
 
@@ -88,8 +89,11 @@ class Controlled(Protocol):
     def playground_name(self) -> str:
         """Its name."""
 
-    def step(self, ticks: int | None = None) -> None:
-        """Let so many ticks pass, or those of one step."""
+    def step(self, ticks: int | None = None) -> bool:
+        """Let so many ticks pass, or those of one step; whether the world could go so far."""
+
+    def spawn(self, start: RobotStart) -> None:
+        """Add a robot; ValueError as of the world, and for a name that topics of a nameless robot begin with."""
 
     def reset(self) -> None:
         """World, time and noise as at the start."""
@@ -124,7 +128,7 @@ class WorldServices:
     """The services of a simulator, on its node."""
 
     def __init__(self, node: Node, simulator: Controlled) -> None:
-        self._node, self._simulator = node, simulator
+        self._simulator, self._warn = simulator, Warner(node)
         handlers: dict[str, Handler] = {
             "~/pause": self._pause,
             "~/step": self._step,
@@ -150,8 +154,9 @@ class WorldServices:
         if not self._simulator.paused:
             response.success, response.message = False, "the world is running: pause it first"
             return response
-        self._simulator.step()
-        response.success, response.message = True, f"now {self._simulator.world.now_ns / SECOND_NS:.3f} s"
+        response.success = self._simulator.step()
+        now = f"now {self._simulator.world.now_ns / SECOND_NS:.3f} s"
+        response.message = now if response.success else f"{now}, where {STOPPED_BY_ITSELF}"
         return response
 
     def _reset(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
@@ -174,12 +179,14 @@ class WorldServices:
             act(name, value)
         except (FieldError, ValueError) as error:
             return SetParametersResult(successful=False, reason=str(error))
+        except RuntimeError:  # of parameter_value_to_python
+            return SetParametersResult(successful=False, reason=f"{name}: a value of unknown type {value.type} found")
         return SetParametersResult(successful=True)
 
     def _spawn(self, name: str, value: ParameterValue) -> None:
         x, y, yaw = _place_of(name, value)
         start = fields.read(RobotStart, {"name": name, "x_m": x, "y_m": y, "yaw_rad": yaw}, "")
-        self._simulator.world.spawn(start)
+        self._simulator.spawn(start)
 
     def _remove(self, name: str, _value: ParameterValue) -> None:
         world = self._simulator.world
@@ -222,7 +229,7 @@ class WorldServices:
             self._put(message)
         except ValueError as error:
             self._simulator.count_refusal()
-            self._node.get_logger().warning(f"{PLACE} refused: {error}", throttle_duration_sec=WARN_EVERY_S)
+            self._warn(PLACE, f"refused: {error}")
 
     def _put(self, message: TransformStamped) -> None:
         """`child_frame_id` is a thing, a robot, or a robot's frame."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import json
+import lzma
 import re
 import zipfile
 import zlib
@@ -35,8 +36,14 @@ Beside = Callable[[str], bytes]
 _ZIP = b"PK\x03\x04"
 _BOM = b"\xef\xbb\xbf"
 _PLAYGROUND_ENDINGS = (".xml", ".playground", ".json")
+_CANNOT_UNPACK = (
+    zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, OSError, RuntimeError, ValueError,
+)  # fmt: skip
+"""What a damaged, encrypted or exotic archive raises; of places before its begin the file says ValueError."""
 _WORDS = re.compile(r'"(?:[^"\\]|\\.)*"|NaN|-?Infinity')
 """Strings of JSON, and words that Python takes for numbers outside them."""
+_HALVES = "\ud800", "\udfff"
+"""Between these, both included, are halves of characters: escapes may hold them, UTF-8 may not."""
 _SHOWN = 12
 """Characters that an error shows."""
 _IN_FOLDER = "a file in the playground's folder"
@@ -105,9 +112,9 @@ def _unzip(data: bytes) -> tuple[bytes, Beside]:
     """The playground's own file in an archive, and the files beside it there."""
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
-    except (zipfile.BadZipFile, ValueError, NotImplementedError) as error:
+    except _CANNOT_UNPACK as error:
         raise FieldError("", "a broken zip archive", "a whole one") from error
-    names = [entry.filename for entry in archive.infolist() if not entry.is_dir()]
+    names = [entry.filename for entry in archive.infolist() if entry.filename and not entry.is_dir()]
     if len(names) > MAX_ARCHIVE_FILES:
         raise FieldError("", f"{len(names)} files in the archive", f"at most {MAX_ARCHIVE_FILES}")
     fitting = [name for name in names if name.lower().endswith(_PLAYGROUND_ENDINGS) and "__MACOSX" not in name]
@@ -136,7 +143,7 @@ def _extract(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
     try:
         with archive.open(name) as file:
             return file.read(most)
-    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, NotImplementedError) as error:
+    except _CANNOT_UNPACK as error:
         raise FieldError(describe(name), "an entry that cannot be unpacked", "a plain zip archive") from error
 
 
@@ -154,12 +161,16 @@ def _parse_json(text: str) -> object:
         return members
 
     try:
-        return json.loads(text, parse_constant=refuse, object_pairs_hook=unique)
+        parsed: object = json.loads(text, parse_constant=refuse, object_pairs_hook=unique)
     except json.JSONDecodeError as error:
         found = repr(text[error.pos : error.pos + _SHOWN]) if error.pos < len(text) else "the end of the text"
         raise FieldError(_line_and_column(text, error.pos), found, f"JSON ({error.msg})") from error
     except (RecursionError, ValueError) as error:
         raise FieldError("", "numbers or nesting without measure", "a playground") from error
+    for token in _WORDS.finditer(text) if "\\u" in text else ():
+        if "\\u" in token.group() and any(_HALVES[0] <= letter <= _HALVES[1] for letter in json.loads(token.group())):
+            raise FieldError(_line_and_column(text, token.start()), "half a character", "whole characters")
+    return parsed
 
 
 def _line_and_column(text: str, place: int) -> str:

@@ -15,7 +15,7 @@ from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.clock import TICK_NS, Schedule, SimClock
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, MoveObject, MoveRobot, SetMotorModel, SetPen
 from thymio_sim_ros.sim.crowd import CROWD, Crowd
-from thymio_sim_ros.sim.fields import as_color
+from thymio_sim_ros.sim.fields import FieldError, as_color, read, write
 from thymio_sim_ros.sim.footing import Footing
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.ground import Ground
@@ -126,19 +126,27 @@ class World:
         if name in self._physics.movables:
             if not isinstance(command, MoveObject):
                 raise TypeError(f"a thing takes no {type(command).__name__}")
-            solid = self._physics.movables[name].solid
-            self._check_place(footprint_of(solid.at(Pose(command.x_m, command.y_m, command.yaw_rad))))
+            pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
+            self._check_place(footprint_of(self._physics.movables[name].solid.at(pose)))
         elif not self._robots[name].accepts(command):
             raise TypeError(f"no actuator takes a {type(command).__name__}")
         elif isinstance(command, MoveRobot):
-            self._check_place(footprint_of_robot(name, Pose(command.x_m, command.y_m, command.yaw_rad)))
+            pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
+            self._check_place(footprint_of_robot(name, pose))
         self._note(Posted(name, command))
         self._posted.append((name, command))
 
     def spawn(self, start: RobotStart) -> None:
-        """Add a robot, now; ValueError for a name that is taken, PlacementError for a place that is not free."""
+        """Add a robot, now.
+
+        PlacementError: its place is not free; ValueError: its name is taken, or it is one that no file may hold.
+        """
         if start.name in self._names():
             raise ValueError(f"the name '{start.name}' is taken")
+        try:
+            read(RobotStart, write(start), "")
+        except FieldError as error:
+            raise ValueError(str(error)) from error
         self._check_place(footprint_of_robot(start.name, start.pose))
         self._note(Spawned(start))
         self._add(start)
@@ -193,18 +201,26 @@ class World:
         return {*self._robots, *(shape.name for shape in self.playground.shapes)}
 
     def _check_place(self, wanted: Footprint) -> None:
-        """Refuse a place where something else stands now, or none at all."""
-        x, y = wanted.middle
-        if not (math.isfinite(x) and math.isfinite(y)):
-            raise ValueError(f"'{wanted.name}' cannot stand at {x}, {y} m: expected finite numbers")
-        standing = [footprint_of(body.solid.at(body.pose)) for body in self._physics.objects if not body.is_fallen]
+        """Refuse a place where something else stands, or will before anything else happens."""
+        soon = {
+            name: Pose(command.x_m, command.y_m, command.yaw_rad)
+            for name, command in self._posted
+            if isinstance(command, MoveObject | MoveRobot)
+        }
+        standing = [
+            footprint_of(body.solid.at(soon.get(body.name, body.pose)))
+            for body in self._physics.objects
+            if body.name in soon or not body.is_fallen
+        ]
         standing += [
-            footprint_of_robot(robot.name, robot.pose) for robot in self._robots.values() if not robot.body.is_fallen
+            footprint_of_robot(robot.name, soon.get(robot.name, robot.pose))
+            for robot in self._robots.values()
+            if robot.name in soon or not robot.body.is_fallen
         ]
         here = (there.name for there in standing if there.name != wanted.name and there.overlaps(wanted))
         blocker = self._fixed.blocker(wanted) or next(here, None)
         if blocker is not None:
-            raise PlacementError(wanted.name, Pose(x, y, 0.0), blocker)
+            raise PlacementError(wanted.name, Pose(*wanted.middle, 0.0), blocker)
 
     def _note(self, happened: Input) -> None:
         if self.journal is not None:
@@ -262,6 +278,14 @@ class World:
         for robot in self._robots.values():
             readings.extend(robot.measure(due))
         return tuple(readings)
+
+
+def _finite(name: str, pose: Pose) -> Pose:
+    """The pose itself; ValueError when it is none."""
+    if not all(map(math.isfinite, (pose.x_m, pose.y_m, pose.yaw_rad))):
+        at = f"{pose.x_m}, {pose.y_m} m, {pose.yaw_rad} rad"
+        raise ValueError(f"'{name}' cannot stand at {at}: expected finite numbers")
+    return pose
 
 
 def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -> tuple[Sensor, ...]:

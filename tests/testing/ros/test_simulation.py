@@ -7,6 +7,7 @@ from geometry_msgs.msg import Twist, Vector3
 from nav_msgs.msg import Odometry
 
 from tests.testing.test_thymio import WALL
+from thymio_sim_ros.sim.playground import RobotStart
 from thymio_sim_ros.testing import emitted, no_contact, reached, shows, slower_than
 
 GREET = """<network><event size="1" name="hello"/><node name="thymio-II">var heard = 0
@@ -43,6 +44,17 @@ def test_a_program_is_asked_and_touched_as_in_a_classroom(simulation, runtime):
     thymio.load("var fresh = 3")
     assert thymio["fresh"] == 3
     assert thymio.status.state == "running"
+
+
+def test_a_robot_of_another_name_and_one_that_comes_later_have_their_programs(simulation, runtime):
+    sim = simulation(playground="base", robot_names=["anna"])
+    runtime(GREET)
+    assert sim["anna"]["heard"] == 0
+    sim.world.spawn(RobotStart("bert", 0.3, 0.0))
+    sim.until(lambda: sim.machine("bert"), seconds=1)
+    sim["bert"].touch("center")
+    sim.until(emitted(sim["bert"], "hello", [7], times=1), seconds=1)
+    assert sim["anna"]["heard"] == 7
 
 
 def test_robots_are_told_apart(ros, simulation, runtime):

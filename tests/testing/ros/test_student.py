@@ -15,6 +15,8 @@ GREETER = HEAD + 'class Greeter(Node):\n    def __init__(self):\n        super()
 UNGUARDED = GREETER + "rclpy.init()\nnode = Greeter()\ntry:\n    rclpy.spin(node)\nfinally:\n    rclpy.shutdown()\n"
 LOOP = GREETER + "rclpy.init()\nnode = Greeter()\nwhile rclpy.ok():\n    rclpy.spin_once(node)\nrclpy.shutdown()\n"
 
+WITH = GREETER + "def main():\n    with rclpy.init():\n        rclpy.spin(Greeter())\nmain()\n"
+
 
 @pytest.fixture
 def handed_in(tmp_path):
@@ -28,7 +30,9 @@ def handed_in(tmp_path):
     return write
 
 
-@pytest.mark.parametrize("text", [GREETER, UNGUARDED, LOOP], ids=["guarded", "spins at once", "loops at once"])
+@pytest.mark.parametrize(
+    "text", [GREETER, UNGUARDED, LOOP, WITH], ids=["guarded", "spins at once", "loops at once", "with"]
+)
 def test_a_file_becomes_a_node(ros, handed_in, text):
     node = ros.start(handed_in(text))
     assert node.get_name() == "greeter"

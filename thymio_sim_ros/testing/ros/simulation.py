@@ -13,7 +13,6 @@ from thymio_sim_ros.device.program import ThymioProgram
 from thymio_sim_ros.nodes import qos
 from thymio_sim_ros.nodes.aseba_node import AsebaRuntime
 from thymio_sim_ros.nodes.device_ports import DevicePorts
-from thymio_sim_ros.nodes.names import ros_names
 from thymio_sim_ros.nodes.simulator_node import Simulator
 from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.world import World
@@ -44,6 +43,8 @@ class Simulation:
         self.simulator = simulator
         self._folder = folder
         self._runtimes: list[AsebaRuntime] = []
+        self._heard: dict[str, Any] = {}
+        """Subscriptions to what the program of each robot emits."""
         self._robots = {name: Thymio(name, self) for name in self.world.robots}
         ros.simulation = self
 
@@ -86,18 +87,13 @@ class Simulation:
 
         It waits until the node knows the robots: a latched message takes its time.
         """
-        robots = ros_names(tuple(self.world.robots))
         if runtime.params.follow_simulator:
-            wanted = [names.name for names in robots.values()]
+            wanted = [names.name for names in self.simulator.names.values()]
             self.ros.until(
                 lambda: [ports.names.name for ports in runtime.robots] == wanted, what="the runtime knows the robots"
             )
         self._runtimes.append(runtime)
-        if len(self._runtimes) > 1:
-            return
-        for name, names in robots.items():
-            topic = names.topic("aseba/events")
-            self.ros.node.create_subscription(Int16MultiArray, topic, partial(self._hear, name), qos.EVENTS)
+        self._listen()
 
     # --- time ---
 
@@ -113,6 +109,7 @@ class Simulation:
     def tick(self) -> None:
         """One tick of 10 ms, then whatever messages are there; long handlers of programs go on."""
         self.simulator.advance(1)
+        self._listen()
         for _ in range(HOPS):
             self.ros.deliver()
         for runtime in self._runtimes:
@@ -146,7 +143,7 @@ class Simulation:
 
     def machine(self, robot: str) -> DevicePorts | None:
         """The machine of a robot, if a runtime node of this test has one for it."""
-        names = ros_names(tuple(self.world.robots))
+        names = self.simulator.names
         wanted = names[robot].name if robot in names else robot
         found = (ports for runtime in self._runtimes for ports in runtime.robots if ports.names.name == wanted)
         return next(found, None)
@@ -166,6 +163,19 @@ class Simulation:
         layout = MultiArrayLayout(dim=[MultiArrayDimension(label=event, size=len(args), stride=1)])
         publisher = self.ros.publisher(Int16MultiArray, ports.names.topic("aseba/emit"))
         publisher.publish(Int16MultiArray(layout=layout, data=list(args)))
+
+    def _listen(self) -> None:
+        """Hear what the programs of all robots emit, of those too that have just come."""
+        if not self._runtimes or len(self._heard) == len(self.world.robots):
+            return
+        for name, names in self.simulator.names.items():
+            if name not in self._heard:
+                topic = names.topic("aseba/events")
+                self._heard[name] = self.ros.node.create_subscription(
+                    Int16MultiArray, topic, partial(self._hear, name), qos.EVENTS
+                )
+        for name in self._heard.keys() - self.simulator.names.keys():
+            self.ros.node.destroy_subscription(self._heard.pop(name))
 
     def _hear(self, robot: str, message: Int16MultiArray) -> None:
         self.robots[robot].record.hear(message.layout.dim[0].label, message.data, self.world.now_ns)

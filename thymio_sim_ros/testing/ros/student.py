@@ -137,5 +137,6 @@ def _nothing_spins() -> Iterator[None]:
             setattr(rclpy, name, value)
 
 
-def _nothing(*_args: Any, **_kwargs: Any) -> None:
-    """In place of a function that is not to do anything now."""
+def _nothing(*_args: Any, **_kwargs: Any) -> contextlib.AbstractContextManager[None]:
+    """In place of a function that is not to do anything now; `with rclpy.init():` is one, too."""
+    return contextlib.nullcontext()
