@@ -150,7 +150,7 @@ class Runner:
     def _pass_on(self, name: str, sender: BehaviourHost) -> int:
         """Let the others hear what a device emitted, or change its program; how many have something new to do."""
         running = sender.program
-        events = sender.take_events(self.now_ns)
+        events = sender.take_events()
         heard = int(sender.program is not running)
         for event in events:
             self.emitted.append((name, event))

@@ -166,6 +166,9 @@ class Friendly(Cruising):
             self.hear(*senses.frame)
 
     def act(self, senses: Senses) -> None:
+        if self.friend and not self.was_friend:
+            self.shown.sounds.append(7)
+        self.was_friend = self.friend > 0
         front = senses.p[:5]
         nearest = max(front)
         turn = (2 - front.index(nearest)) * quotient(self.speed, 2)
@@ -209,9 +212,6 @@ class Friendly(Cruising):
             self.shown.tx = k
             if rx in (1, 2, 3) and k == 2:
                 self.friend = 6
-        if self.friend and not self.was_friend:
-            self.shown.sounds.append(7)
-        self.was_friend = self.friend > 0
 
     def colours(self) -> None:
         level = self.pulse.next()

@@ -61,7 +61,7 @@ class HandheldRobot:
             self.device.advance(self.now_ns)
             while self.device.is_busy:
                 self.device.run(BUDGET)
-                self.events += self.host.take_events(self.now_ns)
+                self.events += self.host.take_events()
             for command in self.device.take_commands():
                 self._obey(command)
 

@@ -13,7 +13,7 @@ from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.behaviour_host import built_in
 from thymio_sim_ros.device.device import AsebaDevice, DeviceOptions
 from thymio_sim_ros.device.layout import target
-from thymio_sim_ros.sim.commands import BUTTONS, MotorTargets, PlaySystemSound, SetLeds, StopSound
+from thymio_sim_ros.sim.commands import BUTTONS, MotorTargets, PlaySystemSound, SetLeds, ShowOnLeds, StopSound
 
 TICK_NS = 20_000_000
 BUDGET = 20_000
@@ -28,6 +28,7 @@ class Bench:
     """A device with a behaviour and nothing around it: senses in, what it shows out."""
 
     def __init__(self, behaviour: str, device: AsebaDevice | None = None) -> None:
+        self.behaviour = behaviour
         self.device = device or AsebaDevice()
         self.device.load(built_in(behaviour))
         self.device.advance(0)
@@ -68,6 +69,8 @@ class Bench:
                     self.shown.left, self.shown.right = left, right
                 case SetLeds(("top" | "bottom_left" | "bottom_right" | "circle") as group, levels):
                     setattr(self.shown, group, levels)
+                case ShowOnLeds("circle", levels) if self.behaviour != "fearful":  # which alone shows how it leans
+                    self.shown.circle = levels
                 case PlaySystemSound(number):
                     self.shown.sounds.append(number)
                 case StopSound():

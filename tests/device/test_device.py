@@ -6,7 +6,7 @@ import pytest
 
 from thymio_sim_ros.device.device import AsebaDevice, DeviceStatus
 from thymio_sim_ros.device.program import load_program
-from thymio_sim_ros.sim.commands import LED_GROUPS, MotorTargets, ReleaseLeds, SetLeds
+from thymio_sim_ros.sim.commands import LED_GROUPS, EnableComm, MotorTargets, ReleaseLeds, SetLeds
 
 BUDGET = 5000
 NO_BUTTON = (0, 0, 0, 0, 0)
@@ -391,3 +391,19 @@ def test_a_device_is_due_for_events_and_for_the_robots_own_rules():
     assert not device.is_due
     device.advance(1_200_000_000)
     assert device.is_due
+
+
+def test_a_robot_that_switches_itself_off_is_dark_silent_and_deaf_to_its_variables():
+    device = device_with("onevent button.center\nleds.top = [32, 0, 0]\ncall prox.comm.enable(1)\ncall _poweroff()")
+    device.feed("buttons", CENTER)
+    device.run(BUDGET)
+    commands = device.take_commands()
+    assert commands.index(SetLeds("top", (32, 0, 0))) < commands.index(ReleaseLeds("top"))
+    assert commands.index(EnableComm(True)) < commands.index(EnableComm(False))
+    device.set_variable("motor.left.target", (300,))
+    device.set_variable("leds.top", (0, 32, 0))
+    assert device.take_commands() == []
+    device.resume()
+    device.run(BUDGET)
+    device.set_variable("leds.top", (0, 32, 0))
+    assert SetLeds("top", (0, 32, 0)) in device.take_commands()

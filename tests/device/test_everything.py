@@ -15,13 +15,13 @@ from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.sim.commands import (
+    LEDS_GIVEN_BACK,
     Command,
     EnableComm,
     MotorTargets,
     PlaySamples,
     PlaySystemSound,
     PlayTone,
-    ReleaseLeds,
     SetCommPayload,
     SetLed,
     SetLeds,
@@ -151,8 +151,9 @@ def test_switched_off_everything_is_dark_and_still_until_it_is_switched_on(devic
     device.take_commands()
     device.receive_event("off", (0, 0))
     commands = run(device)
-    assert commands[-2:] == [PlaySystemSound(1), MotorTargets(0, 0)]
-    assert {type(command) for command in commands[:-2]} == {ReleaseLeds}
+    assert commands[-1] == PlaySystemSound(1)
+    assert MotorTargets(0, 0) in commands
+    assert commands[-1 - len(LEDS_GIVEN_BACK) : -1] == list(LEDS_GIVEN_BACK)
     assert device.status.state == "off"
     sensed(device)
     device.advance(1_000_000_000)

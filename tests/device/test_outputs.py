@@ -6,10 +6,10 @@ import pytest
 
 from aseba_vm import VirtualMachine
 from thymio_sim_ros.device.layout import THYMIO, target
-from thymio_sim_ros.device.outputs import Outputs
+from thymio_sim_ros.device.outputs import LIT_NS, Outputs
 from thymio_sim_ros.device.own_rules import OwnRules
 from thymio_sim_ros.device.settings import Settings
-from thymio_sim_ros.sim.commands import MotorTargets, PlayTone, SetLed, SetLeds, SetVolume
+from thymio_sim_ros.sim.commands import MotorTargets, PlayTone, SetLed, SetLeds, SetVolume, ShowOnLeds
 
 RED, GREEN = SetLeds("top", (32, 0, 0)), SetLeds("top", (0, 32, 0))
 
@@ -19,10 +19,11 @@ class Told(Outputs):
 
     def __init__(self) -> None:
         self.settings = Settings()
-        super().__init__(THYMIO, self.settings, OwnRules(target().addresses))
+        self.rules = OwnRules(target().addresses)
+        super().__init__(THYMIO, self.settings, self.rules)
         self.machine = VirtualMachine(target())
         self.reset(self.machine)
-        self.take()
+        self.take(0)
 
     def write(self, name: str, *words: int) -> None:
         self.machine.write_variables(target().addresses[name][0], words)
@@ -41,7 +42,7 @@ def test_a_variable_is_told_when_it_changed(outputs: Told) -> None:
 
 def test_a_native_s_variable_is_not_told_a_second_time(outputs: Told) -> None:
     outputs.send(RED, {"leds.top": (32, 0, 0)})
-    assert (outputs.take(), outputs.take_changes()) == ([RED], [])
+    assert (outputs.take(0), outputs.take_changes()) == ([RED], [])
     outputs.write("leds.top", 0, 32, 0)
     assert outputs.take_changes() == [GREEN]
 
@@ -49,13 +50,32 @@ def test_a_native_s_variable_is_not_told_a_second_time(outputs: Told) -> None:
 def test_lights_that_are_set_to_what_they_are_are_told_once(outputs: Told) -> None:
     for command in (RED, RED, GREEN, GREEN, RED):
         outputs.send(command)
-    assert outputs.take() == [RED, GREEN, RED]
+    assert outputs.take(0) == [RED, GREEN, RED]
+
+
+def test_and_again_after_a_while_since_somebody_else_may_have_set_them(outputs: Told) -> None:
+    told = []
+    for tick in range(100):
+        outputs.send(RED)
+        told += outputs.take(tick * LIT_NS // 10)
+    assert told == [RED] * 10
+
+
+def test_a_group_that_a_rule_had_lit_is_dark_for_the_robot_from_then_on(outputs: Told) -> None:
+    memory = outputs.machine.variables.words
+    outputs.write("temperature", 200)
+    outputs.tell(*outputs.rules.look(memory))
+    outputs.take(0)
+    outputs.send(SetLeds("temperature", (1, 2)))
+    assert outputs.take(0) == [ShowOnLeds("temperature", (0, 0)), SetLeds("temperature", (1, 2))]
+    outputs.send(SetLeds("temperature", (1, 3)))
+    assert outputs.take(0) == [SetLeds("temperature", (1, 3))]
 
 
 def test_a_single_light_makes_its_group_news_again(outputs: Told) -> None:
     for command in (RED, SetLed(3, 7), RED):
         outputs.send(command)
-    assert outputs.take() == [RED, SetLed(3, 7), RED]
+    assert outputs.take(0) == [RED, SetLed(3, 7), RED]
 
 
 def test_a_new_correction_tells_the_same_targets_again(outputs: Told) -> None:
@@ -77,5 +97,5 @@ def test_sound_is_used_from_its_first_command_on(outputs: Told) -> None:
 
 def test_a_reset_tells_every_actuator(outputs: Told) -> None:
     outputs.reset(outputs.machine)
-    kinds = {type(command).__name__ for command in outputs.take()}
+    kinds = {type(command).__name__ for command in outputs.take(0)}
     assert {"MotorTargets", "ReleaseLeds", "StopSound", "SetWave", "EnableComm", "SetSoundThreshold"} <= kinds

@@ -181,9 +181,26 @@ def test_an_empty_battery_blinks(robot: Robot) -> None:
 
 
 def test_a_rule_ends_when_its_lights_are_taken_over(robot: Robot) -> None:
-    robot.rules.take("proximity")
-    commands = robot.look({"prox.horizontal": (4000,) * 7, "prox.ground.delta": (900, 900)})
+    robot.rules.take("temperature")
+    commands = robot.look({"temperature": (200,), "prox.ground.delta": (900, 900)})
     assert commands == [ShowOnLeds("ground", (32, 32))]
+
+
+@pytest.mark.parametrize("group", ["proximity", "ground"])
+def test_one_rule_shows_proximity_and_ground_and_ends_for_both(robot: Robot, group: str) -> None:
+    robot.look({"prox.horizontal": (4000,) * 7, "prox.ground.delta": (450, 450)})
+    assert sorted(robot.rules.take(group)) == ["ground", "proximity"]
+    assert robot.look({"prox.horizontal": (2000,) * 7, "prox.ground.delta": (100, 100)}) == []
+
+
+def test_a_clap_between_two_looks_is_shown(robot: Robot) -> None:
+    robot.look({"mic.threshold": (50,), "mic.intensity": (9,)})
+    robot.look(looks=5)
+    robot.rules.hear(200)
+    robot.look()
+    assert robot.lights["microphone"] == (25,)
+    robot.look(looks=30)
+    assert robot.lights["microphone"] == (1,)  # 9 is still there
 
 
 def test_after_a_reset_all_rules_begin_again(robot: Robot) -> None:

@@ -44,6 +44,15 @@ def test_a_changed_period_starts_the_count_again():
     assert heard(timers, 140) == [0]
 
 
+def test_after_a_reset_the_count_begins_with_the_present():
+    timers = started(100, 0)
+    assert heard(timers, 90) == []
+    timers.reset()
+    timers.notice((50, 0))
+    assert heard(timers, 139) == []
+    assert heard(timers, 140) == [0]
+
+
 def test_what_fires_unheard_is_told_once():
     timers = started(10, 0)
     assert timers.set_clock(95 * MILLISECOND_NS) == ()

@@ -101,13 +101,13 @@ class BehaviourHost:
         else:
             self.load(self._first)
 
-    def take_events(self, now_ns: int) -> list[EmittedEvent]:
+    def take_events(self) -> list[EmittedEvent]:
         """What the program emitted since the last time, for others to hear; what it asks of the robot is done."""
         events = self.device.take_events()
         asked = next((event for event in events if is_internal(event.name)), None)
         if asked is None:
             return events
-        self._obey(asked, now_ns)
+        self._obey(asked)
         return [event for event in events if not is_internal(event.name)]
 
     def take_notices(self) -> list[str]:
@@ -115,7 +115,7 @@ class BehaviourHost:
         notices, self._notices = self._notices, []
         return self.device.take_notices() + notices
 
-    def _obey(self, event: EmittedEvent, now_ns: int) -> None:
+    def _obey(self, event: EmittedEvent) -> None:
         try:
             if event.name == _BACK:
                 self._run(built_in(MENU, self.device.layout), warm=True)
@@ -124,7 +124,6 @@ class BehaviourHost:
                 self._start_entry(event.args[0])
         except ProgramError as error:
             self._notices.append(f"{event.name}: {error}")
-        self.device.advance(now_ns)
 
     def _start_entry(self, entry: int) -> None:
         if entry == PROGRAM_ENTRY and self._own is not None:

@@ -26,11 +26,13 @@ from thymio_sim_ros.device.own_rules import PERIOD_NS, OwnRules
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.device.settings import Settings
 from thymio_sim_ros.device.status import FAULT, INIT, OFF, PAUSED, RUNNING, STOPPED, DeviceStatus
-from thymio_sim_ros.sim.commands import LED_GROUPS, Command, PlaySystemSound, ReleaseLeds
+from thymio_sim_ros.sim.commands import Command, PlaySystemSound
 from thymio_sim_ros.sim.tones import SHUT_DOWN
 
 __all__ = ["AsebaDevice", "DeviceStatus", "EmittedEvent"]
 
+_SOUND = "sound"
+"""The sensor whose first word is `mic.intensity`."""
 INT16 = range(-0x8000, 0x8000)
 
 
@@ -147,6 +149,8 @@ class AsebaDevice:
         KeyError: no such sensor; ValueError: wrong number of words.
         """
         self._inputs.feed(sensor, words, self._now_ns)
+        if sensor == _SOUND:
+            self._rules.hear(words[0])
 
     def advance(self, now_ns: int) -> None:
         """Simulated time has come so far; `run` raises the events of timers whose period ended on the way."""
@@ -257,7 +261,8 @@ class AsebaDevice:
         self._queue.clear()
         self._halt()
         self.body.stop_recording()
-        self._outputs.tell(*(ReleaseLeds(group) for group in LED_GROUPS), PlaySystemSound(SHUT_DOWN))
+        self._outputs.darken()
+        self._outputs.tell(PlaySystemSound(SHUT_DOWN))
         self._state, self._fault = OFF, None
 
     def take_commands(self) -> list[Command]:
@@ -271,11 +276,12 @@ class AsebaDevice:
             if self._state != OFF and (self._inputs.is_news or self._rules.is_moving):
                 self._inputs.is_news = False
                 self._outputs.tell(*self._rules.look(self._vm.variables.words))
-        commands = self._outputs.take()
+        changes: list[Command] = []
         if self._is_changed:
             self._is_changed = False
-            commands += self._outputs.take_changes()
-        return commands
+            if self._state != OFF:
+                changes = self._outputs.take_changes()
+        return self._outputs.take(self._now_ns) + changes
 
     @property
     def has_emitted(self) -> bool:

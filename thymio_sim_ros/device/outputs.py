@@ -11,13 +11,17 @@ from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.own_rules import OwnRules
 from thymio_sim_ros.device.settings import Settings
 from thymio_sim_ros.sim.commands import (
+    LED_GROUPS,
+    LEDS_GIVEN_BACK,
     Command,
+    EnableComm,
     MotorTargets,
     PlaySamples,
     PlaySystemSound,
     PlayTone,
     SetLed,
     SetLeds,
+    ShowOnLeds,
     StopSound,
 )
 
@@ -25,6 +29,8 @@ __all__ = ["Outputs"]
 
 _SOUNDS = frozenset({PlayTone, PlaySystemSound, PlaySamples, StopSound})
 """Commands with which a program uses sound."""
+LIT_NS = 500_000_000
+"""For so long lights that a program sets to the same again are not told again."""
 _NOTHING: Mapping[str, Sequence[int]] = MappingProxyType({})
 
 
@@ -45,6 +51,7 @@ class Outputs:
         self._waiting: list[Command] = []
         self._sent: list[list[int]] = []
         self._lit: dict[str, tuple[int, ...]] = {}
+        self._lit_ns = 0
 
     def reset(self, vm: VirtualMachine) -> None:
         """All variables are 0: tell what that means, and what a reset tells every actuator."""
@@ -62,11 +69,12 @@ class Outputs:
     def send(self, command: Command, writes: Mapping[str, Sequence[int]] = _NOTHING) -> None:
         """A native's command and the variables that it sets; what they mean is told by the command already.
 
-        Lights that a program sets again and again to the same are told once.
+        Lights that a program sets again and again to the same are told every `LIT_NS`: somebody else may have set them.
         """
         if isinstance(command, SetLeds):
             if self._lit.get(command.group) != command.levels:
-                self._waiting.append(self._taken_over(command))
+                taken_over = self._taken_over(command)
+                self._waiting.append(taken_over)
         else:
             self._waiting.append(command)
             if type(command) in _SOUNDS:
@@ -77,10 +85,18 @@ class Outputs:
         for variable, words in writes.items():
             self._write(variable, words)
 
-    def take(self) -> list[Command]:
+    def take(self, now_ns: int) -> list[Command]:
         """What was sent since the last time."""
+        if not 0 <= now_ns - self._lit_ns < LIT_NS:
+            self._lit_ns = now_ns
+            self._lit.clear()
         commands, self._waiting = self._waiting, []
         return commands
+
+    def darken(self) -> None:
+        """The robot is switched off: tell what variables say now, then that lights and radio rest."""
+        self._waiting += self.take_changes()
+        self._waiting += (EnableComm(False), *LEDS_GIVEN_BACK)
 
     def take_changes(self) -> list[Command]:
         """What variables say that changed since the last time."""
@@ -106,7 +122,8 @@ class Outputs:
 
     def _taken_over(self, command: SetLeds) -> SetLeds:
         self._lit[command.group] = command.levels
-        self._rules.take(command.group)
+        for group in self._rules.take(command.group):
+            self._waiting.append(ShowOnLeds(group, (0,) * LED_GROUPS[group]))
         return command
 
     def _write(self, variable: str, words: Sequence[int]) -> None:

@@ -125,15 +125,20 @@ class _Sound:
     variables = ("mic.intensity", "mic.threshold")
 
     def __init__(self) -> None:
-        self._level = 0
+        self._level = self._peak = 0
+
+    def hear(self, intensity: int) -> None:
+        """What was heard between two looks, and may be gone at the next."""
+        self._peak = max(self._peak, intensity)
 
     @property
     def is_moving(self) -> bool:
-        return self._level > 0
+        return self._level > 0 or self._peak // 8 > 0
 
     def show(self, words: Sequence[Sequence[int]]) -> Levels:
         (intensity,), (threshold,) = words
-        self._level = max(self._level - 1, intensity // 8, 0) if threshold else 0
+        peak, self._peak = max(self._peak, intensity), 0
+        self._level = max(self._level - 1, peak // 8, 0) if threshold else 0
         return {"microphone": (min(LED_FULL, self._level),)}
 
 
@@ -181,6 +186,8 @@ class _Battery:
         return {"battery": tuple(LED_FULL if number < lights else 0 for number in range(3))}
 
 
+_TOGETHER = ("proximity", "ground")
+"""One rule shows both, and a program that sets either ends it (section 6.3)."""
 _RULES: tuple[Callable[[], _Rule], ...] = (_Proximity, _Inclination, _Buttons, _Temperature, _Sound, _Battery)
 
 
@@ -217,6 +224,7 @@ class OwnRules:
         """Begin anew, all lights dark; a button that is still held is not touched again."""
         self._remote = _Remote()
         rules: list[_Rule] = [*(make() for make in _RULES), self._remote]
+        self._sound = next(rule for rule in rules if isinstance(rule, _Sound))
         self._rules = [
             (rule, [_place(self._spans, *self._addresses[name]) for name in rule.variables])
             for rule in rules
@@ -231,13 +239,20 @@ class OwnRules:
         """Whether the next look may show something else though the variables stay as they are."""
         self._is_silent = False
 
-    def take(self, group: str) -> None:
-        """A program has taken these lights over."""
-        self._taken.add(group)
+    def take(self, group: str) -> list[str]:
+        """A program has taken these lights over; the groups that a rule had lit and shows no more."""
+        groups = _TOGETHER if group in _TOGETHER else (group,)
+        self._taken.update(groups)
+        return [one for one in groups if self._shown.pop(one, None) is not None]
 
     def silence(self) -> None:
         """A program has used sound."""
         self._is_silent = True
+
+    def hear(self, intensity: int) -> None:
+        """The microphone heard this."""
+        self._sound.hear(intensity)
+        self.is_moving = self.is_moving or self._sound.is_moving
 
     def flash_remote(self) -> None:
         """A remote control was heard."""

@@ -71,9 +71,11 @@ class Timers:
         return self._count(min(self._next_ms, self._clock_ms) - self._at_ms)
 
     def reset(self) -> None:
-        """Stop all timers and forget the clock."""
+        """Stop all timers: what is counted from now on begins with the present."""
         self._periods = [0] * len(self._periods)
-        self._next_ms = self._at_ms = None
+        self._next_ms = None
+        if self._at_ms is not None:
+            self._at_ms = self._clock_ms
 
     def _count(self, milliseconds: int) -> tuple[int, ...]:
         """Count on; the timers that fired meanwhile."""

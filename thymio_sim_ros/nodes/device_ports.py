@@ -204,7 +204,7 @@ class DevicePorts:
         now_ns = self._node.get_clock().now().nanoseconds
         self.device.advance(now_ns)
         self.device.run(RUN_BUDGET)
-        events = self._host.take_events(now_ns)
+        events = self._host.take_events()
         for command in self.device.take_commands():
             self._send(command)
         for name in self.device.take_local_events():

@@ -11,6 +11,7 @@ from thymio_sim_ros.sim.actuators.leds import ACTUATOR, LED_NUMBERS, LedState
 from thymio_sim_ros.sim.commands import (
     LED_GESTURES,
     LED_GROUPS,
+    LEDS_GIVEN_BACK,
     Command,
     PlayGesture,
     ReleaseLeds,
@@ -121,8 +122,22 @@ def test_a_released_group_is_dark_and_shows_the_rules_again() -> None:
     assert state.levels["ground"] == (5, 6)
 
 
+@pytest.mark.parametrize("end", [ReleaseLeds("circle"), StopGesture()])
+def test_a_group_given_back_shows_what_the_rules_have_wanted_all_the_time(end: Command) -> None:
+    state, mine = LedState(), (0, 0, 7, 0, 0, 0, 0, 0)
+    ACTUATOR.apply(state, ShowOnLeds("circle", (1,) * 8), 0)
+    ACTUATOR.apply(state, PlayGesture("circle", 1.0), 0)
+    ACTUATOR.apply(state, ShowOnLeds("circle", mine), 0)
+    assert state.levels["circle"] != mine
+    ACTUATOR.apply(state, end, 0)
+    assert state.levels["circle"] == mine
+    for command in LEDS_GIVEN_BACK:
+        ACTUATOR.apply(state, command, 0)
+    assert state.levels["circle"] == (0,) * 8
+
+
 def test_a_reset_releases_every_group() -> None:
-    assert ACTUATOR.aseba.at_reset == tuple(ReleaseLeds(group) for group in LED_GROUPS)
+    assert ACTUATOR.aseba.at_reset == LEDS_GIVEN_BACK
 
 
 def lights(*commands: Command, seconds: float = 1.0) -> list[dict[str, tuple[int, ...]]]:

@@ -113,6 +113,10 @@ def test_a_program_s_wave_has_samples_of_8_bits() -> None:
         native("sound.wave", (0,) * 141 + (200,))
 
 
+def test_a_sound_of_no_length_finishes_at_once() -> None:
+    assert play([PlaySamples(b"")], 20_000_000).finished == 1
+
+
 def test_the_world_tells_what_sounds_and_when_it_finished() -> None:
     world = World(make([FLOOR]))
     send(world, PlaySystemSound(2))

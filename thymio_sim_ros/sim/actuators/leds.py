@@ -15,6 +15,7 @@ from thymio_sim_ros.sim.aseba_face import ActuatorFace, Native, Output
 from thymio_sim_ros.sim.commands import (
     LED_FULL,
     LED_GROUPS,
+    LEDS_GIVEN_BACK,
     Command,
     PlayGesture,
     ReleaseLeds,
@@ -73,13 +74,15 @@ LED_NUMBERS = _numbers()
 class LedState:
     """Levels 0…32 of every group, in the order of `LED_GROUPS`; groups that the robot's own rules lost; a gesture.
 
-    `changes` counts how often lights were set to something else.
+    `own` is what these rules want to show, also on groups that they lost. `changes` counts how often lights were set to
+    something else.
     """
 
     levels: dict[str, tuple[int, ...]] = field(
         default_factory=lambda: {group: (0,) * size for group, size in LED_GROUPS.items()}
     )
     taken: set[str] = field(default_factory=set)
+    own: dict[str, tuple[int, ...]] = field(default_factory=dict)
     gesture: Gesture | None = None
     changes: int = field(default=0, compare=False)
 
@@ -97,9 +100,15 @@ class LedState:
         if self.gesture is not None and self.gesture.group == group:
             self.gesture = None
 
+    def show_own(self, group: str, levels: tuple[int, ...]) -> None:
+        """What the robot's own rules want to show; it shines when they have the group."""
+        self.own[group] = levels
+        if group not in self.taken:
+            self.show(group, levels)
+
     def release(self, group: str) -> None:
-        """Darken a group and give it back to the robot's own rules."""
-        self.set(group, (0,) * LED_GROUPS[group])
+        """Give a group back to the robot's own rules."""
+        self.set(group, self.own.get(group, (0,) * LED_GROUPS[group]))
         self.taken.discard(group)
 
 
@@ -112,8 +121,7 @@ def _apply(
         case SetLeds(group, levels):
             state.set(group, levels)
         case ShowOnLeds(group, levels):
-            if group not in state.taken:
-                state.show(group, levels)
+            state.show_own(group, levels)
         case SetLed(number, level):
             place = LED_NUMBERS[number] if 0 <= number < len(LED_NUMBERS) else None
             if place is not None:
@@ -185,6 +193,6 @@ ACTUATOR = Actuator(
             if name == variable
         ),
         natives=(*_group_natives(), Native("_leds.set", ("led", "brightness"), _single, "Set one light by its number")),
-        at_reset=tuple(ReleaseLeds(group) for group in LED_GROUPS),
+        at_reset=LEDS_GIVEN_BACK,
     ),
 )

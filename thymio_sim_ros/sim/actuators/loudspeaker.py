@@ -28,6 +28,8 @@ __all__ = ["ACTUATOR", "LoudspeakerState"]
 
 ALARM_NS = 3_000_000_000
 """Between two sounds of an alarm (ros-interface.md section 4.2)."""
+_NO_SOUND = b"\x80"
+"""One sample of silence: a sound of no length ends, too."""
 SHORTEST_TICKS = 4
 """Ticks of the shortest tone that a program can ask for (section 6.3)."""
 
@@ -107,7 +109,7 @@ def _apply(
         case PlaySystemSound(number):
             state.play(tones.system_sound(number), b"", now_ns)
         case PlaySamples(samples):
-            state.play((), samples, now_ns)
+            state.play((), samples or _NO_SOUND, now_ns)
         case StopSound():
             if not state.is_silent:
                 state.play((), b"", now_ns)

@@ -19,6 +19,7 @@ from thymio_sim_ros.sim.commands.lights import (
     LED_FULL,
     LED_GESTURES,
     LED_GROUPS,
+    LEDS_GIVEN_BACK,
     Lighting,
     PlayGesture,
     ReleaseLeds,
@@ -60,6 +61,7 @@ from thymio_sim_ros.sim.commands.sounds import (
 
 __all__ = [
     "BUTTONS",
+    "LEDS_GIVEN_BACK",
     "LED_FULL",
     "LED_GESTURES",
     "LED_GROUPS",

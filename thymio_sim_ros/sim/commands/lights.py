@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 __all__ = [
+    "LEDS_GIVEN_BACK",
     "LED_FULL",
     "LED_GESTURES",
     "LED_GROUPS",
@@ -66,7 +67,7 @@ class ShowOnLeds:
 
 @dataclass(frozen=True, slots=True)
 class ReleaseLeds:
-    """The lights of one group go off and back to the robot's own rules."""
+    """The lights of one group go back to the robot's own rules, and show what these want to."""
 
     group: str
 
@@ -89,5 +90,11 @@ class PlayGesture:
 class StopGesture:
     """The lights of a gesture go back to the robot's own rules."""
 
+
+LEDS_GIVEN_BACK: tuple[ShowOnLeds | ReleaseLeds, ...] = (
+    *(ShowOnLeds(group, (0,) * size) for group, size in LED_GROUPS.items()),
+    *(ReleaseLeds(group) for group in LED_GROUPS),
+)
+"""All lights go back to the robot's own rules, which show nothing."""
 
 Lighting = SetLeds | SetLed | ShowOnLeds | ReleaseLeds | PlayGesture | StopGesture
