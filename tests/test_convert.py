@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
+import random
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -10,6 +14,7 @@ import pytest
 from tests.sim.builders import PLAYGROUNDS
 from thymio_sim_ros.cli import main
 from thymio_sim_ros.sim import playground
+from thymio_sim_ros.sim.playground import PlaygroundError
 
 MAZE = (
     '<aseba-playground><color name="w" r="1" g="1" b="1"/><world w="100" h="100" color="w"/>'
@@ -30,6 +35,39 @@ def test_the_result_is_our_json_on_standard_output(maze: Path, capsys: pytest.Ca
     written = capsys.readouterr()
     assert playground.loads(written.out, "maze") == playground.load(maze)
     assert written.err == ""
+
+
+@pytest.mark.process
+def test_the_result_is_utf_8_whatever_the_terminal_has(maze: Path) -> None:
+    maze.write_text(MAZE.format("<description>Größe 5 €</description>"), encoding="utf-8")
+    out = maze.with_name("out.json")
+    program = [sys.executable, "-c", "import sys; from thymio_sim_ros.cli import main; sys.exit(main())", "convert"]
+    with out.open("wb") as file:
+        environment = os.environ | {"PYTHONIOENCODING": "latin-1"}
+        assert subprocess.run([*program, maze], stdout=file, env=environment, check=False).returncode == 0
+    assert playground.load(out).description == "Größe 5 €"
+
+
+@pytest.mark.process
+def test_a_reader_that_has_enough_is_no_error(maze: Path) -> None:
+    program = f"{sys.executable} -c 'from thymio_sim_ros.cli import main; main()' convert {maze} | true"
+    done = subprocess.run(program, shell=True, capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
+
+
+def test_two_large_pictures_can_be_read_again(tmp_path: Path) -> None:
+    pixels = random.Random(1).randbytes(1000 * 1000 * 3)
+    pytest.importorskip("PIL.Image").frombytes("RGB", (1000, 1000), pixels).save(tmp_path / "a.png")
+    shapes = [{"kind": "picture", "name": f"p{i}", "image": "a.png", "size_x_m": 1, "x_m": i} for i in range(3)]
+    path, out = tmp_path / "big.json", tmp_path / "out.json"
+    path.write_text(json.dumps({"format": 1, "title": "Big", "shapes": shapes, "robots": []}))
+    assert main(["convert", str(path), "-o", str(out)]) == 0
+    assert out.stat().st_size > 10_000_000
+    assert playground.load(out).shapes == playground.load(path).shapes
+    shapes += [{**shape, "name": f"q{i}"} for i, shape in enumerate(shapes * 2)]
+    path.write_text(json.dumps({"format": 1, "title": "Big", "shapes": shapes, "robots": []}))
+    with pytest.raises(PlaygroundError, match=r"shapes\[\d\]\.image: found more than 24000000 bytes of pictures"):
+        playground.load(path)
 
 
 def test_the_result_goes_into_a_file(maze: Path, capsys: pytest.CaptureFixture[str]) -> None:

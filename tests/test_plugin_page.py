@@ -15,7 +15,7 @@ from tests.sim.builders import FLOOR, make
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.program import load_program
-from thymio_sim_ros.loading import load_playground, read_program
+from thymio_sim_ros.loading import load_playground, read_program, shipped_behaviours
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim import actuators, playground, sensors, shapes
 from thymio_sim_ros.sim.primitives import Disc
@@ -183,6 +183,31 @@ def test_a_shape_that_raises_refuses_the_playground_with_its_key(variant: Varian
         path = resources.find_playground("slalom_field")
         with pytest.raises(playground.PlaygroundError, match=r"shapes\[1\]: found KeyError: 'posts'"):
             playground.load(path)
+
+
+def test_a_shape_with_a_field_that_no_file_has_is_left_out(variant: Variant, caplog: pytest.LogCaptureFixture) -> None:
+    with variant("thymio_extras/slalom.py", "    x_m: Coordinate\n", "    x_m: float\n"):
+        assert "slalom" not in {kind.name for kind in shapes.all_shapes()}
+        assert "a field of type <class 'float'> found" in caplog.text
+        assert "slalom" not in str(playground.schema()["properties"]["shapes"])
+
+
+@pytest.mark.usefixtures("extras")
+def test_its_behaviour_is_listed_with_its_first_comment() -> None:
+    assert shipped_behaviours()["go_north"] == "Turn to the north (90 degrees), hop there, and stop."
+
+
+@pytest.mark.parametrize("broken", ["<network>", "<network><node", "caf\udce9"])
+def test_a_behaviour_that_cannot_be_read_is_left_out_of_the_list(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, broken: str
+) -> None:
+    with plugin_page.installed(tmp_path, plugin_page.files(), monkeypatch):
+        path = tmp_path / "thymio_extras" / "behaviours" / "go_north.aesl"
+        path.write_bytes(broken.encode("utf-8", "surrogateescape"))
+        found = shipped_behaviours()
+    assert "go_north" not in found
+    assert "friendly" in found
+    assert f"the behaviour {path} is left out" in caplog.text
 
 
 @pytest.mark.usefixtures("extras")

@@ -193,6 +193,12 @@ def test_a_log_without_its_end_is_replayed_as_far_as_it_goes(tmp_path: Path) -> 
         (lambda lines: [lines[0], *lines[2:]], "line 2: found what happened to no world, expected a world first"),
         (lambda lines: [*lines, lines[2]], "line 5: found a line after the end, expected nothing"),
         (lambda lines: [lines[0], lines[1].replace('"default"', '"sonar"'), *lines[2:]], "line 2: .*sonar"),
+        (lambda lines: [*lines[:2], '{"tick": -5, "remove": "x"}', *lines[2:]], "line 3: found tick -5, expected 0"),
+        (lambda lines: [*lines[:3], '{"tick": 0, "remove": "x"}', *lines[3:]], "line 4: found tick 0, expected 1 or"),
+        (
+            lambda lines: [*lines[:2], '{"tick": 1000000, "remove": "x"}', *lines[2:]],
+            "line 4: found the first 1 ticks after an input at tick 1000000",
+        ),
     ],
 )
 def test_a_log_in_disorder_is_refused(tmp_path: Path, change: object, text: str) -> None:

@@ -116,6 +116,9 @@ def _change(number: int, **members: Any) -> Callable[[list[str]], list[str]]:
         (_line(3, '{"tick": 0, "to": "thymio"}'), "line 3: found {'tick': 0, 'to': 'thymio'}, expected a line"),
         (_change(3, do="Fly"), "line 3: found the command 'Fly'"),
         (_change(4, crc="00"), "line 4: found {'ticks': 100, 'crc': '00'}"),
+        (_change(2, playground=5), "line 2: found a world whose name or playground is no text"),
+        (_change(2, periods_ns=[["ground", "x"]]), "line 2: invalid literal"),
+        (_line(4, "[" * 100_000), "line 4: found nesting without measure"),
         (_line(6, '{"tick": 1, "spawn": {}}'), "line 6: spawn.name: found nothing"),
         (_line(4, '{"tick'), "line 4: found no JSON"),
     ],
@@ -133,6 +136,17 @@ def test_a_log_that_was_cut_off_within_a_line_is_good_up_to_there(written: Path)
     whole = [line for _, line in read(written)]
     written.write_text(written.read_text()[:-20])
     assert [line for _, line in read(written)] == whole[:-2]
+
+
+def test_and_within_a_character(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    log = RunLog(path.open("w", encoding="utf-8"))
+    log.begin("größer", World(make([FLOOR])))
+    log.begin("größer", World(make([FLOOR])))
+    log.close()
+    data = path.read_bytes()
+    path.write_bytes(data[: data.rindex("ö".encode()) + 1])
+    assert [type(line) for _, line in read(path)] == [Begun]
 
 
 def test_bytes_that_are_no_text_are_refused(written: Path) -> None:

@@ -61,7 +61,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     if command is not start_suite:
         arguments = arguments[1:]
     try:
-        return command(arguments)
+        code = command(arguments)
+        sys.stdout.flush()
+        return code
+    except BrokenPipeError:  # who reads has enough, as `head` has
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     except UsageError as error:
         print(f"thymio-sim: {error}", file=sys.stderr)
         return USAGE_ERROR
@@ -141,7 +146,8 @@ def run_without_ros(argv: Sequence[str]) -> int:
         if log is not None:
             log.close()
     except OSError as error:
-        raise UsageError(f"{error.filename}: {error.strerror}; expected a file that can be written") from error
+        where = error.filename or options.log or options.sound
+        raise UsageError(f"{where}: {error.strerror}; expected a file that can be written") from error
     factor = options.seconds / max(time.perf_counter() - started, 1e-9)
     poses = {
         name: {"x_m": robot.pose.x_m, "y_m": robot.pose.y_m, "yaw_rad": robot.pose.yaw_rad}

@@ -45,13 +45,16 @@ def run(argv: Sequence[str]) -> int:
 
 
 def _write(text: str, output: Path | None) -> int:
-    if output is None:
-        sys.stdout.write(text)
-        return 0
     try:
-        output.write_text(text, encoding="utf-8")
+        if output is None:
+            sys.stdout.buffer.write(text.encode("utf-8"))  # whatever the terminal has
+            sys.stdout.buffer.flush()
+        else:
+            output.write_text(text, encoding="utf-8")
+    except BrokenPipeError:
+        raise
     except OSError as error:
-        return _say(f"{output}: {error.strerror}; expected a file that can be written", REFUSED)
+        return _say(f"{output or 'standard output'}: {error.strerror}; expected a file that can be written", REFUSED)
     return 0
 
 

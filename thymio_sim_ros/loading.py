@@ -5,13 +5,14 @@ from __future__ import annotations
 import base64
 import binascii
 import itertools
+import logging
 import re
 import urllib.parse
 
-from aseba_vm import aesl
+from aseba_vm import AeslError
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.layout import THYMIO
-from thymio_sim_ros.device.program import ThymioProgram, load_program
+from thymio_sim_ros.device.program import ThymioProgram, load_program, parse
 from thymio_sim_ros.sim import playground as playgrounds
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
 
@@ -78,11 +79,17 @@ def check_behaviour(name: str, layout: str = THYMIO) -> str:
 
 
 def shipped_behaviours() -> dict[str, str]:
-    """Every built-in program by name: what its first comment says, in one line."""
-    return {name: _first_comment(path.read_text(encoding="utf-8")) for name, path in resources.behaviours().items()}
+    """Every built-in program by name: what its first comment says, in one line. What cannot be read is left out."""
+    found = {}
+    for name, path in resources.behaviours().items():
+        try:
+            found[name] = _first_comment(path.read_text(encoding="utf-8"))
+        except (AeslError, UnicodeDecodeError, OSError) as error:  # of another package
+            logging.getLogger(__name__).warning("the behaviour %s is left out: %s", path, error)
+    return found
 
 
 def _first_comment(text: str) -> str:
-    (node,) = aesl.loads(text).nodes
-    lines = itertools.takewhile(lambda line: line.startswith("#"), node.code.splitlines())
+    code = parse(text).nodes[0].code
+    lines = itertools.takewhile(lambda line: line.startswith("#"), code.splitlines())
     return " ".join(" ".join(line.lstrip("#") for line in lines).split())

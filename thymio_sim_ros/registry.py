@@ -49,12 +49,18 @@ class RegistryError(Exception):
 
 
 def collect(
-    package: ModuleType, export: str, kind: type[T], *, guard: Callable[[T], T] = lambda plugin: plugin
+    package: ModuleType,
+    export: str,
+    kind: type[T],
+    *,
+    check: Callable[[T], object] = id,
+    guard: Callable[[T], T] = lambda plugin: plugin,
 ) -> tuple[T, ...]:
     """The `export` (such as "SENSOR") of every module of `package`, and those that other packages add, in name order.
 
     Modules whose name begins with an underscore are helpers. Raises RegistryError for a module of ours without
-    the export, or with one that is no `kind`. What others add goes through `guard`, which should let it break alone.
+    the export, or with one that is no `kind`. What others add is left out where `check` raises, and goes through
+    `guard`, which should let it break alone.
     """
     found: dict[str, T] = {}
     for name in own_names(package):
@@ -63,7 +69,7 @@ def collect(
         if not isinstance(plugin, kind):
             raise RegistryError(module.__name__, f"{export} of type {kind.__name__}", type(plugin).__name__)
         found[plugin.name] = plugin
-    for plugin in _added(f"{PREFIX}.{package.__name__.rpartition('.')[2]}", export, kind, tuple(found)):
+    for plugin in _added(f"{PREFIX}.{package.__name__.rpartition('.')[2]}", export, kind, tuple(found), check):
         found[plugin.name] = guard(plugin)
     return tuple(found[name] for name in sorted(found))
 
@@ -94,7 +100,9 @@ def forget() -> None:
 
 
 @functools.cache
-def _added(group: str, export: str, kind: type[T], taken: tuple[str, ...]) -> tuple[T, ...]:
+def _added(
+    group: str, export: str, kind: type[T], taken: tuple[str, ...], check: Callable[[T], object]
+) -> tuple[T, ...]:
     """What other packages add to a group, whole and by names that are not taken."""
     found: dict[str, T] = {}
     for entry in _entries(group):
@@ -107,6 +115,7 @@ def _added(group: str, export: str, kind: type[T], taken: tuple[str, ...]) -> tu
                 raise RegistryError(entry.value, "a name of small letters, digits and single underscores", plugin.name)
             if plugin.name in taken or plugin.name in found:
                 raise RegistryError(entry.value, "a name of its own", f"'{plugin.name}', which exists")
+            check(plugin)
         except Exception as error:
             _name(entry, error)
         else:

@@ -39,6 +39,8 @@ class _Run:
     begun: Begun
     line: int
     inputs: dict[int, list[Input]] = field(default_factory=dict)
+    last: int = 0
+    """The latest of their ticks."""
     crcs: list[str] = field(default_factory=list)
 
 
@@ -71,10 +73,16 @@ def _runs(path: str, lines: list[tuple[int, Line]]) -> Iterator[_Run]:
             raise RunLogError(path, number, "found what happened to no world, expected a world first")
         elif isinstance(line, Checked):
             run.crcs.extend(line.crcs)
+            if run.last > len(run.crcs):
+                found = f"found the first {len(run.crcs)} ticks after an input at tick {run.last}"
+                raise RunLogError(path, number, f"{found}, expected that many")
         elif isinstance(line[1], Reset):
             yield run
             run = _Run(run.begun, run.line)
+        elif line[0] < max(len(run.crcs), run.last):
+            raise RunLogError(path, number, f"found tick {line[0]}, expected {max(len(run.crcs), run.last)} or later")
         else:
+            run.last = line[0]
             run.inputs.setdefault(line[0], []).append(line[1])
     if run is not None:
         yield run

@@ -41,6 +41,8 @@ __all__ = ["Begun", "Checked", "Ended", "Line", "RunLog", "RunLogError", "digest
 FORMAT = "thymio-sim run log"
 VERSION = 1
 _TICKS_PER_LINE = 100
+_WRONG = (ValueError, KeyError, TypeError, RecursionError, FieldError, PlaygroundError, CommandJsonError)
+"""What a line raises that is none."""
 _DIGITS = 8
 
 
@@ -151,22 +153,19 @@ class RunLog:
 
 def read(path: Path) -> Iterator[tuple[int, Line]]:
     """The lines of a log after its first, with their numbers; OSError, RunLogError."""
-    with path.open(encoding="utf-8", newline="\n") as file:
-        number = 0
-        try:
-            for number, text in enumerate(file, start=1):
-                if number > 1 and not text.endswith("\n"):
-                    return  # cut off within a line
-                try:
-                    data = json.loads(text)
-                    if number == 1:
-                        _check_head(data)
-                    else:
-                        yield number, _line(data)
-                except (ValueError, KeyError, TypeError, FieldError, PlaygroundError, CommandJsonError) as error:
-                    raise RunLogError(str(path), number, _explained(error)) from error
-        except UnicodeDecodeError as error:
-            raise RunLogError(str(path), number + 1, "found bytes that are not UTF-8, expected text") from error
+    number = 0
+    with path.open("rb") as file:
+        for number, text in enumerate(file, start=1):
+            if number > 1 and not text.endswith(b"\n"):
+                return  # cut off within a line, or within a character
+            try:
+                data = json.loads(text.decode("utf-8"))
+                if number == 1:
+                    _check_head(data)
+                else:
+                    yield number, _line(data)
+            except _WRONG as error:
+                raise RunLogError(str(path), number, _explained(error)) from error
     if number == 0:
         raise RunLogError(str(path), 1, f"found nothing, expected a {FORMAT}")
 
@@ -205,11 +204,17 @@ def _line(data: object) -> Line:
 
 def _begun(head: dict[str, Any]) -> Begun:
     name, text, periods = head.pop("name"), head.pop("playground"), head.pop("periods_ns")
-    pairs = None if periods is None else tuple((sensor, period_ns) for sensor, period_ns in periods)
+    if not isinstance(name, str) or not isinstance(text, str):
+        raise ValueError("found a world whose name or playground is no text, expected both")
+    pairs = None if periods is None else tuple((str(sensor), int(period_ns)) for sensor, period_ns in periods)
     return Begun(name, playgrounds.loads(text, name), WorldOptions(**head, periods_ns=pairs))
 
 
 def _explained(error: Exception) -> str:
+    if isinstance(error, UnicodeDecodeError):
+        return "found bytes that are not UTF-8, expected text"
+    if isinstance(error, RecursionError):
+        return f"found nesting without measure, expected a line of a {FORMAT}"
     if isinstance(error, json.JSONDecodeError):
         return f"found no JSON (column {error.colno}: {error.msg}), expected a line of a {FORMAT}"
     if isinstance(error, KeyError | TypeError):

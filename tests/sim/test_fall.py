@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.sim.builders import FLOOR, GREY, ROBOT, box, make, readings, run, send, sense
-from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
+from thymio_sim_ros.sim.commands import MotorTargets, MoveObject, MoveRobot
 from thymio_sim_ros.sim.fall import FALL_NS, Fall
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.world import World
@@ -133,3 +133,16 @@ def test_a_thing_pushed_over_the_edge_is_gone() -> None:
     assert world.robots["thymio"].tilt == LEVEL
     send(world, MotorTargets(0, 0))
     assert sense(world, "proximity").words == (0,) * 7
+
+
+def test_a_thing_that_starts_past_the_edge_is_not_there() -> None:
+    crate = {**box(EDGE_M + 0.3, 0.0, 0.06, 0.06), "name": "crate", "mass_kg": 0.1}
+    found = make([FLOOR, crate])
+    assert found.notes == ("shapes: 'crate' starts where there is no floor",)
+    world = World(found)
+    assert world.objects[0].is_fallen
+    world.step()
+    world.post("crate", MoveObject(0.5, 0.5, 0.0))
+    world.step()
+    world.reset()
+    assert world.objects[0].is_fallen

@@ -75,7 +75,19 @@ def test_an_svg_is_drawn_a_pixel_for_each_millimetre() -> None:
 
 @pytest.mark.parametrize(
     "attributes",
-    ['width="20mm" height="10mm" viewBox="-5 -5 10 5"', 'width="200" height="100"', 'width="100%" viewBox="0,0,2,1"'],
+    [
+        'width="20mm" height="10mm" viewBox="-5 -5 10 5"',
+        'width="200" height="100"',
+        'width="100%" viewBox="0,0,2,1"',
+        'width="2cm" height="10mm"',
+        'width="1in" height="48"',
+        'width="1pc" height="6pt"',
+        'width="80Q" height="10mm"',
+        'width="0.4px" height="0.2"',
+        'height="10mm" viewBox="0 0 40 20"',
+        'width="50%" height="1em" viewBox="0 0 4 2"',
+        'viewBox="0 0 1 0.5"',
+    ],
 )
 def test_the_size_of_an_svg_may_be_written_in_many_ways(attributes: str) -> None:
     pytest.importorskip("resvg_py")
@@ -89,6 +101,8 @@ def test_the_size_of_an_svg_may_be_written_in_many_ways(attributes: str) -> None
         ("<text>Hello</text>", "<text>"),
         ('<image href="/etc/hostname" width="10" height="10"/>', "<image>"),
         ('<use xlink:href="other.svg#a"/>', "a reference to 'other.svg#a'"),
+        ('<use href="#a" xlink:href="other.svg#a"/>', "a reference to 'other.svg#a'"),
+        ('<use xmlns:x="http://www.w3.org/1999/xlink" x:href="other.svg#a"/>', "a reference to 'other.svg#a'"),
         ('<filter id="f"><feTurbulence numOctaves="9999999"/></filter>', "<filter>"),
         ("<script>alert(1)</script>", "<script>"),
     ],
@@ -126,6 +140,25 @@ def test_an_svg_that_repeats_itself_without_end_is_refused(kind: str) -> None:
 )
 def test_an_svg_that_is_too_deep_is_refused(body: str) -> None:
     assert refused(svg_uri(body)).found == "elements more than 40 deep"
+
+
+@pytest.mark.parametrize(
+    "disguise",
+    ['xlink:href="#g{m}" y:href="#tiny"', 'href="#g{m}" xlink:href="#tiny"', 'href="#tiny" xlink:href="#g{m}"'],
+)
+def test_an_svg_that_repeats_itself_in_disguise_is_refused(disguise: str) -> None:
+    step = '<g id="g{n}" y:id="x">' + f"<use {disguise}/>" * 2 + "</g>"
+    steps = "".join(step.format(n=n + 1, m=n) for n in range(30))
+    body = '<rect id="g0" width="1" height="1"/><rect id="tiny"/>' + steps
+    assert "elements to draw" in refused(svg_uri(body, 'viewBox="0 0 1 1" xmlns:y="urn:y"')).found
+
+
+def test_a_photo_of_a_camera_held_upright_stands_upright() -> None:
+    out, tags = io.BytesIO(), image.Exif()
+    tags[0x0112] = 6  # the top is at the right
+    image.new("RGB", (40, 20), (255, 255, 255)).save(out, "JPEG", exif=tags)
+    found = decode(data_uri(out.getvalue(), "image/jpeg"))
+    assert (found.columns, found.rows) == (20, 40)
 
 
 def test_a_circle_of_references_is_refused() -> None:

@@ -19,9 +19,10 @@ def test_elements_know_their_lines_attributes_and_text() -> None:
     assert (root.tag, child.tag, child.line, dict(child.attributes), child.text) == ("a", "b", 4, {"c": "1"}, "text")
 
 
-def test_prefixes_of_name_spaces_are_left_out() -> None:
-    root = parse('<s:a xmlns:s="urn:x" s:b="1"/>')
-    assert (root.tag, root.attributes["b"]) == ("a", "1")
+def test_names_are_those_without_a_name_space_but_for_one() -> None:
+    link = "http://www.w3.org/1999/xlink"
+    root = parse(f'<s:a xmlns:s="urn:x" xmlns:any="{link}" s:b="1" s:href="#2" any:href="#3" b="4" xml:id="5"/>')
+    assert (root.tag, root.attributes) == ("a", {"b": "4", "xlink:href": "#3"})
 
 
 def test_broken_xml_is_refused_at_its_line() -> None:

@@ -103,6 +103,9 @@ class Path:
 Coordinate = Annotated[float, Number("m", -FAR_M, FAR_M)]
 Extent = Annotated[float, Number("m", 0.001, FAR_M)]
 PenWidth = Annotated[float, Number("m", 0.001, 0.1)]
+LANGUAGE = "[a-z]{2,3}(-[A-Za-z0-9]{2,8})*"
+"""What a language code looks like: `de`, `pt-BR`."""
+
 Angle = Annotated[float, Number("rad", -2 * math.pi, 2 * math.pi)]
 Radius = Annotated[float, Number("m", 0.0, FAR_M)]
 Mass = Annotated[float, Number("kg", 0.001, 1000.0)]
@@ -287,4 +290,8 @@ def _schema(rule: Any) -> dict[str, Any]:
         case Path(fewest, most):
             item = {"type": "array", "items": _schema(_COORDINATE), "minItems": 2, "maxItems": 2}
             return {"type": "array", "items": item, "minItems": fewest, "maxItems": most, "description": "x, y in m"}
-    return {"type": "boolean"} if rule is bool else json_schema(rule)
+    if rule is bool:
+        return {"type": "boolean"}
+    if not dataclasses.is_dataclass(rule):
+        raise TypeError(f"a field of type {rule!r} found, expected bool or a rule of sim/fields.py such as Coordinate")
+    return json_schema(cast("Any", rule))

@@ -75,10 +75,19 @@ def css_color(value: object, *, key: str) -> str:
     try:
         if not isinstance(value, str):
             raise ValueError
-        red, green, blue = imported("PIL.ImageColor", "Pillow", key).getrgb(value.strip())[:3]
+        red, green, blue = imported("PIL.ImageColor", "Pillow", key).getrgb(_plain_css(value))[:3]
     except ValueError as error:
         raise FieldError(key, describe(value), "a CSS color such as #bdbbbb") from error
-    return f"#{red:02x}{green:02x}{blue:02x}"
+    return "#" + "".join(f"{min(part, 255):02x}" for part in (red, green, blue))
+
+
+def _plain_css(text: str) -> str:
+    """A color as Pillow has it, with commas and without opacity: of `rgb(1 2 3 / 50%)`, `hsla(120deg, 50%, 50%, 1)`."""
+    match = re.fullmatch(r"(rgb|hsl)a?\((.*)\)", text.strip(), re.IGNORECASE)
+    if match is None:
+        return text.strip()
+    parts = re.split(r"[\s,/]+", match[2].strip())
+    return f"{match[1]}({', '.join(part.removesuffix('deg') for part in parts[:3])})"
 
 
 def encode_png(pixels: Pixels, *, most: int = MAX_SIDE) -> bytes:
@@ -100,9 +109,12 @@ def _unpack(data: bytes, key: str) -> Pixels:
         if max(columns, rows) > MAX_SIDE or columns * rows > MAX_PIXELS:
             expected = f"at most {MAX_SIDE} a side and {MAX_PIXELS} in all"
             raise FieldError(key, f"{columns} x {rows} pixels", expected)
+        if image.format == "JPEG":  # a camera was held upright, perhaps
+            image = imported("PIL.ImageOps", "Pillow", key).exif_transpose(image)
         if image.mode.startswith("I"):
             # Pillow would cut 16 bit greys off at 255.
             image = image_module.fromarray((np.asarray(image).astype(np.uint32) >> 8).clip(0, 255).astype(np.uint8))
+        columns, rows = image.size
         return Pixels(columns, rows, image.convert("RGBA").tobytes())
     except image_module.DecompressionBombError as error:
         raise FieldError(key, "pixels without measure", f"at most {MAX_PIXELS} pixels") from error

@@ -16,6 +16,7 @@ from typing import Any
 from thymio_sim_ros.sim import fields, pictures, source
 from thymio_sim_ros.sim import playground_checks as checks
 from thymio_sim_ros.sim.fields import (
+    LANGUAGE,
     FieldError,
     Name,
     Text,
@@ -56,7 +57,8 @@ MAX_SHAPES = 1000
 MAX_ROBOTS = 1000
 MAX_PRIMITIVES = 10_000
 MAX_TRANSLATIONS = 50
-LANGUAGE = "[a-z]{2,3}(-[A-Za-z0-9]{2,8})*"
+MAX_PICTURES_BYTES = 24_000_000
+"""Of all pictures together as text; the rest of a file of `MAX_BYTES` is for what else it says."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +164,7 @@ def _build(data: object, name: str, beside: Beside, notes: tuple[str, ...]) -> P
     titles = read(_Titles, members, "")
     kinds = {kind.name: kind for kind in all_shapes()}
     shapes = tuple(_shape(item, index, kinds, beside) for index, item in enumerate(shape_items))
+    _check_pictures(shapes)
     robots = tuple(read(RobotStart, item, f"robots[{index}]") for index, item in enumerate(robot_items))
     checks.check_names(shapes, robots)
     primitives = _primitives(shapes)
@@ -180,7 +183,7 @@ def _build(data: object, name: str, beside: Beside, notes: tuple[str, ...]) -> P
         paints=tuple(primitive for primitive in primitives if isinstance(primitive, Paint | Print)),
         translations=translations,
         triggers=tuple(primitive for primitive in primitives if isinstance(primitive, Trigger)),
-        notes=(*notes, *checks.off_floor(robots, floors)),
+        notes=(*notes, *checks.off_floor(robots, solids, floors)),
     )
 
 
@@ -215,6 +218,17 @@ def _shape(item: object, index: int, kinds: Mapping[str, ShapeKind], beside: Bes
         if image in members:
             members[image] = _embedded(members[image], join(key, image), beside)
     return NamedShape(kind, name, read(form, members, key))
+
+
+def _check_pictures(shapes: tuple[NamedShape, ...]) -> None:
+    """Refuse more pictures than one file may hold: what is loaded can be written as one, and read again."""
+    size = 0
+    for index, named in enumerate(shapes):
+        for image in fields.image_keys(type(named.shape)):
+            size += len(getattr(named.shape, image) or "")
+            if size > MAX_PICTURES_BYTES:
+                found = f"more than {MAX_PICTURES_BYTES} bytes of pictures so far, in base64"
+                raise FieldError(f"shapes[{index}].{image}", found, "fewer or smaller ones")
 
 
 def _embedded(value: object, key: str, beside: Beside) -> object:

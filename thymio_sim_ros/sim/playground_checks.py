@@ -37,17 +37,21 @@ def check_starts(robots: Iterable[RobotStart], solids: Iterable[Solid]) -> None:
         occupied.add(footprint)
 
 
-def off_floor(robots: tuple[RobotStart, ...], floors: tuple[Floor, ...]) -> list[str]:
-    """Robots that start in the air: allowed, as they may be put elsewhere, but hardly meant.
+def off_floor(robots: tuple[RobotStart, ...], solids: Iterable[Solid], floors: tuple[Floor, ...]) -> list[str]:
+    """Robots and movable things that start in the air: allowed, as they may be put elsewhere, but hardly meant.
 
     Without any ground there is no edge either, and nothing falls (sim/footing.py).
     """
     if not floors:
         return []
+    starts = [(f"robots[{index}]: '{robot.name}'", robot.x_m, robot.y_m) for index, robot in enumerate(robots)]
+    starts += [
+        (f"shapes: '{solid.name}'", solid.pose.x_m, solid.pose.y_m) for solid in solids if solid.load is not None
+    ]
     return [
-        f"robots[{index}]: '{robot.name}' starts where there is no floor"
-        for index, robot in enumerate(robots)
-        if not any(floor.holds((robot.x_m, robot.y_m)) for floor in floors)
+        f"{who} starts where there is no floor"
+        for who, x, y in starts
+        if not any(floor.holds((x, y)) for floor in floors)
     ]
 
 

@@ -26,7 +26,7 @@ from thymio_sim_ros.sim.xml_tree import XmlError
 
 __all__ = ["MAX_BYTES", "Beside", "Source", "folder", "nothing_beside", "read_source"]
 
-MAX_BYTES = 8_000_000
+MAX_BYTES = 32_000_000
 """Largest file; pictures inside it count."""
 MAX_ARCHIVE_FILES = 200
 
@@ -42,8 +42,11 @@ _CANNOT_UNPACK = (
 """What a damaged, encrypted or exotic archive raises; of places before its begin the file says ValueError."""
 _WORDS = re.compile(r'"(?:[^"\\]|\\.)*"|NaN|-?Infinity')
 """Strings of JSON, and words that Python takes for numbers outside them."""
-_HALVES = "\ud800", "\udfff"
-"""Between these, both included, are halves of characters: escapes may hold them, UTF-8 may not."""
+_PARTS = re.compile(r'"(?:[^"\\]|\\.)*"|[{}]')
+_COLON = re.compile(r"\s*:")
+"""What makes a string a key."""
+_HALVES = re.compile(r"[\ud800-\udfff]")
+"""Halves of characters: escapes may hold them, UTF-8 may not, and keys are told in errors and notes."""
 _SHOWN = 12
 """Characters that an error shows."""
 _IN_FOLDER = "a file in the playground's folder"
@@ -61,6 +64,7 @@ class Source:
 
 def read_source(data: bytes, name: str, beside: Beside) -> Source:
     """The playground in a file's bytes; `name` is its title if it has none. Raises FieldError."""
+    name = " ".join(name.encode("utf-8", "replace").decode("utf-8").split()) or "Playground"
     if len(data) > MAX_BYTES:
         raise FieldError("", f"more than {MAX_BYTES} bytes", "a smaller file")
     if data.startswith(_ZIP):
@@ -155,22 +159,43 @@ def _parse_json(text: str) -> object:
     def unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
         members = dict(pairs)
         if len(members) < len(pairs):
-            keys = [key for key, _ in pairs]
-            twice = next(key for key in keys if keys.count(key) > 1)
-            raise FieldError(twice, "the key twice", "every key once")
+            raise _TwiceError
+        half = next(filter(_HALVES.search, members), None)
+        if half is not None:
+            raise FieldError("", f"half a character in the key {describe(half)}", "whole characters")
         return members
 
     try:
-        parsed: object = json.loads(text, parse_constant=refuse, object_pairs_hook=unique)
+        return json.loads(text, parse_constant=refuse, object_pairs_hook=unique)
     except json.JSONDecodeError as error:
         found = repr(text[error.pos : error.pos + _SHOWN]) if error.pos < len(text) else "the end of the text"
         raise FieldError(_line_and_column(text, error.pos), found, f"JSON ({error.msg})") from error
     except (RecursionError, ValueError) as error:
         raise FieldError("", "numbers or nesting without measure", "a playground") from error
-    for token in _WORDS.finditer(text) if "\\u" in text else ():
-        if "\\u" in token.group() and any(_HALVES[0] <= letter <= _HALVES[1] for letter in json.loads(token.group())):
-            raise FieldError(_line_and_column(text, token.start()), "half a character", "whole characters")
-    return parsed
+    except _TwiceError as error:
+        place, key = _second(text)
+        raise FieldError(_line_and_column(text, place), f"the key {describe(key)} twice", "every key once") from error
+
+
+class _TwiceError(Exception):
+    """An object has a key twice."""
+
+
+def _second(text: str) -> tuple[int, str]:
+    """Where a key stands that its object has already, and the key; there is one."""
+    keys: list[set[str]] = []
+    for token in _PARTS.finditer(text):
+        match token.group():
+            case "{":
+                keys.append(set())
+            case "}":
+                keys.pop()
+            case word if _COLON.match(text, token.end()):
+                key = json.loads(word)
+                if key in keys[-1]:
+                    return token.start(), key
+                keys[-1].add(key)
+    raise AssertionError("there is one")
 
 
 def _line_and_column(text: str, place: int) -> str:

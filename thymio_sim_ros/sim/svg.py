@@ -40,7 +40,13 @@ _REFUSED = {
     "set": "nothing that moves",
 }
 _URL = re.compile(r"url\(\s*['\"]?#([^)'\"]+)")
-_LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(?:px|pt|pc|mm|cm|in|q)?\s*", re.IGNORECASE)
+_HREFS = ("href", "xlink:href")
+_LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(px|pt|pc|mm|cm|in|q)?\s*", re.IGNORECASE)
+_INCHES = {"px": 1 / 96, "pt": 1 / 72, "pc": 1 / 6, "in": 1.0, "mm": 1 / 25.4, "cm": 1 / 2.54, "q": 1 / 101.6}
+"""Units of lengths; without one it is px."""
+_ROOT = re.compile(rb"""(<[^\s/>]+)((?:\s+[^\s=>/]+\s*=\s*(?:"[^"]*"|'[^']*'))*)(\s*/?>)""")
+"""The root's start: its name, its attributes, its end."""
+_SIDES = re.compile(rb"""\s(?:width|height)\s*=\s*(?:"[^"]*"|'[^']*')""")
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,14 +67,15 @@ def draw(data: bytes, key: str, width_m: float) -> bytes:
     except XmlError as error:
         raise FieldError(f"{key} (SVG line {error.line})", error.found, error.expected) from error
     _check(root, key)
-    ratio = _height_by_width(root, key)
+    size = _size(root, key)
+    ratio = size[1] / size[0]
     columns = round(min(MAX_SIDE, max(1.0, width_m / PIXEL_M)))
-    columns = math.floor(min(columns, MAX_SIDE / ratio, math.sqrt(MAX_PIXELS / ratio)))
+    columns = max(1, math.floor(min(columns, MAX_SIDE / ratio, math.sqrt(MAX_PIXELS / ratio))))
+    rows = max(1, round(columns * ratio))
     resvg = imported("resvg_py", "resvg-py", key)
     try:
-        drawn: bytes = resvg.svg_to_bytes(
-            svg_string=data.decode("utf-8"), width=columns, dpi=CSS_DPI, skip_system_fonts=True
-        )
+        text = _resized(data.decode("utf-8"), root, size, columns, rows)
+        drawn: bytes = resvg.svg_to_bytes(svg_string=text, dpi=CSS_DPI, skip_system_fonts=True)
     except ValueError as error:
         raise FieldError(key, f"an SVG that cannot be drawn ({error})", "a whole SVG in UTF-8") from error
     return drawn
@@ -81,9 +88,9 @@ def _check(root: Element, key: str) -> None:
         where = f"{key} (SVG line {element.line})"
         if element.tag in _REFUSED:
             raise FieldError(where, f"<{element.tag}>", _REFUSED[element.tag])
-        target = element.attributes.get("href", "#")
-        if not target.startswith("#"):
-            raise FieldError(where, f"a reference to '{target[:40]}'", "references inside the picture")
+        for target in _targets(element):
+            if not target.startswith("#"):
+                raise FieldError(where, f"a reference to '{target[:40]}'", "references inside the picture")
         if element.tag == "style" and "url(" in element.text:
             raise FieldError(where, "url(…) in <style>", "references in the attributes of elements")
     by_id: dict[str, list[Element]] = {}
@@ -121,22 +128,50 @@ def _references(element: Element) -> list[str]:
     """Ids of the elements that this one is drawn with."""
     found = [name for value in element.attributes.values() for name in _URL.findall(value)]
     if element.tag == "use":
-        found.append(element.attributes.get("href", "")[1:])
+        found += (target[1:] for target in _targets(element))
     return found
 
 
-def _height_by_width(root: Element, key: str) -> float:
+def _targets(element: Element) -> list[str]:
+    """What it refers to; where both ways of saying so are used, renderers differ in which they take."""
+    return [element.attributes[key] for key in _HREFS if key in element.attributes]
+
+
+def _size(root: Element, key: str) -> tuple[float, float]:
+    """Width and height in px; of what is not given in absolute units, as much as the view box says."""
+    width, height = (_pixels(root.attributes.get(side, "")) for side in ("width", "height"))
     box = re.split(r"[\s,]+", root.attributes.get("viewBox", "").strip())
-    sides = box[2:] if len(box) == 4 else []
-    given = [root.attributes.get(side, "") for side in ("width", "height")]
-    if all(_LENGTH.fullmatch(side) for side in given):
-        sides = given
-    matches = [_LENGTH.fullmatch(side) for side in sides]
-    try:
-        width, height = (float(match[1]) for match in matches if match)
-        ratio = height / width
-    except (ValueError, ZeroDivisionError) as error:
-        raise FieldError(key, "an SVG without a size", "viewBox, or width and height, in <svg>") from error
+    across, down = map(_pixels, box[2:]) if len(box) == 4 else (math.nan, math.nan)
+    ratio = down / across if across > 0.0 else math.nan
+    if math.isnan(width):
+        width = across if math.isnan(height) or not ratio > 0.0 else height / ratio
+    if math.isnan(height):
+        height = width * ratio
+    ratio = height / width if width > 0.0 else math.nan
+    if not (math.isfinite(ratio) and ratio > 0.0):
+        raise FieldError(key, "an SVG without a size", "viewBox, or width and height, in <svg>")
     if not 0.01 <= ratio <= 100:
-        raise FieldError(key, f"{width:g} x {height:g}", "a width and a height of at most 100 to 1")
-    return ratio
+        raise FieldError(key, f"{width:g} x {height:g} px", "a width and a height of at most 100 to 1")
+    return width, height
+
+
+def _pixels(length: str) -> float:
+    """An absolute length; not a number for what is none."""
+    match = _LENGTH.fullmatch(length)
+    try:
+        return math.nan if match is None else float(match[1]) * CSS_DPI * _INCHES[(match[2] or "px").lower()]
+    except ValueError:  # 1.2.3
+        return math.nan
+
+
+def _resized(text: str, root: Element, size: tuple[float, float], columns: int, rows: int) -> str:
+    """The SVG so that it is drawn on so many pixels: resvg rounds sizes up before it makes them larger."""
+    data = text.encode("utf-8")
+    match = _ROOT.match(data, root.offset)
+    if match is None:
+        raise ValueError("its first element is not where it seems to be")
+    attributes = _SIDES.sub(b"", match[2]) + f' width="{columns}" height="{rows}"'.encode()
+    if "viewBox" not in root.attributes:
+        attributes += f' viewBox="0 0 {size[0]!r} {size[1]!r}"'.encode()
+    changed = data[: match.start()] + match[1] + attributes + match[3] + data[match.end() :]
+    return changed.decode("utf-8")

@@ -95,6 +95,8 @@ class World:
         self._posted: list[tuple[str, Command]] = []
         self._sure: dict[str, tuple[float, float, float]] = {}
         """Where each thing was when an edge was looked for, and how far away that is at least."""
+        for movable in self._physics.movables.values():
+            self._drop_over_edge(movable)
         self._gather()
 
     @property

@@ -16,6 +16,11 @@ MAX_DEPTH = 200
 MAX_ELEMENTS = 100_000
 
 
+_SPACE = " "
+"""Between a name space and a name; no name holds one."""
+_KNOWN = {f"http://www.w3.org/1999/xlink{_SPACE}href": "xlink:href"}
+
+
 class XmlError(Exception):
     """XML that is refused: its line (1 is the first), what was found, what was expected."""
 
@@ -28,11 +33,16 @@ class XmlError(Exception):
 
 @dataclass(slots=True)
 class Element:
-    """An element: its name without a name space's prefix, attributes likewise, children, text directly in it."""
+    """An element: its name without its name space, attributes, children, text directly in it.
+
+    Attributes are those without a name space, and `xlink:href`, whatever its prefix is; others mean nothing here.
+    """
 
     tag: str
     attributes: Mapping[str, str]
     line: int
+    offset: int
+    """Of its first character, in bytes, where the text is UTF-8."""
     children: list[Element] = field(default_factory=list)
     text: str = ""
 
@@ -52,7 +62,7 @@ class _Builder:
     """One reading of one document."""
 
     def __init__(self) -> None:
-        self._parser = expat.ParserCreate()
+        self._parser = expat.ParserCreate(namespace_separator=_SPACE)
         self._open: list[Element] = []
         self._root: Element | None = None
         self._count = 0
@@ -78,7 +88,8 @@ class _Builder:
         self._count += 1
         if len(self._open) >= MAX_DEPTH or self._count > MAX_ELEMENTS:
             raise XmlError(line, "elements without measure", f"at most {MAX_ELEMENTS}, {MAX_DEPTH} deep")
-        element = Element(_local(name), {_local(key): value for key, value in attributes.items()}, line)
+        own = {_KNOWN.get(key, key): value for key, value in attributes.items() if key in _KNOWN or _SPACE not in key}
+        element = Element(name.rpartition(_SPACE)[2], own, line, self._parser.CurrentByteIndex)
         if self._open:
             self._open[-1].children.append(element)
         else:
@@ -96,7 +107,3 @@ class _Builder:
 
     def _external(self, *_reference: object) -> int:
         raise XmlError(self._parser.CurrentLineNumber, "a reference to something outside", "a file that stands alone")
-
-
-def _local(name: str) -> str:
-    return name.rpartition(":")[2]

@@ -118,6 +118,31 @@ def test_the_description_is_the_english_one() -> None:
     assert found.translations == {"fr": {"title": "mine", "description": "Un labyrinthe"}}
 
 
+def test_languages_are_read_as_people_write_them_and_others_are_told() -> None:
+    body = "".join(f'<description lang="{lang}">{lang or "none"}</description>' for lang in ("", "de_CH", "C", "en_US"))
+    found = converted(body)
+    assert found.description == "none"
+    assert {language: text["description"] for language, text in found.translations.items()} == {
+        "de-ch": "de_CH",
+        "en-us": "en_US",
+    }
+    assert found.notes == ["line 3: <description> left out: 'c' is no language code"]
+    assert dict(playground.loads(text(WORLD + body + ROBOT), "mine").translations)["de-ch"].description == "de_CH"
+
+
+@pytest.mark.parametrize("name", ["a\tb.playground", "caf\udce9.playground", "\t"])
+def test_a_file_of_a_strange_name_has_a_title(name: str) -> None:
+    found = playground.loads(text(WORLD + ROBOT), name)
+    assert found.title.isprintable()
+    assert found.title
+
+
+@pytest.mark.parametrize(("size", "found"), [('w="-1.5" h="60"', "'-1.5'"), ('w="100"', "''")])
+def test_a_world_without_an_area_is_refused(size: str, found: str) -> None:
+    error = refused("", f'<world {size} color="white"/>')
+    assert (error.found, error.expected) == (found, "a number above 0")
+
+
 @pytest.mark.parametrize(
     ("body", "note"),
     [

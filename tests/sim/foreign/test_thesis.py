@@ -154,7 +154,16 @@ def test_the_empty_playground_has_a_robot_and_no_floor() -> None:
 
 @pytest.mark.parametrize(
     ("color", "shade"),
-    [("red", "#ff0000"), ("rgb(10, 20, 30)", "#0a141e"), ("#ABCDEF", "#ABCDEF"), (0xBDBBBB, "#bdbbbb")],
+    [
+        ("red", "#ff0000"),
+        ("rgb(10, 20, 30)", "#0a141e"),
+        ("rgba(10, 20, 30, 0.5)", "#0a141e"),
+        ("rgb(10 20 30 / 50%)", "#0a141e"),
+        ("rgb(300, 0, 0)", "#ff0000"),
+        ("hsla(120deg, 100%, 50%, 1)", "#00ff00"),
+        ("#ABCDEF", "#ABCDEF"),
+        (0xBDBBBB, "#bdbbbb"),
+    ],
 )
 def test_any_css_color_is_read(color: Any, shade: str) -> None:
     (plane,) = converted(planes=[{"props": {"width": 9, "height": 9, "color": color}}]).shapes

@@ -8,9 +8,10 @@ unknown elements are passed over. A number that is none is refused here, where A
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterator
 
-from thymio_sim_ros.sim.fields import FieldError
+from thymio_sim_ros.sim.fields import LANGUAGE, FieldError
 from thymio_sim_ros.sim.foreign import Conversion
 from thymio_sim_ros.sim.foreign.names import Names, rounded, turned
 from thymio_sim_ros.sim.xml_tree import Element
@@ -50,7 +51,8 @@ class _Reader:
 
     def __init__(self, root: Element, name: str) -> None:
         self._root = root
-        descriptions = _descriptions(root)
+        self._remarks: list[tuple[int, str]] = []
+        descriptions = self._descriptions()
         english = descriptions.pop("en", next(iter(descriptions.values()), ""))
         self._out = Conversion(title=name, description=english)
         for language, text in descriptions.items():
@@ -67,7 +69,6 @@ class _Reader:
             if element.tag == "area"
         }
         self._doors: dict[str, str] = {}
-        self._remarks: list[tuple[int, str]] = []
 
     def read(self) -> Conversion:
         self._world()
@@ -87,6 +88,18 @@ class _Reader:
         self._out.notes = [text for _, text in sorted(self._remarks, key=lambda remark: remark[0])]
         return self._out
 
+    def _descriptions(self) -> dict[str, str]:
+        """Language code → description in one line; one without a language is English, `de_CH` is `de-ch`."""
+        found: dict[str, str] = {}
+        for element in self._elements("description"):
+            language = (element.attributes.get("lang", "").strip() or "en").lower().replace("_", "-")
+            if not re.fullmatch(LANGUAGE, language):
+                self._note(element, f"'{language}' is no language code")
+                continue
+            text = "".join(part.text for part in element.walk())
+            found.setdefault(language, " ".join(text.split())[:2000])
+        return found
+
     def _elements(self, tag: str) -> Iterator[Element]:
         return (element for element in self._root.children if element.tag == tag)
 
@@ -102,6 +115,10 @@ class _Reader:
             raise FieldError(f"line {self._root.line}", f"{len(worlds)} <world>", "one <world>")
         (world,) = worlds
         width, height = _length(world, "w"), _length(world, "h")
+        if min(width, height) <= 0.0:
+            side = "w" if width <= 0.0 else "h"
+            found = f"'{world.attributes.get(side, '')}'"
+            raise FieldError(f"{_place(world)} {side}", found, "a number above 0")
         middle = {"x_m": rounded(width / 2), "y_m": rounded(height / 2)}
         self._out.add_shape(
             _place(world),
@@ -231,16 +248,6 @@ class _Reader:
 
 def _place(element: Element) -> str:
     return f"line {element.line}: <{element.tag}>"
-
-
-def _descriptions(root: Element) -> dict[str, str]:
-    """Language code → description in one line; one without a language is English."""
-    found: dict[str, str] = {}
-    for element in root.children:
-        if element.tag == "description":
-            text = "".join(part.text for part in element.walk())
-            found.setdefault(element.attributes.get("lang", "en").lower(), " ".join(text.split())[:2000])
-    return found
 
 
 def _color(element: Element) -> str:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from thymio_sim_ros import registry
+from thymio_sim_ros.sim.fields import json_schema
 from thymio_sim_ros.sim.primitives import Primitive
 
 __all__ = ["Shape", "ShapeKind", "all_shapes"]
@@ -33,4 +34,9 @@ class ShapeKind:
 
 def all_shapes() -> tuple[ShapeKind, ...]:
     """Every kind of this folder and of other packages, in name order."""
-    return registry.collect(sys.modules[__name__], "SHAPE", ShapeKind)
+    return registry.collect(sys.modules[__name__], "SHAPE", ShapeKind, check=_check)
+
+
+def _check(kind: ShapeKind) -> None:
+    """Refuse a form that no file can be read into: its schema tells."""
+    json_schema(kind.form)
