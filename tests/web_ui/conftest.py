@@ -34,6 +34,7 @@ def browser() -> Iterator[Any]:
         pytest.skip("no Chromium on this machine")
     if resources.page() is None:
         pytest.skip("the page is not built: make web")
+    api.expect.set_options(timeout=DEADLINE_MS)
     with api.sync_playwright() as playing:
         browser = playing.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         yield browser

@@ -78,8 +78,10 @@ def test_the_track_follower_goes_along_the_track(class_page):
 def test_an_aseba_program_is_written_and_runs_on_the_robot(class_page):
     class_page.get_by_role("button", name="Aseba editor").click()
     text = class_page.get_by_role("textbox", name="Program")
+    playwright.expect(text).to_contain_text("Follow a black line")  # that of the robot, which takes its time
     text.press("Control+a")
     class_page.keyboard.insert_text("onevent button.center\ncall leds.top(32, 0, 0)\nmotor.left.target = 100\n")
+    playwright.expect(text).not_to_contain_text("Follow")
     playwright.expect(class_page.get_by_text("No errors")).to_be_visible()
     class_page.get_by_role("region", name="Aseba editor").get_by_role("button", name="Run").click()
     playwright.expect(class_page.get_by_role("region", name="Aseba editor")).to_contain_text("is loaded")
