@@ -130,12 +130,15 @@ def _run(options: argparse.Namespace) -> int:
     _execute(machine, program, source, options)
     for name, values in options.raised:
         numbers = [number for number, (event, _) in enumerate(source.events) if event == name]
-        if numbers:
-            machine.receive(numbers[-1], machine.node_id, values)
-        elif name in (event.name for event in target.local_events):
+        is_local = name in (event.name for event in target.local_events)
+        if not numbers and not is_local:
+            raise _UseError(f"no event is called {name!r}")
+        if machine.is_step_by_step:
+            break  # it stopped, and hears nothing any more
+        if is_local:  # which hides a global one in the program, too
             machine.start_local(0xFFFE - target.local_event_number(name))
         else:
-            raise _UseError(f"no event is called {name!r}")
+            machine.receive(numbers[-1], machine.node_id, values)
         _execute(machine, program, source, options)
     addresses = target.addresses | program.addresses
     for name in options.show or list(program.addresses):
@@ -177,7 +180,10 @@ def _fmt(options: argparse.Namespace) -> int:
     options.text = file.text
     network = network_of(file.text, THYMIO_II.name)
     nodes = tuple(replace(node, code=_formatted(node, options)) for node in network.nodes)
-    result = aesl.dumps(replace(network, nodes=nodes)) if network.pieces else nodes[0].code
+    if network.pieces:
+        result = aesl.dumps(replace(network, nodes=nodes))
+    else:
+        result = nodes[0].code.replace("\n", "\r\n" if "\r\n" in file.text else "\n")
     if options.check:
         return DONE if result == file.text else WRONG_PROGRAM
     if options.write and options.file != "-":

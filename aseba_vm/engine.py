@@ -183,7 +183,7 @@ class Engine:
 
     def forget(self) -> None:
         """The bytecode may have changed."""
-        self._doubt()
+        self.doubt()
         self._heat.clear()
 
     def settle(self) -> None:
@@ -273,8 +273,8 @@ class Engine:
             words = self._machine.code.words
             self._host.memory[:] = [words[pc] >> 9 & 1 for pc in self._translation.blocks.branches]
 
-    def _doubt(self) -> None:
-        """Look at the bytecode anew before translated code runs again."""
+    def doubt(self) -> None:
+        """Look at the bytecode anew before translated code runs again: somebody else has executed, or changed it."""
         self._is_known = False
         self._ready.clear()
 
@@ -297,7 +297,7 @@ class Engine:
         if blocks is not None and self._is_known:
             self._load()
             if blocks.is_fragile and any(self._machine.code.words[pc] != word for pc, word in blocks.operands.items()):
-                self._doubt()
+                self.doubt()
 
     def _translated(self, run: Run, left: int) -> int:
         machine = self._machine

@@ -116,5 +116,5 @@ class TargetDescription:
             return target
         except KeyError as err:
             raise TargetError(f"target description: field {err} is missing") from err
-        except (TypeError, ValueError) as err:
+        except (TypeError, ValueError, OverflowError) as err:
             raise TargetError(f"target description: {err}") from err

@@ -156,7 +156,7 @@ class VirtualMachine:
         """Execute one instruction of the active event."""
         if self.flags & ACTIVE:
             self._trace()
-            self.interpret(1)
+            self._interpret_one()
             self.report_state()
 
     def report_state(self) -> None:
@@ -269,8 +269,16 @@ class VirtualMachine:
                 self.report_state()
                 return executed, True
             self._trace()
-            executed += self.interpret(1)
+            executed += self._interpret_one()
         return executed, False
+
+    def _interpret_one(self) -> int:
+        """Execute one instruction, which the engine does not see; return how many were."""
+        try:
+            return self.interpret(1)
+        finally:
+            if self._engine is not None:
+                self._engine.doubt()
 
     def _trace(self) -> None:
         if self.tracer is not None:

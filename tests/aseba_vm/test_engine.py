@@ -45,7 +45,7 @@ def _compare(words, seed, engines):
         machine.set_bytecode(words)
     for _ in range(source.randint(3, 25)):
         limit = source.choice((1, 3, 10, 50, 300, 300, 1000, 3000))
-        choice = source.randrange(12)
+        choice = source.randrange(14)
         event, value = source.randrange(3), source.choice((0, 1, 3, -1, 32767, -32768, source.randint(-99, 99)))
         address, local = source.randrange(128, 170), source.randrange(17)
         engine = source.choice(engines)
@@ -60,6 +60,10 @@ def _compare(words, seed, engines):
                 machine.receive(event, 1, [value])
             elif choice < 10:
                 machine.start_local(local)
+            elif choice == 12 and machine.code.words:
+                machine.set_breakpoint(address % len(machine.code.words))
+            elif choice == 13:
+                machine.clear_breakpoints()
             if choice != 1:
                 machine.resume()
             machine.run(limit)
@@ -206,6 +210,47 @@ def test_a_program_without_an_end_can_be_interrupted(engine):
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, old)
+
+
+def _step_through(machine):
+    machine.pause()
+    machine.receive(0, 1, [])
+    while machine.is_active:
+        machine.step()
+    machine.resume()
+
+
+def _run_with_a_breakpoint(machine):
+    machine.set_breakpoint(1000)
+    machine.receive(0, 1, [])
+    machine.run(1000)
+    machine.clear_breakpoints()
+
+
+def _run_traced(machine):
+    machine.tracer = lambda pc: None
+    machine.receive(0, 1, [])
+    machine.run(1000)
+    machine.tracer = None
+
+
+@pytest.mark.parametrize("watched", [_step_through, _run_with_a_breakpoint, _run_traced])
+@pytest.mark.parametrize("engine", AVAILABLE)
+def test_what_was_true_while_somebody_watched_is_remembered_afterwards(engine, watched):
+    program = compile("var a\nvar n\nonevent ping\nwhen a == 1 do\nn += 1\nend", THYMIO_II, [("ping", 0)])
+    address, counter = program.addresses["a"][0], program.addresses["n"][0]
+    machine = VirtualMachine(THYMIO_II, engine=engine)
+    machine.load(program)
+    machine.run(1000)
+    for value in (0, 0, 0, 0, 0, 1, 1, 1):
+        is_new = machine.variables[address] != value
+        machine.variables[address] = value
+        if is_new:
+            watched(machine)
+        else:
+            machine.receive(0, 1, [])
+            machine.run(1000)
+    assert machine.variables[counter] == 1
 
 
 def test_an_unknown_engine_is_refused():

@@ -330,3 +330,25 @@ def test_a_hostile_file_ends_in_one_message_with_a_place(name, file, capsys):
     assert re.match(rf"{re.escape(path)}:\d+:\d+: ", first)
     assert len(rest) == 2
     assert max(map(len, rest)) <= 100
+
+
+def test_line_ends_of_a_bare_program_stay(tmp_path):
+    path = tmp_path / "good.aseba"
+    path.write_bytes(b"var a\r\nif a==1 then\r\na=2\r\nend\r\n")
+    assert main(["fmt", "--write", str(path)]) == 0
+    assert path.read_bytes() == b"var a\r\nif a == 1 then\r\n\ta = 2\r\nend\r\n"
+    assert main(["fmt", "--check", str(path)]) == 0
+
+
+@pytest.mark.parametrize(
+    "text", ["var a\nwhile a == 0 do\na = 0\nend\nonevent tap\n", "var z\nvar a = 1 / z\nonevent tap\n"]
+)
+def test_a_program_that_has_stopped_is_told_once(file, capsys, text):
+    main(["run", file(text), "--limit", "1000", "--raise", "tap", "--raise", "tap"])
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_an_event_of_the_robot_hides_one_of_the_network(file, capsys):
+    text = "var n = 0\nonevent tap\nn = n + 1\n"
+    assert main(["run", file(text), "--global", "tap=0", "--raise", "tap"]) == 0
+    assert "n 1" in capsys.readouterr().out.splitlines()
