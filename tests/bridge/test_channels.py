@@ -178,7 +178,17 @@ def test_a_repeated_message_takes_one_place_only() -> None:
     for time_ns, payload in ((1, b"one"), (2, b"two"), (3, b"two")):
         board.keep(ev.Data(10, time_ns, payload))
     letters = board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).letters
-    assert [letter.message for letter in letters] == [ms.MessageData(4, 1, b"one"), ms.MessageData(4, 2, b"two")]
+    assert [letter.message for letter in letters] == [ms.MessageData(4, 1, b"one"), ms.MessageData(4, 3, b"two")]
+
+
+def test_a_newcomer_ends_in_the_state_of_now() -> None:
+    board = switchboard(A, B)
+    subscribe(board, A, 1, 10)
+    board.apply(ev.KeepLast(10, 2))
+    for time_ns, payload in ((1, b"on"), (2, b"off"), (3, b"on")):
+        board.keep(ev.Data(10, time_ns, payload))
+    letters = board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).letters
+    assert [letter.message for letter in letters] == [ms.MessageData(4, 2, b"off"), ms.MessageData(4, 3, b"on")]
 
 
 def test_nothing_is_kept_of_an_ordinary_channel() -> None:

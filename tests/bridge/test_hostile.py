@@ -138,6 +138,19 @@ def test_a_stalled_client_costs_its_limit_and_one_message() -> None:
     run(scenario())
 
 
+def test_one_large_answer_reaches_who_reads_it() -> None:
+    size = 20 << 20
+
+    async def scenario() -> None:
+        async with bridge(ServerSettings(buffer_limit=1 << 14)) as server, server.client() as client:
+            server.server.carry_out(ev.ParametersChanged((ms.Parameter("/n.p", "x" * size),)))
+            await client.send(ms.GetParameters((), "large"))
+            answer = await client.next(ms.ParameterValues)
+            assert [len(str(item.value)) for item in answer.parameters] == [size]
+
+    run(scenario())
+
+
 def test_a_flood_of_control_answers_to_a_stalled_client_is_bounded() -> None:
     async def scenario() -> None:
         limit = 1 << 14

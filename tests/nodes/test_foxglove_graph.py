@@ -33,7 +33,7 @@ def test_the_connection_graph_names_publishers_subscribers_and_providers(ros, st
 
 def test_an_asset_that_is_not_there_is_an_error_for_its_request(studio):
     studio.send(ms.FetchAsset("package://std_msgs/no.stl", 3))
-    assert studio.next(ms.AssetResponse) == ms.AssetResponse(3, b"", "package://std_msgs/no.stl does not exist")
+    assert studio.next(ms.AssetResponse) == ms.AssetResponse(3, b"", "'package://std_msgs/no.stl' does not exist")
 
 
 def test_a_node_that_leaves_is_taken_from_the_graph(ros, studio):

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import pytest
+from rclpy.node import Node
+from rclpy.parameter import Parameter
 
 from tests.bridge.studio import Studio, set_and_answer
 from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.channels import MAX_REFUSALS
 from thymio_sim_ros.bridge.vocabulary import StatusLevel
 
 
@@ -89,3 +92,42 @@ def test_unlisted_parameters_are_neither_shown_nor_set(ros, bridge, peer):
         assert [item.name for item in answer.parameters] == ["/peer.speed"]
         status, _ = set_and_answer(studio, ms.Parameter("/peer.count", 9))
         assert status.message == "/peer.count: not offered by this bridge"
+
+
+def test_a_parameter_that_was_never_set_hides_no_other(ros, studio, peer):
+    """rclpy answers with no value at all then; what was raised in the answer's callback ended the process."""
+    node = ros.add(Node("later", context=ros.context, enable_rosout=False))
+    node.declare_parameter("now", 7)
+    node.declare_parameter("later", Parameter.Type.STRING)
+    assert studio.parameter("/later.now") == 7
+    node.set_parameters([Parameter("later", value="here")])
+    assert studio.parameter("/later.later") == "here"
+
+
+def test_what_a_node_does_not_have_is_refused_and_the_bridge_lives(studio, peer):
+    studio.parameter("/peer.program")
+    status, _ = set_and_answer(studio, ms.Parameter("/peer.nothing", 1))
+    assert status.message.startswith("/peer.nothing: ")
+    status, _ = set_and_answer(studio, ms.Parameter("/peer.\ud800", 1))
+    assert status.message.endswith("not offered by this bridge")
+    status, _ = set_and_answer(studio, ms.Parameter("/peer.program", "half \ud800"))
+    assert "expected Unicode text" in status.message
+    assert set_and_answer(studio, ms.Parameter("/peer.program", "better"))[-1].parameters[0].value == "better"
+
+
+def test_of_many_refusals_some_are_told(studio, peer):
+    studio.parameter("/peer.program")
+    *told, _ = set_and_answer(studio, *(ms.Parameter(f"/no/node.x{number}", 1) for number in range(1000)))
+    assert len(told) == MAX_REFUSALS + 1
+    assert told[-1].message == f"{1000 - MAX_REFUSALS} more parameters were refused"
+
+
+def test_a_node_that_does_not_answer_at_first_is_asked_again(ros, bridge):
+    server = bridge()
+    server._calls._timeout_s = 0.2
+    slow = Node("slow", context=ros.context, enable_rosout=False)
+    slow.declare_parameter("speed", 2.5)
+    with Studio(server.port, ros.until) as studio:
+        ros.until(lambda: "/slow" in server._parameters._unread, what="the node did not answer in time")
+        ros.add(slow)
+        assert studio.parameter("/slow.speed") == 2.5

@@ -92,6 +92,9 @@ def test_a_bad_twist_is_refused_and_the_next_good_one_taken(ros, studio, payload
         ("/a", "no_such_msgs/msg/Thing", "/a: type no_such_msgs/msg/Thing is not available"),
         ("/a", "nonsense", "/a: type nonsense is not available: expected package/msg/Type"),
         ("/a b", "std_msgs/msg/Bool", "/a b: not a topic name"),
+        ("/a", "__main__/Foo", "'/a': cannot publish __main__/msg/Foo"),
+        ("/a", "std_srvs/srv/SetBool", "'/a': cannot publish std_srvs/srv/SetBool"),
+        ("/\ud800", "std_msgs/msg/Bool", "'/\\ud800': cannot publish std_msgs/msg/Bool"),
     ],
 )
 def test_a_channel_that_cannot_be_published_is_refused(studio, topic, schema, text):

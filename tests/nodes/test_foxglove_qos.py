@@ -28,7 +28,7 @@ def endpoint(*, reliable=True, latched=False, depth=0):
         ([endpoint()], Reception(is_reliable=True, kept=0, depth=10)),
         ([endpoint(), endpoint(reliable=False)], Reception(is_reliable=False, kept=0, depth=10)),
         ([endpoint(latched=True)], Reception(is_reliable=True, kept=1, depth=10)),
-        ([endpoint(latched=True, depth=3)] * 2, Reception(is_reliable=True, kept=6, depth=10)),
+        ([endpoint(latched=True, depth=3)] * 2, Reception(is_reliable=True, kept=25, depth=10)),
         ([endpoint(latched=True), endpoint()], Reception(is_reliable=True, kept=0, depth=10)),
         ([endpoint(depth=12)], Reception(is_reliable=True, kept=0, depth=12)),
         ([endpoint(latched=True, depth=1000)], Reception(is_reliable=True, kept=25, depth=25)),

@@ -107,6 +107,10 @@ def test_a_playground_that_cannot_be_read_is_named_with_what_is_wrong(ros, built
         "/playgrounds/nothing.json",
         "/playgrounds/..%2fpyproject.json",
         "/playgrounds/playground.schema.json",
+        "/" + "a" * 5000,
+        "/%00",
+        "/a%00.js",
+        "/index.html/",
     ],
 )
 def test_nothing_outside_the_page_is_served(ros, built_page, path):
@@ -114,6 +118,18 @@ def test_nothing_outside_the_page_is_served(ros, built_page, path):
     response, body = get(page.port, path)
     assert response.status == 404
     assert b"not for you" not in body
+
+
+@pytest.mark.parametrize("path", ["/", "/config.json", "/playgrounds/line.json", "/assets/main.js"])
+def test_head_is_get_without_the_body(ros, built_page, path):
+    page = ros.live(WebPage(ros.context, WebParams(port=0)))
+    connection = http.client.HTTPConnection("127.0.0.1", page.port, timeout=10)
+    connection.request("HEAD", path)
+    response = connection.getresponse()
+    assert (response.status, response.read()) == (200, b"")
+    wanted, body = get(page.port, path)
+    assert response.headers["Content-Length"] == str(len(body)) == wanted.headers["Content-Length"]
+    connection.close()
 
 
 def test_without_a_built_page_it_says_how_to_build_it(ros, monkeypatch):

@@ -3,6 +3,7 @@ import { readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { AeslError, newAesl, readAesl, withCode, withEntry } from "../../web_ui/editor/aesl.js";
+import { codeOf, opened } from "../../web_ui/editor/documents.js";
 
 const BEHAVIOURS = new URL("../../thymio_sim_ros/device/behaviours/", import.meta.url);
 const FILES = readdirSync(BEHAVIOURS)
@@ -90,6 +91,39 @@ test("events and constants are added behind the others, changed in place, and re
   assert.equal(withEntry(added, "event", "pong", null), ODD);
   assert.equal(withEntry(ODD, "constant", "A&B", 300), ODD.replace("'-5'", "'300'"));
   assert.equal(withEntry(ODD, "constant", "missing", null), ODD);
+});
+
+test("code that would end CDATA together with what stands there is written anew", () => {
+  const node = '<node nodeId="1" name="a"><![CDATA[if a[b[1]] > 3 then\nend]]></node>';
+  const changed = withCode(`<network>${node}<!-- after --></network>`, 0, "if a[b[1]]>3 then\nend");
+  assert.equal(readAesl(changed).nodes[0].code, "if a[b[1]]>3 then\nend");
+  assert.match(changed, /<\/node><!-- after --><\/network>$/);
+});
+
+test("entries may have a closing tag of their own", () => {
+  const text = '<network>\n<event name="a" size="1"></event>\n<node nodeId="1" name="x"></node></network>';
+  assert.deepEqual(readAesl(withEntry(text, "event", "a", null)).events, []);
+  const added = readAesl(withEntry(text, "event", "b", 2)).events.map(({ name, value }) => [name, value]);
+  assert.deepEqual(added, [
+    ["a", 1],
+    ["b", 2],
+  ]);
+});
+
+test("a file without a node gets one, however its root is written", () => {
+  for (const text of ["<network/>", "<network></network >", "<!-- </network> --><network></network>"]) {
+    const document = opened("x", text);
+    assert.equal(codeOf(document), "");
+    assert.deepEqual(readAesl(withEntry(text, "constant", "K", 3)).constants.map(({ value }) => value), [3]);
+  }
+});
+
+test("a program of the largest size can be read", () => {
+  assert.equal(codeOf(opened("big.aseba", `# ${"x".repeat(900_000)}`)).length, 900_002);
+});
+
+test("a name that every object has is no entity", () => {
+  assert.throws(() => readAesl('<network><node nodeId="1" name="x">&toString;</node></network>'), AeslError);
 });
 
 test("a new file is one that can be read, with the code in it", () => {

@@ -82,10 +82,14 @@ class Switchboard:
         return self.routed.get(channel_id, ())
 
     def keep(self, data: ev.Data) -> None:
-        """Remember a message for newcomers where its channel is kept; repetitions once."""
+        """Remember a message for newcomers where its channel is kept; repetitions once, as the latest."""
         kept = self.kept.get(data.channel_id)
-        if kept is not None and all(data.payload != old.payload for old in kept):
-            kept.append(data)
+        if kept is None:
+            return
+        repeated = next((old for old in kept if old.payload == data.payload), None)
+        if repeated is not None:
+            kept.remove(repeated)
+        kept.append(data)
 
     def join(self, client: int) -> list[ms.ServerMessage]:
         """A new client; returns its greeting."""

@@ -26,7 +26,10 @@ _LONGEST_EXCERPT = 40
 
 def describe(value: object) -> str:
     """A found value for an error message, cut to a readable length."""
-    text = repr(value)
+    try:
+        text = repr(value)
+    except RecursionError:
+        text = "something nested without measure"
     return text if len(text) <= _LONGEST_EXCERPT else f"{text[:_LONGEST_EXCERPT]}…"
 
 

@@ -49,11 +49,11 @@ class Outlet:
         return bool(self._newest)
 
     def control(self, frame: bytes) -> None:
-        """Send a frame that must not be lost."""
-        if self._is_open():
-            self._transport.write(frame)
+        """Send a frame that must not be lost, however large it is; too much that waits already ends the connection."""
         if self._transport.get_write_buffer_size() > _CONTROL_FACTOR * self._limit:
             self._transport.abort()
+        elif self._is_open():
+            self._transport.write(frame)
 
     def way(self, subscription_id: int) -> Way:
         """As `data` for the messages of a subscription: hot path, so what it needs is bound here once."""

@@ -36,17 +36,20 @@ def load_asset(uri: str, allowed: Iterable[str] = (ASSETS,)) -> bytes:
     if not allow_list(allowed)(plain):
         raise AssetError(f"{uri!r:.80} is not given: asset_uri_allowlist does not allow it")
     for share in share_folders():
-        folder = (share / package).resolve()
-        file = (folder / path).resolve()
-        if file.is_relative_to(folder) and file.is_file():
-            return _read(file, uri)
-    raise AssetError(f"{uri} does not exist")
+        try:
+            folder = (share / package).resolve()
+            file = (folder / path).resolve()
+            if file.is_relative_to(folder) and file.is_file():
+                return _read(file, uri)
+        except (OSError, ValueError):  # a name that no file can have
+            break
+    raise AssetError(f"{uri!r:.80} does not exist")
 
 
 def _read(file: Path, uri: str) -> bytes:
     try:
         if file.stat().st_size > _MAX_SIZE:
-            raise AssetError(f"{uri} is larger than {_MAX_SIZE >> 20} MiB")
+            raise AssetError(f"{uri!r:.80} is larger than {_MAX_SIZE >> 20} MiB")
         return file.read_bytes()
     except OSError as error:
-        raise AssetError(f"{uri}: {error.strerror}") from error
+        raise AssetError(f"{uri!r:.80}: {error.strerror}") from error

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -61,7 +62,11 @@ class Calls:
                 self._give_up(call)
             elif call.future is None and self._may_leave(call):
                 call.deadline_s = now_s + self._timeout_s
-                call.future = call.client.call_async(call.request)
+                try:
+                    call.future = call.client.call_async(call.request)
+                except Exception as error:  # of a request that ROS cannot carry
+                    self._finish(call, None, f"{call.name} cannot be asked this: {error}")
+                    continue
                 call.future.add_done_callback(lambda future, call=call: self._answered(call, future))
         return bool(self._open)
 
@@ -77,11 +82,16 @@ class Calls:
             self._node.destroy_client(self._clients.pop(key))
 
     def _answered(self, call: _Call, future: Future) -> None:
+        """Nothing may be raised here: rclpy's events executor dies of it, with all that share its process."""
         if future.cancelled():
             return
         error = future.exception()
-        self._finish(call, None if error else future.result(), f"service {call.name} failed: {error}" if error else "")
-        self.poll()
+        reason = f"service {call.name} failed: {error}" if error else ""
+        try:
+            self._finish(call, None if error else future.result(), reason)
+            self.poll()
+        except Exception:
+            self._node.get_logger().error(f"the answer of {call.name} is lost:\n{traceback.format_exc()}")
 
     def _give_up(self, call: _Call) -> None:
         if call.future is not None:

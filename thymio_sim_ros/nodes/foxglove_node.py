@@ -219,6 +219,7 @@ class FoxgloveBridge:
 
     def _refresh(self) -> None:
         self._topics.refresh()
+        self._parameters.refresh()
         if self._count is not None and self._told_count != self._server.client_count:
             self._told_count = self._server.client_count
             self._count.publish(UInt32(data=self._told_count))

@@ -8,14 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from typing import Any
 
 from rcl_interfaces.msg import Parameter as RosParameter
-from rcl_interfaces.msg import ParameterEvent, ParameterType, ParameterValue
+from rcl_interfaces.msg import ParameterEvent, ParameterType, ParameterValue, SetParametersResult
 from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
 from rclpy.node import Node
 from rclpy.qos import qos_profile_parameter_events
 
+from thymio_sim_ros.bridge.channels import MAX_REFUSALS
 from thymio_sim_ros.bridge.events import Command, ParametersChanged, ParametersSet, ShowParameters, Tell
 from thymio_sim_ros.bridge.messages import Parameter, RemoveStatus, Status
 from thymio_sim_ros.bridge.vocabulary import StatusLevel
@@ -54,6 +56,8 @@ class Parameters:
         self._is_allowed = is_allowed
         self._types: dict[str, dict[str, int]] = {}
         """Node → parameter → type code in force."""
+        self._unread: set[str] = set()
+        """Nodes that did not answer."""
         self._subscription = node.create_subscription(
             ParameterEvent, "/parameter_events", self._on_event, qos_profile_parameter_events
         )
@@ -68,6 +72,12 @@ class Parameters:
             self._post(ParametersChanged((), tuple(f"{node}.{name}" for name in gone)))
         for node in sorted(present - self._types.keys()):
             self._types[node] = {}
+            self._read_all(node)
+
+    def refresh(self) -> None:
+        """Ask nodes again that did not answer: one that starts may not spin yet."""
+        unread, self._unread = self._unread, set()
+        for node in sorted(unread & self._types.keys()):
             self._read_all(node)
 
     def set(self, wish: ParametersSet) -> None:
@@ -91,7 +101,7 @@ class Parameters:
     def _checked(self, parameter: Parameter, node: str, name: str) -> ParameterValue:
         if node not in self._types:
             raise UnfitValueError(f"no node {node} with parameters")
-        if not name or not self._is_allowed(parameter.name):
+        if not name or not self._is_allowed(parameter.name) or not _is_text(name):
             raise UnfitValueError("not offered by this bridge")
         return to_ros(parameter, self._types[node].get(name, ParameterType.PARAMETER_NOT_SET))
 
@@ -102,7 +112,8 @@ class Parameters:
             if response is None:
                 change.refused.update((f"{node}.{name}", reason) for name in names)
             else:
-                for name, result in zip(names, response.results, strict=True):
+                missing = SetParametersResult(reason="the node did not say what became of it")
+                for name, result in zip_longest(names, response.results[: len(names)], fillvalue=missing):
                     if not result.successful:
                         change.refused[f"{node}.{name}"] = result.reason or "refused by the node"
             self._read(node, names, lambda: was_read())
@@ -119,21 +130,42 @@ class Parameters:
         accepted = tuple(_status_id(name) for name in change.names if name not in change.refused)
         if accepted:
             self._post(Tell(change.client, RemoveStatus(accepted)))
-        for name, reason in change.refused.items():
+        refused = list(change.refused.items())
+        for name, reason in refused[:MAX_REFUSALS]:
             self._post(Tell(change.client, Status(StatusLevel.ERROR, f"{name}: {reason}", _status_id(name))))
+        if more := len(refused[MAX_REFUSALS:]):
+            self._post(Tell(change.client, Status(StatusLevel.ERROR, f"{more} more parameters were refused")))
         self._post(ShowParameters(change.client, change.names, change.request_id))
 
     def _read_all(self, node: str) -> None:
         def listed(response: Any, reason: str) -> None:
             if response is not None:
                 self._read(node, response.result.names)
+            else:
+                self._unread.add(node)
 
         self._calls.call(ListParameters, f"{node}{_LIST}", ListParameters.Request(), listed)
 
     def _read(self, node: str, names: Sequence[str], then: Callable[[], None] = lambda: None) -> None:
         def got(response: Any, reason: str) -> None:
-            if response is not None:
+            if response is not None and len(response.values) == len(names):
                 self._learn(node, zip(names, response.values, strict=True))
+            elif response is not None and len(names) > 1:
+                # rclpy gives no value at all where one of them was declared and never set.
+                left = list(names)
+
+                def one_more() -> None:
+                    left.pop()
+                    if not left:
+                        then()
+
+                for name in names:
+                    self._read(node, [name], one_more)
+                return
+            elif response is not None:
+                self._learn(node, [(name, ParameterValue()) for name in names])
+            else:
+                self._unread.add(node)
             then()
 
         self._calls.call(GetParameters, f"{node}/get_parameters", GetParameters.Request(names=names), got)
@@ -159,6 +191,11 @@ class Parameters:
         items = [(item.name, item.value) for item in (*event.new_parameters, *event.changed_parameters)]
         items += [(item.name, ParameterValue()) for item in event.deleted_parameters]
         self._learn(event.node, items)
+
+
+def _is_text(name: str) -> bool:
+    """Whether ROS can carry it: halves of characters cannot be."""
+    return name.isprintable()
 
 
 def _status_id(name: str) -> str:

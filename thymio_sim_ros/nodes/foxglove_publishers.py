@@ -137,7 +137,10 @@ class ClientPublishers:
             if came_s <= port.met_s and came_s + port.late_s > now_s:
                 return False
             port.held.popleft()
-            port.publisher.publish(message)
+            try:
+                port.publisher.publish(message)
+            except RCLError as error:  # beyond a bound of its type, which reading does not check
+                self._node.get_logger().warning(f"{port.topic}: a client's message was refused: {error}")
         return True
 
     def _has_met_all(self, port: _Port) -> bool:
@@ -165,6 +168,8 @@ class ClientPublishers:
             raise _RefusalError(f"{topic}: {error}") from error
         except RCLError as error:
             raise _RefusalError(f"{topic}: cannot publish {type_name} here, it carries another type") from error
+        except (ValueError, TypeError, RuntimeError) as error:  # no text, no type of messages
+            raise _RefusalError(f"{topic!r}: cannot publish {type_name}: {error}") from error
         port = self._ports[topic, type_name] = _Port(
             topic, type_name, message_type, publisher, self._now_s() + _SETTLE_S
         )

@@ -13,7 +13,11 @@ __all__ = ["Reception", "publishing", "reception"]
 
 @dataclass(frozen=True, slots=True)
 class Reception:
-    """How to subscribe: comparable, so that a change is noticed. `kept`: messages for newcomers, 0 unless latched."""
+    """How to subscribe: comparable, so that a change is noticed.
+
+    `kept`: messages for newcomers, 0 unless latched; of several publishers as many as may be, since who sent one is not
+    told, and one that sends often must not displace another's last.
+    """
 
     is_reliable: bool
     kept: int
@@ -39,7 +43,7 @@ def reception(
         is_reliable=not best_effort
         and bool(profiles)
         and all(item.reliability == ReliabilityPolicy.RELIABLE for item in profiles),
-        kept=min(asked, max_depth) if is_latched else 0,
+        kept=0 if not is_latched else max_depth if len(profiles) > 1 else min(asked, max_depth),
         depth=min(max(asked, min_depth), max_depth),
     )
 

@@ -78,6 +78,10 @@ class _Handler(SimpleHTTPRequestHandler):
         self._page = page
         super().__init__(*args, directory=str(page or Path("/nonexistent")), **kwargs)
 
+    def do_HEAD(self) -> None:
+        """As GET, without what comes after the headers."""
+        self.do_GET()
+
     def do_GET(self) -> None:
         """Configuration, a playground, a file of the page, or the sentence that tells how to build it."""
         path = self.path.partition("?")[0]
@@ -89,12 +93,24 @@ class _Handler(SimpleHTTPRequestHandler):
         elif self._page is None:
             text = f"<!doctype html><meta charset=utf-8><title>Thymio</title><p>{resources.PAGE_BUILD_HINT}</p>"
             self._answer(503, TYPES[".html"], text.encode())
+        elif self.command == "HEAD":
+            super().do_HEAD()
         else:
             super().do_GET()
 
     def send_head(self) -> Any:
         """The headers of a file; what is to be sent after them. Who asks whether it is new gets it as it lies there."""
+        try:
+            return self._send_head()
+        except (OSError, ValueError):  # a name that no file can have
+            self.send_error(404)
+            return None
+
+    def _send_head(self) -> Any:
         path = Path(self.translate_path(self.path))
+        if self.path.partition("?")[0].endswith("/") and not path.is_dir():
+            self.send_error(404)
+            return None
         if path.is_dir() and self.path.partition("?")[0].endswith("/"):
             path /= "index.html"
         wanted = self.headers.get("Accept-Encoding", "")
@@ -143,7 +159,8 @@ class _Handler(SimpleHTTPRequestHandler):
         self.send_header("Content-Type", kind)
         self.send_header("Content-Length", str(len(body)))
         self.end_headers()
-        self.wfile.write(body)
+        if self.command != "HEAD":
+            self.wfile.write(body)
 
 
 @lru_cache(maxsize=64)

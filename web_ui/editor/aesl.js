@@ -14,10 +14,11 @@ export { AeslError } from "./xml.js";
  * @property {string} id
  * @property {Span} tag         of its opening tag
  * @property {boolean} empty    written as <node …/>
+ * @property {number} end       where its closing tag begins
  * @property {Unit[]} units     of the code, with where each stands in the file
  * @property {string} code
  */
-/** @typedef {{ text: string, root: Span & { inner: number }, events: Entry[], constants: Entry[], nodes: Node[] }} Aesl */
+/** @typedef {{ text: string, root: Span & { inner: number, empty: boolean }, events: Entry[], constants: Entry[], nodes: Node[] }} Aesl */
 
 export const LEAST = -32768;
 export const GREATEST = 32767;
@@ -57,17 +58,18 @@ export function looksLikeAesl(text) {
  */
 export function readAesl(text) {
   /** @type {Aesl} */
-  const aesl = { text, root: { from: 0, to: 0, inner: 0 }, events: [], constants: [], nodes: [] };
+  const aesl = { text, root: { from: 0, to: 0, inner: 0, empty: false }, events: [], constants: [], nodes: [] };
   let depth = 0;
   let rootSeen = false;
   /** @type {Node | null} */ let node = null;
+  /** @type {Entry | null} */ let listed = null; // written as <event …></event>, if it is open still
   for (const part of scan(text)) {
     if (part.kind === "open") {
       if (depth === 0) {
         if (rootSeen) throw new AeslError(text, part.from, `found a second root <${part.name}>, expected one`);
         rootSeen = true;
         if (part.name !== "network") throw new AeslError(text, part.from, `found <${part.name}>, expected <network>`);
-        aesl.root = { from: part.from, to: text.length, inner: part.to };
+        aesl.root = { from: part.from, to: text.length, inner: part.to, empty: part.closed };
       } else if (depth === 1 && part.name === "node") {
         const { name, nodeId } = attributesOf(text, part);
         node = {
@@ -75,22 +77,26 @@ export function readAesl(text) {
           id: nodeId?.value ?? "",
           tag: { from: part.from, to: part.to },
           empty: part.closed,
+          end: part.to,
           units: [],
           code: "",
         };
         aesl.nodes.push(node);
       } else if (depth === 1 && part.name === "event") {
-        aesl.events.push(entry(text, part, "size", 0, GREATEST));
+        aesl.events.push((listed = entry(text, part, "size", 0, GREATEST)));
       } else if (depth === 1 && part.name === "constant") {
-        aesl.constants.push(entry(text, part, "value", LEAST, GREATEST));
+        aesl.constants.push((listed = entry(text, part, "value", LEAST, GREATEST)));
       }
       if (!part.closed) depth += 1;
     } else if (part.kind === "close") {
       depth -= 1;
       if (depth === 0) aesl.root.to = part.from;
+      if (depth === 1 && part.name === "node" && node !== null) node.end = part.from;
+      if (depth === 1 && listed !== null) listed.to = part.to;
     } else if ((part.kind === "text" || part.kind === "cdata") && node !== null && depth === 2) {
-      node.units.push(...decoded(text, part));
+      for (const unit of decoded(text, part)) node.units.push(unit); // too many for arguments of one call
     }
+    if (depth < 2) listed = null;
     if (depth < 2 && !(part.kind === "open" && part.name === "node")) node = null;
   }
   if (!rootSeen) throw new AeslError(text, text.length, "found the end, expected <network>");
@@ -138,7 +144,32 @@ export function withCode(text, index, code) {
     replace(place, place, put);
   }
   gone.forEach(({ from, to }, position) => replace(from, to, position === 0 ? put : ""));
-  return result + text.slice(at);
+  result += text.slice(at);
+  // What stays of CDATA and what is put in may end it together: then all of the code is written anew.
+  if (!units.some(({ cdata }) => cdata) || isCode(result, index, code)) return result;
+  return text.slice(0, tag.to) + encoded(code, false, newline) + text.slice(nodes[index].end);
+}
+
+/** Whether a node of a file has this code. @param {string} text @param {number} index @param {string} code */
+function isCode(text, index, code) {
+  try {
+    return readAesl(text).nodes[index]?.code === code;
+  } catch {
+    return false;
+  }
+}
+
+/**
+ * The file with something at the end of its root, which may be written as <network/>.
+ *
+ * @param {string} text
+ * @param {string} added
+ */
+export function withLast(text, added) {
+  const { root } = readAesl(text);
+  if (!root.empty) return text.slice(0, root.to) + added + text.slice(root.to);
+  const open = text.slice(root.from, root.inner).replace(/\s*\/>$/, ">");
+  return `${text.slice(0, root.from)}${open}\n${added}</network>${text.slice(root.inner)}`;
 }
 
 /**
@@ -151,6 +182,7 @@ export function withCode(text, index, code) {
  */
 export function withEntry(text, kind, name, value) {
   const aesl = readAesl(text);
+  if (aesl.root.empty && value !== null) return withEntry(withLast(text, ""), kind, name, value);
   const entries = kind === "event" ? aesl.events : aesl.constants;
   const old = entries.find((each) => each.name === name);
   if (old !== undefined) {

@@ -1,6 +1,6 @@
 // One program being edited: a whole .aesl file, of which one node's code is on the screen. Values, no screen.
 
-import { looksLikeAesl, newAesl, readAesl, withCode, withEntry } from "./aesl.js";
+import { looksLikeAesl, newAesl, readAesl, withCode, withEntry, withLast } from "./aesl.js";
 
 /**
  * @typedef {object} Document
@@ -34,7 +34,7 @@ export function opened(name, text) {
   const whole =
     nodes.length > 0
       ? wrapped
-      : wrapped.replace(/<\/network>/, '<node nodeId="1" name="thymio-II"></node>\n</network>');
+      : withLast(wrapped, '<node nodeId="1" name="thymio-II"></node>\n');
   return { name: name || UNTITLED, text: whole, node: 0, saved: whole, loaded: null, source: null, own: true };
 }
 

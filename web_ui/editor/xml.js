@@ -97,7 +97,7 @@ export function decoded(text, { kind, from, to }) {
     const [piece, hexadecimal, decimal, name] = match;
     let characters = piece === "\r\n" || piece === "\r" ? "\n" : piece;
     if (name !== undefined) {
-      if (!(name in NAMED)) throw new AeslError(text, at, `&${name}; is unknown; '&' is written &amp;`);
+      if (!Object.hasOwn(NAMED, name)) throw new AeslError(text, at, `&${name}; is unknown; '&' is written &amp;`);
       characters = NAMED[name];
     } else if (hexadecimal !== undefined || decimal !== undefined) {
       const code = hexadecimal !== undefined ? parseInt(hexadecimal, 16) : Number(decimal);

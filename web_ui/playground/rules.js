@@ -80,7 +80,7 @@ export function check(fields, data, key) {
   }
   const members = /** @type {Record<string, unknown>} */ (data);
   for (const name of Object.keys(members)) {
-    if (!(name in fields))
+    if (!Object.hasOwn(fields, name))
       throw new Fault(join(key, name), `"${name}"`, {
         word: "fault.known",
         values: { names: Object.keys(fields).join(", ") },
@@ -88,7 +88,7 @@ export function check(fields, data, key) {
   }
   for (const [name, { rule, required, otherwise }] of Object.entries(fields)) {
     if (otherwise === null && members[name] === null) continue;
-    if (name in members) checkValue(rule, members[name], join(key, name));
+    if (Object.hasOwn(members, name)) checkValue(rule, members[name], join(key, name));
     else if (required) throw new Fault(join(key, name), "–", expectation(rule));
   }
 }

@@ -139,12 +139,17 @@ export class Session {
   call(name, request = {}) {
     const service = this.services.get(name);
     if (service === undefined) return Promise.resolve({ ok: false, message: `${name} is not available` });
-    const definition = parseSchema(service.request.schemaName, service.request.schema);
     const callId = this.nextId++;
-    return new Promise((settle) => {
-      this.calls.set(callId, { service, settle });
-      this.send(serviceRequestFrame(service.id, callId, "cdr", encode(definition, request)));
-    });
+    try {
+      const definition = parseSchema(service.request.schemaName, service.request.schema);
+      const frame = serviceRequestFrame(service.id, callId, "cdr", encode(definition, request));
+      return new Promise((settle) => {
+        this.calls.set(callId, { service, settle });
+        this.send(frame);
+      });
+    } catch (error) {
+      return Promise.resolve({ ok: false, message: `${name}: ${error instanceof Error ? error.message : error}` });
+    }
   }
 
   /**
@@ -192,8 +197,13 @@ export class Session {
       if (call === undefined) return;
       this.calls.delete(frame.callId);
       const { schemaName, schema } = call.service.response;
-      const value = decode(parseSchema(schemaName, schema), frame.payload);
-      call.settle({ ok: value.success ?? true, message: value.message ?? "", value });
+      try {
+        const value = decode(parseSchema(schemaName, schema), frame.payload);
+        call.settle({ ok: value.success ?? true, message: value.message ?? "", value });
+      } catch (error) {
+        call.settle({ ok: false, message: "an answer that cannot be read" });
+        throw error;
+      }
     }
   }
 
