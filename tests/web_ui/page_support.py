@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import pytest
@@ -44,21 +45,50 @@ class Fingers:
 
 
 def open_page(page: Any, address: str) -> None:
-    """Load the page, as soon as the suite answers, and wait for the robot."""
+    """Load the page, as soon as the suite answers, and wait for the robot and for what the simulator says of itself."""
     wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
     page.goto(address)
     page.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
+    page.wait_for_function("window.thymio.state().simulator !== null")
+
+
+def wait_for_program(page: Any, name: str) -> None:
+    """Wait until the robot runs the program of that name, whatever its folder."""
+    page.wait_for_function(
+        "(name) => { const {program} = window.thymio.state();"
+        " return program?.state === 'running' && program.name.endsWith(name); }",
+        arg=name,
+    )
+
+
+def wait_for_service(page: Any, *names: str) -> None:
+    """Wait until the page knows that it can call these."""
+    page.wait_for_function(
+        "(names) => names.every((name) => window.thymio.state().services.includes(name))", arg=list(names)
+    )
+
+
+def wait_for_frame(page: Any) -> None:
+    """Wait until one more frame is drawn: panels and view show what the page knows now."""
+    frames = page.evaluate("() => window.thymio.frames()")
+    page.wait_for_function("(frames) => window.thymio.frames() > frames", arg=frames)
+
+
+def wait_until_still(page: Any, place: str) -> None:
+    """Wait until an expression of the page gives the same place in several frames; without a frame nothing moves."""
+    page.evaluate("() => { window.stood = null; }")
+    page.wait_for_function(
+        f"() => {{ const now = {place}; const frames = window.thymio.frames(); const {{stood}} = window;"
+        " const still = now && stood && Math.hypot(now.x - stood.x, now.y - stood.y) < 0.01;"
+        " if (!still) window.stood = now && {x: now.x, y: now.y, frames};"
+        " return still && frames > stood.frames + 2; }",
+        polling=200,
+    )
 
 
 def wait_until_settled(page: Any, part: str) -> dict[str, float]:
     """Where a part of the robot is on the screen, once the view stands still."""
     page.wait_for_function("() => window.thymio.state().markers > 0")
-    page.wait_for_function(
-        "(part) => { const now = window.thymio.partPosition(part); const last = window.lastPosition;"
-        " window.lastPosition = now;"
-        " return now && last && Math.hypot(now.x - last.x, now.y - last.y) < 0.01; }",
-        arg=part,
-        polling=300,
-    )
+    wait_until_still(page, f"window.thymio.partPosition({json.dumps(part)})")
     place: dict[str, float] = page.evaluate("(part) => window.thymio.partPosition(part)", part)
     return place

@@ -10,7 +10,14 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.conftest import DEADLINE_MS, LOCAL
-from tests.web_ui.page_support import MARKS, Fingers, open_page
+from tests.web_ui.page_support import (
+    MARKS,
+    Fingers,
+    open_page,
+    wait_for_frame,
+    wait_for_service,
+    wait_until_still,
+)
 from tests.web_ui.test_page_access import AXE, FINDINGS
 from thymio_sim_ros.sim import playground as playgrounds
 
@@ -55,11 +62,7 @@ def open_creator(page, suite, *arguments):
 
 def settle(page):
     """Wait until the camera stands still."""
-    page.wait_for_function(
-        "() => { const now = JSON.stringify(window.thymio.screenPosition(0.1, 0.1, 0)); const last = window.lastSpot;"
-        " window.lastSpot = now; return now === last; }",
-        polling=200,
-    )
+    wait_until_still(page, "window.thymio.screenPosition(0.1, 0.1, 0)")
 
 
 def built(page):
@@ -122,7 +125,7 @@ def test_a_playground_is_built_with_undo_saved_found_again_opened_and_tried(suit
     page.set_input_files("#creator-file", str(saved))
     wait_for_items(page, 4)
     page.click("#creator-try")
-    page.wait_for_function("window.thymio.state().simulator.title === 'A way out'")
+    page.wait_for_function("window.thymio.state().simulator?.title === 'A way out'")
     page.wait_for_function("!window.thymio.built().isOpen")
     page.wait_for_function("window.thymio.state().robot?.latest")
     page.locator("#view").focus()
@@ -250,7 +253,9 @@ def test_places_keep_to_the_grid_unless_alt_is_held_and_the_wheel_turns_what_is_
     click(page, 0.313, 0.207)
     wait_for_items(page, 3)
     page.mouse.move(*spot(page, -0.3, 0.2))
+    page.wait_for_function("Math.abs(window.thymio.built().placing.place[0] + 0.3) < 0.01")
     page.mouse.wheel(0, 120)
+    playwright.expect(page.locator(".told")).to_contain_text("-30°")
     page.keyboard.down("Alt")
     click(page, -0.313, 0.207)
     page.keyboard.up("Alt")
@@ -274,6 +279,7 @@ def test_shift_switches_the_camera_off_and_on_and_clicks_place_either_way(suite,
     wait_for_items(page, 3)
     assert built(page)["camera"] == before
     page.keyboard.press("Shift")
+    playwright.expect(page.locator("[data-verb=camera]")).to_have_attribute("aria-pressed", "true")  # with a frame
     drag(page)
     page.wait_for_function("(before) => window.thymio.built().camera[0] !== before[0]", arg=before)
     assert len(items(page)) == 3, "a drag places nothing"
@@ -328,6 +334,7 @@ def test_a_playground_of_aseba_that_runs_is_changed(suite, page, tmp_path):
         f'{wall}<robot x="50" y="50"/></aseba-playground>'
     )
     open_page(page, suite("--playground", str(foreign), "--program", "none"))
+    wait_for_service(page, "/simulator/get_playground")
     page.click("#playground-change")
     page.wait_for_function("window.thymio.built()?.playground.items.length >= 3")
     assert "box" in {item["kind"] for item in items(page).values()}
@@ -338,6 +345,7 @@ def test_it_is_in_sight_in_every_language_at_800_by_600_and_without_a_finding_of
     for language in ("de", "fr", "it", "en"):
         page.select_option("select.language", language)
         page.wait_for_function("(language) => document.documentElement.lang === language", arg=language)
+        wait_for_frame(page)
         assert page.evaluate(OUT_OF_SIGHT, CONTROLS) == []
     if not AXE.exists():
         return
@@ -347,6 +355,7 @@ def test_it_is_in_sight_in_every_language_at_800_by_600_and_without_a_finding_of
     click(page, 0.3, 0.2)
     page.keyboard.press("Escape")
     page.keyboard.press("n")
+    playwright.expect(page.locator(".item-form [data-field=name]")).to_be_visible()
     page.locator(".things-list summary").click()
     assert page.evaluate(FINDINGS) == []
 
@@ -357,6 +366,7 @@ def test_fingers_place_and_carry(suite, browser):
     page.on("request", lambda request: None if request.url.startswith(LOCAL) else pytest.fail(request.url))
     open_creator(page, suite)
     page.locator("[data-tool=robot]").tap()
+    page.wait_for_function("window.thymio.built().placing?.kind === 'robot'")  # a tap becomes a click only later
     page.touchscreen.tap(*spot(page, 0.25, 0.2))
     wait_for_items(page, 3)
     assert items(page)["thymio_1"]["x_m"] == 0.25
@@ -371,7 +381,7 @@ def test_fingers_place_and_carry(suite, browser):
     assert math.dist(*(spot(page, *corner) for corner in corners)) > 1.2 * before
     assert len(items(page)) == 3, "two fingers move the camera and place nothing"
     page.locator(".cancel").tap()
-    assert built(page)["placing"] is None
+    page.wait_for_function("window.thymio.built().placing === null")
     page.close()
 
 

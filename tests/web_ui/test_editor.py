@@ -6,7 +6,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, open_page, wait_for_service
 
 pytestmark = MARKS
 
@@ -27,7 +27,7 @@ def editor(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.click("#editor-switch")
     page.wait_for_selector(".cm-content")
-    page.wait_for_function("() => window.thymio.state().services.includes('/aseba_runtime/check')")
+    wait_for_service(page, "/aseba_runtime/check", "/aseba/set_variables", "/aseba/step_line")
     return page
 
 
@@ -68,14 +68,15 @@ def test_a_broken_program_is_marked_while_it_is_typed_and_a_good_one_runs(editor
     expect(editor, ".verdict").to_contain_text("No errors")
     expect(editor, ".cm-lint-marker-error").to_have_count(0)
     editor.keyboard.press("F9")
-    editor.wait_for_function("() => window.thymio.state().program.name === 'program.aesl'")
+    editor.wait_for_function("() => window.thymio.state().program?.name === 'program.aesl'")
     editor.wait_for_function("() => Number(document.querySelector('[data-variable=count]')?.textContent) > 2")
 
 
 def test_a_breakpoint_stops_the_program_and_it_goes_on_by_lines(editor):
     write(editor, PROGRAM)
     editor.keyboard.press("Control+Enter")
-    editor.wait_for_function("() => window.thymio.state().program.name === 'program.aesl'")
+    editor.wait_for_function("() => window.thymio.state().program?.name === 'program.aesl'")
+    expect(editor, ".editor-head small").to_be_hidden()  # "not in the robot": from then on nothing moves the lines
     click_beside(editor, 4)
     expect(editor, ".editor-foot .state").to_contain_text("paused (line 4)")
     expect(editor, ".current-line").to_have_text("count = count + 1")
@@ -118,7 +119,7 @@ def test_an_event_is_defined_sent_and_logged(editor):
     write(editor, "onevent ping\nemit pong event.args[0] + 1\n")
     expect(editor, ".verdict").to_contain_text("No errors")
     editor.keyboard.press("Control+Enter")
-    editor.wait_for_function("() => window.thymio.state().program.name === 'program.aesl'")
+    editor.wait_for_function("() => window.thymio.state().program?.name === 'program.aesl'")
     editor.get_by_label("Values of ping: 1").fill("41")
     editor.click("[data-send=ping]")
     expect(editor, ".log p").to_contain_text("pong 42")
@@ -155,8 +156,9 @@ def test_a_file_is_opened_changed_and_saved_without_loss_and_a_draft_outlives_th
 def test_each_of_two_robots_has_its_program(suite, page):
     open_page(page, suite("--playground", "two_robots", "--program", "none"))
     page.click("#editor-switch")
+    page.wait_for_function("Object.keys(window.thymio.state().robots).length === 2")
+    wait_for_service(page, "/aseba_runtime/check")
     names = page.evaluate("Object.keys(window.thymio.state().robots)")
-    assert len(names) == 2
     for name, text in zip(names, ("var mine = 11\n", "var mine = 22\n"), strict=True):
         page.click(f".editor-head [data-tab={name}]")
         write(page, text)
@@ -165,6 +167,7 @@ def test_each_of_two_robots_has_its_program(suite, page):
         page.click(f".editor-head [data-tab={name}]")
         expect(page, "[data-variable=mine]").to_have_text(value)
     page.click(".editor-head [data-tab='*']")
+    expect(page, ".cm-content").to_have_text("var mine = 22")  # that of the robot, which takes its time
     write(page, "var ours = 33\n")
     page.keyboard.press("Control+Enter")
     for name in names:

@@ -32,7 +32,9 @@ def test_every_shipped_playground_has_a_picture_its_name_and_its_robots(suite, p
     open_gallery(page, suite)
     names = list(resources.playgrounds())
     page.wait_for_function(
-        "(count) => document.querySelectorAll('.sample img:not([hidden])').length === count", arg=len(names)
+        "(count) => [...document.querySelectorAll('.sample img:not([hidden])')]"
+        ".filter(({complete, naturalWidth}) => complete && naturalWidth > 0).length === count",
+        arg=len(names),
     )
     for name in names:
         card = page.locator(f"[data-playground={name}]")
@@ -62,6 +64,8 @@ def test_escape_closes_the_gallery_and_stops_no_robot(suite, page):
     page.click("#gallery-open")
     page.keyboard.press("Escape")
     playwright.expect(page.locator("dialog.gallery")).to_be_hidden()
+    page.locator(".time button.primary").click()
+    page.wait_for_function("window.thymio.state().simulator.paused")  # asked for after a stop would have been
     assert page.evaluate("window.thymio.state().program.state") == "running"
 
 

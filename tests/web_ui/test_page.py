@@ -12,7 +12,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.sim.images import BLACK, WHITE, png
-from tests.web_ui.page_support import MARKS, open_page, wait_until_settled
+from tests.web_ui.page_support import MARKS, open_page, wait_for_frame, wait_for_program, wait_until_settled
 
 pytestmark = MARKS
 
@@ -54,7 +54,8 @@ def colors(page) -> int:
 
 def test_the_canvas_shows_something_and_the_robot_moves(suite, page):
     open_page(page, suite())
-    page.wait_for_function("window.thymio.frames() > 2")
+    page.wait_for_function("window.thymio.frames() > 2 && window.thymio.state().markers > 0")
+    wait_for_frame(page)
     assert colors(page) > 20
     begin = robot(page)
     page.wait_for_function(
@@ -78,6 +79,8 @@ def test_a_click_on_the_centre_button_reaches_the_program(suite, page, tmp_path)
     program = tmp_path / "switch.aesl"
     program.write_text(PROGRAM)
     open_page(page, suite("--playground", "base", "--program", str(program)))
+    wait_for_program(page, "switch.aesl")
+    wait_until_settled(page, "robot")
     begin = robot(page)
     press(page, "button.center")
     page.wait_for_function(
@@ -101,7 +104,10 @@ def test_with_shift_a_mouse_holds_several_buttons(suite, page):
     page.wait_for_function(f"() => ({pressed})().sort().join() === 'center,forward,left'")
     page.keyboard.up("Shift")
     page.wait_for_function(f"() => ({pressed})().length === 0")
-    page.mouse.click(place["x"], place["y"], delay=50)
+    page.mouse.move(place["x"], place["y"])
+    page.mouse.down()
+    page.wait_for_function(f"() => ({pressed})().join() === 'forward'")
+    page.mouse.up()
     page.wait_for_function(f"() => ({pressed})().length === 0")
     assert page.evaluate(POSE) == start, "a button that is held is not carried"
 
@@ -123,6 +129,8 @@ def test_what_an_operator_does_reaches_the_program(suite, page, tmp_path):
     program = tmp_path / "senses.aesl"
     program.write_text(SENSES)
     open_page(page, suite("--playground", "base", "--program", str(program)))
+    wait_for_program(page, "senses.aesl")
+    page.wait_for_function("() => window.thymio.state().robot.leds.top !== undefined")
     for control, group in (
         ("tap", "top"),
         ("remote", "circle"),
@@ -159,9 +167,10 @@ def test_a_broken_program_is_shown_at_its_place_and_the_old_one_goes_on(suite, p
     open_page(page, suite())
     broken = tmp_path / "broken.aesl"
     broken.write_text("var a\nonevent prox\n  motor.left.targt = 5\n")
+    wait_for_program(page, "line_follower.aesl")
     page.set_input_files("#program-file", str(broken))
     page.get_by_text("motor.left.target", exact=False).first.wait_for()
-    assert "line 3" in page.inner_text("body").lower()
+    playwright.expect(page.locator("body")).to_contain_text("line 3", ignore_case=True, use_inner_text=True)
     assert Path(page.evaluate("window.thymio.state().program.name")).name == "line_follower.aesl"
 
 

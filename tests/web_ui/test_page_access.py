@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, open_page, wait_for_frame
 
 pytestmark = MARKS
 
@@ -45,6 +45,7 @@ def test_at_800_by_600_every_control_is_in_sight_in_every_language(suite, page):
     for language in ("de", "fr", "it", "en"):
         page.select_option("select.language", language)
         page.wait_for_function("(language) => document.documentElement.lang === language", arg=language)
+        wait_for_frame(page)
         assert page.evaluate(OVERLAPPING) == []
 
 
@@ -54,12 +55,14 @@ def test_values_can_be_frozen_and_copied(suite, page):
     page.wait_for_function("() => window.thymio.state().robot.raw.battery !== undefined")
     for sensor in ("accelerometer", "temperature", "sound", "battery"):
         page.wait_for_function("(sensor) => window.thymio.state().robot.raw[sensor] !== undefined", arg=sensor)
+    page.get_by_role("cell", name="22.0 °C").wait_for()
     freeze = page.locator("[data-values=freeze]")
     freeze.click()
     page.locator("[data-operate=temperature]").fill("45")
     page.wait_for_function("() => window.thymio.state().robot.raw.temperature[0] === 450")
     page.locator("[data-values=copy]").click()
-    text = page.evaluate("() => navigator.clipboard.readText()")
-    assert "temperature\t22.0 °C\t220" in text
+    page.wait_for_function(
+        "async (line) => (await navigator.clipboard.readText()).includes(line)", arg="temperature\t22.0 °C\t220"
+    )
     freeze.click()
     page.get_by_role("cell", name="45.0 °C").wait_for()

@@ -18,9 +18,11 @@ ALL_TURN = """(count) => Object.values(window.thymio.state().robots).filter(({pr
     previous && latest && previous.pose.yaw !== latest.pose.yaw).length === count"""
 PLACED = "() => Object.entries(window.thymio.state().robots).filter(([, {isByTransforms}]) => isByTransforms).length"
 STANDS = """([name, x, y]) => {
-    const pose = window.thymio.state().robots[name].latest?.pose;
+    const pose = window.thymio.state().robots[name]?.latest?.pose;
     return pose && Math.hypot(pose.x - x, pose.y - y) < 0.01;
 }"""
+STAMPS = "() => Object.values(window.thymio.state().robots).map(({latest}) => latest?.stampNs)"
+AS_LATE = f"(stamps) => ({STAMPS})().every((stamp, at) => stamp >= stamps[at])"
 
 
 @pytest.fixture
@@ -47,14 +49,16 @@ def test_all_robots_of_a_crowd_move_by_the_transforms_they_share(crowd):
         "(stamps) => Object.values(window.thymio.state().robots).every(({latest}, at) => latest.stampNs > stamps[at])"
     )
     crowd.wait_for_function(later, arg=stamps)
-    assert crowd.evaluate("() => window.thymio.state().robot.raw.motor !== undefined")
+    crowd.wait_for_function("() => window.thymio.state().robot.raw.motor !== undefined")
 
 
 def test_who_comes_while_time_stands_still_sees_where_all_stand(crowd, other_page):
     crowd.wait_for_function(f"() => ({PLACED})() === 5")
     crowd.get_by_role("button", name="Pause").click()
     crowd.wait_for_function("() => window.thymio.state().simulator.paused")
-    stood = crowd.evaluate("() => Object.values(window.thymio.state().robots).map(({latest}) => latest.pose)")
     open_page(other_page, crowd.url)
+    other_page.wait_for_function(f"(count) => ({STAMPS})().filter(Boolean).length === count", arg=len(NAMES))
+    crowd.wait_for_function(AS_LATE, arg=other_page.evaluate(STAMPS))  # its last ones may come after the pause
+    stood = crowd.evaluate("() => Object.values(window.thymio.state().robots).map(({latest}) => latest.pose)")
     for name, pose in zip(NAMES, stood, strict=True):
         other_page.wait_for_function(STANDS, arg=[name, pose["x"], pose["y"]])

@@ -8,7 +8,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, open_page, wait_for_service
 
 pytestmark = MARKS
 
@@ -43,6 +43,7 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     page.on("filechooser", lambda _chooser: None)  # from now on, so that no dialog of the system opens
     open_page(page, suite("--playground", "line", "--program", "none"))
 
+    expect(page, "#playground-choice option[value=base]").to_have_count(1)
     go_to(page, "#playground-choice")
     page.keyboard.type("Base")
     page.wait_for_function(f"({STATE})().simulator.playground === 'base'")
@@ -62,7 +63,7 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     page.keyboard.insert_text("call leds.top(0, 32 * button.forward, 0)\n")
     expect(page, ".verdict").to_contain_text("No errors")
     page.keyboard.press("F9")
-    page.wait_for_function(f"({STATE})().program.name === 'drive.aesl'")
+    page.wait_for_function(f"({STATE})().program?.name === 'drive.aesl'")
 
     page.keyboard.press("Control+Home")
     page.keyboard.press("ArrowDown")
@@ -70,7 +71,7 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     page.keyboard.press("Control+b")
     expect(page, ".breakpoints .breakpoint:visible").to_have_count(1)
     page.wait_for_function(
-        f"({STATE})().program.values.breakpoints === '[4]'"
+        f"({STATE})().program?.values.breakpoints === '[4]'"
     )  # of the file: its first line is <network>
 
     page.keyboard.press("Escape")
@@ -78,20 +79,20 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
     page.keyboard.down("ArrowUp")
     page.wait_for_function(f"({STATE})().robot.buttons.forward")
     expect(page, ".editor-foot .state").to_contain_text("paused (line 3)")
+    wait_for_service(page, "/aseba/step_line", "/aseba/run", "/aseba/stop")
     page.keyboard.press("F7")
     expect(page, ".current-line").to_have_text("motor.left.target = 150 * button.forward")
     expect(page, "[data-variable=presses]").to_have_text("1")
     page.keyboard.press("F9")
     page.wait_for_function(f"({STATE})().robot.wheelSpeeds.left > 1 && ({STATE})().robot.wheelSpeeds.right > 1")
-    page.wait_for_function(f"Math.max(...({STATE})().robot.leds.top) === 1")
+    page.wait_for_function(f"Math.max(...(({STATE})().robot.leds.top ?? [])) === 1")
 
     page.keyboard.press("Escape")
-    page.wait_for_function(f"({STATE})().program.state === 'stopped'")
+    page.wait_for_function(f"({STATE})().program?.state === 'stopped'")
     page.wait_for_function(f"Math.abs(({STATE})().robot.wheelSpeeds.left) < 0.1")
     page.keyboard.up("ArrowUp")
     page.wait_for_function(f"!({STATE})().robot.buttons.forward")
-    said = page.evaluate("() => document.querySelector('#live').textContent")
-    assert "stopped" in said
+    expect(page, "#live").to_contain_text("stopped")
 
 
 @pytest.mark.parametrize(

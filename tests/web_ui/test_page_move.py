@@ -6,7 +6,9 @@ import json
 
 import pytest
 
-from tests.web_ui.page_support import MARKS, open_page, wait_until_settled
+playwright = pytest.importorskip("playwright.sync_api")
+
+from tests.web_ui.page_support import MARKS, open_page, wait_for_service, wait_until_settled
 
 pytestmark = MARKS
 
@@ -28,7 +30,8 @@ def still_world(tmp_path) -> str:
 
 def open_still(page, suite, playground):
     open_page(page, suite("--playground", playground, "--program", "none"))
-    page.wait_for_function("() => window.thymio.state().services.includes('/simulator/set_poses')")
+    wait_for_service(page, "/simulator/set_poses")
+    page.wait_for_function("() => window.thymio.state().objects.some(({name}) => name === 'can')")
     wait_until_settled(page, "robot")
 
 
@@ -51,10 +54,9 @@ def test_a_robot_and_a_can_are_dragged_and_a_taken_place_is_refused(suite, page,
     page.mouse.up()
     page.wait_for_function("() => window.thymio.state().objects[0].pose.position.y > 0.15")
     drag(page, (0.02, -0.25, 0.05), (-0.38, 0.2, 0.05))
-    assert page.evaluate("() => window.thymio.held().blocker") == "box"
+    page.wait_for_function("() => window.thymio.held().blocker === 'box'")
     page.mouse.up()
-    page.locator(".notice.error").wait_for()
-    assert "box" in page.locator(".notice.error").inner_text()
+    playwright.expect(page.locator(".notice.error")).to_contain_text("box")
     assert page.evaluate(POSE)["y"] == pytest.approx(-0.25, abs=0.02)
 
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
 from tests.processes import free_port, wait_for_port
 from tests.web_ui.page_support import MARKS, open_page
 
@@ -17,15 +21,15 @@ def test_a_restarted_simulator_is_found_again_and_what_was_known_of_the_old_one_
     suite.end()
     page.wait_for_function("() => !window.thymio.connected")
     banner = page.locator(".banner:not([hidden])")
-    assert "nothing needs to be done" in banner.inner_text()
+    playwright.expect(banner).to_contain_text("nothing needs to be done")
     suite("--playground", "base", "--program", "none", ports=ports)
     wait_for_port(ports[1])
     page.wait_for_function("() => window.thymio.connected")
     page.wait_for_function("() => window.thymio.state().simulator?.playground === 'base'")
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 1")
-    page.wait_for_function("() => window.thymio.state().robot.latest !== null")
-    assert page.locator(".banner:not([hidden])").count() == 0
-    assert page.locator(".chip").get_attribute("data-state") == "connected"
+    page.wait_for_function("() => Boolean(window.thymio.state().robot?.latest)")
+    playwright.expect(banner).to_have_count(0)
+    playwright.expect(page.locator(".chip")).to_have_attribute("data-state", "connected")
 
 
 def test_what_one_person_does_is_seen_by_another_who_came_late(suite, page, other_page):

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.page_support import MARKS, open_page
 
@@ -40,7 +45,7 @@ def test_a_tone_is_heard_after_the_first_touch_and_until_it_is_muted(suite, page
     open_page(page, suite("--program", str(program)))
     page.wait_for_function("() => window.thymio.state().robot.sound[0] === 440")
     button = page.locator("button.sound")
-    assert button.get_attribute("data-phase") == "waiting"
+    playwright.expect(button).to_have_attribute("data-phase", "waiting")
     assert page.evaluate("() => window.heard.length") == 0
     page.locator(".chip").click()
     page.wait_for_function(f"({SOUNDING})() === 1")
@@ -48,8 +53,10 @@ def test_a_tone_is_heard_after_the_first_touch_and_until_it_is_muted(suite, page
     assert (
         page.evaluate(f"() => {source}.playbackRate.value * {source}.buffer.sampleRate / {source}.buffer.length") == 440
     )
+    playwright.expect(button).to_have_attribute("data-phase", "on")  # what it does is what it shows
     button.click()
     page.wait_for_function(f"({SOUNDING})() === 0")
+    playwright.expect(button).to_have_attribute("data-phase", "muted")
     button.click()
     page.wait_for_function(f"({SOUNDING})() === 1")
     page.locator("[data-button=center]").hover()
@@ -87,8 +94,10 @@ def test_a_pause_holds_the_sound(suite, page, tmp_path):
 def test_a_built_in_behaviour_is_chosen_and_shows_its_colour(suite, page):
     open_page(page, suite("--playground", "base"))
     page.select_option("#behaviour-choice", "friendly")
-    page.wait_for_function("() => window.thymio.state().program.name.startsWith('friendly')")
+    page.wait_for_function("() => window.thymio.state().program?.name.startsWith('friendly')")
     page.wait_for_function("() => document.querySelector('#behaviour-choice').value === 'friendly'")
-    assert "#12c22f" in (page.locator(".swatch").get_attribute("style") or "")
+    playwright.expect(page.locator(".swatch")).to_have_attribute("style", re.compile("#12c22f"))
     # Green, as on the robot.
-    page.wait_for_function("() => { const [r, g, b] = window.thymio.state().robot.leds.top; return g > r && g > b; }")
+    page.wait_for_function(
+        "() => { const [r, g, b] = window.thymio.state().robot.leds.top ?? []; return g > r && g > b; }"
+    )

@@ -8,7 +8,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, open_page, wait_for_service
 
 pytestmark = MARKS
 
@@ -53,6 +53,7 @@ def wait_until_moved(page: Any, far_m: float, act: Any) -> None:
 def test_the_basic_mode_drives_by_the_arrows(class_page):
     choose_behaviour(class_page, "Thesis: basic (white)", "Arrows drive until something is in the way.")
     wait_until_moved(class_page, 0.05, robot_button(class_page, "Forward").click)
+    wait_for_service(class_page, "/aseba/stop")
     class_page.get_by_role("banner").get_by_role("button", name="Stop").click()
     class_page.wait_for_function("() => Math.abs(window.thymio.state().robot.wheelSpeeds.left) < 0.1")
 
@@ -80,12 +81,14 @@ def test_an_aseba_program_is_written_and_runs_on_the_robot(class_page):
     text = class_page.get_by_role("textbox", name="Program")
     playwright.expect(text).to_contain_text("Follow a black line")  # that of the robot, which takes its time
     text.press("Control+a")
-    class_page.keyboard.insert_text("onevent button.center\ncall leds.top(32, 0, 0)\nmotor.left.target = 100\n")
+    class_page.keyboard.insert_text("onevent button.center\ncall leds.top(32, 0, 0)\nmotor.left.target = ")
     playwright.expect(text).not_to_contain_text("Follow")
+    playwright.expect(class_page.get_by_text("No errors")).to_have_count(0)  # or it would be of the text before
+    class_page.keyboard.insert_text("100\n")
     playwright.expect(class_page.get_by_text("No errors")).to_be_visible()
     class_page.get_by_role("region", name="Aseba editor").get_by_role("button", name="Run").click()
     playwright.expect(class_page.get_by_role("region", name="Aseba editor")).to_contain_text("is loaded")
     class_page.get_by_role("button", name="Aseba editor").click()
     robot_button(class_page, "Centre").click()
-    class_page.wait_for_function("() => window.thymio.state().robot.leds.top[0] === 1")
+    class_page.wait_for_function("() => window.thymio.state().robot.leds.top?.[0] === 1")
     class_page.wait_for_function("() => window.thymio.state().robot.wheelSpeeds.left > 0.5")

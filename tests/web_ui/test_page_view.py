@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
 from tests.web_ui.page_support import MARKS, open_page, wait_until_settled
 
 pytestmark = MARKS
@@ -29,7 +33,7 @@ def test_without_webgl_the_world_is_drawn_from_above_and_its_buttons_work(suite,
     page.add_init_script(NO_WEBGL)
     open_page(page, suite(*RESTING))
     page.wait_for_function(f"({FLAT_COLORS})() > 4")
-    assert "2D" in page.locator("#trouble").inner_text()
+    playwright.expect(page.locator("#trouble")).to_contain_text("2D")
     page.locator("#view").focus()
     page.keyboard.press("f")
     place = wait_until_settled(page, "button.center")
