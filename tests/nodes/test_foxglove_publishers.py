@@ -92,7 +92,7 @@ def test_a_bad_twist_is_refused_and_the_next_good_one_taken(ros, studio, payload
         ("/a", "no_such_msgs/msg/Thing", "/a: type no_such_msgs/msg/Thing is not available"),
         ("/a", "nonsense", "/a: type nonsense is not available: expected package/msg/Type"),
         ("/a b", "std_msgs/msg/Bool", "/a b: not a topic name"),
-        ("/a", "__main__/Foo", "'/a': cannot publish __main__/msg/Foo"),
+        ("/a", "__main__/Foo", "/a: type __main__/msg/Foo is not available: there is no package __main__"),
         ("/a", "std_srvs/srv/SetBool", "'/a': cannot publish std_srvs/srv/SetBool"),
         ("/\ud800", "std_msgs/msg/Bool", "'/\\ud800': cannot publish std_msgs/msg/Bool"),
     ],

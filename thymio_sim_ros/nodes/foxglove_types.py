@@ -53,6 +53,9 @@ def load_type(name: str) -> Any:
 
 def _has_interfaces(package: str, kind: str) -> bool:
     """Whether it is a package of interfaces, found out without importing it: clients choose the name."""
-    spec = importlib.util.find_spec(package)
+    try:
+        spec = importlib.util.find_spec(package)
+    except ValueError:  # of __main__, where it is no file
+        return False
     folders = spec.submodule_search_locations if spec is not None else None
     return any((Path(folder) / kind / "__init__.py").is_file() for folder in folders or ())
