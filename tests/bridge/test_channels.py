@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import pytest
-from hypothesis import settings
-from hypothesis import strategies as st
-from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
 from thymio_sim_ros.bridge import Capability, ServerInfo
 from thymio_sim_ros.bridge import events as ev
@@ -171,24 +168,18 @@ def test_a_newcomer_gets_what_is_kept_and_nobody_else_gets_it_again() -> None:
     assert outcome.letters == [Letter((B,), ms.MessageData(4, 6, b"new"))]
 
 
-def test_a_repeated_message_takes_one_place_only() -> None:
+@pytest.mark.parametrize(
+    ("said", "kept"),
+    [((b"one", b"two", b"two"), [(1, b"one"), (3, b"two")]), ((b"on", b"off", b"on"), [(2, b"off"), (3, b"on")])],
+)
+def test_a_repeated_message_takes_one_place_and_is_the_latest(said: Sequence[bytes], kept: object) -> None:
     board = switchboard(A, B)
     subscribe(board, A, 1, 10)
     board.apply(ev.KeepLast(10, 2))
-    for time_ns, payload in ((1, b"one"), (2, b"two"), (3, b"two")):
+    for time_ns, payload in enumerate(said, start=1):
         board.keep(ev.Data(10, time_ns, payload))
     letters = board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).letters
-    assert [letter.message for letter in letters] == [ms.MessageData(4, 1, b"one"), ms.MessageData(4, 3, b"two")]
-
-
-def test_a_newcomer_ends_in_the_state_of_now() -> None:
-    board = switchboard(A, B)
-    subscribe(board, A, 1, 10)
-    board.apply(ev.KeepLast(10, 2))
-    for time_ns, payload in ((1, b"on"), (2, b"off"), (3, b"on")):
-        board.keep(ev.Data(10, time_ns, payload))
-    letters = board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).letters
-    assert [letter.message for letter in letters] == [ms.MessageData(4, 2, b"off"), ms.MessageData(4, 3, b"on")]
+    assert [(letter.message.time_ns, letter.message.payload) for letter in letters] == kept
 
 
 def test_nothing_is_kept_of_an_ordinary_channel() -> None:
@@ -437,72 +428,3 @@ def test_what_is_not_offered_is_refused(message: ms.ClientMessage, capability: C
     outcome = switchboard(A, capabilities=[]).receive(A, message)
     assert refusals(outcome.letters) == [(A, f"this server does not offer {capability}")]
     assert outcome.events == []
-
-
-class Storm(RuleBasedStateMachine):
-    """Clients that come, go and subscribe at random; the owner keeps a list of what it was told."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.board = Switchboard(ServerInfo("storm", tuple(Capability), ("cdr",)))
-        self.clients: set[int] = set()
-        self.channels: set[int] = set()
-        self.wanted: set[int] = set()
-        self.subscriptions: set[tuple[int, int, int]] = set()
-
-    @rule(client=st.integers(1, 4))
-    def come_or_go(self, client: int) -> None:
-        if client in self.clients:
-            self.clients.remove(client)
-            self.note(self.board.leave(client))
-            self.subscriptions = {row for row in self.subscriptions if row[0] != client}
-        else:
-            self.clients.add(client)
-            self.board.join(client)
-
-    @rule(number=st.integers(1, 4))
-    def offer_or_withdraw(self, number: int) -> None:
-        if number in self.channels:
-            self.channels.remove(number)
-            self.wanted.discard(number)
-            self.board.apply(ev.RemoveChannels((number,)))
-            self.subscriptions = {row for row in self.subscriptions if row[2] != number}
-        else:
-            self.channels.add(number)
-            self.board.apply(ev.AddChannels((channel(number),)))
-
-    @rule(client=st.integers(1, 4), subscription=st.integers(0, 3), number=st.integers(1, 4))
-    def subscribe(self, client: int, subscription: int, number: int) -> None:
-        if client not in self.clients:
-            return
-        self.note(self.board.receive(client, ms.Subscribe((ms.Subscription(subscription, number),))).events)
-        mine = [row for row in self.subscriptions if row[0] == client]
-        if number in self.channels and all(row[1] != subscription and row[2] != number for row in mine):
-            self.subscriptions.add((client, subscription, number))
-
-    @rule(client=st.integers(1, 4), subscription=st.integers(0, 3))
-    def unsubscribe(self, client: int, subscription: int) -> None:
-        if client in self.clients:
-            self.note(self.board.receive(client, ms.Unsubscribe((subscription,))).events)
-            self.subscriptions = {row for row in self.subscriptions if row[:2] != (client, subscription)}
-
-    def note(self, events: list[ev.Event]) -> None:
-        for event in events:
-            if isinstance(event, ev.ChannelWanted):
-                assert event.channel_id not in self.wanted
-                self.wanted.add(event.channel_id)
-            elif isinstance(event, ev.ChannelUnwanted):
-                self.wanted.remove(event.channel_id)
-
-    @invariant()
-    def routes_are_the_subscriptions(self) -> None:
-        routes = {(client, sub, number) for number in range(1, 5) for client, sub in self.board.routes(number)}
-        assert routes == self.subscriptions
-
-    @invariant()
-    def the_owner_knows_what_is_wanted(self) -> None:
-        assert self.wanted == {number for _, _, number in self.subscriptions}
-
-
-TestStorm = Storm.TestCase
-TestStorm.settings = settings(max_examples=50, stateful_step_count=40)

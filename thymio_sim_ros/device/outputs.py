@@ -73,8 +73,7 @@ class Outputs:
         """
         if isinstance(command, SetLeds):
             if self._lit.get(command.group) != command.levels:
-                taken_over = self._taken_over(command)
-                self._waiting.append(taken_over)
+                self._waiting.append(self._taken_over(command))
         else:
             self._waiting.append(command)
             if type(command) in _SOUNDS:
