@@ -201,7 +201,7 @@ def test_programs_see_the_variables_and_events_of_the_firmware() -> None:
 
 
 def test_readings_have_as_many_words_as_their_variables() -> None:
-    declared = {sensor.name: sum(size for _, size in sensor.aseba.variables) for sensor in sensors.all_sensors()}
+    declared = {sensor.name: sensor.aseba.size for sensor in sensors.all_sensors()}
     world = World(make([FLOOR]))
     found = {name: len(reading.words) for step in run(world, 0.2) for _, name, reading in step.readings}
     assert found == {name: declared[name] for name in found}

@@ -53,7 +53,8 @@ def sensed(device: AsebaDevice) -> None:
     """Every sensor tells its words once, proximity last."""
     places = {address: name for name, (address, _) in target().addresses.items()}
     for sensor, binding in sorted(bindings.sensors().items(), key=lambda item: item[0] == "proximity"):
-        device.feed(sensor, [word for slot in binding.slots for word in SENSES[places[slot.address]]])
+        words = [word for slot in binding.slots for word in SENSES[places[slot.address]]]
+        device.feed(sensor, [*words, *[0] * (binding.size - len(words))])
 
 
 def expectations() -> Iterator[tuple[str, tuple[int, ...]]]:

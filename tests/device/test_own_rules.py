@@ -180,6 +180,24 @@ def test_an_empty_battery_blinks(robot: Robot) -> None:
     assert 20 <= shown.count((0, 0, 0)) <= 75
 
 
+def test_the_lights_of_a_battery_fill_again_and_again_while_it_is_charged(robot: Robot) -> None:
+    shown: list[tuple[int, ...]] = []
+    robot.look({"_vbat": (600, 600)})
+    robot.rules.charge(is_charging=True)
+    for _ in range(2 * 100):
+        robot.look()
+        if shown[-1:] != [robot.lights["battery"]]:
+            shown.append(robot.lights["battery"])
+    once = [(0, 0, 0), (32, 0, 0), (32, 32, 0), (32, 32, 32)]
+    assert shown[:4] in (once, [*once[1:], once[0]])
+    assert shown[4:8] == shown[:4]
+    robot.look({"_vbat": (720, 720)}, looks=40)
+    robot.rules.charge(is_charging=False)
+    robot.look()
+    assert robot.lights["battery"] == (32, 32, 0)
+    assert robot.look(looks=100) == []
+
+
 def test_a_rule_ends_when_its_lights_are_taken_over(robot: Robot) -> None:
     robot.rules.take("temperature")
     commands = robot.look({"temperature": (200,), "prox.ground.delta": (900, 900)})

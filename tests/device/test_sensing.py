@@ -15,6 +15,7 @@ from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim import playground
 from thymio_sim_ros.sim.commands import (
     Clap,
+    ConnectCharger,
     PressButton,
     RemoteKey,
     SetBattery,
@@ -208,6 +209,29 @@ def test_what_stays_the_same_is_read_again_after_a_reset():
     assert device.get_variable("_vbat") == (796, 796)
     assert device.get_variable("mic.intensity") == (50,)
     assert device.get_variable("buttons._mean") == (2000,) * 5
+
+
+def test_the_lights_of_the_battery_move_while_a_charger_is_connected():
+    runner, device = alone("", noise=False)
+
+    def shown(seconds):
+        found = []
+        for _ in range(round(seconds / 0.02)):
+            runner.run(0.02)
+            found.append(dict(runner.world.snapshot().robots[0].leds)["battery"])
+        return dict.fromkeys(found)
+
+    runner.run(0.5)
+    runner.post("anna", ConnectCharger(True))
+    runner.run(0.1)
+    assert len(shown(2.0)) == 4
+    device.reset()
+    device.resume()
+    runner.run(1.1)
+    assert len(shown(2.0)) == 4
+    runner.post("anna", ConnectCharger(False))
+    runner.run(0.1)
+    assert list(shown(2.0)) == [(32, 32, 32)]
 
 
 TALKER = "var n = 0\ncall prox.comm.enable(1)\nprox.comm.tx = 100 * _id\nonevent prox.comm\nn++"

@@ -53,7 +53,7 @@ def test_temperature_has_tenths_and_a_variance():
 
 @pytest.mark.parametrize("is_charging", [False, True])
 def test_the_battery_tells_what_it_knows(is_charging):
-    message = encode("battery", readings.BatteryReading(0, (796, 796), 4.0, 0.75, is_charging))
+    message = encode("battery", readings.BatteryReading(0, (796, 796, 0), 4.0, 0.75, is_charging))
     assert (message.voltage, message.percentage, message.present) == (4.0, 0.75, True)
     assert (message.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING) == is_charging
     assert math.isnan(message.current)

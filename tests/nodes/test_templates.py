@@ -21,8 +21,7 @@ PATCHED = [(sensor, row) for sensor in reference.own_sensors() for row in sensor
 
 
 def reading_of(sensor, seed):
-    count = sum(size for _, size in sensor.aseba.variables)
-    words = tuple((seed * 7919 + index * 104_729) % 2000 - 500 for index in range(count))
+    words = tuple((seed * 7919 + index * 104_729) % 2000 - 500 for index in range(sensor.aseba.size))
     stamp = 1_230_000_000 * seed
     if sensor.name == "proximity":
         return readings.ProximityReading(stamp, words, (math.inf, 0.01, 0.05, 0.1, 0.14, 0.02 * seed, 0.03))

@@ -72,7 +72,7 @@ def sensors(layout: str = THYMIO) -> dict[str, SensorBinding]:
             slots,
             _runs(slots),
             tuple(slot for slot in slots if slot.edge is not None),
-            sum(size for _, size in sensor.aseba.variables),
+            sensor.aseba.size,
             None if sensor.aseba.event is None else _event(sensor.aseba.event, layout),
             addresses[sensor.aseba.above][0] if sensor.aseba.above in addresses else None,
         )

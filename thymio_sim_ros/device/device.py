@@ -31,8 +31,8 @@ from thymio_sim_ros.sim.tones import SHUT_DOWN
 
 __all__ = ["AsebaDevice", "DeviceStatus", "EmittedEvent"]
 
-_SOUND = "sound"
-"""The sensor whose first word is `mic.intensity`."""
+_SOUND, _BATTERY = "sound", "battery"
+"""The sensors whose first word is `mic.intensity`, and whose last tells whether a charger is connected."""
 INT16 = range(-0x8000, 0x8000)
 
 
@@ -151,6 +151,8 @@ class AsebaDevice:
         self._inputs.feed(sensor, words, self._now_ns)
         if sensor == _SOUND:
             self._rules.hear(words[0])
+        elif sensor == _BATTERY:
+            self._rules.charge(is_charging=bool(words[-1]))
 
     def advance(self, now_ns: int) -> None:
         """Simulated time has come so far; `run` raises the events of timers whose period ended on the way."""

@@ -166,22 +166,28 @@ class _Remote:
 
 
 class _Battery:
-    """One to three lights; a single one blinks before the robot goes out."""
+    """One to three lights; a single one blinks before the robot goes out. They fill while a charger is connected."""
 
     variables = ("_vbat",)
     BLINK = 25
-    """Looks between on and off, half a second. Own choice."""
+    """Looks between on and off, and from one light to the next, half a second. Own choice."""
 
     def __init__(self) -> None:
-        self.is_moving = False
+        self.is_charging = self._was_charging = self._is_low = False
         self._looks = 0
+
+    @property
+    def is_moving(self) -> bool:
+        return self.is_charging or self._was_charging or self._is_low
 
     def show(self, words: Sequence[Sequence[int]]) -> Levels:
         volts = sum(words[0]) * 1000 / 3978 / 100
         lights = 3 if volts >= 3.9 else 2 if volts > 3.6 else 1
-        self.is_moving = volts <= 3.4
+        self._is_low, self._was_charging = volts <= 3.4, self.is_charging
         self._looks = self._looks + 1 if self.is_moving else 0
-        if self._looks // self.BLINK % 2:
+        if self.is_charging:
+            lights = self._looks // self.BLINK % 4
+        elif self._looks // self.BLINK % 2:
             lights = 0
         return {"battery": tuple(LED_FULL if number < lights else 0 for number in range(3))}
 
@@ -225,6 +231,7 @@ class OwnRules:
         self._remote = _Remote()
         rules: list[_Rule] = [*(make() for make in _RULES), self._remote]
         self._sound = next(rule for rule in rules if isinstance(rule, _Sound))
+        self._battery = next(rule for rule in rules if isinstance(rule, _Battery))
         self._rules = [
             (rule, [_place(self._spans, *self._addresses[name]) for name in rule.variables])
             for rule in rules
@@ -253,6 +260,11 @@ class OwnRules:
         """The microphone heard this."""
         self._sound.hear(intensity)
         self.is_moving = self.is_moving or self._sound.is_moving
+
+    def charge(self, *, is_charging: bool) -> None:
+        """The battery tells whether a charger is connected."""
+        self._battery.is_charging = is_charging
+        self.is_moving = self.is_moving or is_charging
 
     def flash_remote(self) -> None:
         """A remote control was heard."""

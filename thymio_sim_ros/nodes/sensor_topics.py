@@ -244,10 +244,18 @@ def rows_of(sensor: Sensor) -> tuple[Row, ...]:
     """Topics of a sensor; one added by a plug-in has those of its words."""
     variables = ", ".join(f"`{name}`" if size == 1 else f"`{name}[{size}]`" for name, size in sensor.aseba.variables)
     about = f"Aseba's integers: {variables}" if variables else "the event, without values"
-    count = sum(size for _, size in sensor.aseba.variables)
+    about += "".join(f", then {name}" for name in sensor.aseba.unseen)
     is_seen = sensor.aseba.variables or sensor.aseba.event
     raw = (
-        (Row(f"raw/{sensor.name}", Int16MultiArray, convert.words, about, patch=patches.words_patch(count)),)
+        (
+            Row(
+                f"raw/{sensor.name}",
+                Int16MultiArray,
+                convert.words,
+                about,
+                patch=patches.words_patch(sensor.aseba.size),
+            ),
+        )
         if is_seen
         else ()
     )

@@ -14,14 +14,21 @@ __all__ = ["NO_ACTUATOR_FACE", "NO_SENSOR_FACE", "ActuatorFace", "AsebaFace", "N
 class AsebaFace:
     """A sensor: variables (name, words) that hold its reading's words in order, and the event it raises.
 
-    With `edge_events`, every variable whose value changed also raises the local event of its own name. With `above`,
-    the name of a variable, the event is raised only while that variable is not 0 and the first word exceeds it.
+    `unseen` names the words after them, which no variable holds: only the robot's own rules look at them. With
+    `edge_events`, every variable whose value changed also raises the local event of its own name. With `above`, the
+    name of a variable, the event is raised only while that variable is not 0 and the first word exceeds it.
     """
 
     variables: tuple[tuple[str, int], ...] = ()
     event: str | None = None
     edge_events: bool = False
     above: str | None = None
+    unseen: tuple[str, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """How many words a reading has."""
+        return sum(size for _, size in self.variables) + len(self.unseen)
 
 
 @dataclass(frozen=True, slots=True)

@@ -181,7 +181,7 @@ class ButtonCountsReading:
 
 @dataclass(frozen=True, slots=True)
 class BatteryReading:
-    """The battery: volts, charge 0…1; `words`: _vbat, whose sum times 1000/3978 is hundredths of a volt."""
+    """The battery: volts, charge 0…1; `words`: _vbat, whose sum times 1000/3978 is centivolts; and is_charging."""
 
     stamp_ns: int
     words: tuple[int, ...]

@@ -11,8 +11,8 @@ from thymio_sim_ros.sim.world import World
 
 def test_it_has_four_volts_at_first() -> None:
     (reading,) = readings(run(World(make([FLOOR])), 1.0), "battery")
-    assert (reading.words, reading.volts, reading.is_charging) == ((796, 796), 4.0, False)
-    assert sum(reading.words) * 1000 // 3978 == 400
+    assert (reading.words, reading.volts, reading.is_charging) == ((796, 796, 0), 4.0, False)
+    assert sum(reading.words[:2]) * 1000 // 3978 == 400
 
 
 @pytest.mark.parametrize(
@@ -23,7 +23,7 @@ def test_the_operator_sets_it_at_once(volts: float, word: int, charge: float) ->
     run(world, 0.5)
     send(world, SetBattery(volts))
     (reading,) = readings(run(world, 0.01), "battery")
-    assert (reading.words, reading.volts) == ((word, word), volts)
+    assert (reading.words, reading.volts) == ((word, word, 0), volts)
     assert reading.charge == pytest.approx(charge)
 
 
@@ -31,4 +31,4 @@ def test_a_charger_can_be_connected() -> None:
     world = World(make([FLOOR]))
     send(world, ConnectCharger(True))
     (reading,) = readings(run(world, 0.01), "battery")
-    assert reading.is_charging
+    assert (reading.words[2], reading.is_charging) == (1, True)

@@ -1,7 +1,7 @@
 """The battery, once a second and when it is set (thymio-robot.md section 7.4), no noise.
 
-Each of the two words is V * 198.9. `charge` grows evenly from 3.4 V, where the last light goes out, to 4.1 V of a full
-lithium cell (own choice of the upper end; section 8.4 gives the lower).
+Two words are V * 198.9 each, a third tells whether a charger is connected. `charge` grows evenly from 3.4 V, where
+the last light goes out, to 4.1 V of a full lithium cell (own choice of the upper end; section 8.4 gives the lower).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def _measure(view: SensorView) -> BatteryReading:
     power = view.state(PowerState)
     word = units.volts_to_units(power.volts)
     charge = max(0.0, min(1.0, (power.volts - _EMPTY_V) / (_FULL_V - _EMPTY_V)))
-    return BatteryReading(view.now_ns, (word, word), power.volts, charge, power.is_charging)
+    return BatteryReading(view.now_ns, (word, word, int(power.is_charging)), power.volts, charge, power.is_charging)
 
 
 SENSOR = Sensor(
@@ -32,5 +32,5 @@ SENSOR = Sensor(
     phase_ns=10_000_000,
     measure=_measure,
     wakes_on=(SetBattery, ConnectCharger),
-    aseba=AsebaFace(variables=(("_vbat", 2),)),
+    aseba=AsebaFace(variables=(("_vbat", 2),), unseen=("1 while charging",)),
 )
