@@ -128,6 +128,16 @@ def test_an_own_program_may_open_the_menu_and_is_shown_there():
     assert robot.running == "mine"
 
 
+def test_the_touch_that_starts_a_user_s_program_is_no_news_for_it():
+    code = "onevent button.center\nif button.center == 1 then\nemit menu.back\nend"
+    robot = HandheldRobot.switched_on(MENU, asking("mine.aesl", "menu.back", 0, code))
+    robot.tick(100)
+    robot.touch("center")
+    assert robot.running == "mine"
+    robot.touch("center")
+    assert robot.running == MENU
+
+
 def test_what_a_program_asks_of_the_robot_is_no_event_for_others():
     robot = HandheldRobot.switched_on(MENU)
     robot.tick(100)

@@ -86,6 +86,20 @@ def test_a_button_raises_its_event_when_it_changes_only():
     assert device.get_variable("n") == (2,)
 
 
+def test_a_button_that_is_held_while_a_program_is_loaded_raises_no_event_until_it_is_let_go():
+    device = device_with("")
+    device.feed("buttons", CENTER)
+    device.load(
+        load_program("var n = 0\nvar held\nonevent buttons\nheld = button.center\nonevent button.center\nn++", "a")
+    )
+    device.feed("buttons", CENTER)
+    device.run(BUDGET)
+    assert (device.get_variable("n"), device.get_variable("held")) == ((0,), (1,))
+    device.feed("buttons", NO_BUTTON)
+    device.run(BUDGET)
+    assert device.get_variable("n") == (1,)
+
+
 def test_natives_of_the_lights_become_commands_in_order():
     device = device_with("onevent prox\ncall leds.top(32, 0, 99)\ncall leds.prox.v(1, 2)\ncall leds.top(0, -1, 5)")
     device.feed("proximity", NEAR)

@@ -95,7 +95,7 @@ class BehaviourHost:
 
     def restart(self) -> None:
         """As `load` or `start` did it, by a robot that is new again."""
-        self.device.body.renew()
+        self.device.renew()
         if isinstance(self._first, str):
             self.start(self._first, self._own)
         else:

@@ -124,8 +124,8 @@ class AsebaDevice:
     def load(self, program: ThymioProgram, *, warm: bool = False) -> None:
         """Replace the program; the robot is reset and the next `run` begins with the initialisation.
 
-        `warm`, as the robot changes its own behaviours: the variables of sensors hold, and a button that is still held
-        is no news.
+        A button that is still held is no news. `warm`, as the robot changes its own behaviours: the variables of
+        sensors hold, too.
         """
         if program.layout != self.layout:
             raise ValueError(f"a program for the layout {program.layout} found, expected {self.layout}")
@@ -139,9 +139,12 @@ class AsebaDevice:
         self._vm.set_bytecode((*words, *[0] * (self._target.bytecode_size - len(words))))
         if warm:
             self._inputs.restore()
-        else:
-            self._inputs.forget()
         self._run_again()
+
+    def renew(self) -> None:
+        """Become a new robot before `load`: unsaved settings and the radio's are forgotten, and what was sensed."""
+        self.body.renew()
+        self._inputs.forget()
 
     def feed(self, sensor: str, words: Sequence[int]) -> None:
         """Store a reading's words (int16) and let the events that the program handles wait.
