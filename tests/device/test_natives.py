@@ -230,6 +230,16 @@ def test_events_of_the_playground_cut_off_a_long_handler() -> None:
     assert device.take_notices() == ["motor cuts off prox, which takes more than 1000 instructions"]
 
 
+def test_in_the_playground_a_program_has_its_turn_before_an_event_cuts_it_off() -> None:
+    code = "var ready = 0\nvar heard = 0\nready = 1\nonevent hello\nheard = 1"
+    source = f'<network><event size="0" name="hello"/><node name="thymio-II">{code}</node></network>'
+    device = start(source, DeviceOptions(events="playground"))
+    device.receive_event("hello", ())
+    run(device)
+    assert (device.get_variable("ready"), device.get_variable("heard")) == ((1,), (1,))
+    assert device.take_notices() == []
+
+
 def test_no_native_of_the_robot_is_left_without_a_function() -> None:
     device = AsebaDevice()
     functions = native_functions(device._outputs.send, device.body)

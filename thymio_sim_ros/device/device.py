@@ -172,7 +172,7 @@ class AsebaDevice:
         turn = queue.policy.turn
         end = vm.instructions + budget
         while self.is_busy and vm.instructions < end:
-            if not vm.is_active or (queue.policy.kills and queue.waits):
+            if not vm.is_active or (queue.policy.kills and queue.waits and vm.instructions > self._begun):
                 self._start_next()
             elif queue.has_incoming and vm.instructions - self._begun >= turn:
                 self._start_global(queue.take_incoming())
