@@ -100,6 +100,58 @@ def test_the_program_entry_starts_the_user_s_program_for_good():
     assert robot.top == (1, 2, 3)
 
 
+def begun_anew(robot: HandheldRobot, how: str) -> None:
+    """Switched off and on again, or reset and let run; then the menu's two seconds pass."""
+    if how == "switched on":
+        robot.device.switch_off()
+        robot.tick()
+    else:
+        robot.device.reset()
+    robot.host.resume()
+    robot.tick(100)
+
+
+@pytest.mark.parametrize("how", ["switched on", "reset"])
+def test_a_menu_that_begins_anew_still_has_the_user_s_program(how):
+    robot = HandheldRobot.switched_on(MENU, OWN)
+    robot.touch("right")
+    begun_anew(robot, how)
+    assert robot.top == COLOURS["program"]
+    robot.touch("center")
+    assert robot.running == "own"
+
+
+@pytest.mark.parametrize("entries", [0, 1])
+def test_a_robot_that_was_switched_off_in_a_behaviour_is_switched_on_as_at_first(entries):
+    robot = HandheldRobot.switched_on(MENU, OWN)
+    robot.tick(100)
+    for _ in range(entries):
+        robot.touch("right")
+    robot.touch("center")
+    begun_anew(robot, "switched on")
+    assert (robot.running, robot.top) == (MENU, COLOURS["program"])
+
+
+def test_a_robot_with_a_program_from_a_computer_is_switched_on_with_that():
+    robot = HandheldRobot()
+    robot.host.load(asking("mine.aesl", "menu.back", 0, "onevent button.left\nemit menu.back"))
+    robot.touch("left")
+    robot.touch("right")
+    robot.touch("center")
+    assert robot.running == "friendly"
+    begun_anew(robot, "switched on")
+    assert robot.running == "mine"
+
+
+def test_what_is_not_flashed_is_lost_when_a_robot_is_switched_on_in_a_behaviour():
+    robot = HandheldRobot.switched_on(MENU)
+    robot.tick(100)
+    robot.touch("center")
+    robot.device.body.settings[0] = 5
+    begun_anew(robot, "switched on")
+    assert robot.device.body.settings[0] == 0
+
+
 def test_a_program_from_a_computer_ends_a_behaviour_with_its_wheels_stopped():
     robot = HandheldRobot.switched_on("obedient")
     robot.touch("forward")

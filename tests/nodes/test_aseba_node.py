@@ -355,6 +355,20 @@ def test_a_robot_is_switched_off_and_on_again(ros, simulation, runtime):
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > stopped.x_m + 0.02)
 
 
+def test_a_robot_that_was_switched_on_with_the_menu_is_so_again(ros, simulation, runtime):
+    sim = simulation()
+    runtime(behaviour="menu")
+    status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
+    center = ros.publisher(Bool, "/press/center")
+    sim.step(2.2)
+    center.publish(Bool(data=True))
+    sim.until(lambda: status and values(status[-1])["program"] == "friendly.aesl")
+    ros.publisher(Empty, "/shutdown").publish(Empty())
+    sim.until(lambda: values(status[-1])["state"] == "off")
+    assert ros.call(Trigger, "/aseba/run").success
+    sim.until(lambda: (values(status[-1])["program"], values(status[-1])["state"]) == ("menu.aesl", "running"))
+
+
 def test_a_program_writes_on_its_card(ros, simulation, runtime, tmp_path):
     sim = simulation()
     runtime("var s\nvar n\ncall sd.open(1, s)\ncall sd.write([5], n)", card=str(tmp_path / "card"))

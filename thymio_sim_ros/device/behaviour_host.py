@@ -19,6 +19,7 @@ from thymio_sim_ros import registry
 from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.program import ProgramError, ThymioProgram, load_program
+from thymio_sim_ros.device.status import OFF
 
 __all__ = ["ENTRIES", "MENU", "BehaviourHost", "built_in", "is_internal"]
 
@@ -90,16 +91,20 @@ class BehaviourHost:
         program = built_in(name, self.device.layout)
         self._first, self._own = name, _unless_empty(own)
         self._entry = next((entry for entry, known in ENTRIES.items() if known == name), PROGRAM_ENTRY)
-        self._run(program, warm=False)
-        self._tell_menu(POWER_ON_TICKS)
+        self._run(program, warm=False, wait=POWER_ON_TICKS)
 
     def restart(self) -> None:
         """As `load` or `start` did it, by a robot that is new again."""
         self.device.renew()
-        if isinstance(self._first, str):
-            self.start(self._first, self._own)
+        self._begin()
+
+    def resume(self) -> None:
+        """Let events run (again); a robot that is off is switched on with what `load` or `start` gave it."""
+        if self.device.status.state != OFF or self.program is self._first:
+            self.device.resume()
         else:
-            self.load(self._first)
+            self.device.body.settings.restart()
+            self._begin()
 
     def take_events(self) -> list[EmittedEvent]:
         """What the program emitted since the last time, for others to hear; what it asks of the robot is done."""
@@ -119,7 +124,6 @@ class BehaviourHost:
         try:
             if event.name == _BACK:
                 self._run(built_in(MENU, self.device.layout), warm=True)
-                self._tell_menu(0)
             elif event.name == _START and event.args:
                 self._start_entry(event.args[0])
         except ProgramError as error:
@@ -136,13 +140,16 @@ class BehaviourHost:
         self._entry = entry
         self._run(program, warm=entry != PROGRAM_ENTRY)
 
-    def _run(self, program: ThymioProgram, *, warm: bool) -> None:
-        self.program = program
-        self.device.load(program, warm=warm)
+    def _begin(self) -> None:
+        if isinstance(self._first, str):
+            self.start(self._first, self._own)
+        else:
+            self.load(self._first)
 
-    def _tell_menu(self, wait: int) -> None:
-        if self.device.declares(_OPEN):
-            self.device.receive_event(_OPEN, (self._entry, int(self._own is not None), wait))
+    def _run(self, program: ThymioProgram, *, warm: bool, wait: int = 0) -> None:
+        self.program = program
+        greeting = EmittedEvent(_OPEN, (self._entry, int(self._own is not None), wait))
+        self.device.load(program, warm=warm, greeting=greeting)
 
 
 def _unless_empty(program: ThymioProgram | None) -> ThymioProgram | None:

@@ -67,6 +67,7 @@ class AsebaDevice:
         self._events: list[EmittedEvent] = []
         self._watched: frozenset[int] = frozenset()
         self._happened: list[str] = []
+        self._greeting: GlobalEvent | None = None
         self._notices: list[str] = []
         self._noticed: set[str] = set()
         self._are_periods_new = False
@@ -121,16 +122,19 @@ class AsebaDevice:
             return DeviceStatus(self._state)
         return DeviceStatus(self._state, self._event, self._program.line_of(self._vm.pc), pc=self._vm.pc)
 
-    def load(self, program: ThymioProgram, *, warm: bool = False) -> None:
+    def load(self, program: ThymioProgram, *, warm: bool = False, greeting: EmittedEvent | None = None) -> None:
         """Replace the program; the robot is reset and the next `run` begins with the initialisation.
 
         A button that is still held is no news. `warm`, as the robot changes its own behaviours: the variables of
-        sensors hold, too.
+        sensors hold, too. `greeting` is an event that the program, if it declares it, hears whenever it has begun.
         """
         if program.layout != self.layout:
             raise ValueError(f"a program for the layout {program.layout} found, expected {self.layout}")
         self._program = program
         self._names = [name for name, _ in program.events]
+        self._greeting = None
+        if greeting is not None and greeting.name in self._names:
+            self._greeting = GlobalEvent(self._names.index(greeting.name), self.node_id, greeting.args)
         self._handled = frozenset(0xFFFE - event.number for event in program.program.events)
         self._inputs.wanted = self._handled | self._watched | {self._rc5}
         self._vm.clear_breakpoints()
@@ -446,6 +450,8 @@ class AsebaDevice:
         vm.random_state = (self.node_id - 1) * 25173 & 0xFFFF  # robots differ, a run repeats itself
         self._event, self._begun = INIT, vm.instructions
         self._queue.reset()
+        if self._greeting is not None:
+            self._queue.receive(self._greeting)
         self._rules.reset()
         self._outputs.reset(vm)
         self.body.reset()

@@ -108,7 +108,7 @@ class DevicePorts:
         self._shutdown = node.create_subscription(Empty, names.topic("shutdown"), self._on_shutdown, qos.EVENTS)
         self._senses = self._sense()
         controls = {
-            "run": self.device.resume,
+            "run": self._host.resume,
             "pause": self.device.pause,
             "step": self.device.step,
             "step_line": self.device.step_line,
