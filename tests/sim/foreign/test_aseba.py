@@ -11,6 +11,7 @@ import pytest
 from tests.sim.builders import make
 from tests.sim.images import BLACK, WHITE, png
 from thymio_sim_ros.sim import playground, source, xml_tree
+from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.fields import FieldError
 from thymio_sim_ros.sim.foreign import Conversion, aseba
 from thymio_sim_ros.sim.geometry import Pose
@@ -34,6 +35,11 @@ def converted(body: str, world: str = WORLD) -> Conversion:
 
 def shape(body: str) -> dict[str, Any]:
     return converted(body).shapes[1]
+
+
+def _proximity(world: World) -> list[tuple[int, ...]]:
+    """What the sensors that see around count in the next tick."""
+    return [reading.words for _, sensor, reading in world.step().readings if sensor == "proximity"]
 
 
 def refused(body: str, world: str = WORLD) -> FieldError:
@@ -62,7 +68,20 @@ def test_a_wall_is_a_box_of_centimetres() -> None:
 def test_a_mass_makes_it_movable_in_proportion_to_the_robot() -> None:
     assert shape('<wall x="20" y="30" l1="10" l2="2" h="5" mass="200" color="orange"/>')["mass_kg"] == 0.27
     assert shape('<cylinder x="20" y="30" r="2" h="5" mass="0" color="orange"/>')["mass_kg"] == 0.001
+    assert shape('<cylinder x="20" y="30" r="2" h="5" mass="1e9" color="orange"/>')["mass_kg"] == 1000.0
     assert "mass_kg" not in shape('<cylinder x="20" y="30" r="2" h="5" mass="-1" color="orange"/>')
+
+
+@pytest.mark.parametrize("height", ["", 'h="0"', 'h="0.01"'])
+def test_a_thing_without_a_height_stands_in_the_way_unseen(height: str) -> None:
+    things = f'<wall x="70" y="30" l1="2" l2="20" {height} color="white"/>'
+    things += f'<cylinder x="20" y="30" r="2" {height} color="white"/>'
+    things += f'<door closedX="70" closedY="5" openedX="70" openedY="5" l1="2" l2="2" {height} color="white"/>'
+    world = World(playground.loads(text(WORLD + things + ROBOT), "mine"))
+    world.post("thymio_0", MotorTargets(500, 500))
+    seen = [words for _ in range(200) for words in _proximity(world)]
+    assert max(map(max, seen)) == 0
+    assert world.robots["thymio_0"].pose.x_m == pytest.approx(0.69 - 0.08, abs=0.003)
 
 
 def test_a_cylinder_is_a_cylinder() -> None:

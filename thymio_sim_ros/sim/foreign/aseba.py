@@ -27,7 +27,9 @@ LEAST_MOVE_S = 0.01
 """A door that opens at once."""
 KG_PER_MASS = 0.27 / 200
 """Aseba's masses have no unit; there the robot has 200 (thymio-robot.md section 1)."""
-LEAST_MASS_KG = 0.001
+LEAST_MASS_KG, MOST_MASS_KG = 0.001, 1000.0
+LEAST_HEIGHT_M = 0.001
+"""Of a thing without a height: it stands in the way and is not seen."""
 DEFAULT_COLOR = "#808080"
 """Of things whose color is not declared: the format does not say which it is."""
 
@@ -158,7 +160,7 @@ class _Reader:
                 "y_m": _length(element, "y"),
                 "size_x_m": _length(element, "l1"),
                 "size_y_m": _length(element, "l2"),
-                "height_m": _length(element, "h"),
+                "height_m": _height(element),
                 "yaw_rad": turned(_number(element, "angle")),
                 "color": self._color_of(element),
                 "mass_kg": _mass_kg(element),
@@ -174,7 +176,7 @@ class _Reader:
                 "x_m": _length(element, "x"),
                 "y_m": _length(element, "y"),
                 "radius_m": _length(element, "r"),
-                "height_m": _length(element, "h"),
+                "height_m": _height(element),
                 "color": self._color_of(element),
                 "mass_kg": _mass_kg(element),
             },
@@ -194,7 +196,7 @@ class _Reader:
                 "opened_y_m": _length(element, "openedY"),
                 "size_x_m": _length(element, "l1"),
                 "size_y_m": _length(element, "l2"),
-                "height_m": _length(element, "h"),
+                "height_m": _height(element),
                 "move_s": max(LEAST_MOVE_S, _number(element, "moveDuration")),
                 "color": self._color_of(element),
             },
@@ -258,7 +260,12 @@ def _color(element: Element) -> str:
 def _mass_kg(element: Element) -> float | None:
     """Of a thing that can be moved; None for one that cannot."""
     mass = _number(element, "mass", default=-1.0)
-    return None if mass < 0 else max(LEAST_MASS_KG, rounded(mass * KG_PER_MASS))
+    return None if mass < 0 else max(LEAST_MASS_KG, min(MOST_MASS_KG, rounded(mass * KG_PER_MASS)))
+
+
+def _height(element: Element) -> float:
+    height_m = _length(element, "h")
+    return LEAST_HEIGHT_M if 0.0 <= height_m < LEAST_HEIGHT_M else height_m
 
 
 def _length(element: Element, attribute: str) -> float:
