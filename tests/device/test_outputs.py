@@ -19,7 +19,7 @@ class Told(Outputs):
 
     def __init__(self) -> None:
         self.settings = Settings()
-        self.rules = OwnRules(target().addresses)
+        self.rules = OwnRules(target().addresses, lambda _address: True)
         super().__init__(THYMIO, self.settings, self.rules)
         self.machine = VirtualMachine(target())
         self.reset(self.machine)

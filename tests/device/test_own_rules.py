@@ -19,7 +19,8 @@ class Robot:
     def __init__(self, layout: str = THYMIO) -> None:
         self.addresses = target(layout).addresses
         self.memory = [0] * target(layout).variables_size
-        self.rules = OwnRules(self.addresses)
+        self.told: set[int] = set()
+        self.rules = OwnRules(self.addresses, self.told.__contains__)
         self.lights: dict[str, tuple[int, ...]] = {}
         self.sounds: list[int] = []
 
@@ -29,6 +30,7 @@ class Robot:
             address, size = self.addresses[name]
             assert len(words) == size
             self.memory[address : address + size] = words
+            self.told.add(address)
         commands = [command for _ in range(looks) for command in self.rules.look(self.memory)]
         for command in commands:
             if isinstance(command, ShowOnLeds):
@@ -141,6 +143,12 @@ def test_a_program_that_uses_sound_ends_the_sounds_of_buttons(robot: Robot) -> N
 def test_warm_is_red_and_cold_is_blue(robot: Robot, tenths: int, red: int, blue: int) -> None:
     robot.look({"temperature": (tenths,)})
     assert robot.lights["temperature"] == (red, blue)
+
+
+def test_zero_is_a_reading_too(robot: Robot) -> None:
+    robot.look()
+    robot.look({"temperature": (0,), "_vbat": (0, 0)})
+    assert robot.lights == {"temperature": (0, 32), "battery": (32, 0, 0)}
 
 
 def test_the_sound_light_shows_the_peak_and_fades_while_a_program_listens(robot: Robot) -> None:

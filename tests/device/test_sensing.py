@@ -13,6 +13,7 @@ from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim import playground
+from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.commands import (
     Clap,
     ConnectCharger,
@@ -218,7 +219,7 @@ def test_the_lights_of_the_battery_move_while_a_charger_is_connected():
         found = []
         for _ in range(round(seconds / 0.02)):
             runner.run(0.02)
-            found.append(dict(runner.world.snapshot().robots[0].leds)["battery"])
+            found.append(runner.world.robots["anna"].state(LedState).levels["battery"])
         return dict.fromkeys(found)
 
     runner.run(0.5)
@@ -232,6 +233,18 @@ def test_the_lights_of_the_battery_move_while_a_charger_is_connected():
     runner.post("anna", ConnectCharger(False))
     runner.run(0.1)
     assert list(shown(2.0)) == [(32, 32, 32)]
+
+
+def test_zero_degrees_are_shown_by_a_program_that_was_loaded_in_the_cold():
+    runner, _ = alone("", noise=False)
+    runner.post("anna", SetTemperature(0.0))
+    runner.run(1.1)
+    runner.load("anna", load_program("var a", "another"))
+    runner.run(0.1)
+    lights = runner.world.robots["anna"].state(LedState).levels
+    assert lights["temperature"] == (0, 0)  # nothing was measured yet
+    runner.run(1.0)
+    assert runner.world.robots["anna"].state(LedState).levels["temperature"] == (0, 32)
 
 
 TALKER = "var n = 0\ncall prox.comm.enable(1)\nprox.comm.tx = 100 * _id\nonevent prox.comm\nn++"

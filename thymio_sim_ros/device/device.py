@@ -59,7 +59,7 @@ class AsebaDevice:
         self._intensity = self._addresses["mic.intensity"][0]
         self._sound_finished = self._event_index("sound.finished")
         self._rc5 = self._event_index("rc5")
-        self._rules = OwnRules(self._addresses)
+        self._rules = OwnRules(self._addresses, lambda address: self._inputs.knows(address))
         self._rules_ns = 0
         self._now_ns = 0
         self._event = ""
@@ -446,7 +446,8 @@ class AsebaDevice:
         own = {"_id": (self.node_id,), "event.source": (self.node_id,), "sd.present": (has_card,)}
         for name, words in (own | dict(self._first_values)).items():
             vm.write_variables(self._addresses[name][0], words)
-        self._note_writing()
+        self._is_changed = True
+        self._inputs.note_clearing()
         vm.random_state = (self.node_id - 1) * 25173 & 0xFFFF  # robots differ, a run repeats itself
         self._event, self._begun = INIT, vm.instructions
         self._queue.reset()

@@ -23,7 +23,9 @@ class Inputs:
         self._sensors = bindings.sensors(layout)
         self._slow, self._vm, self._happen = slow, vm, happen
         self._heard: dict[str, int] = {}
-        self._writes = 0
+        self._writes = self._cleared = 0
+        """Times that somebody may have written to the memory, and this number when it was cleared."""
+        self._sensor_at = {slot.address: name for name, binding in self._sensors.items() for slot in binding.slots}
         self._last: dict[str, tuple[tuple[int, ...], int]] = {}
         """The last words of each sensor, and the number of writes then."""
 
@@ -31,6 +33,16 @@ class Inputs:
         """The program, or somebody else, may have written to the memory."""
         self._writes += 1
         self.is_news = True
+
+    def note_clearing(self) -> None:
+        """The memory was cleared."""
+        self.note_writing()
+        self._cleared = self._writes
+
+    def knows(self, address: int) -> bool:
+        """Whether a variable was fed since the memory was cleared; True for one that no sensor feeds."""
+        sensor = self._sensor_at.get(address)
+        return sensor is None or (sensor in self._last and self._last[sensor][1] >= self._cleared)
 
     def feed(self, sensor: str, words: Sequence[int], now_ns: int) -> None:
         """Store a reading's words. KeyError: no such sensor; ValueError: wrong number of words."""
@@ -54,6 +66,7 @@ class Inputs:
     def restore(self) -> None:
         """Write all that was fed last to a memory that was cleared."""
         for sensor, (words, _) in self._last.items():
+            self._last[sensor] = (words, self._writes)
             for address, _, begin, end in self._sensors[sensor].runs:
                 self._vm.write_variables(address, words[begin:end])
 

@@ -218,9 +218,12 @@ def _place(spans: Sequence[tuple[int, int]], address: int, size: int) -> tuple[i
 class OwnRules:
     """The rules of one robot. Invariant: each tells a group only when it looks different from the last time."""
 
-    def __init__(self, addresses: Mapping[str, tuple[int, int]]) -> None:
-        """`addresses`: where the variables lie; a rule that misses one of its variables is left out."""
-        self._addresses = addresses
+    def __init__(self, addresses: Mapping[str, tuple[int, int]], knows: Callable[[int], bool]) -> None:
+        """`addresses`: where the variables lie; a rule that misses one of its variables is left out.
+
+        `knows` tells whether something was measured for an address since the reset.
+        """
+        self._addresses, self._knows = addresses, knows
         self._buttons = [addresses[name][0] for name in _Buttons.variables]
         self._spans = _spans(addresses)
         self._pressed = [0] * len(self._buttons)
@@ -275,7 +278,7 @@ class OwnRules:
         """One look at the variables: what changes on lights and loudspeaker."""
         parts = [memory[begin:end] for begin, end in self._spans]
         changed = {number for number, part in enumerate(parts) if self._last is None or part != self._last[number]}
-        if not changed and not self.is_moving:
+        if not changed and not self.is_moving and not self._blind:
             return ()
         self._last = parts
         commands = [*self._lights(parts, changed), *self._sounds(memory)]
@@ -284,13 +287,13 @@ class OwnRules:
 
     def _lights(self, parts: Sequence[Sequence[int]], changed: set[int]) -> Iterator[Command]:
         for rule, places in self._rules:
-            if not rule.is_moving and not any(part in changed for part, _, _ in places):
-                continue
-            words = [parts[part][begin:end] for part, begin, end in places]
             if rule in self._blind:
-                if places and not any(map(any, words)):
+                if rule.variables and not any(self._knows(self._addresses[name][0]) for name in rule.variables):
                     continue  # nothing was measured since the reset
                 self._blind.discard(rule)
+            elif not rule.is_moving and not any(part in changed for part, _, _ in places):
+                continue
+            words = [parts[part][begin:end] for part, begin, end in places]
             for group, levels in rule.show(words).items():
                 if group not in self._taken and levels != self._shown.get(group, (0,) * len(levels)):
                     self._shown[group] = levels
