@@ -15,6 +15,7 @@ from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim import playground as playgrounds
 from thymio_sim_ros.sim.commands import BodyTwist, MoveRobot, WheelVelocities
+from thymio_sim_ros.sim.playground import RobotStart
 
 TALK = """<network><event size="1" name="hello"/><node name="thymio-II">
 var heard[2]
@@ -226,6 +227,33 @@ def test_a_reset_forgets_settings_and_radio():
     runner.reset()
     assert runner.devices["bert"].get_variable("was") == (0,)
     assert runner.devices["bert"].get_variable("_id") == (2,)
+
+
+def test_the_program_of_a_robot_that_left_rests_and_begins_anew_when_it_is_back():
+    code = "var n = 0\ntimer.period[0] = 20\nonevent timer0\nn++\nmotor.left.target = n\nemit tick n"
+    program = load_program(f'<network><event size="1" name="tick"/><node name="thymio-II">{code}</node></network>', "t")
+    runner = Runner(playgrounds.loads(TWO, "two"), program)
+    runner.run(0.5)
+    runner.world.remove("anna")
+    speakers = set()
+    for _ in range(50):
+        runner.step()
+        speakers.update(robot for robot, _ in runner.emitted)
+    assert speakers == {"bert"}
+    runner.world.spawn(RobotStart("anna", 0.0, 0.5))
+    runner.run(0.5)
+    assert runner.devices["anna"].get_variable("n") == (24,)
+    assert runner.devices["bert"].get_variable("n") == (75,)
+
+
+def test_a_world_that_is_reset_has_the_programs_of_robots_that_had_left():
+    runner = Runner(playgrounds.loads(TWO, "two"), load_program("var n = 0\nonevent motor\nn++", "t"))
+    runner.run(0.5)
+    runner.world.remove("anna")
+    runner.run(0.5)
+    runner.reset()
+    runner.run(0.5)
+    assert [device.get_variable("n") for device in runner.devices.values()] == [(50,), (50,)]
 
 
 def test_a_robot_follows_the_line_that_another_one_draws():

@@ -77,6 +77,8 @@ class Runner:
                 host.load(program)
         self._bound = frozenset(bindings.sensor_names())
         self.emitted: list[tuple[str, EmittedEvent]] = []
+        self._here: dict[str, AsebaDevice] = {}
+        """Devices of the robots that are in the world; the others rest."""
         self._start()
 
     @property
@@ -87,7 +89,8 @@ class Runner:
     def step(self) -> StepResult:
         """One tick of the world, and what the programs make of it."""
         result = self.world.step()
-        bound, devices = self._bound, self.devices
+        self._look_who_is_here()
+        bound, devices = self._bound, self._here
         for robot, sensor, reading in result.readings:
             if sensor in bound and robot in devices:
                 devices[robot].feed(sensor, reading.words)
@@ -121,6 +124,7 @@ class Runner:
     def load(self, robot: str, program: ThymioProgram) -> None:
         """Give a robot that has a device another program, which begins now; KeyError: it has none."""
         self.hosts[robot].load(program)
+        self._look_who_is_here()
         self._run_devices()
 
     def reset(self) -> None:
@@ -131,19 +135,31 @@ class Runner:
         self._start()
 
     def _start(self) -> None:
-        for device in self.devices.values():
+        self._here = dict(self.devices)
+        for device in self._here.values():
             device.advance(self.now_ns)
         self._run_devices()
+
+    def _look_who_is_here(self) -> None:
+        """Robots come and go; one that is back begins anew."""
+        robots = self.world.robots
+        if len(self._here) == len(self.devices) and self.devices.keys() <= robots.keys():
+            return
+        here = {name: device for name, device in self.devices.items() if name in robots}
+        for name in here:
+            if name not in self._here:
+                self.hosts[name].restart()
+        self._here = here
 
     def _run_devices(self) -> None:
         self.emitted.clear()
         for _ in range(MOST_ROUNDS):
-            for device in self.devices.values():
+            for device in self._here.values():
                 device.run(BUDGET)
-            speakers = [name for name, device in self.devices.items() if device.has_emitted]
+            speakers = [name for name, device in self._here.items() if device.has_emitted]
             if sum(self._pass_on(name, self.hosts[name]) for name in speakers) == 0:
                 break
-        for name, device in self.devices.items():
+        for name, device in self._here.items():
             for command in device.take_commands():
                 self.world.post(name, command)
 
@@ -154,7 +170,7 @@ class Runner:
         heard = int(sender.program is not running)
         for event in events:
             self.emitted.append((name, event))
-            for device in self.devices.values():
+            for device in self._here.values():
                 if device is not sender.device and device.hears(sender.device) and device.declares(event.name):
                     device.receive_event(event.name, event.args, source=sender.device.node_id)
                     heard += 1
