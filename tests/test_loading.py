@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import base64
+import errno
 import json
 from pathlib import Path
 
 import pytest
 
 from tests.sim.builders import FLOOR, ROBOT
-from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros import resources
+from thymio_sim_ros.loading import load_playground, read_text
 from thymio_sim_ros.sim.playground import PlaygroundError
 
 OURS = json.dumps({"format": 1, "title": "Ours", "shapes": [FLOOR], "robots": [ROBOT]})
@@ -58,3 +60,31 @@ def test_errors_of_a_text_without_a_name_say_so() -> None:
 def test_an_upload_that_is_not_base64_is_refused() -> None:
     with pytest.raises(PlaygroundError, match="base64"):
         load_playground("data:;name=a.json;base64,###")
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "iso-8859-1"])
+def test_a_program_is_read_in_the_encoding_that_it_says(tmp_path: Path, encoding: str) -> None:
+    path = tmp_path / "grün.aesl"
+    text = f'<?xml version="1.0" encoding="{encoding}"?>\n<network><node name="thymio-II"># größer</node></network>'
+    path.write_bytes(text.encode(encoding))
+    assert read_text(str(path)) == (text, "grün.aesl")
+
+
+def test_a_program_that_is_no_text_is_refused_with_its_place(tmp_path: Path) -> None:
+    path = tmp_path / "latin.aesl"
+    path.write_bytes(b"var a\n# gr\xfcn")
+    with pytest.raises(
+        resources.ResourceError, match=r"latin\.aesl: line 2, column 5: found byte fc, expected text in"
+    ):
+        read_text(str(path))
+
+
+def test_a_program_that_cannot_be_read_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(path: Path) -> bytes:
+        raise PermissionError(errno.EACCES, "Permission denied", str(path))
+
+    path = tmp_path / "secret.aesl"
+    path.touch()
+    monkeypatch.setattr(Path, "read_bytes", refuse)
+    with pytest.raises(resources.ResourceError, match=r"secret\.aesl: Permission denied; expected a file that can be"):
+        read_text(str(path))

@@ -10,6 +10,8 @@ import re
 import urllib.parse
 
 from aseba_vm import AeslError
+from aseba_vm.errors import TextError
+from aseba_vm.textfile import decoded
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.program import ThymioProgram, load_program, parse
@@ -52,20 +54,22 @@ def _load_upload(name: str, content: str) -> tuple[str, Playground]:
 def read_program(path: str, layout: str = THYMIO) -> ThymioProgram:
     """The program of a built-in behaviour's name or a file, for a layout; "none" is the empty one.
 
-    Raises ProgramError for what the text says, ResourceError for a file that is not there or no text, OSError.
+    Raises ProgramError for what the text says, ResourceError for a file that cannot be read.
     """
     return load_program(*read_text(path), layout)
 
 
 def read_text(path: str) -> tuple[str, str]:
-    """Text and name of what `path` stands for in `read_program`. ResourceError, OSError."""
+    """Text and name of what `path` stands for in `read_program`. ResourceError."""
     if path == NO_PROGRAM:
         return "", NO_PROGRAM
     found = resources.find_program(path)
     try:
-        return found.read_text(encoding="utf-8"), found.name
-    except UnicodeDecodeError as error:
-        raise resources.ResourceError(f"{found}: byte {error.start} is not UTF-8 text") from error
+        return decoded(found.read_bytes()).text, found.name
+    except TextError as error:
+        raise resources.ResourceError(f"{found}: line {error.line}, column {error.column}: {error}") from error
+    except OSError as error:
+        raise resources.ResourceError(f"{found}: {error.strerror}; expected a file that can be read") from error
 
 
 def check_behaviour(name: str, layout: str = THYMIO) -> str:
