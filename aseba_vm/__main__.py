@@ -12,7 +12,6 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 from aseba_vm import aesl
 from aseba_vm.aesl_reader import MAX_EVENT_WORDS
@@ -24,6 +23,7 @@ from aseba_vm.layout import formatted
 from aseba_vm.lexer import is_name
 from aseba_vm.listing import listing
 from aseba_vm.outbox import Emitted, NativeCalled
+from aseba_vm.output import end_as_interrupted, print_bytes, rewrite_file, standard_output, write_file
 from aseba_vm.sources import Source, SourceError, network_of, read_text, sources_of
 from aseba_vm.target import TargetDescription
 from aseba_vm.targets import THYMIO_II
@@ -60,7 +60,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command: Callable[[argparse.Namespace], int] = options.command
     options.text = ""
     try:
-        return command(options)
+        with standard_output():
+            return command(options)
     except SourceError as refusal:
         print(_told(refusal, options), file=sys.stderr)
         return WRONG_PROGRAM
@@ -72,11 +73,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except TextError as error:
         print(error.located(options.file), file=sys.stderr)
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nobody reads on, and no more is to be said
+        pass  # nobody reads on, and no more is to be said
     except OSError as error:
-        print(f"aseba: {error.filename or options.file}: {error.strerror}", file=sys.stderr)
+        print(f"aseba: {error.filename}: {error.strerror}", file=sys.stderr)
     except (_UseError, TargetError) as error:
         print(f"aseba: {error}", file=sys.stderr)
+    except KeyboardInterrupt:
+        end_as_interrupted()
     return WRONG_USE
 
 
@@ -101,7 +104,7 @@ def _compile(options: argparse.Namespace) -> int:
     if options.output is None:
         sys.stdout.write(text)
     else:
-        Path(options.output).write_text(text, encoding="utf-8")
+        write_file(options.output, text.encode())
     return DONE
 
 
@@ -188,9 +191,9 @@ def _fmt(options: argparse.Namespace) -> int:
         return DONE if result == file.text else WRONG_PROGRAM
     if options.write and options.file != "-":
         if result != file.text:
-            Path(options.file).write_bytes(file.encoded(result))
+            rewrite_file(options.file, file.encoded(result))
     else:
-        sys.stdout.write(result)
+        print_bytes(file.encoded(result))
     return DONE
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from aseba_vm import aesl
 from aseba_vm.compiler import Stages, compile_stages
 from aseba_vm.errors import AeslError, CompileError
+from aseba_vm.output import named
 from aseba_vm.target import TargetDescription
 from aseba_vm.textfile import TextFile, decoded
 
@@ -48,7 +49,9 @@ class SourceError(Exception):
 
 def read_text(name: str) -> TextFile:
     """Return the text of a file; ``-`` is the standard input. Raises OSError, TextError."""
-    return decoded(sys.stdin.buffer.read() if name == "-" else Path(name).read_bytes())
+    with named(name):
+        data = sys.stdin.buffer.read() if name == "-" else Path(name).read_bytes()
+    return decoded(data)
 
 
 def network_of(text: str, name: str) -> aesl.Network:

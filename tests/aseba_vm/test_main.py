@@ -1,8 +1,11 @@
 import codecs
+import errno
 import io
 import json
+import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 
@@ -10,6 +13,8 @@ import pytest
 
 from aseba_vm.__main__ import main
 
+ASEBA = [sys.executable, "-m", "aseba_vm"]
+ASCII = os.environ | {"PYTHONIOENCODING": "ascii"}
 GOOD = "var n = 1\nonevent ping\nn = n + event.args[0]\nemit ping n\ncall leds.top(n, 0, 32)\n"
 
 AESL = """<!DOCTYPE aesl-source>
@@ -271,6 +276,66 @@ def test_formatting_changes_nothing_else_in_a_file(file):
     assert main(["fmt", "--write", str(path)]) == 0
     expected = text.replace("\r\nn = 1", "\r\n\tn = 1")
     assert path.read_bytes() == codecs.BOM_UTF8 + expected.encode()
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "iso-8859-1"])
+def test_formatted_text_keeps_its_encoding_on_the_output(tmp_path, encoding):
+    path = tmp_path / "robot.aesl"
+    text = f"<?xml version='1.0' encoding='{encoding}'?>\n{AESL}".format(code="1 # grün")
+    path.write_bytes(text.encode(encoding))
+    formatted = subprocess.run([*ASEBA, "fmt", str(path)], stdout=subprocess.PIPE, check=True, env=ASCII).stdout
+    assert main(["fmt", "--write", str(path)]) == 0
+    assert formatted == path.read_bytes()
+    assert "\tn = 1 # grün\n" in formatted.decode(encoding)
+
+
+def test_letters_that_the_output_lacks_are_told_as_escapes(file):
+    command = [*ASEBA, "run", file("var höhe = 3")]
+    assert subprocess.run(command, stdout=subprocess.PIPE, check=True, env=ASCII).stdout == b"h\\xf6he 3\n"
+
+
+def test_a_file_survives_when_its_new_text_cannot_be_written(file, capsys, monkeypatch):
+    def is_full(handle, mode):
+        os.close(handle)
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    name = file(AESL.format(code="1"), "robot.aesl")
+    before = pathlib.Path(name).read_bytes()
+    monkeypatch.setattr(os, "fdopen", is_full)
+    assert main(["fmt", "--write", name]) == 2
+    assert capsys.readouterr().err == f"aseba: {name}: No space left on device\n"
+    assert pathlib.Path(name).read_bytes() == before
+    assert os.listdir(pathlib.Path(name).parent) == ["robot.aesl"]
+
+
+def test_a_file_behind_a_link_is_formatted_and_keeps_its_permissions(file, tmp_path):
+    path = pathlib.Path(file(AESL.format(code="1"), "robot.aesl"))
+    path.chmod(0o640)
+    link = tmp_path / "link.aesl"
+    link.symlink_to(path)
+    assert main(["fmt", "--write", str(link)]) == 0
+    assert link.is_symlink()
+    assert "\tn = 1\n" in path.read_text()
+    assert path.stat().st_mode & 0o777 == 0o640
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full here")
+def test_a_full_disk_is_told_with_what_was_written(file, capsys):
+    name = file(GOOD.replace("ping", "timer0").replace("emit timer0 n\n", ""))
+    assert main(["compile", name, "-o", "/dev/full"]) == 2
+    assert capsys.readouterr().err == "aseba: /dev/full: No space left on device\n"
+    with open("/dev/full", "w") as full:
+        ended = subprocess.run([*ASEBA, "dis", name], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (2, "aseba: standard output: No space left on device\n")
+
+
+def test_ctrl_c_ends_a_run_without_a_word(file):
+    command = [*ASEBA, "run", "--limit", "999999999999", "--trace", file("var n\nwhile n == 0 do n = 0 end")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        running.stdout.readline()  # it runs
+        running.send_signal(signal.SIGINT)
+        _, errors = running.communicate(timeout=60)
+    assert (running.returncode, errors) == (-signal.SIGINT, b"")
 
 
 def test_a_refused_file_is_not_rewritten(file):

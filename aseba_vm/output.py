@@ -1,0 +1,75 @@
+"""Where a command line writes, and how it ends: files, the standard output, Ctrl-C."""
+
+from __future__ import annotations
+
+import io
+import os
+import shutil
+import signal
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+STANDARD_OUTPUT = "standard output"
+
+
+def write_file(name: str, data: bytes) -> None:
+    """Write a file. Raises OSError."""
+    with named(name):
+        Path(name).write_bytes(data)
+
+
+def rewrite_file(name: str, data: bytes) -> None:
+    """Give a file another content; where that fails, it keeps its own. Raises OSError."""
+    with named(name):
+        path = Path(name).resolve()  # what a link leads to
+        with path.open("r+b"):
+            pass  # a file that may not be written is not replaced either
+        handle, new = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+            shutil.copymode(path, new)
+            os.replace(new, path)
+        except BaseException:
+            os.unlink(new)
+            raise
+
+
+def print_bytes(data: bytes) -> None:
+    """Write to the standard output what is already encoded. Raises OSError."""
+    sys.stdout.flush()
+    sys.stdout.buffer.write(data)
+
+
+@contextmanager
+def standard_output() -> Iterator[None]:
+    """Meanwhile letters that the standard output lacks become escapes, and its errors have a name. Raises OSError."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
+    try:
+        yield
+        sys.stdout.flush()
+    except OSError as error:
+        if error.filename is not None:
+            raise
+        # What is left of it goes nowhere: the end of the process would fail on it once more.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise OSError(error.errno, error.strerror, STANDARD_OUTPUT) from error
+
+
+def end_as_interrupted() -> None:
+    """End the process as Ctrl-C does, without a word: so the loop of a shell that started it ends, too."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.raise_signal(signal.SIGINT)
+
+
+@contextmanager
+def named(name: str) -> Iterator[None]:
+    """Meanwhile errors have the name of this file. Raises OSError."""
+    try:
+        yield
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, name) from error
