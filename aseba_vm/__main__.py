@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import signal
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -23,7 +24,7 @@ from aseba_vm.layout import formatted
 from aseba_vm.lexer import is_name
 from aseba_vm.listing import listing
 from aseba_vm.outbox import Emitted, NativeCalled
-from aseba_vm.output import end_as_interrupted, print_bytes, rewrite_file, standard_output, write_file
+from aseba_vm.output import end_by, print_bytes, rewrite_file, standard_output, write_file
 from aseba_vm.sources import Source, SourceError, network_of, read_text, sources_of
 from aseba_vm.target import TargetDescription
 from aseba_vm.targets import THYMIO_II
@@ -79,7 +80,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (_UseError, TargetError) as error:
         print(f"aseba: {error}", file=sys.stderr)
     except KeyboardInterrupt:
-        end_as_interrupted()
+        end_by(signal.SIGINT)
     return WRONG_USE
 
 

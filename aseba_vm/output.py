@@ -60,10 +60,10 @@ def standard_output() -> Iterator[None]:
         raise OSError(error.errno, error.strerror, STANDARD_OUTPUT) from error
 
 
-def end_as_interrupted() -> None:
-    """End the process as Ctrl-C does, without a word: so the loop of a shell that started it ends, too."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    signal.raise_signal(signal.SIGINT)
+def end_by(number: int) -> None:
+    """End the process as this signal does, without a word: on SIGINT the loop of a shell around it ends, too."""
+    signal.signal(number, signal.SIG_DFL)
+    signal.raise_signal(number)
 
 
 @contextmanager

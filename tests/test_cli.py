@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import socket
 import subprocess
 import sys
+import time
 
 import pytest
 
 from thymio_sim_ros import cli, runlog
+from thymio_sim_ros.interruption import Interruption
+from thymio_sim_ros.replay import replay
+from thymio_sim_ros.sim.tones import SAMPLE_NS
 
 
 def refused(capsys, *arguments):
@@ -191,3 +197,46 @@ def test_the_runner_stores_what_was_to_be_heard(capsys, tmp_path):
     assert sound.stat().st_size == 44 + 3906
     capsys.readouterr()
     assert "nowhere" in refused(capsys, "runner", "--sound", str(tmp_path / "nowhere" / "sound.wav"))
+
+
+COMMAND = (sys.executable, "-c", "import sys; from thymio_sim_ros import cli; sys.exit(cli.main(sys.argv[1:]))")
+LONG_S = "1e7"
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_run_that_is_interrupted_keeps_what_it_made(tmp_path, number):
+    log, sound = tmp_path / "run.jsonl", tmp_path / "sound.wav"
+    command = [*COMMAND, "runner", "--seconds", LONG_S, "--log", str(log), "--sound", str(sound)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        deadline = time.monotonic() + 120
+        while not (log.exists() and '"crc"' in log.read_text()):
+            assert running.poll() is None, running.communicate()
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        running.send_signal(number)
+        output, errors = running.communicate(timeout=120)
+    assert running.returncode == -number  # so that the loop of a shell around it ends, too
+    seconds = json.loads(output)["seconds"]
+    assert 0 < seconds < float(LONG_S)
+    assert errors == f"thymio-sim: stopped after {seconds:g} of 1e+07 seconds\n"
+    found = replay(log)
+    assert (found.is_complete, found.differs, found.seconds) == (True, None, pytest.approx(seconds))
+    assert sound.stat().st_size == 44 + seconds * 1e9 // SAMPLE_NS
+
+
+def test_a_second_ctrl_c_ends_at_once():
+    before = signal.getsignal(signal.SIGINT)
+    with Interruption() as interruption:
+        signal.raise_signal(signal.SIGINT)
+        assert interruption.number == signal.SIGINT
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full here")
+@pytest.mark.parametrize("arguments", [["runner", "--seconds", "0.1"], ["foxglove-layout"]])
+def test_a_full_disk_behind_the_output_is_one_line(arguments):
+    with open("/dev/full", "w") as full:
+        ended = subprocess.run([*COMMAND, *arguments], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (2, "thymio-sim: standard output: No space left on device\n")

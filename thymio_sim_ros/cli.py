@@ -10,12 +10,15 @@ import importlib.util
 import ipaddress
 import json
 import os
+import signal
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import thymio_sim_ros
+from aseba_vm.output import STANDARD_OUTPUT, end_by, standard_output
 from thymio_sim_ros import convert, foxglove_layout, resources
 from thymio_sim_ros.bridge.thread import check_free
 from thymio_sim_ros.device.card import Card, CardError
@@ -61,15 +64,18 @@ def main(argv: Sequence[str] | None = None) -> int:
     if command is not start_suite:
         arguments = arguments[1:]
     try:
-        code = command(arguments)
-        sys.stdout.flush()
-        return code
+        return command(arguments)
     except BrokenPipeError:  # who reads has enough, as `head` has
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+    except OSError as error:
+        if error.filename != STANDARD_OUTPUT:
+            raise
+        print(f"thymio-sim: {STANDARD_OUTPUT}: {error.strerror}", file=sys.stderr)
     except UsageError as error:
         print(f"thymio-sim: {error}", file=sys.stderr)
-        return USAGE_ERROR
+    except KeyboardInterrupt:
+        end_by(signal.SIGINT)
+    return USAGE_ERROR
 
 
 def start_suite(argv: Sequence[str]) -> int:
@@ -101,7 +107,7 @@ def start_suite(argv: Sequence[str]) -> int:
         _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
     _check_ros()
     if (wait := patience(len(robots))) is not None:
-        print(wait, flush=True)
+        _tell(wait)
     # A class room's robots stay apart, unless somebody has chosen otherwise (ros-packaging.md section 4).
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     from thymio_sim_ros.nodes import leftovers
@@ -110,7 +116,7 @@ def start_suite(argv: Sequence[str]) -> int:
     from thymio_sim_ros.nodes import all_nodes  # loads rcl
 
     try:
-        return all_nodes.run(suite, [], on_ready=lambda: print(greeting(suite, robots), flush=True))
+        return all_nodes.run(suite, [], on_ready=lambda: _tell(greeting(suite, robots)))
     finally:
         leftovers.remove_new(before)
 
@@ -120,6 +126,7 @@ def run_without_ros(argv: Sequence[str]) -> int:
     options = _runner_parser().parse_args(argv)
     device = _device(options)
     playground, program = _check_files(options.playground, _program(options), options.behaviour, device.layout)
+    from thymio_sim_ros.interruption import Interruption
     from thymio_sim_ros.run_sound import run_with_sound
     from thymio_sim_ros.runlog import RunLog
     from thymio_sim_ros.runner import Runner
@@ -139,21 +146,27 @@ def run_without_ros(argv: Sequence[str]) -> int:
             log=log,
         )
         started = time.perf_counter()
-        if options.sound is None:
-            runner.run(options.seconds)
-        else:
-            run_with_sound(runner, options.seconds, options.sound)
+        with Interruption() as interruption:
+            steps = interruption.heeded(runner.steps(options.seconds))
+            if options.sound is None:
+                deque(steps, maxlen=0)
+            else:
+                run_with_sound(runner, steps, options.sound)
         if log is not None:
             log.close()
     except OSError as error:
         where = error.filename or options.log or options.sound
         raise UsageError(f"{where}: {error.strerror}; expected a file that can be written") from error
-    factor = options.seconds / max(time.perf_counter() - started, 1e-9)
+    seconds = runner.now_ns / 1e9
+    factor = seconds / max(time.perf_counter() - started, 1e-9)
     poses = {
         name: {"x_m": robot.pose.x_m, "y_m": robot.pose.y_m, "yaw_rad": robot.pose.yaw_rad}
         for name, robot in runner.world.robots.items()
     }
-    print(json.dumps({"seconds": options.seconds, "real_time_factor": round(factor, 1), "robots": poses}, indent=2))
+    _report({"seconds": seconds, "real_time_factor": round(factor, 1), "robots": poses})
+    if interruption.number is not None:
+        print(f"thymio-sim: stopped after {seconds:g} of {options.seconds:g} seconds", file=sys.stderr)
+        end_by(interruption.number)
     return 0
 
 
@@ -180,8 +193,17 @@ def replay_run(argv: Sequence[str]) -> int:
         told = f"run {run}, tick {tick} gives something else than then{versions}"
         print(f"thymio-sim: {options.file}: {told}", file=sys.stderr)
     report = {"runs": found.runs, "seconds": found.seconds, "identical": found.differs is None}
-    print(json.dumps(report | {"real_time_factor": round(factor, 1)}, indent=2))
+    _report(report | {"real_time_factor": round(factor, 1)})
     return 0 if found.differs is None else DIFFERENT
+
+
+def _report(found: Mapping[str, object]) -> None:
+    _tell(json.dumps(found, indent=2))
+
+
+def _tell(text: str) -> None:
+    with standard_output():
+        print(text)
 
 
 def _replay_parser() -> argparse.ArgumentParser:

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from aseba_vm.output import standard_output
 from thymio_sim_ros.studio_layout import APPS, SHIPPED, render
 
 __all__ = ["hint", "run"]
@@ -30,7 +31,8 @@ def run(argv: Sequence[str]) -> int:
     options = _parser().parse_args(argv)
     text = render(options.app, options.robot)
     if options.output is None:
-        sys.stdout.write(text)
+        with standard_output():
+            sys.stdout.write(text)
         return 0
     try:
         options.output.write_text(text, encoding="utf-8")

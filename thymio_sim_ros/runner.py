@@ -8,7 +8,7 @@ does not hear himself. The same playground, programs and seed give the same run 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.behaviour_host import BehaviourHost
@@ -101,8 +101,13 @@ class Runner:
 
     def run(self, seconds: float) -> None:
         """So many simulated seconds."""
+        for _ in self.steps(seconds):
+            pass
+
+    def steps(self, seconds: float) -> Iterator[StepResult]:
+        """So many simulated seconds, tick by tick."""
         for _ in range(round(seconds * _SECOND_NS / TICK_NS)):
-            self.step()
+            yield self.step()
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Run until the condition holds, at most so many simulated seconds; whether it held."""
