@@ -64,6 +64,14 @@ def test_an_example_fails_as_the_page_says(pytester: pytest.Pytester, folder: Pa
     assert FAILING[name].rstrip() in said
 
 
+def test_without_ros_examples_that_need_it_are_skipped(pytester: pytest.Pytester, folder: Path) -> None:
+    (folder / "conftest.py").write_text(
+        "import sys\nfor name in 'rclpy', 'geometry_msgs', 'sensor_msgs':\n    sys.modules[name] = None\n"
+    )
+    result = run(pytester, "test_call.py", *NEED_ROS)
+    result.assert_outcomes(passed=1, skipped=3)  # a file as a whole, and the tests of the two others
+
+
 def test_the_workflow_runs_what_there_is(pytester: pytest.Pytester, folder: Path) -> None:
     pytest.importorskip("xdist")
     install, command = re.findall(r"- run: (.*)", FILES[WORKFLOW])
