@@ -240,3 +240,35 @@ def test_a_full_disk_behind_the_output_is_one_line(arguments):
     with open("/dev/full", "w") as full:
         ended = subprocess.run([*COMMAND, *arguments], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert (ended.returncode, ended.stderr) == (2, "thymio-sim: standard output: No space left on device\n")
+
+
+def test_the_runner_tells_programs_that_fail(capsys, tmp_path):
+    program = tmp_path / "faulty.aesl"
+    program.write_text("var n\nonevent prox\n  n = 1 / n\n")
+    arguments = ["--program", str(program), "--playground", "two_robots"]
+    assert cli.main(["runner", "--seconds", "0.5", *arguments]) == 1
+    captured = capsys.readouterr()
+    fault = "faulty.aesl: fault in prox, line 3: division by zero"
+    assert {name: robot["fault"] for name, robot in json.loads(captured.out)["robots"].items()} == {
+        "red": fault,
+        "blue": fault,
+    }
+    assert captured.err.splitlines() == [f"thymio-sim: {name}, at 0.10 s: {fault}" for name in ("red", "blue")]
+
+
+def test_the_runner_tells_a_program_that_fails_at_once(capsys, tmp_path):
+    program = tmp_path / "faulty.aesl"
+    program.write_text("var n\nn = 1 / n\n")
+    assert cli.main(["runner", "--seconds", "0", "--program", str(program)]) == 1
+    assert "at 0.00 s: faulty.aesl: fault in init, line 2: division by zero" in capsys.readouterr().err
+
+
+def test_the_runner_tells_what_the_robot_could_not_do(capsys, tmp_path):
+    program = tmp_path / "flash.aesl"
+    program.write_text("onevent prox\ncall _system.settings.flash()\n")
+    settings = tmp_path / "gone"
+    arguments = ["--program", str(program), "--settings", str(settings)]
+    settings.write_text("")
+    assert cli.main(["runner", "--seconds", "0.5", *arguments]) == 0
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("thymio-sim: thymio, at 0.10 s: settings are not stored: ")

@@ -44,7 +44,11 @@ example:
   thymio-sim foxglove-layout -o thymio.json                  (panels for Foxglove and Lichtblick)
 """
 
-USAGE_ERROR, DIFFERENT = 2, 1
+RUNNER_CODES = """\
+exit code: 0 done; 1 a program stopped with a fault, which is told on stderr and in the result; 2 refused
+"""
+
+USAGE_ERROR, DIFFERENT, FAULTY = 2, 1, 1
 
 
 class UsageError(Exception):
@@ -127,6 +131,7 @@ def run_without_ros(argv: Sequence[str]) -> int:
     device = _device(options)
     playground, program = _check_files(options.playground, _program(options), options.behaviour, device.layout)
     from thymio_sim_ros.interruption import Interruption
+    from thymio_sim_ros.run_faults import Faults
     from thymio_sim_ros.run_sound import run_with_sound
     from thymio_sim_ros.runlog import RunLog
     from thymio_sim_ros.runner import Runner
@@ -145,9 +150,10 @@ def run_without_ros(argv: Sequence[str]) -> int:
             seed=options.seed,
             log=log,
         )
+        faults = Faults(runner, lambda text: print(f"thymio-sim: {text}", file=sys.stderr))
         started = time.perf_counter()
         with Interruption() as interruption:
-            steps = interruption.heeded(runner.steps(options.seconds))
+            steps = faults.watched(interruption.heeded(runner.steps(options.seconds)))
             if options.sound is None:
                 deque(steps, maxlen=0)
             else:
@@ -159,15 +165,17 @@ def run_without_ros(argv: Sequence[str]) -> int:
         raise UsageError(f"{where}: {error.strerror}; expected a file that can be written") from error
     seconds = runner.now_ns / 1e9
     factor = seconds / max(time.perf_counter() - started, 1e-9)
-    poses = {
+    robots: dict[str, dict[str, float | str]] = {
         name: {"x_m": robot.pose.x_m, "y_m": robot.pose.y_m, "yaw_rad": robot.pose.yaw_rad}
         for name, robot in runner.world.robots.items()
     }
-    _report({"seconds": seconds, "real_time_factor": round(factor, 1), "robots": poses})
+    for name, fault in faults.first.items():
+        robots[name]["fault"] = fault
+    _report({"seconds": seconds, "real_time_factor": round(factor, 1), "robots": robots})
     if interruption.number is not None:
         print(f"thymio-sim: stopped after {seconds:g} of {options.seconds:g} seconds", file=sys.stderr)
         end_by(interruption.number)
-    return 0
+    return FAULTY if faults.first else 0
 
 
 def replay_run(argv: Sequence[str]) -> int:
@@ -254,7 +262,7 @@ def _runner_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="thymio-sim runner",
         description="Run a program in a playground without ROS, as fast as possible; the same seed, the same run.",
-        epilog=EXAMPLE,
+        epilog=f"{RUNNER_CODES}\n{EXAMPLE}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
