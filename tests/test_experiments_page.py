@@ -1,0 +1,84 @@
+"""docs/experiments.md is true: its commands and its script run, and its table names what there is."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from thymio_sim_ros.loading import load_playground, read_program
+from thymio_sim_ros.runlog import RunLog
+from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.sim.commands import MotorTargets
+
+ROOT = Path(__file__).parents[1]
+PAGE = (ROOT / "docs" / "experiments.md").read_text(encoding="utf-8")
+((SHELL,), (SWEEP,)) = (re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL) for language in ("sh", "python"))
+COMMAND = "import sys; from thymio_sim_ros.cli import main; sys.exit(main())"
+SEEDS = 3
+
+
+def run(folder: Path, *command: str) -> str:
+    """What a command prints."""
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    ended = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=600, check=False
+    )
+    assert (ended.returncode, ended.stderr) == (0, "")
+    return ended.stdout
+
+
+def test_the_loop_of_the_shell_leaves_a_result_and_a_log_for_each_seed(tmp_path: Path) -> None:
+    command = tmp_path / "bin" / "thymio-sim"
+    command.parent.mkdir()
+    command.write_text(f"#!/bin/sh\nexec {sys.executable} -c '{COMMAND}' \"$@\"\n")
+    command.chmod(0o755)
+    shorter = SHELL.replace("--seconds 60", "--seconds 2")
+    assert shorter != SHELL
+    replayed = run(tmp_path, "sh", "-c", f"PATH={command.parent}:$PATH\n{shorter}")
+    assert json.loads(replayed)["identical"]
+    ends = [json.loads((tmp_path / f"run_{seed}.json").read_text())["robots"]["thymio"] for seed in (1, 2, 3)]
+    assert len({end["x_m"] for end in ends}) == len(ends)
+
+
+@pytest.mark.slow
+def test_the_script_gives_a_row_for_each_seed(tmp_path: Path) -> None:
+    (tmp_path / "sweep.py").write_text(SWEEP)
+    rows = list(csv.DictReader(run(tmp_path, sys.executable, "sweep.py", str(SEEDS)).splitlines()))
+    assert [row["seed"] for row in rows] == [str(seed) for seed in range(SEEDS)]
+    assert len({row["way_m"] for row in rows}) == SEEDS
+    assert {row["program"] for row in rows} == {"running"}
+    assert all(1 < float(row["way_m"]) < 10 for row in rows)
+    assert all(0 < float(row["nearest_m"]) < 0.14 for row in rows)
+
+
+def test_what_the_table_says_can_be_done(tmp_path: Path) -> None:
+    playground = load_playground("two_robots")[1]
+    program = read_program("obedient")
+    file = tmp_path / "run.jsonl"
+    log = RunLog(file.open("w", encoding="utf-8", newline="\n"))
+    options = {"motor_model": "firmware", "proximity_model": "cone"}
+    runner = Runner(playground, {"blue": program}, noise=False, log=log, **options)
+    runner.post("red", MotorTargets(100, 100))
+    x_m = runner.world.robots["red"].pose.x_m
+    assert runner.until(lambda: runner.world.robots["red"].pose.x_m > x_m + 0.01, 5)
+    runner.press("blue", "forward")
+    assert runner.until(lambda: runner.devices["blue"].get_variable("button.forward") == (1,), 1)
+    runner.press("blue", "forward", pressed=False)
+    runner.devices["blue"].set_variable("leds.top", [32, 0, 0])
+    assert runner.emitted == []
+    log.close()
+    assert json.loads(file.read_text().splitlines()[-1]) == {"end": True}
+
+
+def test_links_and_files_of_the_page_exist() -> None:
+    for target in re.findall(r"\]\(([^)#]+)", PAGE):
+        assert (ROOT / "docs" / target).is_file(), target
+    for path in re.findall(r"`((?:tests|thymio_sim_ros)/[\w/.]+)`", PAGE):
+        assert (ROOT / path).exists(), path
