@@ -17,8 +17,10 @@ pytest.importorskip("rclpy")
 from thymio_sim_ros.device.events import POLICIES
 from thymio_sim_ros.device.layout import LAYOUTS
 from thymio_sim_ros.nodes import params, simulator_params
+from thymio_sim_ros.suite import Suite
 
-LAUNCH = Path(__file__).parents[2] / "thymio_sim_ros" / "launch" / "thymio.launch.py"
+ROOT = Path(__file__).parents[2]
+LAUNCH = ROOT / "thymio_sim_ros" / "launch" / "thymio.launch.py"
 # Executable → the module whose parameter dataclass it declares.
 MODULES = {
     "simulator": "simulator_node",
@@ -116,6 +118,15 @@ def test_an_argument_that_is_one_of_few_words_lists_those_of_its_parameter(descr
     assert listed["layout"] == list(LAYOUTS)
     assert listed["events"] == list(POLICIES)
     assert listed["playground"] is None
+
+
+def test_the_pages_tell_how_long_a_velocity_holds(description: Call) -> None:
+    defaults = {item.args[0]: item.kwargs["default_value"] for item in _actions(description, "DeclareLaunchArgument")}
+    assert float(defaults["cmd_vel_timeout"]) == simulator_params.SimulatorParams().cmd_vel_timeout == 0.0
+    for page in ("README.md", "docs/ros.md"):
+        text = " ".join((ROOT / page).read_text(encoding="utf-8").split())
+        assert f"{Suite().cmd_vel_timeout_s:g} s, s" in text, page
+        assert "until the next one" in text, page
 
 
 def test_rviz_is_started_with_the_shipped_configuration_if_wanted(description: Call) -> None:

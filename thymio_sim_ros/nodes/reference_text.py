@@ -22,6 +22,8 @@ warning once for each topic, and counted there too.
 ## Existing code for the Thymio driver
 
 Names, types, frames and constants are those of `thymio_driver`: a node written for it runs unchanged.
+With `ros2 launch` a velocity holds until the next one, as with the driver; `thymio-sim` ends it after 0.5 s, since a
+teleop in a browser says nothing when its key is let go: `ros2 param set /simulator cmd_vel_timeout 0.0` there.
 
 ```sh
 ros2 launch thymio_sim_ros thymio.launch.py driver_compat:=true program:=none
