@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import pathlib
 import signal
 import socket
 import subprocess
@@ -155,6 +157,13 @@ def test_a_card_that_is_no_folder_is_one_line(capsys, tmp_path):
     assert refused(capsys, "runner", "--card", str(file)).endswith("expected a folder, or a place for one")
 
 
+@pytest.mark.parametrize("place", ["robot.aesl", "robot.aesl/deeper"])
+def test_settings_in_what_is_no_folder_are_one_line(capsys, tmp_path, place):
+    (tmp_path / "robot.aesl").touch()
+    line = refused(capsys, "runner", "--settings", str(tmp_path / place))
+    assert line == f"thymio-sim: settings {tmp_path / place}: Not a directory; expected a folder, or a place for one"
+
+
 def test_settings_that_cannot_be_read_are_one_line(capsys, tmp_path):
     (tmp_path / "settings.json").write_text('{"sound_shift": "loud"}')
     assert "sound_shift: expected 1 whole numbers" in refused(capsys, "runner", "--settings", str(tmp_path))
@@ -263,12 +272,13 @@ def test_the_runner_tells_a_program_that_fails_at_once(capsys, tmp_path):
     assert "at 0.00 s: faulty.aesl: fault in init, line 2: division by zero" in capsys.readouterr().err
 
 
-def test_the_runner_tells_what_the_robot_could_not_do(capsys, tmp_path):
+def test_the_runner_tells_what_the_robot_could_not_do(capsys, tmp_path, monkeypatch):
+    def is_full(file, text, encoding):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
     program = tmp_path / "flash.aesl"
     program.write_text("onevent prox\ncall _system.settings.flash()\n")
-    settings = tmp_path / "gone"
-    arguments = ["--program", str(program), "--settings", str(settings)]
-    settings.write_text("")
-    assert cli.main(["runner", "--seconds", "0.5", *arguments]) == 0
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("thymio-sim: thymio, at 0.10 s: settings are not stored: ")
+    monkeypatch.setattr(pathlib.Path, "write_text", is_full)
+    assert cli.main(["runner", "--seconds", "0.5", "--program", str(program), "--settings", str(tmp_path)]) == 0
+    told = f"settings are not stored: {tmp_path / 'settings.json'}: No space left on device"
+    assert capsys.readouterr().err == f"thymio-sim: thymio, at 0.10 s: {told}\n"

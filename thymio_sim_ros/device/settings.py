@@ -38,7 +38,9 @@ class Settings:
     """The words in force, and those that were flashed."""
 
     def __init__(self, file: Path | None = None) -> None:
-        """SettingsError when the file is there and holds something else."""
+        """SettingsError when the file is there and holds something else, or lies in what is no folder."""
+        if file is not None and not next(folder for folder in file.parents if folder.exists()).is_dir():
+            raise SettingsError(f"settings {file.parent}: Not a directory; expected a folder, or a place for one")
         self._file = file
         self._flashed: list[int] = []
         self._words: list[int] = []
@@ -102,7 +104,9 @@ def _calibrate(target: int, factor: int) -> int:
 def _read(file: Path) -> list[int]:
     try:
         data = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+    except OSError as error:
+        raise SettingsError(f"settings {file}: {error.strerror}; expected a file that can be read") from error
+    except ValueError as error:
         raise SettingsError(f"settings {file}: {error}") from error
     words: list[int] = []
     for name, size, _ in PARTS:
