@@ -164,6 +164,38 @@ def test_settings_in_what_is_no_folder_are_one_line(capsys, tmp_path, place):
     assert line == f"thymio-sim: settings {tmp_path / place}: Not a directory; expected a folder, or a place for one"
 
 
+@pytest.fixture
+def secret(monkeypatch):
+    """A folder that the user may not look into; root, who runs some tests, may into all."""
+
+    def refusing(function):
+        def refuse(path, *how, **more):
+            if str(path).startswith("secret/"):
+                raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+            return function(path, *how, **more)
+
+        return refuse
+
+    monkeypatch.setattr(os, "stat", refusing(os.stat))
+    monkeypatch.setattr(pathlib.Path, "read_text", refusing(pathlib.Path.read_text))
+    return "secret/there"
+
+
+@pytest.mark.parametrize("kind", ["playground", "program"])
+def test_a_file_in_a_forbidden_folder_is_one_line(capsys, secret, kind):
+    line = refused(capsys, "runner", f"--{kind}", secret)
+    assert line == f"thymio-sim: {kind} '{secret}': Permission denied; expected a file that can be read"
+
+
+def test_settings_in_a_forbidden_folder_are_one_line(capsys, secret):
+    line = refused(capsys, "runner", "--settings", secret)
+    assert line == f"thymio-sim: settings {secret}/settings.json: Permission denied; expected a file that can be read"
+
+
+def test_a_log_in_a_forbidden_folder_is_one_line(capsys, secret):
+    assert refused(capsys, "--log", f"{secret}/run.jsonl").endswith("expected a file in a folder that exists")
+
+
 def test_settings_that_cannot_be_read_are_one_line(capsys, tmp_path):
     (tmp_path / "settings.json").write_text('{"sound_shift": "loud"}')
     assert "sound_shift: expected 1 whole numbers" in refused(capsys, "runner", "--settings", str(tmp_path))

@@ -101,7 +101,7 @@ def start_suite(argv: Sequence[str]) -> int:
         real_time_factor=options.real_time_factor,
         log="" if options.log is None else str(options.log),
     )
-    if options.log is not None and (options.log.is_dir() or not options.log.parent.is_dir()):
+    if options.log is not None and (os.path.isdir(options.log) or not os.path.isdir(options.log.parent)):
         raise UsageError(f"{options.log}: expected a file in a folder that exists")
     playground, _ = _check_files(suite.playground, suite.program, suite.behaviour, suite.device.layout)
     robots = [robot.name for robot in playground.robots]

@@ -108,10 +108,13 @@ def _find(name: str, shipped: dict[str, Path], kind: str) -> Path:
     if name in shipped:
         return shipped[name]
     path = expanded(name)
-    if path.is_file():
-        return path
-    if path.is_dir():
-        raise ResourceError(f"{kind} '{name}' is a folder; expected a file")
+    try:
+        if path.is_file():
+            return path
+        if path.is_dir():
+            raise ResourceError(f"{kind} '{name}' is a folder; expected a file")
+    except OSError as error:  # a folder that may not be looked into, a name that is too long
+        raise ResourceError(f"{kind} '{name}': {error.strerror}; expected a file that can be read") from error
     raise ResourceError(_unknown(name, shipped, kind, "neither a file nor"))
 
 

@@ -38,9 +38,7 @@ class Settings:
     """The words in force, and those that were flashed."""
 
     def __init__(self, file: Path | None = None) -> None:
-        """SettingsError when the file is there and holds something else, or lies in what is no folder."""
-        if file is not None and not next(folder for folder in file.parents if folder.exists()).is_dir():
-            raise SettingsError(f"settings {file.parent}: Not a directory; expected a folder, or a place for one")
+        """SettingsError when the file holds something else, cannot be read, or lies in what is no folder."""
         self._file = file
         self._flashed: list[int] = []
         self._words: list[int] = []
@@ -83,8 +81,7 @@ class Settings:
 
     def renew(self) -> None:
         """As for a new robot: what the file says, or the first values."""
-        file = self._file
-        self._flashed = _read(file) if file is not None and file.exists() else _first_values()
+        self._flashed = _first_values() if self._file is None else _read(self._file)
         self._words = list(self._flashed)
 
     def restart(self) -> None:
@@ -104,6 +101,12 @@ def _calibrate(target: int, factor: int) -> int:
 def _read(file: Path) -> list[int]:
     try:
         data = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return _first_values()
+    except NotADirectoryError as error:
+        raise SettingsError(
+            f"settings {file.parent}: {error.strerror}; expected a folder, or a place for one"
+        ) from error
     except OSError as error:
         raise SettingsError(f"settings {file}: {error.strerror}; expected a file that can be read") from error
     except ValueError as error:
