@@ -314,3 +314,37 @@ def test_the_runner_tells_what_the_robot_could_not_do(capsys, tmp_path, monkeypa
     assert cli.main(["runner", "--seconds", "0.5", "--program", str(program), "--settings", str(tmp_path)]) == 0
     told = f"settings are not stored: {tmp_path / 'settings.json'}: No space left on device"
     assert capsys.readouterr().err == f"thymio-sim: thymio, at 0.10 s: {told}\n"
+
+
+TWO_NODES = """<network>
+<node nodeId="1" name="{}">motor.left.target = 0</node>
+<node nodeId="2" name="{}">motor.left.target = 200 motor.right.target = 200</node>
+</network>"""
+
+
+@pytest.mark.parametrize("names", [("blue", "red"), ("red", "thymio-II"), ("thymio-II", "thymio-II")])
+def test_each_robot_of_the_runner_gets_its_program_of_a_file(capsys, tmp_path, names):
+    program = tmp_path / "two.aesl"
+    program.write_text(TWO_NODES.format(*names))
+    assert cli.main(["runner", "--seconds", "1", "--playground", "two_robots", "--program", str(program)]) == 0
+    captured = capsys.readouterr()
+    robots = json.loads(captured.out)["robots"]
+    moved = {name: not -0.26 < robots[name]["x_m"] < -0.24 and not 0.24 < robots[name]["x_m"] < 0.26 for name in robots}
+    driver = "red" if names[1] == "red" else "blue"
+    assert moved == {name: name == driver for name in ("red", "blue")}
+    assert captured.err == ""
+
+
+def test_what_does_not_fit_of_a_file_is_told_once(capsys, tmp_path):
+    program = tmp_path / "two.aesl"
+    program.write_text(TWO_NODES.format("thymio-II", "e-puck0"))
+    assert cli.main(["runner", "--seconds", "0", "--playground", "two_robots", "--program", str(program)]) == 0
+    assert capsys.readouterr().err == "thymio-sim: red, blue: not for a Thymio, left out: node 'e-puck0'\n"
+
+
+def test_the_suite_takes_a_file_with_a_node_for_each_robot(capsys, tmp_path, monkeypatch):
+    program = tmp_path / "two.aesl"
+    program.write_text(TWO_NODES.format("red", "blue"))
+    monkeypatch.setattr(cli.importlib.util, "find_spec", lambda _name: None)
+    line = refused(capsys, "--headless", "--playground", "two_robots", "--program", str(program))
+    assert "ROS 2 is not installed" in line

@@ -23,12 +23,13 @@ from thymio_sim_ros import convert, foxglove_layout, resources
 from thymio_sim_ros.bridge.thread import check_free
 from thymio_sim_ros.device.card import Card, CardError
 from thymio_sim_ros.device.events import FIRMWARE, POLICIES
+from thymio_sim_ros.device.fleet import Share
 from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
 from thymio_sim_ros.device.options import DeviceOptions
-from thymio_sim_ros.device.program import ProgramError, ThymioProgram
+from thymio_sim_ros.device.program import ProgramError
 from thymio_sim_ros.device.settings import Settings, SettingsError
 from thymio_sim_ros.greeting import greeting, patience
-from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_program
+from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_shares
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
 from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
@@ -129,7 +130,7 @@ def run_without_ros(argv: Sequence[str]) -> int:
     """World and program in lock-step, as fast as possible; prints where the robots are."""
     options = _runner_parser().parse_args(argv)
     device = _device(options)
-    playground, program = _check_files(options.playground, _program(options), options.behaviour, device.layout)
+    playground, shares = _check_files(options.playground, _program(options), options.behaviour, device.layout)
     from thymio_sim_ros.interruption import Interruption
     from thymio_sim_ros.run_faults import Faults
     from thymio_sim_ros.run_sound import run_with_sound
@@ -138,11 +139,14 @@ def run_without_ros(argv: Sequence[str]) -> int:
 
     for note in playground.notes:
         print(f"thymio-sim: {options.playground}: {note}", file=sys.stderr)
+    for note in dict.fromkeys(note for share in shares.values() for note in share.notes):
+        concerned = ", ".join(robot for robot, share in shares.items() if note in share.notes)
+        print(f"thymio-sim: {concerned}: {note}", file=sys.stderr)
     try:
         log = None if options.log is None else RunLog(options.log.open("w", encoding="utf-8", newline="\n"))
         runner = Runner(
             playground,
-            program,
+            {robot: share.program for robot, share in shares.items() if share.program is not None},
             behaviour=options.behaviour,
             options=device,
             motor_model=options.motors,
@@ -382,11 +386,12 @@ def _number(text: str, low: float, high: float) -> float:
     return value
 
 
-def _check_files(playground: str, program: str, behaviour: str, layout: str) -> tuple[Playground, ThymioProgram]:
-    """Playground and program, read and checked; UsageError says where, what was found, what was expected."""
+def _check_files(playground: str, program: str, behaviour: str, layout: str) -> tuple[Playground, dict[str, Share]]:
+    """Playground and its robots' programs, checked; UsageError says where, what was found, what was expected."""
     try:
         check_behaviour(behaviour, layout)
-        return load_playground(playground)[1], read_program(program, layout)
+        loaded = load_playground(playground)[1]
+        return loaded, read_shares(program, [robot.name for robot in loaded.robots], layout)
     except (PlaygroundError, ProgramError, resources.ResourceError, OSError) as error:
         raise UsageError(str(error)) from error
 

@@ -8,13 +8,15 @@ import itertools
 import logging
 import re
 import urllib.parse
+from collections.abc import Sequence
 
 from aseba_vm import AeslError
 from aseba_vm.errors import TextError
 from aseba_vm.textfile import decoded
 from thymio_sim_ros import resources
+from thymio_sim_ros.device.fleet import Member, Share, share_out
 from thymio_sim_ros.device.layout import THYMIO
-from thymio_sim_ros.device.program import ThymioProgram, load_program, parse
+from thymio_sim_ros.device.program import ThymioProgram, load_file, load_program, parse
 from thymio_sim_ros.sim import playground as playgrounds
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
 
@@ -57,6 +59,15 @@ def read_program(path: str, layout: str = THYMIO) -> ThymioProgram:
     Raises ProgramError for what the text says, ResourceError for a file that cannot be read.
     """
     return load_program(*read_text(path), layout)
+
+
+def read_shares(path: str, robots: Sequence[str], layout: str = THYMIO) -> dict[str, Share]:
+    """What each robot of a playground gets of a file, as from the Aseba runtime. Errors as `read_program`."""
+    is_alone = len(robots) == 1
+    members = {robot: Member("" if is_alone else robot, number) for number, robot in enumerate(robots, start=1)}
+    names = [member.name for member in members.values() if member.name]
+    shares = share_out(load_file(*read_text(path), layout, robots=names), list(members.values()))
+    return {robot: shares[member.name] for robot, member in members.items()}
 
 
 def read_text(path: str) -> tuple[str, str]:
