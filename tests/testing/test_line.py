@@ -67,6 +67,18 @@ def test_a_reset_starts_the_laps_again() -> None:
     room.until(check, 60.0)
 
 
+def test_laps_before_a_reset_do_not_count_though_nobody_asked_for_long() -> None:
+    room = Classroom("line", "line_follower")
+    (thymio,) = room
+    check = followed_line(thymio)
+    room.until(check, 120.0)
+    seconds = room.now
+    room.reset()
+    thymio.load("")
+    room.run(2 * seconds)
+    assert not check
+
+
 def test_a_playground_without_a_track_is_refused() -> None:
     (thymio,) = Classroom("base")
     with pytest.raises(ValueError, match="playground base: 0 tracks, name one of them; found none"):

@@ -88,6 +88,7 @@ class _Follower:
         self._forget()
 
     def _forget(self) -> None:
+        self._cleared = self._thymio.record.cleared
         self._next = 0
         self._last_m: float | None = None
         self.driven_m, self.farthest_m, self.farthest_s = 0.0, 0.0, 0.0
@@ -95,7 +96,7 @@ class _Follower:
     def catch_up(self) -> None:
         """Look at what the robot did since the last time."""
         path = self._thymio.path
-        if self._next >= len(path) + EVERY:  # the past was forgotten
+        if self._cleared != self._thymio.record.cleared:
             self._forget()
         for index in range(self._next, len(path), EVERY):
             self._next = index + EVERY

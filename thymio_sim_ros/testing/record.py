@@ -47,6 +47,8 @@ class Record:
         self.moments: list[Moment] = []
         self.touches: list[Touch] = []
         self.events: list[Event] = []
+        self.cleared = 0
+        """How many times the past was forgotten."""
         self._touching: frozenset[str] = frozenset()
 
     def look(self, robot: Robot, now_ns: int) -> None:
@@ -71,4 +73,5 @@ class Record:
         self.moments.clear()
         self.touches.clear()
         self.events.clear()
+        self.cleared += 1
         self._touching = frozenset()
