@@ -11,6 +11,7 @@ from std_msgs.msg import ColorRGBA, Float32, Float32MultiArray, Float64MultiArra
 from thymio_sim_ros.nodes.robot_inputs import robot_inputs
 from thymio_sim_ros.sim.commands import LED_GROUPS
 from thymio_sim_ros.sim.thymio2 import MAX_SPEED_M_S, WHEEL_RADIUS_M
+from thymio_sim_ros.sim.tones import HIGHEST_HZ, LOWEST_HZ
 
 INPUTS = {one.topic: one for one in robot_inputs()}
 FULL_RAD_S = MAX_SPEED_M_S / WHEEL_RADIUS_M
@@ -70,6 +71,17 @@ def test_what_is_beyond_the_robot_is_said(topic):
     one, (message, within, said) = INPUTS[topic], BEYOND[topic]
     assert one.beyond(message).startswith(said)
     assert one.beyond(within) == ""
+
+
+@pytest.mark.parametrize("hertz", [LOWEST_HZ, -LOWEST_HZ, HIGHEST_HZ, -HIGHEST_HZ])
+@pytest.mark.parametrize("seconds", [0.0, 1.0])
+def test_tones_are_limited_to_what_the_wave_can_have_either_sign_and_however_long(hertz, seconds):
+    def beyond(factor):
+        return INPUTS["sound/tone"].beyond(Float32MultiArray(data=[factor * hertz, seconds]))
+
+    outwards = 1.01 if abs(hertz) == HIGHEST_HZ else 0.99
+    assert beyond(1.0) == beyond(1 / outwards) == ""
+    assert beyond(outwards).startswith("frequency")
 
 
 def test_a_command_beyond_the_robot_is_limited_told_once_and_counted(ros, simulation):

@@ -36,8 +36,8 @@ __all__ = [
 
 Beyond = Callable[[Any], str]
 
-_ROUNDING = 1.0 + 1e-6
-"""Messages of single precision, and sums of theirs, may be this much above a limit that they mean to keep."""
+_ROUNDING = 1e-6
+"""Messages of single precision, and sums of theirs, may be this part beyond a limit that they mean to keep."""
 
 
 def nothing(_message: object) -> str:
@@ -62,7 +62,7 @@ def wheels(message: Float64MultiArray) -> str:
 
 def _speeds(command: commands.BodyTwist | commands.WheelVelocities) -> str:
     fastest = max(abs(speed) for speed in wanted_speeds(command))
-    if fastest <= thymio2.MAX_SPEED_M_S * _ROUNDING:
+    if fastest <= thymio2.MAX_SPEED_M_S * (1.0 + _ROUNDING):
         return ""
     return (
         f"a wheel would need {fastest:.3g} m/s, expected at most {thymio2.MAX_SPEED_M_S:.3g};"
@@ -72,7 +72,7 @@ def _speeds(command: commands.BodyTwist | commands.WheelVelocities) -> str:
 
 def _outside(values: Iterable[float], low: float, high: float, what: str) -> str:
     for value in values:
-        if not low * _ROUNDING <= value <= high * _ROUNDING:
+        if not low - abs(low) * _ROUNDING <= value <= high + abs(high) * _ROUNDING:
             return f"{what} {value:g} found, expected {low:g} to {high:g}"
     return ""
 
