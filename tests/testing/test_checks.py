@@ -30,6 +30,7 @@ def test_reached_holds_within_its_tolerance_only() -> None:
     assert repr(reached(thymio, (0, 0))) == (
         "thymio is at (0.300, 0.400), 0.500 m from (0, 0): expected at most 0.05 m"
     )
+    assert not reached(thymio, (0.0, 0.0, 0.0))
     turned = reached(thymio, (0.3, 0.4, math.pi / 2))
     assert not turned
     assert "turned 90° away from 90°: expected at most 0.05 m and 15°" in repr(turned)
@@ -48,6 +49,7 @@ def test_no_contact_names_what_was_touched() -> None:
     touch = thymio.touches[0]
     assert repr(no_contact(thymio)) == f"thymio touched wall at {touch.at_s:.2f} s: expected no contact"
     assert no_contact(thymio, since=touch.at_s + 0.01)
+    assert not no_contact(thymio, since=touch.at_s)
     assert repr(no_contact(alone())) == "thymio touched nothing"
 
 
@@ -69,6 +71,7 @@ def test_shows_takes_levels_and_names_of_colours() -> None:
     assert shows(thymio, "top", "red")
     assert shows(thymio, "top", (30, 1, 0))
     assert not shows(thymio, "top", (30, 1, 0), tolerance=1)
+    assert not shows(thymio, "top", "yellow")
     assert shows(thymio, "circle", range(1, 9), tolerance=0)
     assert repr(shows(thymio, "top", "off")) == "thymio shows (32, 0, 0) on top: expected (0, 0, 0) within 4"
 
@@ -96,6 +99,8 @@ def test_slower_than_remembers_the_fastest_moment() -> None:
     assert slower_than(thymio, 0.11)
     assert slower_than(thymio, 0.01, since=2.9)
     assert repr(slower_than(thymio, 0.05)).startswith("thymio drove -0.")
+    fastest = max(abs(moment.speed_m_s) for moment in thymio.path)
+    assert slower_than(thymio, fastest)
 
 
 def test_checks_combine_and_are_judged_when_asked() -> None:

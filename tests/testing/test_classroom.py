@@ -132,6 +132,7 @@ def test_waiting_in_vain_tells_where_robots_are_and_which_line_failed() -> None:
     )
     with pytest.raises(pytest.fail.Exception) as caught:
         room.until(lambda: room.now < 0, 0.5)
+    assert room.now == 0.5
     assert str(caught.value).splitlines() == [
         "not within 0.5 simulated s: room.now < 0",
         "thymio: at (0.000, 0.000) m, turned 0°, 0.000 m/s",

@@ -47,6 +47,20 @@ def test_the_line_follower_follows_the_line(playground: str) -> None:
     assert not followed_line(thymio, laps=1.5)
 
 
+def test_either_direction_counts_and_what_came_before_does_not() -> None:
+    room = Classroom("line", "line_follower")
+    (thymio,) = room
+    here = thymio.pose
+    thymio.place(0.0, 0.0)
+    room.run(0.5)
+    thymio.place(here.x_m, here.y_m, here.yaw_rad + math.pi)
+    room.run(0.5)
+    check = followed_line(thymio, laps=0.1, since=room.now)
+    room.until(check, 60.0)
+    assert not followed_line(thymio, laps=0.1)
+    assert followed_line(thymio, laps=0.0, since=room.now)
+
+
 def test_a_robot_that_leaves_the_line_or_stands_has_not_followed_it() -> None:
     room = Classroom("line", "motor.left.target = 200\nmotor.right.target = 200")
     (thymio,) = room

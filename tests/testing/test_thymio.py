@@ -7,6 +7,7 @@ import math
 
 import pytest
 
+from thymio_sim_ros.sim.commands import SetPen
 from thymio_sim_ros.testing import Classroom, Thymio
 
 SENSES = """var heard = 0
@@ -97,6 +98,15 @@ def test_a_pen_draws_where_the_robot_goes() -> None:
     (stroke,) = thymio.drawing
     assert stroke.color == (1.0, 0.0, 0.0)
     assert stroke.points[-1][0] > 0.04
+
+
+def test_a_pen_that_is_given_after_an_eraser_draws() -> None:
+    thymio = alone("motor.left.target = 200\nmotor.right.target = 200")
+    thymio.post(SetPen(down=True, erase=True))
+    thymio.run(0.5)
+    thymio.draw("#ff0000")
+    thymio.run(0.5)
+    assert thymio.drawing[-1].color == (1.0, 0.0, 0.0)
 
 
 def test_the_path_has_a_moment_for_each_tick() -> None:
