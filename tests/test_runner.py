@@ -222,9 +222,14 @@ def test_the_robot_s_lights_show_an_obstacle_until_the_program_takes_them():
 
 def test_a_reset_forgets_settings_and_radio():
     source = "var was\ncall _system.settings.read(0, was)\ncall _system.settings.write(0, 5)\ncall _rf.nodeid(77)"
+    source += "\nonevent button.center\ncall _rf.setup(3, 4)"
     runner = Runner(playgrounds.loads(TWO, "two"), load_program(source, "test"))
     assert runner.devices["bert"].node_id == 77
+    runner.press("bert", "center")
+    runner.run(0.1)
+    assert runner.devices["bert"].body.network == (3, 4)
     runner.reset()
+    assert runner.devices["bert"].body.network == (0, 0)
     assert runner.devices["bert"].get_variable("was") == (0,)
     assert runner.devices["bert"].get_variable("_id") == (2,)
 

@@ -170,7 +170,7 @@ def asking(name, event, size, code):
 
 
 def test_an_own_program_may_open_the_menu_and_is_shown_there():
-    robot = HandheldRobot()
+    robot = HandheldRobot.switched_on("obedient")
     robot.host.load(asking("mine.aesl", "menu.back", 0, "onevent button.left\nemit menu.back"))
     robot.tick()
     robot.touch("left")
@@ -215,6 +215,15 @@ def test_readings_hold_through_a_change_of_program():
     robot.touch("center", ticks=1)
     assert robot.running == "friendly"
     assert robot.device.get_variable("prox.ground.delta") == (900, 900)
+
+
+def test_a_user_s_program_begins_with_cleared_variables():
+    robot = HandheldRobot.switched_on(MENU, OWN)
+    robot.device.feed("ground", (0, 0, 900, 900, 900, 900))
+    robot.tick(100)
+    robot.touch("center", ticks=1)
+    assert robot.running == "own"
+    assert robot.device.get_variable("prox.ground.delta") == (0, 0)
 
 
 def test_a_restart_is_as_the_first_start():

@@ -65,7 +65,7 @@ def test_breakpoints_of_a_file_count_its_lines():
     device = AsebaDevice()
     device.load(load_program(text, "test.aesl"))
     device.run(1000)
-    assert device.set_breakpoints([1, 8]) == Breakpoints((9,), {1: None, 8: 9})
+    assert device.set_breakpoints([1, 3, 8]) == Breakpoints((3, 9), {1: None, 8: 9})
     prox(device)
     assert place(device) == ("paused", "prox", 9)
 

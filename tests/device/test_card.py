@@ -67,6 +67,13 @@ def test_opening_another_file_closes_the_first(card: Card) -> None:
     assert card.read(1) == []
 
 
+def test_a_file_that_cannot_be_opened_closes_the_first_too(card: Card) -> None:
+    card.open(1)
+    (card.folder / "u2.dat").mkdir()
+    assert not card.open(2)
+    assert card.write([1]) == 0
+
+
 def test_without_an_open_file_nothing_is_done(card: Card) -> None:
     assert (card.write([1]), card.read(1), card.seek(0)) == (0, [], False)
 
@@ -81,6 +88,8 @@ def test_half_a_word_at_the_end_is_not_read(card: Card) -> None:
     (card.folder / "u1.dat").write_bytes(b"\x01\x00\x02")
     card.open(1)
     assert card.read(2) == [1]
+    assert card.write([3]) == 1
+    assert (card.folder / "u1.dat").read_bytes() == b"\x01\x00\x03\x00"
 
 
 def test_names_are_found_in_any_case(card: Card) -> None:
@@ -110,6 +119,8 @@ def test_a_file_that_is_full_takes_no_more(card: Card, monkeypatch: pytest.Monke
     assert card.write([1, 2]) == 2
     assert card.write([3, 4]) == 1
     assert card.write([5]) == 0
+    card.seek(4)
+    assert card.write([6, 7]) == 0
 
 
 def test_a_record_comes_back_as_it_was(card: Card) -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from thymio_sim_ros.device.device import AsebaDevice, DeviceStatus
 from thymio_sim_ros.device.program import load_program
-from thymio_sim_ros.sim.commands import LED_GROUPS, EnableComm, MotorTargets, ReleaseLeds, SetLeds
+from thymio_sim_ros.sim.commands import LED_GROUPS, EnableComm, MotorTargets, ReleaseLeds, SetLeds, ShowOnLeds
 
 BUDGET = 5000
 NO_BUTTON = (0, 0, 0, 0, 0)
@@ -34,6 +34,16 @@ def test_a_new_program_darkens_the_lights_and_stops_the_wheels():
     assert MotorTargets(0, 0) in commands
     groups = [command.group for command in commands if isinstance(command, ReleaseLeds)]
     assert sorted(groups) == sorted(LED_GROUPS)
+
+
+def test_a_new_program_gives_the_lights_back_to_the_robot():
+    device = device_with("call leds.temperature(1, 2)")
+    own = ShowOnLeds("temperature", (32, 0))
+    for now_ns, is_own in ((20_000_000, False), (40_000_000, True)):
+        device.feed("temperature", (300,))
+        device.advance(now_ns)
+        assert (own in device.take_commands()) == is_own
+        device.load(load_program("", "none"))
 
 
 def test_the_identity_of_the_robot_survives_a_reset():
@@ -98,6 +108,15 @@ def test_a_button_that_is_held_while_a_program_is_loaded_raises_no_event_until_i
     device.feed("buttons", NO_BUTTON)
     device.run(BUDGET)
     assert device.get_variable("n") == (1,)
+
+
+def test_the_robot_s_own_lights_show_what_somebody_writes_to_its_variables():
+    device = device_with("")
+    device.advance(20_000_000)
+    device.take_commands()
+    device.set_variable("temperature", (300,))
+    device.advance(40_000_000)
+    assert ShowOnLeds("temperature", (32, 0)) in device.take_commands()
 
 
 def test_natives_of_the_lights_become_commands_in_order():
@@ -316,6 +335,33 @@ def test_a_fault_stops_machine_and_wheels_and_names_the_line():
     assert not device.is_busy
 
 
+@pytest.mark.parametrize("end", [AsebaDevice.stop, lambda device: device.run(BUDGET)], ids=["stopped", "failed"])
+def test_what_waits_when_a_program_ends_is_forgotten(end):
+    device = device_with("var n = 0\nvar zero = 0\nonevent button.center\nn = 1 / zero\nonevent prox\nn = 7")
+    device.feed("buttons", CENTER)
+    device.feed("proximity", NEAR)
+    end(device)
+    device.resume()
+    device.run(BUDGET)
+    assert (device.status.state, device.get_variable("n")) == ("running", (0,))
+
+
+def test_who_is_paused_hears_events_between_handlers_only():
+    device = device_with("var n = 0\nvar m = 0\nonevent prox\nm = 1\nm = 2\nonevent add\nn++", [("add", 0)])
+    device.pause()
+    for within, heard in ((False, 1), (True, 1), (False, 2)):
+        if within:
+            device.feed("proximity", NEAR)
+            device.step()
+            assert device.status.event == "prox"
+        device.receive_event("add", ())
+        device.resume()
+        device.run(BUDGET)
+        assert device.get_variable("n") == (heard,)
+        device.pause()
+    assert device.get_variable("m") == (2,)
+
+
 def test_a_long_handler_goes_on_in_the_next_turn():
     device = device_with("var i\nvar n\nonevent prox\nn = 0\nfor i in 1:2000 do\nn = n + 1\nend")
     device.feed("proximity", NEAR)
@@ -414,6 +460,9 @@ def test_a_robot_that_switches_itself_off_is_dark_silent_and_deaf_to_its_variabl
     commands = device.take_commands()
     assert commands.index(SetLeds("top", (32, 0, 0))) < commands.index(ReleaseLeds("top"))
     assert commands.index(EnableComm(True)) < commands.index(EnableComm(False))
+    device.feed("temperature", (300,))
+    device.advance(1_000_000_000)
+    assert device.take_commands() == []
     device.set_variable("motor.left.target", (300,))
     device.set_variable("leds.top", (0, 32, 0))
     assert device.take_commands() == []

@@ -66,6 +66,18 @@ def test_what_waits_is_forgotten_and_timers_stop() -> None:
     assert everything(waiting) == []
 
 
+def test_timers_that_fired_unheard_are_forgotten_too() -> None:
+    waiting = queue(PLAYGROUND)
+    waiting.advance(0)
+    waiting.notice([10, 0])
+    waiting.advance(25 * MILLISECOND_NS)
+    assert waiting.take() == 15
+    waiting.advance(30 * MILLISECOND_NS)
+    waiting.advance(31 * MILLISECOND_NS)
+    waiting.clear()
+    assert not waiting.waits
+
+
 def test_a_machine_that_stands_still_collects_no_events_without_end() -> None:
     waiting = queue(PLAYGROUND)
     for _ in range(10 * MOST_WAITING):

@@ -38,6 +38,12 @@ def test_names_come_before_numbers_and_numbers_before_order():
     assert shares["carl"].notes == ("node 'thymio-II' 9 runs here, on number 3, as it was next in order",)
 
 
+def test_nodes_without_a_number_go_by_their_order_and_nobody_wonders():
+    shares = share_out(file_of(("thymio-II", 0, "a"), ("thymio-II", 0, "b")), [ANNA, BERT])
+    assert codes(shares) == {"anna": "a", "bert": "b"}
+    assert [share.notes for share in shares.values()] == [(), ()]
+
+
 def test_a_robot_without_a_node_runs_nothing_and_is_told():
     shares = share_out(file_of(("thymio-II", 1, "a"), ("thymio-II", 2, "b")), [ANNA, BERT, CARL])
     assert shares["carl"].program is None

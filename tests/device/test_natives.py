@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -169,10 +169,11 @@ def test_a_record_holds_what_the_microphone_told_meanwhile(options: DeviceOption
     assert (min(samples), max(samples)) == (78, 178)
 
 
-def test_a_record_is_stored_when_the_program_ends(options: DeviceOptions) -> None:
+@pytest.mark.parametrize("end", [lambda device: device.load(load_program("", "none")), AsebaDevice.switch_off])
+def test_a_record_is_stored_when_the_program_ends(options: DeviceOptions, end: Callable[[AsebaDevice], None]) -> None:
     device = start("call sound.record(1)", options)
     run(device)
-    device.load(load_program("", "none"))
+    end(device)
     assert device.body.recorded_bytes(1) == 0
     assert device.body.card is not None
     assert device.body.card.read_sound("r1") == (b"", "")

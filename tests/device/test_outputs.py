@@ -9,7 +9,7 @@ from thymio_sim_ros.device.layout import THYMIO, target
 from thymio_sim_ros.device.outputs import LIT_NS, Outputs
 from thymio_sim_ros.device.own_rules import OwnRules
 from thymio_sim_ros.device.settings import Settings
-from thymio_sim_ros.sim.commands import MotorTargets, PlayTone, SetLed, SetLeds, SetVolume, ShowOnLeds
+from thymio_sim_ros.sim.commands import MotorTargets, PlaySystemSound, PlayTone, SetLed, SetLeds, SetVolume, ShowOnLeds
 
 RED, GREEN = SetLeds("top", (32, 0, 0)), SetLeds("top", (0, 32, 0))
 
@@ -59,6 +59,18 @@ def test_and_again_after_a_while_since_somebody_else_may_have_set_them(outputs: 
         outputs.send(RED)
         told += outputs.take(tick * LIT_NS // 10)
     assert told == [RED] * 10
+    outputs.send(RED)
+    outputs.take(0)  # time went back
+    outputs.send(RED)
+    assert outputs.take(1) == [RED]
+
+
+def test_what_was_set_before_a_reset_is_news_after_it(outputs: Told) -> None:
+    outputs.send(RED)
+    outputs.reset(outputs.machine)
+    outputs.take(0)
+    outputs.send(RED)
+    assert outputs.take(0) == [RED]
 
 
 def test_a_group_that_a_rule_had_lit_is_dark_for_the_robot_from_then_on(outputs: Told) -> None:
@@ -87,15 +99,22 @@ def test_a_new_correction_tells_the_same_targets_again(outputs: Told) -> None:
 
 
 def test_sound_is_used_from_its_first_command_on(outputs: Told) -> None:
+    touched = PlaySystemSound(2)
     outputs.send(SetVolume(3))
     assert not outputs.has_used_sound
+    outputs.write("button.left", 1)
+    assert touched in outputs.rules.look(outputs.machine.variables.words)
     outputs.send(PlayTone(440, None))
     assert outputs.has_used_sound
+    outputs.write("button.right", 1)
+    assert touched not in outputs.rules.look(outputs.machine.variables.words)
     outputs.reset(outputs.machine)
     assert not outputs.has_used_sound
 
 
 def test_a_reset_tells_every_actuator(outputs: Told) -> None:
     outputs.reset(outputs.machine)
-    kinds = {type(command).__name__ for command in outputs.take(0)}
+    told = outputs.take(0)
+    assert len(told) == len(set(told))
+    kinds = {type(command).__name__ for command in told}
     assert {"MotorTargets", "ReleaseLeds", "StopSound", "SetWave", "EnableComm", "SetSoundThreshold"} <= kinds

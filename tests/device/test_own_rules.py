@@ -178,6 +178,12 @@ def test_the_battery_shows_up_to_three_lights(robot: Robot, each: int, lights: i
     assert robot.lights["battery"] == (32,) * lights + (0,) * (3 - lights)
 
 
+def test_a_battery_that_is_not_empty_does_not_blink_however_its_voltage_changes(robot: Robot) -> None:
+    for each in range(780, 880):
+        robot.look({"_vbat": (each, each)})
+        assert robot.lights["battery"] == (32, 32, 32)
+
+
 def test_an_empty_battery_blinks(robot: Robot) -> None:
     shown = []
     robot.look({"_vbat": (600, 600)})

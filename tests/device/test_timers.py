@@ -53,6 +53,28 @@ def test_after_a_reset_the_count_begins_with_the_present():
     assert heard(timers, 140) == [0]
 
 
+def test_a_reset_forgets_what_was_not_counted_yet():
+    timers = started(100, 0)
+    timers.set_clock(90 * MILLISECOND_NS)
+    timers.reset()
+    timers.notice((50, 0))
+    assert heard(timers, 139) == []
+    assert heard(timers, 140) == [0]
+
+
+def test_a_period_begins_where_the_machine_has_counted_to_not_at_the_clock():
+    timers = started(100, 0)
+    timers.set_clock(50 * MILLISECOND_NS)
+    timers.notice((100, 20))
+    assert [timers.next_firing() for _ in range(3)] == [(1,), (1,), ()]
+    assert timers.lag_ms == 0
+
+
+def test_the_same_moment_again_changes_nothing():
+    timers = started(10, 0)
+    assert [len(heard(timers, 6 * look)) for look in (0, 1, 1, 2, 2, 3, 3, 4)] == [0, 0, 0, 1, 0, 0, 0, 1]
+
+
 def test_what_fires_unheard_is_told_once():
     timers = started(10, 0)
     assert timers.set_clock(95 * MILLISECOND_NS) == ()
