@@ -108,7 +108,7 @@ def test_breakpoints_hold_over_a_new_program_and_a_reset(ros, runtime, prox):
 
 
 def test_breakpoints_do_not_stop_built_in_behaviours(ros, runtime):
-    runtime(SOURCE, breakpoints=[5, 7])
+    runtime(SOURCE, breakpoints=[5, 7, 48])  # the last one is a line of the menu
     status = Status(ros)
     ros.until(lambda: status["breakpoints"] == "[5, 7]")
     assert set_parameters(ros, {"behaviour": "menu"}).successful

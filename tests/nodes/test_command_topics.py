@@ -118,6 +118,12 @@ def test_an_alarm_is_switched():
     assert decode("alarm", Bool(data=True)) == SetAlarm(True)
 
 
+@pytest.mark.parametrize(("number", "told"), [(-129, -128), (127, 127), (128, 127), (32767, 127)])
+def test_a_number_that_is_no_sound_of_the_robot_is_one_that_a_message_can_hold(number, told):
+    message = BY_TOPIC["sound/system"].encode(PlaySystemSound(number))
+    assert decode("sound/system", message) == PlaySystemSound(told)
+
+
 def test_a_sound_is_stopped_by_a_negative_number():
     assert decode("sound/tone", Float32MultiArray(data=[0.0, -1.0])) == StopSound()
     assert decode("sound/system", Int8(data=-1)) == StopSound()

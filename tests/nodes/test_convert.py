@@ -7,6 +7,7 @@ import math
 import pytest
 from geometry_msgs.msg import Quaternion
 from sensor_msgs.msg import JointState, LaserScan, Range
+from visualization_msgs.msg import Marker
 
 from thymio_sim_ros.nodes import convert, sensor_topics
 from thymio_sim_ros.nodes.convert import ConvertOptions
@@ -14,6 +15,7 @@ from thymio_sim_ros.nodes.names import RobotNames, ros_names, topic_word
 from thymio_sim_ros.sim import readings
 from thymio_sim_ros.sim.geometry import Pose, Tilt
 from thymio_sim_ros.sim.geometry import Twist as BodyMotion
+from thymio_sim_ros.sim.primitives import Stroke
 from thymio_sim_ros.sim.sensors import all_sensors
 
 ALONE = RobotNames("")
@@ -106,6 +108,20 @@ def test_leds_are_labelled_parts_of_one_array():
     message = encode("led/state", readings.LedReading(0, (), (("top", (32, 16, 0)), ("ground", (0, 32)))))
     assert [(dim.label, dim.size) for dim in message.layout.dim] == [("top", 3), ("ground", 2)]
     assert list(message.data) == [1.0, 0.5, 0.0, 0.0, 1.0]
+
+
+@pytest.mark.parametrize(("shift", "volume"), [(0, 1.0), (1, 0.5), (7, 2.0**-7), (8, 0.0)])
+def test_the_volume_is_halved_by_each_bit_and_the_last_one_is_silence(shift, volume):
+    reading = readings.LoudspeakerReading(0, (), 0, 440.0, None, (), b"", shift)
+    assert list(encode("sound/state", reading).data) == [440.0, math.inf, volume]
+
+
+def test_a_trail_takes_the_place_of_the_one_before():
+    stroke = Stroke((1.0, 0.0, 0.0), 0.01, ((0.0, 0.0), (0.1, 0.0)))
+    reading = readings.PenReading(0, (), True, (1.0, 0.0, 0.0), 0.01, False, (stroke, stroke))
+    markers = encode("pen/trail", reading).markers
+    assert [(marker.action, marker.id) for marker in markers[1:]] == [(Marker.ADD, 0), (Marker.ADD, 1)]
+    assert markers[0].action == Marker.DELETEALL
 
 
 @pytest.mark.parametrize("yaw", [-3.0, -0.5, 0.0, 1.0, 3.1])

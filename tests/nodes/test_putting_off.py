@@ -8,7 +8,7 @@ from __future__ import annotations
 import types
 
 import pytest
-from geometry_msgs.msg import Twist, Vector3
+from geometry_msgs.msg import TransformStamped, Twist, Vector3
 from nav_msgs.msg import Odometry
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
@@ -112,6 +112,17 @@ def test_a_command_takes_effect_in_the_tick_after_it_came(driven, sleeper):
         alone.step()
     assert alone.robots["thymio"].pose == world.robots["thymio"].pose
     assert alone.robots["thymio"].wheels.odometry == world.robots["thymio"].wheels.odometry
+
+
+def test_what_is_dragged_finds_the_world_of_now(driven, sleeper):
+    turn, done = driven(), []
+    place = TransformStamped(child_frame_id="thymio")
+    place.transform.translation.x = 0.2
+    services = turn.sim.simulator._services
+    sleeper.at(34, lambda: (services._place(place), done.append(turn.sim.world.now_ns)))
+    world = turn(41)
+    assert done == [30 * MS]
+    assert world.robots["thymio"].pose.x_m == 0.2
 
 
 def test_what_a_command_brings_about_is_told_one_tick_later(ros, driven, sleeper):

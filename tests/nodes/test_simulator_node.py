@@ -362,6 +362,18 @@ def test_transforms_lead_from_map_to_the_wheels(ros, simulation):
     assert frames["base_link"].translation[0] > 0.01
 
 
+def test_a_robot_that_is_tilted_leans_in_its_odometry_s_frame(ros, simulation):
+    sim = simulation()
+    received = []
+    ros.node.create_subscription(tf_messages.TFMessage, "/tf", received.append, 100, raw=True)
+    ros.until(lambda: ros.node.count_publishers("/tf"))
+    sim.thymio.tilt(pitch_rad=-0.5)
+    sim.until(lambda: len(received) > 2)
+    frames = {transform.child: transform for transform in tf_messages.decode(bytes(received[-1]))}
+    assert frames["base_link"].rotation == pytest.approx((0.0, math.sin(-0.25), 0.0, math.cos(-0.25)))
+    assert frames["odom"].rotation == pytest.approx((0.0, 0.0, 0.0, 1.0))
+
+
 def test_a_robot_can_be_put_somewhere(ros, simulation):
     sim = simulation()
     truth = ros.collect(Odometry, "/ground_truth/odom")
