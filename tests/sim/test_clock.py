@@ -70,6 +70,24 @@ def test_the_achieved_factor_tells_what_was_dropped() -> None:
     assert pacer.achieved == pytest.approx(0.5)
 
 
+def test_a_fast_pace_may_owe_more_than_a_batch_at_once() -> None:
+    pacer = Pacer(100.0, max_batch=10)
+    pacer.owed(0)
+    assert pacer.owed(2 * TICK_NS) == 200
+    assert pacer.dropped_ticks == 0
+    assert pacer.owed(5 * TICK_NS) == 200
+    assert pacer.dropped_ticks == 100
+
+
+def test_the_achieved_factor_is_first_told_after_a_tenth_of_a_second() -> None:
+    pacer = Pacer(1.0)
+    achieved = []
+    for tick in range(12):
+        pacer.owed(tick * TICK_NS)
+        achieved.append(pacer.achieved)
+    assert achieved == [0.0] * 10 + [pytest.approx(0.9, abs=0.11)] * 2
+
+
 def test_factor_zero_owes_a_full_batch_at_once_and_never_waits() -> None:
     pacer = Pacer(0.0, max_batch=10)
     assert [pacer.owed(0), pacer.owed(1), pacer.owed(2)] == [10, 10, 10]

@@ -146,3 +146,9 @@ def test_a_thing_that_starts_past_the_edge_is_not_there() -> None:
     world.step()
     world.reset()
     assert world.objects[0].is_fallen
+
+
+def test_nor_is_one_in_the_middle_of_the_world_where_the_floor_is_elsewhere() -> None:
+    crate = {**box(0.0, 0.0, 0.06, 0.06), "name": "crate", "mass_kg": 0.1}
+    world = World(make([{**FLOOR, "x_m": 3.0}, crate], ({**ROBOT, "x_m": 3.0},)))
+    assert world.objects[0].is_fallen

@@ -183,6 +183,18 @@ def test_a_place_where_something_will_stand_in_the_next_step_is_not_free() -> No
     assert crate(world) == Pose(-1.0, 1.0, 0.0)
 
 
+@pytest.mark.parametrize("name", ["crate", "other"])
+def test_nor_is_one_where_what_has_fallen_is_going_to_stand(name: str) -> None:
+    world = World(make([FLOOR, CRATE], (ROBOT, {**ROBOT, "name": "other", "x_m": 1.0})))
+    move = MoveObject if name == "crate" else MoveRobot
+    world.post(name, move(5.0, 0.0, 0.0))
+    run(world, 0.1)
+    world.post("thymio", MoveRobot(5.0, 0.0, 0.0))
+    world.post(name, move(1.0, 1.0, 0.0))
+    with pytest.raises(PlacementError, match=f"'{name}' is in its way"):
+        world.post("thymio", MoveRobot(1.0, 1.0, 0.0))
+
+
 @pytest.mark.parametrize("place", [(math.nan, 0.0, 0.0), (0.0, math.inf, 0.0), (0.0, 0.0, math.nan)])
 def test_a_place_that_is_no_number_is_refused(place: tuple[float, float, float]) -> None:
     world = World(make([{"kind": "rectangle", "size_x_m": 4, "size_y_m": 4, "color": GREY}, CRATE]))

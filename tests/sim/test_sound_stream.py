@@ -8,6 +8,7 @@ import pytest
 
 from tests.sim.builders import FLOOR, make, readings, run, send
 from thymio_sim_ros.sim.commands import Command, PlaySamples, PlaySystemSound, PlayTone, SetVolume, StopSound
+from thymio_sim_ros.sim.readings import LoudspeakerReading
 from thymio_sim_ros.sim.sound_stream import SoundStream
 from thymio_sim_ros.sim.tones import BLOCK_SAMPLES, SAMPLE_NS, TRIANGLE
 from thymio_sim_ros.sim.world import World
@@ -62,6 +63,12 @@ def test_samples_come_back_as_they_were() -> None:
     assert said[first : first + 256].tolist() == [sample - 128 for sample in CLICK]
     assert not said[:first].any()
     assert not said[first + 256 :].any()
+
+
+def test_after_the_last_sample_is_silence_though_nobody_has_told_so_yet() -> None:
+    heard = SoundStream()
+    heard.hear(LoudspeakerReading(0, (), 0, 0.0, len(CLICK) * SAMPLE_NS, TRIANGLE, CLICK, 0))
+    assert heard.samples(200, 100).tolist() == [sample - 128 for sample in CLICK[200:]] + [0] * 44
 
 
 def test_a_sound_that_is_stopped_ends_at_once() -> None:

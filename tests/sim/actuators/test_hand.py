@@ -22,6 +22,18 @@ def test_the_hand_puts_the_robot_down_once() -> None:
     assert view.pose == Pose(0.0, 0.0, 0.0)
 
 
+def test_what_the_hand_does_within_a_tick_it_does_once_and_in_order() -> None:
+    assert ACTUATOR.update is not None
+    state, view = HandState(), FakeView()
+    for command in (MoveRobot(1.0, 2.0, 3.0), ResetOdometry(), MoveRobot(4.0, 5.0, 6.0)):
+        ACTUATOR.apply(state, command, 0)
+    ACTUATOR.update(state, view, 0.01)
+    assert view.pose == Pose(4.0, 5.0, 6.0)
+    view.pose = Pose(0.0, 0.0, 0.0)
+    ACTUATOR.update(state, view, 0.01)
+    assert view.pose == Pose(0.0, 0.0, 0.0)
+
+
 def test_the_hand_zeroes_the_odometry() -> None:
     assert ACTUATOR.update is not None
     state, view = HandState(), FakeView()

@@ -68,6 +68,9 @@ def test_samples_end_after_their_number() -> None:
     length_ns = len(CLICK) * SAMPLE_NS
     assert not play([PlaySamples(CLICK)], length_ns - 10_000_000).is_silent
     assert play([PlaySamples(CLICK)], length_ns + 10_000_000).finished == 1
+    whole_ticks = CLICK[:625]
+    assert play([PlaySamples(whole_ticks)], 70_000_000).finished == 0
+    assert play([PlaySamples(whole_ticks)], 80_000_000).finished == 1
 
 
 def test_the_level_is_the_swing_of_what_sounds_now() -> None:
@@ -136,6 +139,7 @@ def test_the_world_tells_samples_volume_and_silence() -> None:
     send(world, PlaySamples(CLICK))
     (playing,) = readings(run(world, 0.1), "loudspeaker")
     assert (playing.samples, playing.shift, playing.frequency_hz) == (CLICK, 3, 0.0)
+    assert playing.duration_ns == len(CLICK) * SAMPLE_NS
     send(world, StopSound())
     steps = run(world, 1.0)
     (silent,) = readings(steps, "loudspeaker")
@@ -143,11 +147,19 @@ def test_the_world_tells_samples_volume_and_silence() -> None:
     assert readings(steps, "sound_finished") == []
 
 
+def test_who_is_silent_and_stopped_has_nothing_to_tell() -> None:
+    world = World(make([FLOOR]))
+    send(world, StopSound())
+    assert readings(run(world, 0.1), "loudspeaker") == []
+
+
 def test_an_alarm_sounds_every_three_seconds_until_it_is_switched_off() -> None:
     world = World(make([FLOOR]))
-    send(world, SetAlarm(True))
-    send(world, SetAlarm(True))
-    begun = [reading.began_ns for reading in readings(run(world, 7.0), "loudspeaker") if reading.frequency_hz == 110]
+    steps = []
+    for seconds in (1.0, 6.0):
+        send(world, SetAlarm(True))
+        steps += run(world, seconds)
+    begun = [reading.began_ns for reading in readings(steps, "loudspeaker") if reading.frequency_hz == 110]
     assert begun == [0, 3 * SECOND_NS, 6 * SECOND_NS]
     send(world, SetAlarm(False))
     run(world, 0.5)

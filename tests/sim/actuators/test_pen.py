@@ -13,6 +13,7 @@ from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.pen import ACTUATOR, PenState
 from thymio_sim_ros.sim.commands import BodyTwist, MotorTargets, MoveRobot, SetPen
 from thymio_sim_ros.sim.geometry import Point, Pose
+from thymio_sim_ros.sim.primitives import Color
 from thymio_sim_ros.sim.world import World
 
 BLACK, RED = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
@@ -20,9 +21,9 @@ TWO = [{"name": "painter", "x_m": 0.0, "y_m": 0.0}, {"name": "reader", "x_m": 0.
 BROAD = SetPen(down=True, width_m=0.04)
 
 
-def draw(points: list[Point], *commands: SetPen) -> tuple[PenState, FakeView]:
+def draw(points: list[Point], *commands: SetPen, view: FakeView | None = None) -> tuple[PenState, FakeView]:
     """A pen that was led from point to point."""
-    state, view = PenState(), FakeView()
+    state, view = PenState(), view or FakeView()
     for command in commands:
         ACTUATOR.apply(state, command, 0)
     for x_m, y_m in points:
@@ -78,6 +79,72 @@ def test_a_robot_that_is_carried_draws_no_line() -> None:
 def test_a_pen_keeps_what_a_command_leaves_out() -> None:
     state, _ = draw([], SetPen(down=True, color=RED), SetPen(width_m=0.02), SetPen(erase=True))
     assert (state.down, state.color, state.width_m, state.erase) == (True, RED, 0.02, True)
+
+
+@pytest.mark.parametrize("change", [SetPen(width_m=0.02), SetPen(color=RED)])
+def test_another_pen_begins_a_stroke_of_its_own(change: SetPen) -> None:
+    state, view = draw(way(0.01), SetPen(down=True))
+    assert ACTUATOR.update is not None
+    ACTUATOR.apply(state, change, 0)
+    view.pose = Pose(0.015, 0.0, 0.0)
+    ACTUATOR.update(state, view, 0.01)
+    first, second = state.strokes
+    assert (first.color, first.width_m) == (BLACK, 0.003)
+    assert (second.color, second.width_m) == (change.color or BLACK, change.width_m or 0.003)
+    assert second.points == ((0.015, 0.0), (0.015, 0.0))
+
+
+def test_a_pen_that_is_lifted_for_a_little_leaves_a_gap() -> None:
+    state, view = draw(way(0.01), SetPen(down=True))
+    assert ACTUATOR.update is not None
+    for command, x_m in ((SetPen(down=False), 0.015), (SetPen(down=True), 0.02)):
+        ACTUATOR.apply(state, command, 0)
+        view.pose = Pose(x_m, 0.0, 0.0)
+        ACTUATOR.update(state, view, 0.01)
+    assert [stroke.points[-1] for stroke in state.strokes] == [(0.01, 0.0), (0.02, 0.0)]
+    assert view.drawn[-1][:2] == ((0.02, 0.0), (0.02, 0.0))
+
+
+class Edge(FakeView):
+    """A robot that is led over a gap in the floor, from 0.1 to 0.11 m."""
+
+    def draw(self, start: Point, end: Point, width_m: float, color: Color | None) -> Color | None:
+        return None if 0.1 < end[0] < 0.11 else super().draw(start, end, width_m, color)
+
+
+def test_where_no_floor_is_there_is_no_stroke() -> None:
+    state, _ = draw(way(0.2), SetPen(down=True), view=Edge())
+    assert [stroke.points[0][0] for stroke in state.strokes] == pytest.approx([0.0, 0.109])
+    assert [stroke.points[-1][0] for stroke in state.strokes] == pytest.approx([0.1, 0.2])
+
+
+class Stripes(FakeView):
+    """A robot whose eraser uncovers black up to 0.05 m, then red."""
+
+    def draw(self, start: Point, end: Point, width_m: float, color: Color | None) -> Color | None:
+        return RED if end[0] > 0.05 else BLACK
+
+
+def test_what_an_eraser_uncovers_is_a_stroke_for_each_color() -> None:
+    state, _ = draw(way(0.1), SetPen(down=True, erase=True), view=Stripes())
+    assert [stroke.color for stroke in state.strokes] == [BLACK, RED]
+    assert state.strokes[0].points[-1] == state.strokes[1].points[0] == (0.05, 0.0)
+
+
+def test_a_pen_that_creeps_draws_every_half_millimetre() -> None:
+    _, view = draw(way(0.01, 0.0001), SetPen(down=True))
+    assert len(view.drawn) == pytest.approx(20, abs=4)
+
+
+def test_of_many_points_the_oldest_strokes_are_forgotten_but_never_the_one_that_is_drawn(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("thymio_sim_ros.sim.actuators.pen.MOST_POINTS", 10)
+    zigzag = [(0.01 * step, 0.01 * (step % 2)) for step in range(20)]
+    state, _ = draw([*zigzag, (1.0, 1.0), *[(1.0 + x, 1.0 + y) for x, y in zigzag]], SetPen(down=True))
+    (stroke,) = state.strokes
+    assert stroke.points[0] == (1.0, 1.0)
+    assert len(stroke.points) == 20
 
 
 @pytest.mark.parametrize("width_m", [0.0, 0.2])

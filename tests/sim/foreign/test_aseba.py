@@ -137,6 +137,25 @@ def test_the_description_is_the_english_one() -> None:
     assert found.translations == {"fr": {"title": "mine", "description": "Un labyrinthe"}}
 
 
+def test_of_two_descriptions_in_one_language_the_first_counts() -> None:
+    body = "".join(f'<description lang="en">{text}</description>' for text in ("First.", "Second."))
+    assert converted(body).description == "First."
+
+
+def test_a_color_beyond_the_brightest_is_the_brightest() -> None:
+    found = converted('<color name="odd" r="2" g="-1" b="0.5"/><cylinder x="20" y="30" r="2" h="5" color="odd"/>')
+    assert found.shapes[-1]["color"] == "#ff0080"
+
+
+@pytest.mark.parametrize("duration", ["", 'moveDuration="0"', 'moveDuration="-3"'])
+def test_a_door_without_a_time_opens_at_once(duration: str) -> None:
+    found = shape(
+        f'<door name="d" closedX="60" closedY="30" openedX="70" openedY="30" l1="10" l2="1" h="10" {duration}'
+        ' color="orange"/>'
+    )
+    assert found["move_s"] == 0.01
+
+
 def test_languages_are_read_as_people_write_them_and_others_are_told() -> None:
     body = "".join(f'<description lang="{lang}">{lang or "none"}</description>' for lang in ("", "de_CH", "C", "en_US"))
     found = converted(body)

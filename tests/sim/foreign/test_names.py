@@ -20,6 +20,7 @@ from thymio_sim_ros.sim.foreign.names import Names, rounded, turned
         ("///", "thing"),
         ("", "thing"),
         ("a" * 200, "a" * 50),
+        ("a" * 49 + " b", "a" * 49),
     ],
 )
 def test_a_name_becomes_the_nearest_ros_name(wanted: str, name: str) -> None:

@@ -104,6 +104,17 @@ def test_a_hit_from_the_side_is_felt_sidewards() -> None:
     assert second.words[0] == 0
 
 
+def test_hits_between_two_readings_add_up_and_what_is_touched_on_is_none() -> None:
+    hit, touched = Contact("thymio", "other", 0.0, 0.06, 0.2, True), Contact("thymio", "wall", 0.0, 0.06, 0.2, False)
+    view = FakeView(contacts=(hit, touched), now_ns=62_500_000)
+    assert accelerometer.SENSOR.feel is not None
+    for _ in range(2):
+        accelerometer.SENSOR.feel(view)
+    reading = accelerometer.SENSOR.measure(view)
+    assert reading is not None
+    assert reading.words[0] == round(2 * 0.2 / 0.0625 / 9.81 * 23)
+
+
 def test_being_put_elsewhere_is_no_shock_but_a_stop() -> None:
     world = World(make([FLOOR]), noise=False)
     run(world, 0.5)

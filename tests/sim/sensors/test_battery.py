@@ -29,6 +29,7 @@ def test_the_operator_sets_it_at_once(volts: float, word: int, charge: float) ->
 
 def test_a_charger_can_be_connected() -> None:
     world = World(make([FLOOR]))
+    run(world, 0.5)
     send(world, ConnectCharger(True))
     (reading,) = readings(run(world, 0.01), "battery")
     assert (reading.words[2], reading.is_charging) == (1, True)

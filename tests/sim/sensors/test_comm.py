@@ -98,6 +98,12 @@ def test_a_wall_between_them_hides_them() -> None:
     assert frames(facing(0.2), {"a": 1, "b": 2}, [FLOOR, wall])["a"] == []
 
 
+def test_so_does_a_wall_close_to_the_other_one_at_the_end_of_the_range() -> None:
+    wall = box(0.51, 0.0, 0.01, 1.0)
+    assert len(frames(facing(0.45), {"a": 1, "b": 2})["a"]) == 10
+    assert frames(facing(0.45), {"a": 1, "b": 2}, [FLOOR, wall])["a"] == []
+
+
 def test_a_low_wall_does_not() -> None:
     wall = box(0.18, 0.0, 0.01, 1.0, height_m=0.03)
     assert len(frames(facing(0.2), {"a": 1, "b": 2}, [FLOOR, wall])["a"]) == 10

@@ -5,7 +5,11 @@ from __future__ import annotations
 import pytest
 
 from tests.sim.builders import FLOOR, make, post_wall, readings, run, send
-from thymio_sim_ros.sim.commands import MotorTargets
+from tests.sim.fake_view import FakeView
+from thymio_sim_ros.sim import units
+from thymio_sim_ros.sim.commands import MotorTargets, SetMotorModel
+from thymio_sim_ros.sim.sensors import current
+from thymio_sim_ros.sim.wheels import Wheels
 from thymio_sim_ros.sim.world import World
 
 
@@ -24,6 +28,26 @@ def test_a_wheel_that_is_held_draws_current_until_it_is_let_go() -> None:
     rest = readings(run(world, 10.0), "current")[-1].words
     assert held[:2] == pytest.approx((800, 800), abs=5)
     assert rest == (0, 0, 0, 0)
+
+
+def test_a_light_load_shows_too() -> None:
+    wheels = Wheels()
+    wheels.commanded = (units.units_to_speed(100), units.units_to_speed(100))
+    wheels.speeds_m_s = (units.units_to_speed(90), units.units_to_speed(100))
+    view = FakeView(wheels=wheels)
+    for _ in range(1000):
+        current.SENSOR.measure(view)
+    assert [round(value, 3) for value in view.memory["currents"]] == [16.0, 0.0]
+
+
+def test_motors_that_follow_at_once_again_tell_their_integrator_at_once() -> None:
+    world = World(make([FLOOR]), noise=False)
+    send(world, MotorTargets(100, 100))
+    run(world, 0.5)
+    send(world, SetMotorModel("firmware"))
+    run(world, 0.7)
+    send(world, SetMotorModel("ideal"))
+    assert readings(run(world, 0.05), "current")[-1].words[2:] == (-480, -480)
 
 
 def test_the_current_is_filtered_over_64_ticks() -> None:

@@ -34,6 +34,15 @@ def test_lights_are_told_once_at_the_start_and_then_on_change() -> None:
     assert dict(third.groups)["top"] == (1, 2, 3)
 
 
+def test_what_was_set_and_has_come_back_is_no_news() -> None:
+    state = LedState()
+    view = FakeView(states=(state,))
+    leds.SENSOR.measure(view)
+    state.show("top", (1, 2, 3))
+    state.show("top", (0, 0, 0))
+    assert leds.SENSOR.measure(view) is None
+
+
 def test_lights_are_first_told_in_the_first_step(world: World) -> None:
     first, second = (len(readings([world.step()], "leds")) for _ in range(2))
     assert (first, second) == (1, 0)

@@ -99,6 +99,16 @@ def test_a_loudspeaker_is_heard_while_it_plays() -> None:
     assert (heard(after, "a")[-1], heard(after, "b")[-1]) == (0, 0)
 
 
+def test_after_a_loud_block_silence_is_news() -> None:
+    room = RoomState()
+    view = FakeView(states=(room, MicrophoneState(50)))
+    told = []
+    for room.noise_level in (0, 100, 0):
+        told.append(sound.SENSOR.measure(view))
+        view.now_ns += sound.BLOCK_NS
+    assert [reading and reading.words[0] for reading in told] == [0, 100, 0]
+
+
 def test_steady_sound_is_told_61_times_a_second_only_when_it_is_loud() -> None:
     world = World(make([FLOOR]))
     send(world, SetNoiseLevel(100))
