@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from rcl_interfaces.msg import Log
-from std_msgs.msg import Int16MultiArray
+from std_msgs.msg import Int16MultiArray, MultiArrayDimension
 from std_srvs.srv import Trigger
 
 from tests.nodes.aseba_tools import Status, event, get_variables, set_parameters
@@ -219,6 +219,16 @@ def test_robots_of_another_radio_network_do_not_hear(ros, runtime):
     ros.until(lambda: third.robots[0].device.get_variable("times") == (1,))
     assert get_variables(ros, "times", robot="/anna") == [[0]]
     assert other.robots[0].device.get_variable("times") == (0,)
+
+
+@pytest.mark.parametrize(("values", "heard"), [([1, 2, 3, 4], [1, 2, 0, 0]), ([5], [5, 0, 0, 0])])
+def test_a_robot_hears_as_many_values_as_its_program_declares(ros, runtime, values, heard):
+    runtime(HEAR)
+    message = Int16MultiArray(data=[7, 0, 0, *values])
+    message.layout.dim = [MultiArrayDimension(label=label) for label in ("ping", "another runtime")]
+    ros.publisher(Int16MultiArray, TOPIC).publish(message)
+    ros.until(lambda: get_variables(ros, "times", "from") == [[1], [7]])
+    assert get_variables(ros, "event.args")[0][:4] == heard
 
 
 def test_nonsense_on_the_network_is_refused(ros, runtime):
