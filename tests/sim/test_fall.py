@@ -106,6 +106,14 @@ def test_a_fallen_robot_stands_again_where_it_is_put() -> None:
     assert robot.pose.x_m == pytest.approx(0.166)
 
 
+def test_a_robot_that_is_put_where_no_floor_is_falls_at_once() -> None:
+    world = World(make([FLOOR]), noise=False)
+    run(world, 0.1)
+    send(world, MoveRobot(EDGE_M + 0.5, 0.0, 0.0))
+    run(world, 0.01)
+    assert world.robots["thymio"].is_fallen
+
+
 def test_reset_puts_a_fallen_robot_back() -> None:
     world = at_edge()
     send(world, MotorTargets(500, 500))

@@ -157,10 +157,30 @@ def test_a_thing_is_refused_where_something_stands() -> None:
         build().post("crate", MoveObject(0.05, 0.0, 0.0))
 
 
+def test_a_round_thing_is_refused_where_a_round_one_stands() -> None:
+    can = {**POST, "name": "can", "x_m": 1.0, "mass_kg": 0.1}
+    world = World(make([FLOOR, POST, can]))
+    with pytest.raises(PlacementError, match="'post' is in its way"):
+        world.post("can", MoveObject(0.05, 0.5, 0.0))
+    world.post("can", MoveObject(0.11, 0.5, 0.0))
+
+
 def test_a_robot_is_not_moved_into_something() -> None:
     world = build()
     with pytest.raises(PlacementError, match="'wall' is in its way"):
         send(world, MoveRobot(0.5, 0.0, 0.0))
+
+
+def test_a_robot_that_is_moved_while_it_pushes_stands_still_where_it_is_put() -> None:
+    world = build(noise=False)
+    send(world, MoveRobot(-0.38, 0.0, math.pi))
+    send(world, MotorTargets(300, 300))
+    run(world, 1.0)
+    assert world.robots["thymio"].body.touching
+    send(world, MotorTargets(0, 0))
+    send(world, MoveRobot(1.0, 1.0, 0.0))
+    run(world, 0.1)
+    assert pose_close(world.robots["thymio"].pose, Pose(1.0, 1.0, 0.0), 1e-6)
 
 
 def test_a_robot_may_be_turned_on_its_own_place() -> None:

@@ -49,6 +49,24 @@ def test_a_door_stays_closed_while_nobody_is_on_its_area() -> None:
     assert gate_y(world) == 0.0
 
 
+@pytest.mark.parametrize(("depth_m", "is_fallen"), [(4.0, False), (1.8, True)], ids=["floor", "table"])
+def test_a_door_that_flies_open_pushes_who_stood_far_from_it_and_from_the_edge(depth_m: float, is_fallen: bool) -> None:
+    floor, gate = {**FLOOR, "size_y_m": depth_m}, {**GATE, "move_s": 0.5}
+    robots = ({**ROBOT, "x_m": 0.5, "y_m": 0.55}, {**ROBOT, "name": "opener", "x_m": -0.72, "y_m": 0.34})
+    world = World(make([floor, gate, PLATE], robots), noise=False)
+    world.post("opener", MotorTargets(500, 500))
+    run(world, 0.75)
+    assert world.robots["thymio"].pose.y_m > 0.9
+    assert world.robots["thymio"].is_fallen == is_fallen
+
+
+def test_a_thing_on_its_area_does_not_open_a_door() -> None:
+    thing = {"kind": "box", "x_m": -0.5, "y_m": 0.4, "size_x_m": 0.04, "size_y_m": 0.04, "mass_kg": 0.1, **BOX}
+    world = build(GATE, PLATE, thing)
+    run(world, 3.0)
+    assert {(body.pose.x_m, body.pose.y_m) for body in world.objects} == {(-0.5, 0.4), (0.5, 0.0)}
+
+
 def test_a_door_opens_along_half_a_cosine() -> None:
     world = build(GATE, PLATE)
     enter(world)

@@ -90,10 +90,14 @@ def test_two_robots_are_near_each_other_when_both_can_come_closer() -> None:
         assert look(lookout, places) == [expected, expected]
 
 
-def test_who_has_fallen_is_near_nobody() -> None:
+@pytest.mark.parametrize("is_compiled", [None, False])
+def test_who_has_fallen_is_near_nobody_and_nothing(is_compiled: bool | None) -> None:
     places = [(0.0, 0.0, 0.0), (0.17, 0.0, math.pi), (5.0, 0.0, 0.0)]
-    assert look(Lookout([]), places) == [True, True, False]
-    assert look(Lookout([]), places, fallen=1) == [False, False, False]
+    post = obstacle_of(Solid("post", Pose(0.17, 0.0, 0.0), Disc(0.02), 0.1, (0, 0, 0)))
+    for fixed in ([], [post]):
+        lookout = Lookout(fixed, is_compiled=is_compiled)
+        assert look(lookout, places) == [True, True, False]
+        assert look(lookout, places, fallen=1) == [False, False, False]
 
 
 def test_alone_in_an_empty_world_nobody_is_near() -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import pymunk
 import pytest
 
 from tests.sim.builders import FLOOR, GREY, ROBOT, box, make, run, send, sense
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.physics import MovableBody
 from thymio_sim_ros.sim.world import World
 
 FRONT_M = 0.08
@@ -32,6 +34,37 @@ def quiet(*shapes: dict[str, Any], robots: tuple[dict[str, Any], ...] = (ROBOT,)
 
 def place_of(world: World, name: str) -> Pose:
     return next(thing.pose for thing in world.snapshot().objects if thing.name == name)
+
+
+@pytest.mark.parametrize("crowd", [3, 1], ids=["one by one", "in a crowd"])
+def test_a_thing_that_was_pushed_away_is_met_where_it_is(monkeypatch: pytest.MonkeyPatch, crowd: int) -> None:
+    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+    other = {**ROBOT, "name": "other", "x_m": 0.6, "y_m": 0.6, "yaw_rad": -math.pi / 2}
+    world = quiet(crate(0.2), robots=(ROBOT, other))
+    for robot, speed, seconds in (("thymio", 500, 3.0), ("thymio", -500, 2.5), ("other", 500, 3.5)):
+        world.post(robot, MotorTargets(speed, speed))
+        run(world, seconds)
+        world.post(robot, MotorTargets(0, 0))
+    assert place_of(world, "crate").x_m == pytest.approx(0.6, abs=0.05)
+    assert place_of(world, "crate").y_m < -0.05
+
+
+@pytest.mark.parametrize("crowd", [2, 1], ids=["alone", "in a crowd"])
+@pytest.mark.parametrize(("height_m", "is_seen"), [(0.03, False), (0.1, True)])
+def test_proximity_sensors_look_over_a_low_thing(
+    monkeypatch: pytest.MonkeyPatch, crowd: int, height_m: float, is_seen: bool
+) -> None:
+    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+    assert any(sense(quiet(crate(0.15, height_m=height_m)), "proximity").words) == is_seen
+
+
+def test_a_thing_that_turns_on_the_spot_is_not_at_rest() -> None:
+    (solid,) = (solid for solid in make([FLOOR, crate(0.5)]).solids if solid.load is not None)
+    thing = MovableBody(solid, pymunk.Body(body_type=pymunk.Body.STATIC), set())
+    for spin, is_moving in ((1.0, True), (1e-9, False)):
+        thing.body.angular_velocity = spin
+        thing.settle(0.5, 0.0, 0.1, 0.0, 0.0, spin)
+        assert (thing.is_moving, thing.body.angular_velocity) == (is_moving, spin if is_moving else 0.0)
 
 
 @pytest.mark.parametrize("thing", [crate(0.2), can(0.2)], ids=lambda thing: thing["name"])

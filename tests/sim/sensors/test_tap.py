@@ -24,15 +24,18 @@ def test_a_contact_that_begins_faster_than_two_centimetres_per_second_is_a_tap(
     assert (0 if reading is None else reading.words[0]) == taps
 
 
-def test_the_operator_s_knocks_are_read_in_the_next_tick() -> None:
+@pytest.mark.parametrize("crowd", [2, 1], ids=["alone", "in a crowd"])
+def test_the_operator_s_knocks_are_read_in_the_next_tick(monkeypatch: pytest.MonkeyPatch, crowd: int) -> None:
+    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
     world = World(make([FLOOR]), noise=False)
     run(world, 0.05)
     send(world, Tap())
     assert [reading.words for reading in readings(run(world, 0.01), "tap")] == [(1,)]
-    assert readings(run(world, 1.0), "tap") == []
+    assert readings(run(world, 1.03), "tap") == []  # it does not measure in the next tick by itself
     send(world, Tap())
     send(world, Tap())
     assert len(readings(run(world, 0.01), "tap")) == 1
+    assert readings(run(world, 1.0), "tap") == []
 
 
 def test_driving_into_a_wall_is_one_tap() -> None:
@@ -49,7 +52,20 @@ def test_creeping_to_a_wall_is_none() -> None:
     assert any(step.contacts for step in steps)
 
 
-def test_a_landing_is_one_tap() -> None:
+@pytest.mark.parametrize("crowd", [2, 1], ids=["alone", "in a crowd"])
+def test_a_knock_on_a_robot_that_leans_on_a_wall_is_read(monkeypatch: pytest.MonkeyPatch, crowd: int) -> None:
+    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+    world = World(make([FLOOR, post_wall(0.01)]), noise=False)
+    send(world, MotorTargets(50, 50))
+    assert run(world, 3.0)[-1].contacts
+    for _ in range(8):  # in one of these ticks it measures anyway
+        send(world, Tap())
+        assert len(readings(run(world, 0.01), "tap")) == 1
+
+
+@pytest.mark.parametrize("crowd", [2, 1], ids=["alone", "in a crowd"])
+def test_a_landing_is_one_tap(monkeypatch: pytest.MonkeyPatch, crowd: int) -> None:
+    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
     world = World(make([{**FLOOR, "size_x_m": 0.5, "size_y_m": 0.5}]), noise=False)
     send(world, MotorTargets(500, 500))
     assert len(readings(run(world, 4.0), "tap")) == 1
