@@ -71,5 +71,15 @@ def test_a_held_wheel_gets_half_the_voltage_until_it_is_let_go() -> None:
     assert run(control, 500, 300)[-1] > 480
 
 
+def test_after_three_ticks_of_a_high_current_the_voltage_is_half() -> None:
+    control = WheelControl()
+    given, currents = [], []
+    while len([current for current in currents if current > 600]) < 4:
+        given.append(control.tick(500.0, 0.0, DT_S))
+        currents.append(control.current)
+    assert given[-2] == pytest.approx(given[-4])
+    assert given[-1] == pytest.approx(given[-4] / 2)
+
+
 def test_left_and_right_turns_mirror_each_other() -> None:
     assert run(WheelControl(), -170, 100) == [-speed for speed in run(WheelControl(), 170, 100)]
