@@ -54,3 +54,24 @@ def peer(ros):
 
     node.add_on_set_parameters_callback(check)
     return node
+
+
+@pytest.fixture
+def simulator_with(ros):
+    """Make a simulator with arguments of ROS, in a context of its own."""
+    import rclpy
+    from rclpy.context import Context
+
+    from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
+
+    context, made = Context(), []
+
+    def make(*arguments, **parameters):
+        rclpy.init(args=["--ros-args", *arguments], context=context, domain_id=ros.domain)
+        made.append(Simulator(context, SimulatorParams(**parameters)))
+        return made[0]
+
+    yield make
+    for simulator in made:
+        simulator.close()
+    context.try_shutdown()

@@ -17,9 +17,11 @@ from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
 from thymio_sim_ros.nodes import simulator_node, world_ports
+from thymio_sim_ros.nodes.robot_ports import RobotPorts
 from thymio_sim_ros.nodes.simulator_node import MOST_PUT_OFF
 from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.commands import BodyTwist
+from thymio_sim_ros.sim.playground import RobotStart
 from thymio_sim_ros.sim.world import World
 
 MS = 1_000_000
@@ -156,6 +158,23 @@ def test_a_change_of_pace_loses_no_tick(driven, sleeper):
     sleeper.at(75, lambda: turn.sim.simulator.node.set_parameters([factor]))
     turn(75)
     assert turn.sim.world.now_ns == 70 * MS
+
+
+def test_a_robot_that_takes_time_to_come_comes_once(simulator_with, sleeper, monkeypatch):
+    """A quality of service of its own makes parameters, which are declared while it comes."""
+    made = []
+
+    def slow_ports(node, names, *arguments, **options):
+        made.append(names.name)
+        sleeper.now_ns += 30 * MS if len(made) < 4 else 0
+        return RobotPorts(node, names, *arguments, **options)
+
+    override = "qos_overrides./later/odom.publisher.reliability:=best_effort"
+    simulator = simulator_with("-p", override, playground="base")
+    monkeypatch.setattr(simulator_node, "RobotPorts", slow_ports)
+    sleeper.at(30, lambda: (simulator.spawn(RobotStart("later", 0.3, 0.0)), simulator.follow()))
+    simulator.turn(sleeper)
+    assert made == ["later"]
 
 
 def test_without_a_driving_thread_nothing_is_done_behind_a_tests_back(ros, simulation):

@@ -228,21 +228,35 @@ def test_a_map_is_published_on_request(ros, simulation):
     assert set(maps[-1].data) == {0}
 
 
-def test_reliability_can_be_overridden(ros):
-    import rclpy
-    from rclpy.context import Context
-
-    context = Context()
+def test_reliability_can_be_overridden(simulator_with):
     override = "qos_overrides./proximity/left.publisher.reliability:=best_effort"
-    rclpy.init(args=["--ros-args", "-p", override], context=context, domain_id=ros.domain)
-    simulator = Simulator(context, SimulatorParams(playground="base"))
-    try:
-        profiles = {
-            topic: simulator.node.get_publishers_info_by_topic(topic)[0].qos_profile
-            for topic in ("/proximity/left", "/proximity/right")
-        }
-        assert profiles["/proximity/left"].reliability == ReliabilityPolicy.BEST_EFFORT
-        assert profiles["/proximity/right"].reliability == ReliabilityPolicy.RELIABLE
-    finally:
-        simulator.close()
-        context.try_shutdown()
+    simulator = simulator_with("-p", override, playground="base")
+    profiles = {
+        topic: simulator.node.get_publishers_info_by_topic(topic)[0].qos_profile
+        for topic in ("/proximity/left", "/proximity/right")
+    }
+    assert profiles["/proximity/left"].reliability == ReliabilityPolicy.BEST_EFFORT
+    assert profiles["/proximity/right"].reliability == ReliabilityPolicy.RELIABLE
+
+
+@pytest.mark.parametrize(
+    ("policy", "value", "reason"),
+    [
+        ("reliability", "best", "'best' found, expected system_default, reliable, best_effort, best_available"),
+        (
+            "durability",
+            "unknown",
+            "'unknown' found, expected system_default, transient_local, volatile, best_available",
+        ),
+        ("history", "3", "3 found, expected system_default, keep_last, keep_all"),
+        ("depth", "-1", "-1 found, expected 0 to 2147483647"),
+        ("depth", "many", "'many' found, expected 0 to 2147483647"),
+        ("depth", "true", "True found, expected 0 to 2147483647"),
+    ],
+)
+def test_a_quality_of_service_that_is_none_is_refused_at_the_start(simulator_with, policy, value, reason):
+    """Also that of a robot which may come later, and could not then."""
+    name = f"qos_overrides./later/odom.publisher.{policy}"
+    with pytest.raises(StartError) as refusal:
+        simulator_with("-p", f"{name}:={value}", playground="base")
+    assert str(refusal.value) == f"parameter {name}: {reason}"

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Mapping
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
+
+from thymio_sim_ros.nodes.life import StartError
 
 
 def _reliable(depth: int, durability: DurabilityPolicy = DurabilityPolicy.VOLATILE) -> QoSProfile:
@@ -45,6 +48,30 @@ KINDS: dict[str, tuple[QoSProfile, str]] = {
 def kind_of(profile: QoSProfile) -> str:
     """The name of one of our profiles; some that differ in purpose alone share the first name."""
     return next(kind for kind, (known, _) in KINDS.items() if known is profile)
+
+
+_POLICIES: Mapping[str, type[HistoryPolicy] | type[ReliabilityPolicy] | type[DurabilityPolicy]] = {
+    "history": HistoryPolicy,
+    "reliability": ReliabilityPolicy,
+    "durability": DurabilityPolicy,
+}
+_MOST_DEPTH = 2**31 - 1
+
+
+def check_overrides(node: Node) -> None:
+    """StartError for a `qos_overrides.<topic>.publisher.…` that the node was started with and no publisher can have."""
+    for name, parameter in node._parameter_overrides.items():
+        head, _, policy = name.rpartition(".")
+        if not (name.startswith("qos_overrides.") and head.endswith(".publisher")):
+            continue
+        value, expected = parameter.value, ""
+        if policy in _POLICIES:
+            words = [word for word in map(str.lower, _POLICIES[policy].__members__) if word != "unknown"]
+            expected = "" if value in words else ", ".join(words)
+        elif policy == "depth" and (type(value) is not int or not 0 <= value <= _MOST_DEPTH):
+            expected = f"0 to {_MOST_DEPTH}"
+        if expected:
+            raise StartError(f"parameter {name}: {value!r} found, expected {expected}")
 
 
 def overridable(node: Node, topic: str, profile: QoSProfile) -> dict[str, Any]:

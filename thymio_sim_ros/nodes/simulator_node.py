@@ -22,7 +22,7 @@ from rclpy.parameter import Parameter
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.nodes import dds_profile, driver_topics, params, robot_ports, sim_interfaces
+from thymio_sim_ros.nodes import dds_profile, driver_topics, params, qos, robot_ports, sim_interfaces
 from thymio_sim_ros.nodes.audience import Audience
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
@@ -71,6 +71,7 @@ class Simulator:
         try:
             self.params = params.declare(self.node, defaults or SimulatorParams())
             params.warn_of_unknown(self.node, "ros.md")
+            qos.check_overrides(self.node)
             self.playground_name, playground = self._load(self.params.playground)
             self._log = self._open_log(self.params.log)
         except (PlaygroundError, resources.ResourceError, StartError, OSError) as error:
@@ -380,7 +381,13 @@ class Simulator:
     def _publish_state(self) -> None:
         self._world_ports.publish_state(self._state())
 
+    def _are_ours(self, parameters: list[Parameter]) -> bool:
+        """Whether any is; those of a topic's quality of service are declared while its robot comes."""
+        return not params.by_name(self.params).keys().isdisjoint(parameter.name for parameter in parameters)
+
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        if not self._are_ours(parameters):
+            return SetParametersResult(successful=True)
         self.catch_up()
         refusal = params.refusal(self.params, parameters)
         if refusal:
@@ -398,6 +405,8 @@ class Simulator:
         return SetParametersResult(successful=True)
 
     def _apply_parameters(self, parameters: list[Parameter]) -> None:
+        if not self._are_ours(parameters):
+            return
         changed = params.changes(parameters)
         self.params = params.updated(self.params, parameters)
         self._content = self.params.convert_options
