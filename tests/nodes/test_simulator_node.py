@@ -7,14 +7,24 @@ import json
 import math
 
 import pytest
-from geometry_msgs.msg import PoseWithCovarianceStamped, Twist, TwistStamped, Vector3
+from geometry_msgs.msg import Point, Pose, PoseWithCovarianceStamped, Quaternion, Twist, TwistStamped, Vector3
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import Log
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, LaserScan, Range
-from std_msgs.msg import Bool, ColorRGBA, Empty, Float32, Float32MultiArray, Float64MultiArray, Int16MultiArray, String
+from std_msgs.msg import (
+    Bool,
+    ColorRGBA,
+    Empty,
+    Float32,
+    Float32MultiArray,
+    Float64MultiArray,
+    Header,
+    Int16MultiArray,
+    String,
+)
 from std_srvs.srv import Empty as EmptyService
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import Marker, MarkerArray
@@ -23,7 +33,7 @@ from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import tf_messages
 from thymio_sim_ros.nodes.convert import yaw_of
 from thymio_sim_ros.nodes.life import make_executor
-from thymio_sim_ros.sim.commands import BUTTONS, LED_GROUPS, BodyTwist
+from thymio_sim_ros.sim.commands import BUTTONS, LED_GROUPS, BodyTwist, MoveRobot
 from thymio_sim_ros.sim.world import World
 
 WALL_AHEAD = json.dumps(
@@ -386,6 +396,48 @@ def test_a_robot_can_be_put_somewhere(ros, simulation):
     sim.until(lambda: truth and truth[-1].pose.pose.position.x == pytest.approx(0.2))
     assert abs(yaw_of(truth[-1].pose.pose.orientation)) == pytest.approx(math.pi)
     assert odometry[-1].pose.pose.position.x == 0.0
+
+
+@pytest.mark.parametrize(
+    ("frame", "place", "expected"),
+    [
+        ("", (-0.2, 0.1, 1.0), (-0.2, 0.1, 1.0)),
+        ("map", (-0.2, 0.1, 1.0), (-0.2, 0.1, 1.0)),
+        ("odom", (0.3, 0.0, 1.0), (0.0, 0.2, 1.0 + math.pi / 2)),
+        ("base_link", (0.1, 0.05, 3.0), (-0.05, 0.1, 3.0 + math.pi / 2 - math.tau)),
+    ],
+)
+def test_a_robot_is_put_somewhere_in_the_frame_that_a_viewer_shows(ros, simulation, frame, place, expected):
+    """Tools send the pose in the frame that they follow, which is the robot's in our layout for Foxglove."""
+    sim = simulation(playground="borderless", noise=False)
+    publisher = ros.publisher(PoseWithCovarianceStamped, "/initialpose")
+    sim.world.post("thymio", MoveRobot(0.0, -0.1, math.pi / 2))
+    sim.step(0.01)
+    sim.world.post("thymio", BodyTwist(0.1, 0.0))
+    sim.step(1.0)
+    sim.world.post("thymio", BodyTwist(0.0, 0.0))
+    sim.step(0.5)
+    x, y, yaw = place
+    orientation = Quaternion(z=math.sin(yaw / 2), w=math.cos(yaw / 2))
+    message = PoseWithCovarianceStamped(header=Header(frame_id=frame))
+    message.pose.pose = Pose(position=Point(x=x, y=y), orientation=orientation)
+    publisher.publish(message)
+
+    def found():
+        pose = sim.world.robots["thymio"].pose
+        return (pose.x_m, pose.y_m, pose.yaw_rad)
+
+    sim.until(lambda: found() == pytest.approx(expected, abs=0.005), seconds=0.5)
+
+
+def test_a_frame_that_is_not_the_robot_s_is_refused(ros, simulation):
+    sim = simulation()
+    log = ros.collect(Log, "/rosout", where=lambda line: "initialpose" in line.msg)
+    message = PoseWithCovarianceStamped(header=Header(frame_id="anna/base_link"))
+    ros.publisher(PoseWithCovarianceStamped, "/initialpose").publish(message)
+    ros.until(lambda: log)
+    assert "frame 'anna/base_link' found, expected map or odom or base_link" in log[0].msg
+    assert sim.simulator._refused == 1
 
 
 def test_odometry_starts_again_on_request(ros, simulation):

@@ -7,7 +7,7 @@ message, or make more than one command of it (ros-interface.md section 4.2).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -24,16 +24,25 @@ from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.limits import Beyond
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.geometry import Pose, wrap_angle
 
 __all__ = ["Moment", "RobotInput", "robot_inputs"]
 
 
+WORLD = Pose(0.0, 0.0, 0.0)
+"""The world's frame in itself."""
+
+
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """When a message arrives: simulated time, and how long velocities hold (0: until the next one), in ns."""
+    """When a message arrives: simulated time, and how long velocities hold (0: until the next one), in ns.
+
+    `frames` tells where the frames of a robot are in the world then.
+    """
 
     now_ns: int
     timeout_ns: int
+    frames: Callable[[], Mapping[str, Pose]] = dict
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +88,8 @@ def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
             "initialpose",
             PoseWithCovarianceStamped,
             _pose,
-            "put the robot there, m in the world's frame; its odometry does not notice. Refused where something stands",
+            "put the robot there, m in the header's frame: the world's (or none), `odom` or `base_link`; "
+            "its odometry does not notice. Refused where something stands",
             qos.COMMAND,
         ),
         *(
@@ -123,12 +133,17 @@ def _shutdown(message: Empty, moment: Moment) -> Sequence[Command]:
     return (commands.MotorTargets(0, 0), *quiet, *_leds_off(message, moment))
 
 
-def _pose(message: PoseWithCovarianceStamped, _moment: Moment) -> Sequence[Command]:
-    pose = message.pose.pose
-    yaw = convert.yaw_of(pose.orientation)
-    if not all(map(math.isfinite, (pose.position.x, pose.position.y, yaw))):
+def _pose(message: PoseWithCovarianceStamped, moment: Moment) -> Sequence[Command]:
+    """Tools of viewers send it in the frame that they show or follow."""
+    pose, frame, frames = message.pose.pose, message.header.frame_id, moment.frames()
+    if frame and frame not in frames:
+        raise CommandError(f"frame '{frame}' found, expected {' or '.join(frames)}")
+    origin = frames[frame] if frame else WORLD
+    x, y = origin.place((pose.position.x, pose.position.y))
+    yaw = origin.yaw_rad + convert.yaw_of(pose.orientation)
+    if not all(map(math.isfinite, (x, y, yaw))):
         raise CommandError("pose has a value that is not finite")
-    return (commands.MoveRobot(pose.position.x, pose.position.y, yaw),)
+    return (commands.MoveRobot(x, y, wrap_angle(yaw)),)
 
 
 def _press(button: str, message: Bool, _moment: Moment) -> Sequence[Command]:

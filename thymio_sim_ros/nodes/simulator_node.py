@@ -32,13 +32,14 @@ from thymio_sim_ros.nodes.robot_inputs import Moment
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
 from thymio_sim_ros.nodes.roster import Roster
 from thymio_sim_ros.nodes.simulator_params import SimulatorParams
-from thymio_sim_ros.nodes.transforms import TRANSFORMING, Transforms
+from thymio_sim_ros.nodes.transforms import TRANSFORMING, Transforms, frames_of
 from thymio_sim_ros.nodes.world_ports import Pace, WorldPorts, WorldState
 from thymio_sim_ros.nodes.world_services import WorldServices
 from thymio_sim_ros.runlog import RunLog
 from thymio_sim_ros.sim.clock import TICK_NS, Pacer
 from thymio_sim_ros.sim.columns import rows_of
 from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError, RobotStart
 from thymio_sim_ros.sim.world import World
 
@@ -310,7 +311,7 @@ class Simulator:
             names,
             self._poster(robot),
             content=lambda: self._content,
-            moment=self._moment,
+            moment=lambda: self._moment(robot, names),
             options=self._port_options,
             audience=self._audience,
             on_refusal=self.count_refusal,
@@ -348,9 +349,14 @@ class Simulator:
 
         return post
 
-    def _moment(self) -> Moment:
+    def _moment(self, robot: str, names: RobotNames) -> Moment:
         self.catch_up()
-        return Moment(self.world.now_ns, round(self.params.cmd_vel_timeout * SECOND_NS))
+
+        def frames() -> Mapping[str, Pose]:
+            there = self.world.robots.get(robot)  # a message may be on its way to one that has gone
+            return {} if there is None else frames_of(names, there.pose, there.wheels.odometry)
+
+        return Moment(self.world.now_ns, round(self.params.cmd_vel_timeout * SECOND_NS), frames)
 
     def _beat(self, now_ns: int) -> None:
         self._last_beat_ns = now_ns

@@ -24,7 +24,7 @@ from thymio_sim_ros.nodes.tf_messages import Transform
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.readings import PoseReading, Reading
 
-__all__ = ["TRANSFORMING", "TransformOptions", "Transforms", "origin_of"]
+__all__ = ["TRANSFORMING", "TransformOptions", "Transforms", "frames_of", "origin_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,6 +167,12 @@ def origin_of(truth: Pose, odometry: Pose) -> Pose:
     return Pose(
         truth.x_m - cos * odometry.x_m + sin * odometry.y_m, truth.y_m - sin * odometry.x_m - cos * odometry.y_m, yaw
     )
+
+
+def frames_of(names: RobotNames, truth: Pose, odometry: Pose) -> dict[str, Pose]:
+    """Where the world's frame, the odometry's and the robot's are in the world."""
+    places = {MAP_FRAME: Pose(0.0, 0.0, 0.0), "odom": origin_of(truth, odometry), "base_link": truth}
+    return {names.frame(usual): place for usual, place in places.items()}
 
 
 def _planar(ns: int, frame: str, child: str, pose: Pose, tilt: Tilt = LEVEL) -> Transform:
