@@ -143,6 +143,17 @@ def test_run_control_by_services(ros, simulation, runtime):
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > stopped.x_m + 0.01)
 
 
+def test_a_robot_that_comes_later_is_told_what_its_program_said_first(ros, simulation, runtime):
+    runtime("motor.left.target = 100\nmotor.right.target = 100\ncall leds.top(32, 0, 0)")
+    sim = simulation(playground="base")
+
+    def is_told():
+        sim.tick()
+        return sim.thymio.speed > 0.02 and sim.thymio.leds["top"] == (32, 0, 0)
+
+    ros.until(is_told)
+
+
 def test_timers_follow_simulated_time(ros, simulation, runtime):
     sim = simulation()
     runtime(

@@ -48,6 +48,8 @@ __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
 SIMULATOR_STATE, SIMULATOR_RAW = "/simulator/state", "/simulator/raw"
 DIAGNOSTICS_S = 1.0
+LISTENERS_S = 0.25
+"""How often robots look whether somebody has come to listen to them."""
 
 NO_OVERRIDES: Mapping[str, Any] = MappingProxyType({})
 _SENSORS = frozenset(sensor_names())
@@ -162,6 +164,7 @@ class AsebaRuntime:
         self._wall = Clock(clock_type=ClockType.STEADY_TIME)
         node.create_timer(DIAGNOSTICS_S, self._publish_diagnostics, clock=self._wall)
         node.create_timer(DIAGNOSTICS_S, self._see_who_tells, clock=self._wall)
+        node.create_timer(LISTENERS_S, self._see_listeners, clock=self._wall)
         self._looks = node.create_timer(1.0 / self.params.watch_rate, self._look, clock=self._wall)
 
     # -- robots
@@ -252,6 +255,10 @@ class AsebaRuntime:
         """There may be no simulator any more, and a robot of another kind instead."""
         if self._raw is not None and not self.node.count_publishers(self._raw.topic_name):
             self._listen_to("")
+
+    def _see_listeners(self) -> None:
+        for ports in self.robots:
+            ports.see_listeners()
 
     def _on_raw(self, data: bytes) -> None:
         """A tick of the simulator: all that was measured is there before anybody takes a turn, as in the runner."""

@@ -52,7 +52,8 @@ class CommandRow:
     """One topic: `decode` gives the command of a message or raises CommandError.
 
     `encode` gives the message of a command; the row's topic is then what `topic_of` says of the command. `about`:
-    content and units, for the reference. `beyond`: what of a message is limited.
+    content and units, for the reference. `beyond`: what of a message is limited. `holds`: until the next one, so that a
+    robot that comes later has to know it.
     """
 
     topic: str
@@ -62,6 +63,7 @@ class CommandRow:
     profile: QoSProfile = field(default_factory=lambda: qos.COMMAND)
     about: str = ""
     beyond: Beyond = limits.nothing
+    holds: bool = False
 
 
 def led_topic(group: str) -> str:
@@ -267,6 +269,7 @@ def _rows() -> Iterator[CommandRow]:
         _encode_targets,
         about="left, right in Thymio units, ±500; they hold until the next ones",
         beyond=limits.targets,
+        holds=True,
     )
     for group in commands.LED_GROUPS:
         if group in BODY_LEDS:
@@ -279,6 +282,7 @@ def _rows() -> Iterator[CommandRow]:
                 qos.LEDS,
                 about="0…1; alpha is ignored",
                 beyond=limits.color,
+                holds=True,
             )
         else:
             decode = partial(_decode_levels, group=group)
@@ -290,6 +294,7 @@ def _rows() -> Iterator[CommandRow]:
                 qos.LEDS,
                 about=f"{commands.LED_GROUPS[group]} intensities 0…1; none: back to the robot's own rules",
                 beyond=limits.intensities,
+                holds=True,
             )
     yield CommandRow(
         "led/single",
@@ -299,6 +304,7 @@ def _rows() -> Iterator[CommandRow]:
         qos.LEDS,
         about="number of the light 0…38, brightness 0…32",
         beyond=limits.single,
+        holds=True,
     )
     yield CommandRow(
         "led/own",
@@ -308,6 +314,7 @@ def _rows() -> Iterator[CommandRow]:
         qos.LEDS,
         about="what the robot shows by itself; the group in layout.dim[0].label",
         beyond=limits.intensities,
+        holds=True,
     )
     for name in ("circle", "blink", "kit"):
         yield CommandRow(
@@ -350,6 +357,7 @@ def _rows() -> Iterator[CommandRow]:
         _encode_wave,
         qos.EVENTS,
         about="the period that tones are made of, 142 samples",
+        holds=True,
     )
     yield CommandRow(
         "sound/volume",
@@ -358,11 +366,24 @@ def _rows() -> Iterator[CommandRow]:
         _encode_volume,
         qos.EVENTS,
         about="bits that samples lose: 0 is loudest, 8 is off",
+        holds=True,
     )
     yield CommandRow(
-        "sound_threshold", Float32, _decode_threshold, _encode_threshold, about="0…1 of 255: louder is told on `sound`"
+        "sound_threshold",
+        Float32,
+        _decode_threshold,
+        _encode_threshold,
+        about="0…1 of 255: louder is told on `sound`",
+        holds=True,
     )
-    yield CommandRow("comm/enable", Bool, _decode_enable, _encode_enable, about="infrared communication on or off")
+    yield CommandRow(
+        "comm/enable",
+        Bool,
+        _decode_enable,
+        _encode_enable,
+        about="infrared communication on or off",
+        holds=True,
+    )
     yield CommandRow(
         "comm/tx",
         Int16,
@@ -370,6 +391,7 @@ def _rows() -> Iterator[CommandRow]:
         _encode_payload,
         about="the value that is sent, 0…2047",
         beyond=limits.payload,
+        holds=True,
     )
     yield CommandRow("alarm", Bool, _decode_alarm, about="while true the sound of an arrow button every three seconds")
     yield CommandRow("pen/down", Bool, _decode_pen_down, about="true: the pen draws")

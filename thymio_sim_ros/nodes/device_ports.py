@@ -10,7 +10,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from geometry_msgs.msg import Twist
 from rclpy.node import Node
 from std_msgs.msg import Empty, Int16MultiArray
 from std_srvs.srv import Trigger
@@ -23,13 +22,13 @@ from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.device.status import OFF
-from thymio_sim_ros.nodes import command_topics, direct, driver_senses, plugin_topics, qos
+from thymio_sim_ros.nodes import direct, driver_senses, qos
 from thymio_sim_ros.nodes.event_ports import EventPorts
 from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.output_ports import OutputPorts
 from thymio_sim_ros.nodes.status_ports import Loaded, StatusPorts, place
 from thymio_sim_ros.nodes.variable_ports import VariablePorts
 from thymio_sim_ros.nodes.warner import Warner
-from thymio_sim_ros.sim.commands import Command
 
 __all__ = ["DevicePorts", "Surroundings", "Wishes"]
 
@@ -93,14 +92,7 @@ class DevicePorts:
         self._program = self._own = self._host.program
         self._is_closed = False
         self._has_driver, self._is_fed = has_driver, is_fed
-        self._outputs = {
-            row.topic: (row.encode, node.create_publisher(row.type, names.topic(row.topic), row.profile))
-            for row in (*command_topics.ROWS, *plugin_topics.rows())
-            if row.encode is not None and not (has_driver and row.topic == "motor/target")
-        }
-        if has_driver:
-            publisher = node.create_publisher(Twist, names.topic("cmd_vel"), qos.COMMAND)
-            self._outputs["motor/target"] = (driver_senses.twist_of, publisher)
+        self._outputs = OutputPorts(node, names, has_driver=has_driver)
         self.warn = Warner(node)
         self.status = StatusPorts(node, names, number=number)
         self._events = EventPorts(node, names, lambda event, args: around.emit(self, event, args), self.warn)
@@ -206,7 +198,7 @@ class DevicePorts:
         self.device.run(RUN_BUDGET)
         events = self._host.take_events()
         for command in self.device.take_commands():
-            self._send(command)
+            self._outputs.send(command)
         for name in self.device.take_local_events():
             self._events.publish(name, ())
         for event in events:
@@ -223,25 +215,27 @@ class DevicePorts:
         """Publish variables that changed."""
         self._variables.look()
 
+    def see_listeners(self) -> None:
+        """Tell a robot that has come what the program has said already."""
+        self._outputs.look()
+
     def halt(self) -> None:
         """The robot does not go on without its program: wheels stop, and nothing runs any more."""
         if not self._is_closed:
             self._is_closed = True
             self.device.stop()
             for command in self.device.take_commands():
-                self._send(command)
+                self._outputs.send(command)
 
     def close(self) -> None:
         """`halt` it; its topics and services go."""
         self.halt()
-        for ports in (self._events, self._variables, self.status):
+        for ports in (self._events, self._variables, self.status, self._outputs):
             ports.close()
         for service in self._services:
             self._node.destroy_service(service)
         for subscription in (self._shutdown, *self._senses):
             self._node.destroy_subscription(subscription)
-        for _, publisher in self._outputs.values():
-            self._node.destroy_publisher(publisher)
 
     def _begin(self, *, with_events: bool = True) -> None:
         """The program is another or begins anew, or other things of it are wanted."""
@@ -249,6 +243,7 @@ class DevicePorts:
         is_own = program is self._own
         local = {event.name for event in target(self.device.layout).local_events}
         local_events = local if ALL in wishes.local_events else local & set(wishes.local_events)
+        self._outputs.begin()
         if with_events:
             self.device.watch_events(local_events)
             self._events.open(program, sorted(local_events))
@@ -296,9 +291,3 @@ class DevicePorts:
             return response
 
         return callback
-
-    def _send(self, command: Command) -> None:
-        topic = command_topics.topic_of(command) or plugin_topics.topic_of(command)
-        if topic is not None:
-            encode, publisher = self._outputs[topic]
-            publisher.publish(encode(command))
