@@ -3,7 +3,7 @@ import { test } from "node:test";
 
 import { marks, readVerdict } from "../../web_ui/editor/checking.js";
 import { Desk, eventKey } from "../../web_ui/editor/desk.js";
-import { blank } from "../../web_ui/editor/documents.js";
+import { blank, isUnsaved } from "../../web_ui/editor/documents.js";
 import { explain, signature, suggestions } from "../../web_ui/editor/help.js";
 import { History } from "../../web_ui/editor/history.js";
 import { Link } from "../../web_ui/editor/link.js";
@@ -262,6 +262,55 @@ test("what another file replaces unsaved is among the recent ones", () => {
     desk.keeper.recent().map(({ name }) => name),
     ["other.aesl", "mine.aesl"],
   );
+});
+
+test("unsaved texts of one name stay apart, and a saved one does not take their place", () => {
+  const { desk } = workspace();
+  for (const code of ["a = 1", "a = 2"]) {
+    desk.edit(code);
+    desk.newFile();
+  }
+  desk.open("program.aesl", "a = 3");
+  desk.open("program.aesl", "a = 4");
+  const codes = desk.keeper.recent().map(({ text }) => /a = \d/.exec(text)?.[0]);
+  assert.deepEqual(codes, ["a = 4", "a = 2", "a = 1"]);
+});
+
+test("a draft that is written over is among the recent files", () => {
+  for (const over of [
+    (/** @type {Workspace} */ desk) => desk.edit("b = 1"),
+    (/** @type {Workspace} */ desk) => desk.define("constant", "B", 1),
+    (/** @type {Workspace} */ desk) => desk.rename("b"),
+    (/** @type {Workspace} */ desk) => desk.saved(),
+  ]) {
+    const { desk, storage } = workspace();
+    desk.edit("a = 1");
+    const next = workspace(storage).desk;
+    assert.notEqual(next.current && next.draft, null);
+    over(next);
+    assert.equal(next.draft, null);
+    assert.ok(next.keeper.recent().some(({ text }) => text === desk.current.text), String(over));
+  }
+});
+
+test("an unsaved text of the recent files is unsaved again when one goes on with it", () => {
+  const { desk } = workspace();
+  desk.edit("a = 1");
+  desk.newFile();
+  const [kept] = desk.keeper.recent();
+  desk.restore(kept);
+  assert.equal(desk.code, "a = 1");
+  assert.ok(isUnsaved(desk.current));
+});
+
+test("a draft that was restored is one text, not two", () => {
+  const { desk, storage } = workspace();
+  desk.edit("a = 1");
+  const next = workspace(storage).desk;
+  assert.equal(next.code, "");
+  next.restoreDraft();
+  next.edit("a = 2");
+  assert.deepEqual(next.keeper.recent(), []);
 });
 
 test("an unsaved text waits for the next visit, a saved one does not", () => {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -42,6 +43,16 @@ class Fingers:
     def _send(self, kind: str) -> None:
         points = [{"x": x, "y": y, "id": number} for number, (x, y) in self._down.items()]
         self._developer.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+
+def drop_file(page: Any, path: Path, selector: str) -> None:
+    """Drag a file from the desktop and let go of it over the middle of this."""
+    box = page.locator(selector).bounding_box()
+    place = {"x": box["x"] + box["width"] / 2, "y": box["y"] + box["height"] / 2}
+    developer = page.context.new_cdp_session(page)
+    for kind in ("dragEnter", "dragOver", "drop"):
+        data = {"items": [], "files": [str(path)], "dragOperationsMask": 1}
+        developer.send("Input.dispatchDragEvent", {"type": kind, "data": data} | place)
 
 
 def open_page(page: Any, address: str) -> None:

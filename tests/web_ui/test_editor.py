@@ -6,7 +6,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page, wait_for_service
+from tests.web_ui.page_support import MARKS, drop_file, open_page, wait_for_service
 
 pytestmark = MARKS
 
@@ -151,6 +151,33 @@ def test_a_file_is_opened_changed_and_saved_without_loss_and_a_draft_outlives_th
     editor.set_input_files("#editor-file", str(broken))
     expect(editor, ".verdict").to_contain_text("line 2, column 9")
     expect(editor, ".cm-content").to_have_text("var a = SIZE_")
+
+
+def test_a_file_dropped_on_the_text_is_opened_and_not_written_into_it(editor, tmp_path):
+    write(editor, "var mine = 1")
+    playground = tmp_path / "mine.json"
+    playground.write_text('{"format": 1}')
+    drop_file(editor, playground, ".cm-content")
+    expect(editor, ".card.playground .fault .headline").to_contain_text("mine.json")
+    program = tmp_path / "dropped.aesl"
+    program.write_text('<network><node nodeId="1" name="thymio-II">var other = 1</node></network>')
+    drop_file(editor, program, ".cm-content")
+    expect(editor, ".cm-content").to_have_text("var other = 1")
+    editor.select_option(".editor .recent", index=2)  # after the heading and the file
+    expect(editor, ".cm-content").to_have_text("var mine = 1")
+
+
+def test_a_draft_that_is_written_over_is_found_among_the_recent_files(editor):
+    write(editor, "var first = 1")
+    editor.reload()
+    editor.wait_for_function("window.thymio && window.thymio.connected")
+    editor.click("#editor-switch")
+    expect(editor, ".draft").to_contain_text("program.aesl")
+    write(editor, "var second = 2")
+    expect(editor, ".draft").to_be_hidden()
+    editor.select_option(".editor .recent", index=1)
+    expect(editor, ".cm-content").to_have_text("var first = 1")
+    playwright.expect(editor.get_by_label("not saved as a file")).to_be_visible()
 
 
 def test_each_of_two_robots_has_its_program(suite, page):

@@ -7,13 +7,13 @@ import { ALL } from "./workspace.js";
 /**
  * @param {object} options
  * @param {import("../i18n/index.js").Translate} options.t
- * @param {string} options.language
+ * @param {(kept: import("./storage.js").Kept) => string} options.draftWords   says of a text that it is in no file
  * @param {import("./desk.js").Desk} options.desk
  * @param {(robot: string) => void} options.select   a robot's tab was chosen
  * @param {() => void} options.redraw
  * @param {() => void} options.close
  */
-export function header({ t, language, desk, select, redraw, close }) {
+export function header({ t, draftWords, desk, select, redraw, close }) {
   const { workspace } = desk;
   const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": t("editor.robots") });
   const nodes = h("select", {
@@ -105,12 +105,11 @@ export function header({ t, language, desk, select, redraw, close }) {
     draftShown = kept;
     draft.hidden = kept === null;
     if (kept === null) return;
-    const time = new Date(kept.time).toLocaleString(language);
     /** @param {string} key @param {() => void} act */
     const button = (key, act) =>
       h("button", { type: "button", "data-draft": key, onclick: () => (act(), redraw()) }, t(`editor.${key}`));
     draft.replaceChildren(
-      h("span", {}, t("editor.draft", { name: kept.name, time })),
+      h("span", {}, draftWords(kept)),
       button("restore", () => workspace.restoreDraft()),
       button("discard", () => workspace.forgetDraft()),
     );

@@ -215,14 +215,14 @@ export function createEditor({ desk, client, store, language, pageText, announce
     newFile: () => workspace.newFile(),
     open: (chosen) => open(chosen),
     choose(choice) {
-      const name = choice.slice(choice.indexOf(" ") + 1);
-      if (choice.startsWith("sample ")) {
-        workspace.follow();
-        link.loadBuiltIn(owner(), name, robots()).then(({ ok, message }) => ok || tell(message, "error"));
-        return;
+      if ("recent" in choice) {
+        const { recent } = choice;
+        if (!recent.unsaved) return openText(recent.name, recent.text);
+        workspace.restore(recent);
+        return text.view.focus();
       }
-      const kept = workspace.keeper.recent().find((each) => each.name === name);
-      if (kept !== undefined) openText(kept.name, kept.text);
+      workspace.follow();
+      link.loadBuiltIn(owner(), choice.sample, robots()).then(({ ok, message }) => ok || tell(message, "error"));
     },
     save() {
       const { name, text: content } = workspace.current;
@@ -252,15 +252,17 @@ export function createEditor({ desk, client, store, language, pageText, announce
     text.view.focus();
   };
 
+  /** @param {import("./storage.js").Kept} kept */
+  const draftWords = ({ name, time }) => t("editor.draft", { name, time: new Date(time).toLocaleString(language) });
   const head = header({
     t,
-    language,
+    draftWords,
     desk,
     redraw,
     close,
     select: (name) => store.dispatch({ type: "select", robot: name }),
   });
-  const bar = toolbar(t, deeds);
+  const bar = toolbar(t, deeds, draftWords);
   const foot = footer(t, () => {
     const [first] = [...(verdict?.errors ?? []), ...(verdict?.warnings ?? [])];
     if (first?.line) goTo(first.line, first.column ?? 1);

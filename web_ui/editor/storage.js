@@ -1,6 +1,12 @@
 // What the browser keeps for the editor: recent files, and a draft of each tab for the day the browser closes.
 
-/** @typedef {{ name: string, text: string, time: number }} Kept  milliseconds since 1970 */
+/**
+ * @typedef {object} Kept
+ * @property {string} name
+ * @property {string} text
+ * @property {number} time        milliseconds since 1970
+ * @property {boolean} [unsaved]  in no file: it is the only copy
+ */
 /** @typedef {Pick<Storage, "getItem" | "setItem" | "removeItem">} Shelf */
 
 const RECENT_KEY = "editor.recent";
@@ -20,10 +26,12 @@ export class Keeper {
     return this.#read(RECENT_KEY) ?? [];
   }
 
-  /** @param {Kept} file  replaces one of the same name */
+  /** @param {Kept} file  replaces a file of the same name, and no unsaved text */
   remember(file) {
     let room = KEPT_CHARACTERS;
-    const others = this.recent().filter(({ name }) => name !== file.name);
+    const others = this.recent().filter(
+      ({ name, text, unsaved }) => name !== file.name || (text !== file.text && (unsaved || file.unsaved)),
+    );
     const kept = [file, ...others].slice(0, KEPT_FILES).filter(({ text }) => (room -= text.length) >= 0);
     this.#write(RECENT_KEY, kept);
   }

@@ -106,6 +106,8 @@ export function createText({ parent, label, phrases, vocabulary, changed, toggle
     aseba(),
     EditorState.phrases.of(phrases),
     EditorView.contentAttributes.of({ "aria-label": label, tabindex: "0", spellcheck: "false", autocapitalize: "off" }),
+    // A dropped file is opened by the page; CodeMirror would write it into the text.
+    EditorView.domEventHandlers({ drop: ({ dataTransfer }) => (dataTransfer?.files.length ?? 0) > 0 }),
     EditorView.updateListener.of((update) => {
       if (update.docChanged) changed(update.state.doc.toString());
     }),

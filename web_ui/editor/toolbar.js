@@ -3,11 +3,13 @@
 import { fileButton, h, icon, ICONS } from "../panels/dom.js";
 
 /** @typedef {import("./link.js").Verb} Verb */
+/** @typedef {import("./storage.js").Kept} Kept */
+/** @typedef {{ recent: Kept } | { sample: string }} Choice */
 /**
  * @typedef {object} Deeds   what the buttons do
  * @property {() => void} newFile
  * @property {(file: File) => void} open
- * @property {(choice: string) => void} choose   of the list of recent files and samples
+ * @property {(choice: Choice) => void} choose   of the list of recent files and samples
  * @property {() => void} save
  * @property {() => void} load
  * @property {() => void} run
@@ -31,8 +33,12 @@ const VERBS = /** @type {const} */ ([
   ["reset", ICONS.restart, "F8"],
 ]);
 
-/** @param {import("../i18n/index.js").Translate} t @param {Deeds} deeds */
-export function toolbar(t, deeds) {
+/**
+ * @param {import("../i18n/index.js").Translate} t
+ * @param {Deeds} deeds
+ * @param {(kept: Kept) => string} draftWords   says of a text that it is in no file
+ */
+export function toolbar(t, deeds, draftWords) {
   /** @param {string} name @param {string} path @param {string} key @param {() => void} act @param {boolean} [worded] */
   const button = (name, path, key, act, worded = false) => {
     const title = key === "" ? t(`editor.${name}`) : `${t(`editor.${name}`)} (${key})`;
@@ -45,10 +51,11 @@ export function toolbar(t, deeds) {
     );
   };
   const choice = h("select", { class: "recent", "aria-label": t("editor.choose") });
+  /** @type {Choice[]} what is listed, after the heading */ let choices = [];
   choice.addEventListener("change", () => {
-    const { value } = choice;
+    const chosen = choices[choice.selectedIndex - 1];
     choice.value = "";
-    if (value !== "") deeds.choose(value);
+    if (chosen !== undefined) deeds.choose(chosen);
   });
   const run = button("run", ICONS.play, "F9", deeds.run, true);
   const verbs = VERBS.map(([verb, path, key]) => ({
@@ -96,25 +103,26 @@ export function toolbar(t, deeds) {
     element,
     /**
      * @param {(verb: Verb) => boolean} can
-     * @param {readonly { name: string }[]} recent
+     * @param {readonly Kept[]} recent
      * @param {readonly { name: string, description: string }[]} samples
      */
     render(can, recent, samples) {
       for (const { verb, element } of verbs) element.disabled = !can(verb);
-      const names = JSON.stringify([recent.map(({ name }) => name), samples]);
+      const names = JSON.stringify([recent.map(({ name, time, unsaved }) => [name, time, unsaved]), samples]);
       if (names === listed) return;
       listed = names;
+      choices = [...recent.map((kept) => ({ recent: kept })), ...samples.map(({ name }) => ({ sample: name }))];
       choice.replaceChildren(
         h("option", { value: "" }, t("editor.choose")),
         h(
           "optgroup",
           { label: t("editor.recent") },
-          ...recent.map(({ name }) => h("option", { value: `recent ${name}` }, name)),
+          ...recent.map((kept) => h("option", {}, kept.unsaved ? draftWords(kept) : kept.name)),
         ),
         h(
           "optgroup",
           { label: t("editor.samples") },
-          ...samples.map(({ name, description }) => h("option", { value: `sample ${name}`, title: description }, name)),
+          ...samples.map(({ name, description }) => h("option", { title: description }, name)),
         ),
       );
     },

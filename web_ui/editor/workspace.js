@@ -140,8 +140,13 @@ export class Workspace {
     const draft = this.drafts.get(this.tab);
     if (draft === undefined) return;
     this.drafts.delete(this.tab);
+    this.restore(draft);
+  }
+
+  /** Go on with a text that is in no file. @param {import("./storage.js").Kept} kept */
+  restore({ name, text }) {
     const { text: saved } = blank();
-    this.#replace(this.tab, { ...opened(draft.name, draft.text), saved });
+    this.#replace(this.tab, { ...opened(name, text), saved });
   }
 
   forgetDraft() {
@@ -158,6 +163,8 @@ export class Workspace {
   #set(document) {
     this.documents.set(this.tab, document);
     const { name, text } = document;
+    const draft = this.drafts.get(this.tab);
+    if (draft !== undefined && draft.text !== text) this.keeper.remember({ ...draft, unsaved: true });
     this.drafts.delete(this.tab);
     this.keeper.keepDraft(this.tab, isUnsaved(document) ? { name, text, time: this.now() } : null);
   }
@@ -165,7 +172,9 @@ export class Workspace {
   /** Another document; what would be lost is among the recent files. @param {string} tab @param {Document} document */
   #replace(tab, document) {
     const old = this.documents.get(tab);
-    if (old !== undefined && isUnsaved(old)) this.keeper.remember({ name: old.name, text: old.text, time: this.now() });
+    if (old !== undefined && isUnsaved(old)) {
+      this.keeper.remember({ name: old.name, text: old.text, time: this.now(), unsaved: true });
+    }
     this.documents.set(tab, document);
     if (tab === this.tab) this.changed();
   }
