@@ -115,6 +115,14 @@ const BOX = {
   color: "#112233",
 };
 
+test("titles are of any characters, counted as people count them; halves of them are refused", () => {
+  const titled = (/** @type {string} */ title) => parse(JSON.stringify({ format: 1, title })).title;
+  for (const title of ["Labyrinth 🤖", "متاهة", "🤖".repeat(2000)]) assert.equal(titled(title), title);
+  for (const title of ["🤖".repeat(2001), "\ud83e", "two\nlines"]) {
+    assert.throws(() => titled(title), (fault) => fault instanceof Fault && fault.key === "title", title);
+  }
+});
+
 for (const [what, given, key, word] of /** @type {[string, string, string, string][]} */ ([
   ["no JSON", "{", "", "fault.json"],
   ["a list", "[]", "", "fault.object"],

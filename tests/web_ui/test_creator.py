@@ -231,6 +231,40 @@ def test_things_are_carried_turned_and_changed_by_numbers(suite, page):
     assert len(items(page)) == 3, "keys in a field act on the field only"
 
 
+def test_tab_goes_on_in_the_form_after_a_name_or_a_point_was_changed(suite, page):
+    open_creator(page, suite)
+    page.click("[data-tool=track]")
+    for key in ("Space", "ArrowUp", "ArrowUp", "Space", "Enter", "Escape"):
+        page.keyboard.press(key)
+    page.click(".things-list summary")
+    page.click("[data-thing=track_1]")
+    name = page.get_by_label("Name")
+    name.fill("lane")
+    page.keyboard.press("Tab")
+    page.wait_for_function("() => window.thymio.built().selected === 'lane'")
+    wait_for_frame(page)
+    assert page.evaluate("() => document.activeElement.closest('.item-form') !== null")
+    page.click(".field-points summary")
+    x, y = page.locator(".field-points input").nth(0), page.locator(".field-points input").nth(1)
+    x.fill("7")
+    page.keyboard.press("Tab")
+    page.wait_for_function("() => window.thymio.built().playground.items.some((i) => i.points_m?.[0][0] === 0.07)")
+    playwright.expect(y).to_be_focused()
+
+
+def test_a_file_that_is_no_picture_is_refused_where_it_was_chosen(suite, page, tmp_path):
+    open_creator(page, suite)
+    good, bad = tmp_path / "good.svg", tmp_path / "bad.png"
+    good.write_text('<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"/>')
+    bad.write_text("no picture")
+    page.set_input_files("#creator-picture", str(good))
+    page.wait_for_function("() => window.thymio.built().placing?.kind === 'picture'")
+    page.set_input_files(".item-form input[data-field=image]", str(bad))
+    playwright.expect(page.locator(".item-form .problem:visible")).to_have_text(
+        "bad.png is no picture that can be read"
+    )
+
+
 def test_keys_of_a_mac_undo_redo_and_copy(suite, page):
     open_creator(page, suite)
     page.click("[data-tool=box]")

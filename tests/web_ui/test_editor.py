@@ -125,6 +125,26 @@ def test_an_event_is_defined_sent_and_logged(editor):
     expect(editor, ".log p").to_contain_text("pong 42")
 
 
+def test_tab_goes_on_from_a_constant_and_values_of_events_stay_when_others_come(editor):
+    editor.click("#tool-tab-constants")
+    for name in ("FAR", "NEAR"):
+        editor.fill("[data-new=constant]", name)
+        editor.keyboard.press("Enter")
+        editor.locator(f"[data-constant={name}]").wait_for()
+    editor.fill("[data-constant=FAR]", "7")
+    editor.keyboard.press("Tab")
+    editor.wait_for_function("() => document.querySelector('[data-constant=FAR]').getAttribute('value') === '7'")
+    playwright.expect(editor.get_by_label("Remove FAR")).to_be_focused()
+    editor.click("#tool-tab-events")
+    for name in ("ping", "pong"):
+        editor.fill("[data-new=event]", name)
+        editor.fill(".events .entry .number", "1")
+        editor.keyboard.press("Enter")
+        editor.locator(f"[data-send={name}]").wait_for()
+        editor.get_by_label(f"Values of {name}: 1").fill("41")
+    playwright.expect(editor.get_by_label("Values of ping: 1")).to_have_value("41")
+
+
 def test_a_file_is_opened_changed_and_saved_without_loss_and_a_draft_outlives_the_page(editor, tmp_path):
     head = '<!DOCTYPE aesl-source>\n<network>\n<constant value="4" name="SIZE"/>\n<!-- mine -->\n'
     plugins = '<toolsPlugins><X y="1"/></toolsPlugins>'

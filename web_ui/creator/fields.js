@@ -1,6 +1,6 @@
 // One control for each kind of field. Each has an element, and takes over values that changed elsewhere.
 
-import { h, setText } from "../panels/dom.js";
+import { h, renew, setText } from "../panels/dom.js";
 import { shown, taken, unitOf } from "./units.js";
 
 /** @typedef {import("../playground/rules.js").Field} Field */
@@ -186,7 +186,10 @@ function pointsControl({ t, say, commit }, key, { rule }) {
       points = values[key] ?? [];
       element.hidden = points.length === 0;
       setText(summary, `${t(`field.${key}`)} (${points.length})`);
-      list.replaceChildren(...points.map((_, index) => row(index)));
+      renew(
+        list,
+        points.map((_, index) => row(index)),
+      );
     },
   };
 }
@@ -197,8 +200,9 @@ function imageControl({ t, say, commit, readPicture }, key) {
   const { element, tell } = labelled(t(`field.${key}`), input);
   input.addEventListener("change", async () => {
     const file = input.files?.[0];
-    const uri = file === undefined ? null : await readPicture(file);
-    if (uri === null) return;
+    if (file === undefined) return;
+    const uri = await readPicture(file);
+    if (uri === null) return tell(t("problem.picture", { name: file.name }));
     const problem = commit({ [key]: uri });
     tell(problem === null ? null : say(problem));
   });

@@ -1,6 +1,6 @@
 // The form of what is in hand or selected: all of its values, by numbers.
 
-import { h, icon, setText } from "../panels/dom.js";
+import { h, icon, renew, setText } from "../panels/dom.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { needed, RULES } from "../playground/rules.js";
 import { valuesOf } from "../playground/parts.js";
@@ -65,7 +65,6 @@ export function itemForm(setting, builder) {
       return control(full, key, field) ?? [];
     });
     if ("mass_kg" in own) controls.push(loadControl(full, own));
-    fields.replaceChildren(...controls.map((one) => one.element));
   };
 
   return {
@@ -78,10 +77,9 @@ export function itemForm(setting, builder) {
       element.hidden = shown === null;
       if (shown === null) return;
       const kind = `${placing === null ? item?.name : "new"} ${shown.kind}`;
-      if (kind !== shownKind) {
-        shownKind = kind;
-        build(shown.kind, placing !== null);
-      }
+      const isOther = kind !== shownKind;
+      shownKind = kind;
+      if (isOther) build(shown.kind, placing !== null);
       setText(
         title,
         placing === null
@@ -90,6 +88,8 @@ export function itemForm(setting, builder) {
       );
       const values = valuesOf(shown);
       for (const one of controls) one.update(values);
+      const elements = controls.map((one) => one.element);
+      if (isOther) renew(fields, elements); // also after another name, of what is the same
       for (const { icon: verb, button } of verbs) {
         const turns = verb === "turnLeft" || verb === "turnRight";
         button.hidden = turns ? !canTurn(shown) || placing?.isPath === true : placing !== null;

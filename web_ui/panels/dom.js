@@ -106,6 +106,24 @@ export function holdable(element, hold) {
   element.addEventListener("contextmenu", (event) => event.preventDefault());
 }
 
+const PLACES = "input, select, summary, button:enabled";
+
+/**
+ * Other children of an element; a focus among them goes on at its place.
+ *
+ * @param {HTMLElement} parent
+ * @param {readonly Node[]} children
+ */
+export function renew(parent, children) {
+  const places = () => /** @type {HTMLElement[]} */ ([...parent.querySelectorAll(PLACES)]);
+  const at = places().findIndex((place) => place === document.activeElement);
+  parent.replaceChildren(...children);
+  if (at < 0) return;
+  const place = places()[Math.min(at, places().length - 1)];
+  place?.focus();
+  if (place instanceof HTMLInputElement) place.select(); // as after Tab
+}
+
 /**
  * A button that opens a file; the browser's own file field stays hidden behind it.
  *

@@ -25,7 +25,7 @@ const number = (unit, low, high) => ({ type: "number", unit, low, high });
 /** @param {string} expression @param {string} meaning @param {number} longest @returns {Rule} */
 const text = (expression, meaning, longest) => ({
   type: "text",
-  pattern: new RegExp(`^(${expression})$`),
+  pattern: new RegExp(`^(${expression})$`, "u"),
   meaning,
   longest,
 });
@@ -116,7 +116,7 @@ export function checkValue(rule, value, key) {
 function fits({ type, low = -Infinity, high = Infinity, pattern, longest = Infinity }, value) {
   if (type === "number") return typeof value === "number" && value >= low && value <= high;
   if (type === "flag") return typeof value === "boolean";
-  if (typeof value !== "string" || value.length > longest) return false;
+  if (typeof value !== "string" || (value.length > longest && [...value].length > longest)) return false;
   return type === "image" ? value.startsWith("data:image/") : type === "text" && (pattern?.test(value) ?? true);
 }
 

@@ -1,6 +1,6 @@
 // The constants of the program: values are changed in place, and kept in the file.
 
-import { h, setText } from "../../panels/dom.js";
+import { h, renew, setText } from "../../panels/dom.js";
 import { GREATEST, LEAST } from "../aesl.js";
 import { parseNumbers } from "../numbers.js";
 import { entryForm } from "./entry_form.js";
@@ -58,7 +58,10 @@ export function constantsTool({ t, define }) {
       const signature = JSON.stringify(file.constants.map(({ name, value }) => [name, value]));
       if (signature === listed) return;
       listed = signature;
-      body.replaceChildren(...file.constants.map(({ name, value }) => rowOf(name, value)));
+      renew(
+        body,
+        file.constants.map(({ name, value }) => rowOf(name, value)),
+      );
     },
   };
 }

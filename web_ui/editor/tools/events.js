@@ -1,6 +1,6 @@
 // The program's events: send, add, remove, plot; and the log of what robots said.
 
-import { h, setAttribute, setText } from "../../panels/dom.js";
+import { h, renew, setAttribute, setText } from "../../panels/dom.js";
 import { LARGEST_EVENT } from "../aesl.js";
 import { eventKey } from "../desk.js";
 import { download } from "../download.js";
@@ -19,6 +19,7 @@ export function eventsTool({ t, desk, emit, define, announce, redraw }) {
   const log = h("div", { class: "log", role: "log", tabindex: "0", "aria-label": t("events.log") });
   /** @type {import("./index.js").View | null} */ let shown = null;
   let listed = "";
+  /** @type {Map<string, HTMLElement>} with what was written in them */ let rows = new Map();
   /** @type {readonly import("../state.js").LoggedEvent[] | null} */ let logged = null;
 
   const form = entryForm({
@@ -124,7 +125,9 @@ export function eventsTool({ t, desk, emit, define, announce, redraw }) {
       const signature = JSON.stringify(events);
       if (signature !== listed) {
         listed = signature;
-        body.replaceChildren(...events.map(({ name, size }) => rowOf(name, size)));
+        const kept = rows;
+        rows = new Map(events.map(({ name, size }) => [`${name} ${size}`, kept.get(`${name} ${size}`) ?? rowOf(name, size)]));
+        renew(body, [...rows.values()]);
       }
       for (const star of body.querySelectorAll("[data-watch]")) {
         const watched = desk.watched.has(eventKey(star.getAttribute("data-watch") ?? ""));
