@@ -200,6 +200,25 @@ def test_a_draft_that_is_written_over_is_found_among_the_recent_files(editor):
     playwright.expect(editor.get_by_label("not saved as a file")).to_be_visible()
 
 
+def test_a_text_is_as_it_was_left_after_a_look_at_the_robot_and_in_another_language(editor):
+    write(editor, PROGRAM)
+    editor.locator(".cm-line", has_text="count = count + 1").click()
+    editor.keyboard.press("End")
+    editor.keyboard.press("Control+b")
+    expect(editor, ".breakpoints .breakpoint:visible").to_have_count(1)
+    editor.keyboard.insert_text("0")
+    editor.click("#editor-switch")
+    expect(editor, ".cm-content").to_have_count(0)
+    editor.click("#editor-switch")
+    editor.select_option("header .language", "de")
+    expect(editor, ".editor").to_have_attribute("aria-label", "Aseba-Editor")
+    expect(editor, ".breakpoints .breakpoint:visible").to_have_count(1)
+    expect(editor, ".cm-content").to_be_focused()
+    expect(editor, ".cm-activeLine").to_have_text("count = count + 10")
+    editor.keyboard.press("Control+z")
+    expect(editor, ".cm-activeLine").to_have_text("count = count + 1")
+
+
 def test_each_of_two_robots_has_its_program(suite, page):
     open_page(page, suite("--playground", "two_robots", "--program", "none"))
     page.click("#editor-switch")

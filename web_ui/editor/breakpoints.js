@@ -23,20 +23,25 @@ class BreakpointMarker extends GutterMarker {
 const MARKER = new BreakpointMarker();
 
 /** @type {StateField<RangeSet<GutterMarker>>} */
-const breakpointField = StateField.define({
+export const breakpointField = StateField.define({
   create: () => RangeSet.empty,
+  toJSON: (_set, state) => breakpointLines(state),
+  fromJSON: (lines, { doc }) => markersAt(doc, lines),
   update(set, transaction) {
     let now = set.map(transaction.changes);
     for (const effect of transaction.effects) {
-      if (!effect.is(setLines)) continue;
-      const { doc } = transaction.state;
-      const lines = [...new Set(effect.value)].filter((line) => line >= 1 && line <= doc.lines);
-      lines.sort((one, other) => one - other);
-      now = RangeSet.of(lines.map((line) => MARKER.range(doc.line(line).from)));
+      if (effect.is(setLines)) now = markersAt(transaction.state.doc, effect.value);
     }
     return now;
   },
 });
+
+/** @param {import("@codemirror/state").Text} doc @param {readonly number[]} wanted  lines from 1 */
+function markersAt(doc, wanted) {
+  const lines = [...new Set(wanted)].filter((line) => line >= 1 && line <= doc.lines);
+  lines.sort((one, other) => one - other);
+  return RangeSet.of(lines.map((line) => MARKER.range(doc.line(line).from)));
+}
 
 /** @type {StateField<import("@codemirror/view").DecorationSet>} */
 const placeField = StateField.define({

@@ -1,4 +1,4 @@
-// What outlives a change of language: the programs, what is known of the robots, what is watched.
+// What outlives a change of language, or a look at the robot: the programs, what is known of the robots, what is watched.
 
 import { History } from "./history.js";
 import { INITIAL, reduce } from "./state.js";
@@ -16,6 +16,7 @@ export class Desk {
     this.state = INITIAL;
     this.history = new History();
     this.tool = "variables";
+    /** @type {Map<string, any>} how each text was left: its cursor, what can be undone */ this.texts = new Map();
     /** @type {() => void} */ this.onText = () => {};
     this.workspace = new Workspace({ keeper: new Keeper(storage), now, changed: () => this.onText() });
     /** @type {Set<string>} */ this.watched = new Set(JSON.parse(storage.getItem(WATCHED_KEY) ?? "[]"));

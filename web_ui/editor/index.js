@@ -100,6 +100,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
   const code = h("div", { class: "code" });
   const text = createText({
     parent: code,
+    kept: desk.texts,
     label: t("editor.code"),
     phrases: PHRASES[language] ?? {},
     vocabulary,
@@ -374,7 +375,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
     destroy() {
       clearTimeout(checkTimer);
       forgetKeys();
-      text.view.destroy();
+      text.destroy();
       element.remove();
     },
   };

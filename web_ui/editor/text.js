@@ -7,12 +7,13 @@ import {
   completionKeymap,
   snippet,
 } from "@codemirror/autocomplete";
-import { defaultKeymap, history, historyKeymap, indentWithTab, toggleLineComment } from "@codemirror/commands";
+import { defaultKeymap, history, historyField, historyKeymap, indentWithTab, toggleLineComment } from "@codemirror/commands";
 import {
   bracketMatching,
   codeFolding,
   foldGutter,
   foldKeymap,
+  foldState,
   indentOnInput,
   indentUnit,
   syntaxTree,
@@ -30,7 +31,7 @@ import {
   lineNumbers,
 } from "@codemirror/view";
 
-import { breakpointGutter } from "./breakpoints.js";
+import { breakpointField, breakpointGutter } from "./breakpoints.js";
 import { explain, suggestions } from "./help.js";
 import { aseba, INDENT } from "./language.js";
 import { outline } from "./outline.js";
@@ -47,16 +48,20 @@ const TYPES = /** @type {Record<Item["kind"], string>} */ ({
   keyword: "keyword",
 });
 
+/** What of a text outlives its field, beside the text and the cursor. */
+const KEPT = { history: historyField, breakpoints: breakpointField, folds: foldState };
+
 /**
  * @param {object} options
  * @param {HTMLElement} options.parent
+ * @param {Map<string, any>} options.kept            how texts were left, by key
  * @param {string} options.label
  * @param {Record<string, string>} options.phrases   CodeMirror's own words in the page's language
  * @param {() => Omit<Vocabulary, "definitions">} options.vocabulary
  * @param {(code: string) => void} options.changed   a person changed the text
  * @param {(line: number) => void} options.toggleBreakpoint
  */
-export function createText({ parent, label, phrases, vocabulary, changed, toggleBreakpoint }) {
+export function createText({ parent, kept, label, phrases, vocabulary, changed, toggleBreakpoint }) {
   /** @param {EditorState} state @returns {Vocabulary} */
   const words = (state) => ({
     ...vocabulary(),
@@ -131,9 +136,11 @@ export function createText({ parent, label, phrases, vocabulary, changed, toggle
       indentWithTab,
     ]),
   ];
-  /** @type {Map<string, EditorState>} */ const states = new Map();
   /** @type {string | null} */ let key = null;
   const view = new EditorView({ parent, state: EditorState.create({ extensions }) });
+  const keep = () => {
+    if (key !== null) kept.set(key, view.state.toJSON(KEPT));
+  };
   return {
     view,
     /**
@@ -143,11 +150,18 @@ export function createText({ parent, label, phrases, vocabulary, changed, toggle
      * @param {string} code
      */
     show(next, code) {
-      if (key !== null) states.set(key, view.state);
-      const known = states.get(next);
+      keep();
       key = next;
-      const same = known !== undefined && known.doc.toString() === code;
-      view.setState(same ? known : EditorState.create({ doc: code, extensions }));
+      const known = kept.get(next);
+      const same = known !== undefined && known.doc === code;
+      view.setState(
+        same ? EditorState.fromJSON(known, { extensions }, KEPT) : EditorState.create({ doc: code, extensions }),
+      );
+      if (same) view.dispatch({ scrollIntoView: true });
+    },
+    destroy() {
+      keep();
+      view.destroy();
     },
     /** @param {import("./checking.js").Mark[]} marks */
     mark(marks) {
