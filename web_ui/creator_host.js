@@ -1,6 +1,7 @@
 // The place of the playground creator on the page: loads it when it is first opened, and lets it be tried in the
 // simulator.
 
+import { memory } from "./memory.js";
 import { faultView } from "./panels/fault.js";
 import { parse } from "./playground/document.js";
 
@@ -55,7 +56,7 @@ export class CreatorHost {
     this.module ??= await import("./creator/index.js");
     const title = this.module.WORDS[context.language]["new.title"];
     this.workshop ??= new this.module.Workshop({
-      shelf: localStorage,
+      shelf: memory,
       title,
       tell: (phrase) => this.creator?.tell(phrase),
       changed: () => this.scene().invalidate(),

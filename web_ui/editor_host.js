@@ -1,5 +1,7 @@
 // The place of the editor on the page: loads it when it is first opened, gives it messages while it is open.
 
+import { memory } from "./memory.js";
+
 /** @typedef {import("./editor/index.js").Editor} Editor */
 /** @typedef {import("./editor/desk.js").Desk} Desk */
 /** @typedef {import("./panels/index.js").Context} Context */
@@ -49,7 +51,7 @@ export class EditorHost {
   async open() {
     if (this.isOpen) return;
     this.module ??= await import("./editor/index.js");
-    this.desk ??= new this.module.Desk(localStorage, Date.now);
+    this.desk ??= new this.module.Desk(memory, Date.now);
     this.isOpen = true;
     document.body.classList.add("with-editor");
     this.slot.hidden = false;

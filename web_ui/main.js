@@ -7,6 +7,7 @@ import { EditorHost } from "./editor_host.js";
 import { Shelf } from "./gallery/shelf.js";
 import { chooseLanguage, translator } from "./i18n/index.js";
 import { watchKeyboard } from "./keyboard.js";
+import { memory, note } from "./memory.js";
 import { PANELS } from "./panels/index.js";
 import { Mover } from "./move/mover.js";
 import { MUTED_KEY } from "./panels/sound.js";
@@ -37,7 +38,7 @@ async function bridgeAddress() {
 async function main() {
   const address = await bridgeAddress();
   const store = new Store();
-  let language = chooseLanguage([localStorage.getItem(LANGUAGE_KEY) ?? "", ...navigator.languages]);
+  let language = chooseLanguage([memory.getItem(LANGUAGE_KEY) ?? "", ...navigator.languages]);
   let t = translator(language);
   /** @type {import("./panels/index.js").Panel[]} */ let panels = [];
 
@@ -71,7 +72,7 @@ async function main() {
 
   const speaker = new Speaker({
     createContext: "AudioContext" in window ? () => new AudioContext() : null,
-    muted: localStorage.getItem(MUTED_KEY) === "true",
+    muted: memory.getItem(MUTED_KEY) === "true",
     changed: () => scene.invalidate(),
   });
   const canvas = /** @type {HTMLCanvasElement} */ (element("#view"));
@@ -135,7 +136,7 @@ async function main() {
   /** @param {string} chosen */
   const setLanguage = (chosen) => {
     language = chosen;
-    localStorage.setItem(LANGUAGE_KEY, chosen);
+    note(memory, LANGUAGE_KEY, chosen);
     build();
   };
 

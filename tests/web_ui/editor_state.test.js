@@ -336,6 +336,34 @@ test("recent files are few, and something broken in the storage is nothing", () 
   assert.deepEqual(keeper.recent(), []);
 });
 
+test("of recent files the newest are kept for which the browser has room", () => {
+  const storage = shelf();
+  const { setItem } = storage;
+  storage.setItem = (key, value) => {
+    if (value.length > 250) throw new Error("full");
+    setItem(key, value);
+  };
+  const keeper = new Keeper(storage);
+  for (const name of ["a", "b", "c"]) keeper.remember({ name, text: name.repeat(60), time: 1 });
+  assert.deepEqual(
+    keeper.recent().map(({ name }) => name),
+    ["c", "b"],
+  );
+});
+
+test("a choice that cannot be kept holds all the same", () => {
+  const storage = shelf();
+  storage.setItem("editor.fontSize", "20");
+  storage.setItem = () => {
+    throw new Error("full");
+  };
+  const desk = new Desk(storage, () => 0);
+  desk.resize(1);
+  desk.toggleWatch("a");
+  assert.deepEqual([desk.fontSize, [...desk.watched]], [24, ["a"]]);
+  assert.equal(storage.getItem("editor.fontSize"), null);
+});
+
 test("a program for all takes the place of those that single robots had", async () => {
   /** @type {any[]} */ const asked = [];
   const client = { setParameters: async (/** @type {any} */ given) => (asked.push(given), { ok: true, message: "" }) };

@@ -32,6 +32,26 @@ def test_a_restarted_simulator_is_found_again_and_what_was_known_of_the_old_one_
     playwright.expect(page.locator(".chip")).to_have_attribute("data-state", "connected")
 
 
+NO_STORAGE = """Object.defineProperty(window, "localStorage", {
+    get() { throw new DOMException("The browser keeps nothing.", "SecurityError"); }
+})"""
+
+
+def test_it_works_where_the_browser_keeps_nothing(suite, page):
+    page.add_init_script(NO_STORAGE)
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.select_option("header .language", "fr")
+    playwright.expect(page.locator(".stop")).to_contain_text("Arrêt")
+    page.click(".card.program summary")
+    page.click("#editor-switch")
+    page.focus(".cm-content")
+    page.keyboard.insert_text("var a")
+    page.click("#creator-switch")
+    page.locator("#creator-try").wait_for()
+    page.click("#editor-switch")
+    playwright.expect(page.locator(".cm-content")).to_contain_text("var a")
+
+
 def test_what_one_person_does_is_seen_by_another_who_came_late(suite, page, other_page):
     address = suite("--playground", "base", "--program", "none")
     open_page(page, address)

@@ -12,7 +12,7 @@ import { sketchOf } from "./sketch.js";
 /** @typedef {import("../playground/document.js").Playground} Playground */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 /** @typedef {import("../state/index.js").State} State */
-/** @typedef {Pick<Storage, "getItem" | "setItem" | "removeItem">} Shelf */
+/** @typedef {import("../memory.js").Memory} Shelf */
 
 const DRAFT_KEY = "creator.draft";
 const KEEP_AFTER_MS = 400;

@@ -1,5 +1,6 @@
 // What outlives a change of language, or a look at the robot: the programs, what is known of the robots, what is watched.
 
+import { note } from "../memory.js";
 import { History } from "./history.js";
 import { INITIAL, reduce } from "./state.js";
 import { Keeper } from "./storage.js";
@@ -10,7 +11,7 @@ const SIZE_KEY = "editor.fontSize";
 const SIZES = [10, 11, 12, 13, 14, 16, 18, 20, 24, 28, 32]; // pixels
 
 export class Desk {
-  /** @param {Storage} storage @param {() => number} now */
+  /** @param {import("../memory.js").Memory} storage @param {() => number} now */
   constructor(storage, now) {
     this.storage = storage;
     this.state = INITIAL;
@@ -48,7 +49,7 @@ export class Desk {
   /** @param {string} key  a variable, or `eventKey` of an event */
   toggleWatch(key) {
     if (!this.watched.delete(key)) this.watched.add(key);
-    this.storage.setItem(WATCHED_KEY, JSON.stringify([...this.watched]));
+    note(this.storage, WATCHED_KEY, JSON.stringify([...this.watched]));
     for (const name of [...this.history.series.keys()]) {
       const owner = name.endsWith(")") ? eventKey(name.replace(/\(\d+\)$/, "")) : name.replace(/\[\d+\]$/, "");
       if (!this.watched.has(owner)) this.history.series.delete(name);
@@ -59,7 +60,7 @@ export class Desk {
   resize(step) {
     const index = SIZES.findIndex((size) => size >= this.fontSize);
     this.fontSize = SIZES[Math.min(Math.max(index + step, 0), SIZES.length - 1)];
-    this.storage.setItem(SIZE_KEY, String(this.fontSize));
+    note(this.storage, SIZE_KEY, String(this.fontSize));
   }
 
   /** Tabs there are for these robots. @param {readonly string[]} robots */

@@ -7,7 +7,7 @@
  * @property {number} time        milliseconds since 1970
  * @property {boolean} [unsaved]  in no file: it is the only copy
  */
-/** @typedef {Pick<Storage, "getItem" | "setItem" | "removeItem">} Shelf */
+/** @typedef {import("../memory.js").Memory} Shelf */
 
 const RECENT_KEY = "editor.recent";
 const DRAFT_KEY = "editor.draft.";
@@ -33,7 +33,7 @@ export class Keeper {
       ({ name, text, unsaved }) => name !== file.name || (text !== file.text && (unsaved || file.unsaved)),
     );
     const kept = [file, ...others].slice(0, KEPT_FILES).filter(({ text }) => (room -= text.length) >= 0);
-    this.#write(RECENT_KEY, kept);
+    while (!this.#write(RECENT_KEY, kept) && kept.length > 0) kept.pop(); // no room for the oldest
   }
 
   /** @param {string} tab @returns {Kept | null} */
@@ -56,12 +56,14 @@ export class Keeper {
     }
   }
 
-  /** @param {string} key @param {any} value */
+  /** Whether there was room. @param {string} key @param {any} value */
   #write(key, value) {
     try {
       this.shelf.setItem(key, JSON.stringify(value));
+      return true;
     } catch {
       this.shelf.removeItem(key); // full: rather nothing than an old one
+      return false;
     }
   }
 }

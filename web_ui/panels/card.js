@@ -1,5 +1,6 @@
 // The frame of a side panel: a heading that folds it, remembered by the browser.
 
+import { memory, note } from "../memory.js";
 import { h } from "./dom.js";
 
 /**
@@ -11,10 +12,10 @@ export function card(name, title, ...content) {
   const key = `card.${name}`;
   const details = h(
     "details",
-    { class: `card ${name}`, open: localStorage.getItem(key) !== "closed" },
+    { class: `card ${name}`, open: memory.getItem(key) !== "closed" },
     h("summary", {}, h("h2", {}, title)),
     h("div", { class: "content" }, ...content),
   );
-  details.addEventListener("toggle", () => localStorage.setItem(key, details.open ? "open" : "closed"));
+  details.addEventListener("toggle", () => note(memory, key, details.open ? "open" : "closed"));
   return details;
 }
