@@ -12,7 +12,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.sim.images import BLACK, WHITE, png
-from tests.web_ui.page_support import MARKS, open_page, wait_for_frame, wait_for_program, wait_until_settled
+from tests.web_ui.page_support import MARKS, drop_file, open_page, wait_for_frame, wait_for_program, wait_until_settled
 
 pytestmark = MARKS
 
@@ -172,6 +172,27 @@ def test_a_broken_program_is_shown_at_its_place_and_the_old_one_goes_on(suite, p
     page.get_by_text("motor.left.target", exact=False).first.wait_for()
     playwright.expect(page.locator("body")).to_contain_text("line 3", ignore_case=True, use_inner_text=True)
     assert Path(page.evaluate("window.thymio.state().program.name")).name == "line_follower.aesl"
+
+
+def test_what_is_refused_is_told_also_when_editor_or_creator_have_the_place_of_its_card(suite, page, tmp_path):
+    playground, program, unknown = tmp_path / "bad.json", tmp_path / "bad.aesl", tmp_path / "bad.dat"
+    playground.write_text('{"format": 1}')
+    program.write_text('<network>\n<node nodeId="1" name="thymio-II">var a = = 1</node></network>')
+    unknown.write_text("")
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    notices = page.locator(".notice:visible")
+    page.click("#editor-switch")
+    for file in (playground, unknown):
+        drop_file(page, file, "main")
+        playwright.expect(notices.filter(has_text=file.name)).to_have_count(1)
+        notices.get_by_role("button").click()
+    page.click("#creator-switch")
+    drop_file(page, program, "main")
+    playwright.expect(notices.filter(has_text="bad.aesl")).to_have_count(1)
+    page.click("#creator-switch")
+    page.click(".card.playground summary")
+    drop_file(page, playground, "main")
+    playwright.expect(page.locator(".card.playground .fault:visible")).to_contain_text("bad.json")
 
 
 def test_another_playground_can_be_chosen(suite, page):

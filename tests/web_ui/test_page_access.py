@@ -49,6 +49,19 @@ def test_at_800_by_600_every_control_is_in_sight_in_every_language(suite, page):
         assert page.evaluate(OVERLAPPING) == []
 
 
+@pytest.mark.parametrize("size", [(683, 384), (360, 640)])
+def test_in_a_low_window_views_and_some_lines_of_the_program_are_in_sight(suite, page, size):
+    page.set_viewport_size({"width": size[0], "height": size[1]})  # 1366 × 768 at 200 %; a small phone
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    wait_for_frame(page)
+    assert page.evaluate(OVERLAPPING) == []
+    page.click("#editor-switch")
+    text = page.locator(".cm-scroller").bounding_box()
+    assert text["height"] > 120
+    page.get_by_role("tab", name="Constants").click()
+    page.fill("[data-new=constant]", "FAR")
+
+
 def test_values_can_be_frozen_and_copied(suite, page):
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     open_page(page, suite("--playground", "base", "--program", "none"))

@@ -19,3 +19,15 @@ export function card(name, title, ...content) {
   details.addEventListener("toggle", () => note(memory, key, details.open ? "open" : "closed"));
   return details;
 }
+
+/**
+ * Let a refusal be seen: its card opens, and where editor or creator have the card's place, a notice says it.
+ *
+ * @param {HTMLDetailsElement} element  the card
+ * @param {import("../state/store.js").Store} store
+ * @param {string} text
+ */
+export function showRefusal(element, store, text) {
+  element.open = true;
+  if (element.offsetParent === null) store.dispatch({ type: "notice", level: "error", text });
+}

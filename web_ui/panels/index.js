@@ -37,7 +37,7 @@ import { viewsPanel } from "./views.js";
  */
 /**
  * @typedef {object} Panel
- * @property {"header" | "stage" | "side" | "footer"} slot
+ * @property {"header" | "stage" | "main" | "side" | "footer"} slot
  * @property {HTMLElement} element
  * @property {(state: State) => void} [render]
  */

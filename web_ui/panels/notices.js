@@ -7,7 +7,7 @@ export function noticesPanel({ t, store }) {
   const element = h("div", { class: "notices", role: "alert" });
   /** @type {import("../state/index.js").Notice[] | null} */ let shown = null;
   return {
-    slot: "stage",
+    slot: "main",
     element,
     render({ notices }) {
       if (notices === shown) return;

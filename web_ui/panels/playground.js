@@ -1,7 +1,7 @@
 // The playground: choose one of the shipped ones or open a file; a refused one leaves the old world.
 
 import { galleryDialog } from "../gallery/index.js";
-import { card } from "./card.js";
+import { card, showRefusal } from "./card.js";
 import { fileButton, h, icon, setText } from "./dom.js";
 import { faultView } from "./fault.js";
 
@@ -100,7 +100,9 @@ export function playgroundPanel(context) {
       if (playground?.phase !== "refused") return;
       const headline = t("playground.refused", { name: playground.name });
       fault.replaceChildren(...faultView(t, headline, playground.fault));
-      announce(`${headline} ${playground.fault?.text ?? ""}`);
+      const words = `${headline} ${playground.fault?.text ?? ""}`;
+      announce(words);
+      if (!creator.isOpen) showRefusal(element, store, words); // it says itself what is wrong with what it gave
     },
   };
 }

@@ -4,7 +4,7 @@
 import { programOf } from "../state/index.js";
 import { faultWords, placeWords, stateWord } from "../state/standing.js";
 import { behaviourChoice } from "./behaviours.js";
-import { card } from "./card.js";
+import { card, showRefusal } from "./card.js";
 import { fileButton, h, icon, ICONS, setAttribute, setText } from "./dom.js";
 import { sourceView } from "./source.js";
 
@@ -90,7 +90,9 @@ export function programPanel(context) {
         ),
       );
     }
-    announce(fault === null ? headline : `${headline}: ${fault.text}`);
+    const words = fault === null ? headline : `${headline}: ${fault.text}`;
+    announce(words);
+    if (fault !== null) showRefusal(element, store, words);
   };
 
   return {
