@@ -8,7 +8,7 @@ import re
 import pytest
 from std_msgs.msg import String
 
-from tests.nodes.aseba_tools import Status, get_parameter, get_variables, set_parameters
+from tests.nodes.aseba_tools import Status, get_parameter, get_variables, set_parameters, set_variables, words
 from thymio_sim_ros.nodes import qos
 from thymio_sim_ros.nodes.aseba_node import AsebaRuntime, RuntimeParams
 from thymio_sim_ros.nodes.life import StartError
@@ -46,6 +46,23 @@ def test_a_robot_s_own_program_that_does_not_compile_is_refused_and_all_go_on(ro
     assert not result.successful
     assert result.reason.startswith("mine: line 2, column 6: no variable is called 'you'")
     assert (me(ros, "anna"), me(ros, "bert")) == ([1], [1])
+
+
+def test_a_name_waits_for_its_text_and_a_refused_text_leaves_the_old_program_alone(ros, runtime):
+    runtime("var me = 1", **TWO)
+    assert set_parameters(ros, {"script.name": "good.aesl", "script.source": "var me = 2"}).successful
+    status = Status(ros, "/anna")
+    ros.until(lambda: status["program"] == "good.aesl")
+    (changed,) = set_variables(ros, {"me": words(7)}, robot="/anna")
+    assert changed.successful
+    assert set_parameters(ros, {"script.name": "bad.aesl"}).successful  # one by one, as Foxglove sets them
+    refused = set_parameters(ros, {"script.source": "var me = = 3"})
+    assert refused.reason.startswith("bad.aesl: line 1")
+    assert set_parameters(ros, {"robots.bert.script.source": "var me = 4"}).successful
+    assert (me(ros, "anna"), me(ros, "bert")) == ([7], [4])
+    assert status["program"] == "good.aesl"
+    assert set_parameters(ros, {"script.source": "var me = 5"}).successful
+    ros.until(lambda: status["program"] == "bad.aesl")
 
 
 def test_a_file_with_several_programs_gives_each_robot_its_own(ros, runtime):

@@ -304,7 +304,8 @@ class AsebaRuntime:
         if self._is_declaring:
             return SetParametersResult(successful=True)
         changes = params.changes(parameters)
-        values = self._values | changes
+        named = scripts.named(changes, self._told)
+        values = self._values | named
         try:
             for name, value in changes.items():
                 if not (self.node.has_parameter(name) or aseba_params.is_free(name)):
@@ -313,12 +314,16 @@ class AsebaRuntime:
             if reason := params.refusal(self.params, parameters):
                 raise WrongValueError(reason)
             check_behaviour(changes.get("behaviour", ""), self.params.layout)
-            shares = self._checked_shares(values, changes)
+            shares = self._checked_shares(values, named)
         except (WrongValueError, *PROGRAM_ERRORS) as error:
             self._accepted = None
             return SetParametersResult(successful=False, reason=str(error))
-        self._accepted = _Accepted(values, changes, shares)
+        self._accepted = _Accepted(values, named, shares)
         return SetParametersResult(successful=True)
+
+    def _told(self, name: str) -> str:
+        """A text parameter as it was set last; empty if it never was."""
+        return str(self.node.get_parameter_or(name, Parameter(name, value="")).value)
 
     def _checked_shares(self, values: dict[str, Any], changes: dict[str, Any]) -> dict[str, Share | None]:
         """Each robot's program by the new values, if a script changes; those of absent robots must compile too."""

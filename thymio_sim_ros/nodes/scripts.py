@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,9 +10,11 @@ from thymio_sim_ros.device.fleet import Member, Share, share_out
 from thymio_sim_ros.device.program import load_file
 from thymio_sim_ros.loading import read_text
 
-__all__ = ["Script", "named_robots", "script_of", "shares", "touched"]
+__all__ = ["Script", "named", "named_robots", "script_of", "shares", "touched"]
 
 _CONSTANTS = "script.constants."
+_NAME = "script.name"
+_SOURCE = "script.source"
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +64,17 @@ def shares(values: Mapping[str, Any], robots: Sequence[Member], layout: str) -> 
         if script not in found or script.is_own:
             found[script] = _load(script, [robot] if script.is_own else pool, layout)
         result[robot.name] = found[script][robot.name]
+    return result
+
+
+def named(changes: Mapping[str, Any], waiting: Callable[[str], Any]) -> dict[str, Any]:
+    """Changes of parameters with a script's name only beside its text: one set before waits, so that a text that is
+    refused leaves the name of the program that goes on. `waiting` gives the name set last."""
+    names = {name: value for name, value in changes.items() if name.endswith(_NAME)}
+    result = {name: value for name, value in changes.items() if name not in names}
+    for text in [name for name in result if name.endswith(_SOURCE)]:
+        name = text.removesuffix(_SOURCE) + _NAME
+        result[name] = names[name] if name in names else waiting(name)
     return result
 
 
