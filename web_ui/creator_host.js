@@ -53,7 +53,11 @@ export class CreatorHost {
   async open(playground) {
     const { context } = this;
     if (context === null) return;
-    this.module ??= await import("./creator/index.js");
+    this.module ??= await import("./creator/index.js").catch(() => null);
+    if (this.module === null) {
+      context.store.dispatch({ type: "notice", level: "error", text: context.t("app.notLoaded") });
+      return;
+    }
     const title = this.module.WORDS[context.language]["new.title"];
     this.workshop ??= new this.module.Workshop({
       shelf: memory,

@@ -50,7 +50,11 @@ export class EditorHost {
 
   async open() {
     if (this.isOpen) return;
-    this.module ??= await import("./editor/index.js");
+    this.module ??= await import("./editor/index.js").catch(() => null);
+    if (this.module === null) {
+      this.context?.store.dispatch({ type: "notice", level: "error", text: this.context.t("app.notLoaded") });
+      return;
+    }
     this.desk ??= new this.module.Desk(memory, Date.now);
     this.isOpen = true;
     document.body.classList.add("with-editor");

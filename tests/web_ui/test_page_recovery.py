@@ -7,7 +7,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.processes import free_port, wait_for_port
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, open_page, wait_for_service
 
 pytestmark = MARKS
 
@@ -50,6 +50,24 @@ def test_it_works_where_the_browser_keeps_nothing(suite, page):
     page.locator("#creator-try").wait_for()
     page.click("#editor-switch")
     playwright.expect(page.locator(".cm-content")).to_contain_text("var a")
+
+
+def test_the_editor_is_told_of_errors_after_a_restart_and_what_cannot_be_loaded_is_said(suite, page):
+    ports = (free_port(), free_port())
+    open_page(page, suite("--playground", "base", "--program", "none", ports=ports))
+    wait_for_service(page, "/aseba_runtime/check")
+    page.click("#editor-switch")
+    verdict = page.locator(".verdict")
+    playwright.expect(verdict).to_contain_text("No errors")
+    suite.end()
+    page.wait_for_function("() => !window.thymio.connected")
+    page.focus(".cm-content")
+    page.keyboard.insert_text("var a = b")
+    playwright.expect(verdict).to_contain_text("as soon as")
+    page.click("#creator-switch")
+    playwright.expect(page.locator(".notice")).to_contain_text("Reload the page")
+    suite("--playground", "base", "--program", "none", ports=ports)
+    playwright.expect(verdict).to_contain_text("no variable is called 'b'")
 
 
 def test_what_one_person_does_is_seen_by_another_who_came_late(suite, page, other_page):

@@ -55,6 +55,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
   /** @type {any} */ let statusShown = null;
   /** @type {ReturnType<typeof setTimeout> | undefined} */ let checkTimer;
   let checks = 0;
+  let isChecked = true; // or on the way; false: nobody was there to ask
   let scheduled = false;
   let said = "";
 
@@ -121,6 +122,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
     if (number !== checks || source !== workspace.code) return; // a later one is on its way
     verdict = answer;
     if (answer === null) {
+      isChecked = false;
       foot.tell({ text: t("verdict.unknown"), kind: "" });
       return;
     }
@@ -341,7 +343,13 @@ export function createEditor({ desk, client, store, language, pageText, announce
 
   const render = () => {
     if (!desk.tabs(robots()).includes(workspace.tab)) workspace.choose(ALL);
-    if (store.state.services.includes(CHECK_SERVICE)) void lexicon.ask(link, redraw);
+    if (store.state.services.includes(CHECK_SERVICE)) {
+      void lexicon.ask(link, redraw);
+      if (!isChecked) {
+        isChecked = true;
+        void check();
+      }
+    }
     workspace.tell(ALL, desk.state.targets[store.state.selected]?.program);
     if (workspace.tab !== ALL) workspace.tell(workspace.tab, target()?.program);
     if (workspace.current.text !== fileText) {

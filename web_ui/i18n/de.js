@@ -4,6 +4,8 @@ export const de = {
   "app.panels": "Bedienfelder",
   "app.robot": "Thymio",
   "app.drop": "Programm (.aesl) oder Spielfeld (.json, .playground, .zip) hier ablegen",
+  "app.notLoaded":
+    "Dieser Teil der Seite konnte nicht geladen werden. Lade die Seite neu, wenn der Simulator wieder da ist; was du geschrieben hast, bleibt.",
   "app.noWebgl":
     "Dieser Browser kann nicht in 3D zeichnen (kein WebGL): Die Ansicht ist von oben in 2D. Alles andere geht genauso.",
   "app.contextLost": "Das 3D-Bild ging verloren; es kommt von selbst wieder.",

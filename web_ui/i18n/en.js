@@ -6,6 +6,8 @@ export const en = {
   "app.panels": "Panels",
   "app.robot": "Thymio",
   "app.drop": "Drop a program (.aesl) or a playground (.json, .playground, .zip)",
+  "app.notLoaded":
+    "This part of the page could not be loaded. Reload the page when the simulator is there again; what you wrote is kept.",
   "app.noWebgl":
     "This browser cannot draw in 3D (no WebGL): the view is from above in 2D. Everything else works all the same.",
   "app.contextLost": "The 3D picture was lost; it comes back by itself.",

@@ -4,6 +4,8 @@ export const fr = {
   "app.panels": "Panneaux",
   "app.robot": "Thymio",
   "app.drop": "Déposer un programme (.aesl) ou un terrain (.json, .playground, .zip)",
+  "app.notLoaded":
+    "Cette partie de la page n'a pas pu être chargée. Recharge la page quand le simulateur est de retour ; ce que tu as écrit reste.",
   "app.noWebgl":
     "Ce navigateur ne dessine pas en 3D (pas de WebGL) : la vue est de dessus en 2D. Tout le reste fonctionne.",
   "app.contextLost": "L’image 3D est perdue ; elle revient d’elle-même.",

@@ -4,6 +4,8 @@ export const it = {
   "app.panels": "Pannelli",
   "app.robot": "Thymio",
   "app.drop": "Rilasciare un programma (.aesl) o un campo (.json, .playground, .zip)",
+  "app.notLoaded":
+    "Questa parte della pagina non si è potuta caricare. Ricarica la pagina quando il simulatore è tornato; ciò che hai scritto resta.",
   "app.noWebgl":
     "Questo browser non disegna in 3D (niente WebGL): la vista è dall'alto in 2D. Tutto il resto funziona.",
   "app.contextLost": "L’immagine 3D è andata persa; torna da sola.",
