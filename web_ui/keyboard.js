@@ -35,6 +35,11 @@ const MOVES = /** @type {Record<string, [number, number, number]>} */ ({
 });
 const FAR = 5; // steps with Shift
 
+/** The key, a letter as without Caps Lock and Shift. @param {KeyboardEvent} event */
+export function plainKey({ key }) {
+  return key.length === 1 ? key.toLowerCase() : key;
+}
+
 /**
  * @param {HTMLElement} element  which must have the focus
  * @param {SceneView} scene
@@ -45,7 +50,8 @@ export function watchKeyboard(element, scene, mover, press) {
   /** @type {Set<string>} */ const held = new Set();
   element.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const { key, shiftKey, repeat } = event;
+    const { shiftKey, repeat } = event;
+    const key = plainKey(event);
     if (key === "m") mover.setMode(!mover.mode);
     else if (mover.mode && key in MOVES) {
       const [x, y, turn] = MOVES[key];

@@ -119,3 +119,21 @@ def test_the_editor_and_the_program_panel_explain_in_the_language_of_the_page(
     page.click("#tool-tab-reference")
     page.fill(".reference input", "motor.left.target")
     expect(page, ".reference .entry-help:visible p").to_contain_text(help_text)
+
+
+def test_letters_act_with_caps_lock_too(suite, page):
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.focus("#view")
+    page.keyboard.press("T")  # without Shift, as with Caps Lock
+    playwright.expect(page.get_by_role("button", name="From above")).to_have_attribute("aria-pressed", "true")
+    page.click("#editor-switch")
+    page.focus(".cm-content")
+    with page.expect_download() as saved:
+        page.keyboard.press("Control+S")
+    assert saved.value.suggested_filename == "program.aesl"
+    page.click("#creator-switch")
+    page.locator(".palette").wait_for()
+    page.focus("#view")
+    for key, selected in (("N", "ground"), ("N", "thymio"), ("Shift+N", "ground")):
+        page.keyboard.press(key)
+        page.wait_for_function("(name) => window.thymio.built().selected === name", arg=selected)

@@ -1,6 +1,8 @@
 // Keys while one builds. They work on the view only, so that writing in fields acts on nothing else; undo and redo
 // also from the buttons around it.
 
+import { plainKey } from "../keyboard.js";
+
 /** @typedef {import("./builder.js").Builder} Builder */
 
 const STEPS = /** @type {Record<string, [number, number]>} */ ({
@@ -10,7 +12,7 @@ const STEPS = /** @type {Record<string, [number, number]>} */ ({
   ArrowRight: [1, 0],
 });
 /** Counter-clockwise, clockwise: as where things are moved while the world runs. */
-const TURNS = /** @type {Record<string, number>} */ ({ ",": 1, "<": 1, ".": -1, ">": -1, r: 1, R: -1 });
+const TURNS = /** @type {Record<string, number>} */ ({ ",": 1, "<": 1, ".": -1, ">": -1, r: 1 });
 /** What the camera keeps. */
 const CAMERA_KEYS = ["+", "=", "-", "Home", "t"];
 
@@ -33,7 +35,7 @@ export function watchBuildingKeys({ stage, canvas, around, builder, editFields }
     (event) => {
       if (event.target !== canvas) return;
       shiftAlone = event.key === "Shift" && !event.repeat;
-      const isTheirs = CAMERA_KEYS.includes(event.key) || event.key === "Tab" || isCameraTurn(builder, event);
+      const isTheirs = CAMERA_KEYS.includes(plainKey(event)) || event.key === "Tab" || isCameraTurn(builder, event);
       if (isTheirs && !event.ctrlKey && !event.metaKey) return;
       event.stopPropagation(); // no robot's button is pressed, and Escape stops none
       if (act(builder, event, editFields)) event.preventDefault();
@@ -93,16 +95,17 @@ function travel(builder, { key, ctrlKey, metaKey, shiftKey }) {
  * @param {() => void} editFields
  */
 function act(builder, event, editFields) {
-  const { key, shiftKey, altKey, ctrlKey, metaKey } = event;
+  const { shiftKey, altKey, ctrlKey, metaKey } = event;
+  const key = plainKey(event);
   const { placing } = builder;
   if (travel(builder, event)) return true;
   if (ctrlKey || metaKey) {
-    if (key.toLowerCase() !== "d") return false;
+    if (key !== "d") return false;
     builder.duplicate();
     return true;
   }
   if (key in STEPS) builder.nudge(...STEPS[key], { far: shiftKey, fine: altKey });
-  else if (key in TURNS) builder.turn(TURNS[key], altKey);
+  else if (key in TURNS) builder.turn(key === "r" && shiftKey ? -1 : TURNS[key], altKey);
   else if (key === "Escape") builder.cancel();
   else if (key === " " && placing !== null) placing.put();
   else if (key === "Enter") {
@@ -111,7 +114,7 @@ function act(builder, event, editFields) {
     else placing.put();
   } else if (key === "Backspace" && placing !== null) placing.undoPoint();
   else if (key === "Delete" || key === "Backspace") builder.remove();
-  else if (key === "n" || key === "N") builder.selectNext(key === "N" ? -1 : 1);
+  else if (key === "n") builder.selectNext(shiftKey ? -1 : 1);
   else if (key === "PageUp") builder.raise(1);
   else if (key === "PageDown") builder.raise(-1);
   else return false;

@@ -1,5 +1,6 @@
 // The editor's buttons: files on the left, the robot on the right, and the keys that do the same.
 
+import { plainKey } from "../keyboard.js";
 import { fileButton, h, icon, ICONS } from "../panels/dom.js";
 
 /** @typedef {import("./link.js").Verb} Verb */
@@ -149,7 +150,7 @@ export function watchKeys(element, deeds) {
   /** @param {KeyboardEvent} event */
   const press = (event) => {
     const ctrl = event.ctrlKey || event.metaKey ? "Ctrl+" : "";
-    const act = keys[`${ctrl}${event.shiftKey ? "Shift+" : ""}${event.key}`];
+    const act = keys[`${ctrl}${event.shiftKey ? "Shift+" : ""}${plainKey(event)}`];
     const inside = event.target instanceof Node && element.contains(event.target);
     if (act === undefined || event.altKey || (ctrl !== "" && !inside)) return;
     event.preventDefault();
