@@ -1,7 +1,8 @@
 """What tests of ROS nodes are made of: a private graph, nodes under test, topics on record, a stepped simulator.
 
-All nodes live in the test's own process and on one executor; waiting is always for a condition with a deadline, and
-simulated time is stepped, so that a slow machine changes nothing (ros-packaging.md section 7).
+All nodes live in the test's own process and thread: ours on one executor, each node under test on its own. Waiting
+is always for a condition with a deadline, and simulated time is stepped, so that a slow machine changes nothing
+(ros-packaging.md section 7).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A private ROS graph for one test: a context, an executor, nodes under test, waiting that tells what went wrong."""
+"""A private ROS graph for one test: a context, executors, nodes under test, waiting that tells what went wrong."""
 
 from __future__ import annotations
 
@@ -20,13 +20,16 @@ from rclpy.utilities import get_default_context, try_shutdown
 from thymio_sim_ros.nodes.life import deliver, make_executor
 from thymio_sim_ros.testing.ros import matching, student
 from thymio_sim_ros.testing.ros.recorder import Recorder
+from thymio_sim_ros.testing.ros.turns import Turns
 from thymio_sim_ros.testing.sources import beside
 from thymio_sim_ros.testing.waiting import told
 
 __all__ = ["DEADLINE_S", "Ros"]
 
 DEADLINE_S = 20.0
-SLICE_S = 0.02
+SLICE_S = 0.005
+"""Real seconds that nodes under test wait at most while nothing comes for all others."""
+
 DEPTH = 1000
 """Messages that a recorder may be behind."""
 
@@ -51,7 +54,7 @@ class Stepped(Protocol):
 
 
 class Ros:
-    """A private context with one executor; `until` spins it."""
+    """A private context, one executor for what is ours and one for each node under test; `until` spins them."""
 
     def __init__(self, domain: int, *, folder: Path | None = None) -> None:
         """Files of nodes under test are looked for in `folder` first."""
@@ -67,6 +70,8 @@ class Ros:
         self._executor = make_executor(self.context)
         self._lives: list[Any] = []
         self._nodes: list[Node] = []
+        self._turns: dict[Node, Turns] = {}
+        """Of the nodes under test, in the order in which they were started."""
         self._recorders: list[Recorder] = []
         self.node = self.make_node(TEST_NODE)
 
@@ -77,12 +82,15 @@ class Ros:
         node = Node(
             name, context=self.context, namespace=namespace, start_parameter_services=False, enable_rosout=False
         )
-        return self.add(node)
-
-    def add(self, node: Node) -> Node:
-        """Put a node under test on the executor; it is destroyed with the test."""
         self._executor.add_node(node)
         self._nodes.append(node)
+        return node
+
+    def add(self, node: Node) -> Node:
+        """Give a node under test its turns; it is destroyed with the test."""
+        self._nodes.append(node)
+        with self._alive():
+            self._turns[node] = Turns(node, self.context)
         return node
 
     def live(self, life: Any) -> Any:
@@ -131,21 +139,30 @@ class Ros:
         life.close()
 
     def _forget(self, node: Node) -> None:
-        """Let the executor do all that waits for a node, and then take its leave of it."""
-        self._executor.remove_node(node)
-        self.deliver()
+        """Let its executor do all that waits for a node, and then take its leave of it."""
+        if node in self._turns:
+            self._turns.pop(node).end()
+        else:
+            self._executor.remove_node(node)
+            self.deliver()
 
     # --- time ---
 
     def deliver(self) -> None:
-        """Handle the messages that are there, waiting for none."""
-        with _shut_down_by_others():
+        """Handle the messages that are there, waiting for none: first a turn of each node under test."""
+        with self._alive():
+            self._take_turns()
             deliver(self._executor)
 
     def spin(self) -> None:
-        """One short turn of the executor."""
-        with _shut_down_by_others():
+        """One short turn of all executors."""
+        with self._alive():
+            self._take_turns()
             self._executor.spin_once(timeout_sec=SLICE_S)
+
+    def _take_turns(self) -> None:
+        for turns in tuple(self._turns.values()):
+            turns.take()
 
     def until(
         self,
@@ -255,7 +272,10 @@ class Ros:
             end.callback(self._executor.shutdown)
             for node in self._nodes:
                 end.callback(node.destroy_node)
-                end.callback(self._executor.remove_node, node)
+                if node in self._turns:
+                    end.callback(self._turns[node].end)
+                else:
+                    end.callback(self._executor.remove_node, node)
             for life in self._lives:
                 end.callback(life.close)
                 end.callback(self._executor.remove_node, life.node)
@@ -266,16 +286,17 @@ class Ros:
         else:
             self.context.try_shutdown()
 
+    @contextlib.contextmanager
+    def _alive(self) -> Iterator[None]:
+        """Tell what it means when the context ends in the middle of a test."""
+        try:
+            if not self.context.ok():
+                raise ExternalShutdownException
+            yield
+        except ExternalShutdownException:
+            pytest.fail("a node under test shut ROS down: rclpy.shutdown() belongs to main()")
+
     def _simulated(self) -> Stepped:
         if self.simulation is None:
             raise LookupError("sim_time needs a simulation: let the test call the fixture `simulation` first")
         return self.simulation
-
-
-@contextlib.contextmanager
-def _shut_down_by_others() -> Iterator[None]:
-    """Tell what it means when the context ends in the middle of a test."""
-    try:
-        yield
-    except ExternalShutdownException:
-        pytest.fail("a node under test shut ROS down: rclpy.shutdown() belongs to main()")
