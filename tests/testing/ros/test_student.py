@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import sys
 
 import pytest
@@ -10,11 +11,16 @@ from rclpy.node import Node
 
 from thymio_sim_ros.testing.ros.student import StudentError, load_class
 
-HEAD = "import rclpy\nfrom rclpy.node import Node\n"
+HEAD = "import rclpy\nimport rclpy.executors\nfrom rclpy.node import Node\n"
 GREETER = HEAD + 'class Greeter(Node):\n    def __init__(self):\n        super().__init__("greeter")\n'
 UNGUARDED = GREETER + "rclpy.init()\nnode = Greeter()\ntry:\n    rclpy.spin(node)\nfinally:\n    rclpy.shutdown()\n"
 LOOP = GREETER + "rclpy.init()\nnode = Greeter()\nwhile rclpy.ok():\n    rclpy.spin_once(node)\nrclpy.shutdown()\n"
 
+EXECUTOR = GREETER + (
+    "def main():\n    rclpy.init()\n    executor = rclpy.executors.{kind}()\n    executor.add_node(Greeter())\n"
+    "    executor.{spin}()\n    executor.shutdown()\n    rclpy.shutdown()\nmain()\n"
+)
+EXITS = "import sys\n" + GREETER + "def main():\n    rclpy.init()\n    rclpy.spin(Greeter())\nsys.exit(main())\n"
 WITH = GREETER + "def main():\n    with rclpy.init():\n        rclpy.spin(Greeter())\nmain()\n"
 
 
@@ -31,7 +37,17 @@ def handed_in(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", [GREETER, UNGUARDED, LOOP, WITH], ids=["guarded", "spins at once", "loops at once", "with"]
+    "text",
+    [
+        GREETER,
+        UNGUARDED,
+        LOOP,
+        WITH,
+        EXITS,
+        EXECUTOR.format(kind="SingleThreadedExecutor", spin="spin"),
+        EXECUTOR.format(kind="MultiThreadedExecutor", spin="spin_once"),
+    ],
+    ids=["guarded", "spins at once", "loops at once", "with", "exits", "executor", "many threads"],
 )
 def test_a_file_becomes_a_node(ros, handed_in, text):
     node = ros.start(handed_in(text))
@@ -57,7 +73,32 @@ def test_a_file_may_import_its_neighbours(ros, handed_in):
     handed_in("NAME = 'neighbour'\n", "my_names.py")
     text = GREETER.replace('"greeter"', "NAME").replace(HEAD, HEAD + "from my_names import NAME\n")
     assert ros.start(handed_in(text)).get_name() == "neighbour"
-    sys.modules.pop("my_names")
+    assert "my_names" not in sys.modules
+
+
+def test_the_neighbours_of_one_student_are_not_those_of_the_next(tmp_path, monkeypatch):
+    """Each has a helpers.py and a package parts, as the teacher has, who imported his own first."""
+    text = GREETER + "import helpers\nfrom parts import sizes\nGreeter.found = helpers.NAME, sizes.NAME\n"
+    for name in ("teacher", "anna", "bert"):
+        (tmp_path / name / "parts").mkdir(parents=True)
+        for file in ("helpers.py", "parts/__init__.py", "parts/sizes.py"):
+            (tmp_path / name / file).write_text(f"NAME = '{name}'\n")
+        (tmp_path / name / "greeter.py").write_text(text)
+    monkeypatch.syspath_prepend(tmp_path / "teacher")
+    own = {name: importlib.import_module(name) for name in ("helpers", "parts", "parts.sizes")}
+    try:
+        monkeypatch.chdir(tmp_path)
+        for name in ("anna", "bert", "anna"):
+            assert load_class(f"{name}/greeter.py").found == (name, name)
+            assert {name: sys.modules[name] for name in own} == own
+    finally:
+        for name in own:
+            del sys.modules[name]
+
+
+def test_a_file_that_exits_before_its_node_says_so(handed_in):
+    with pytest.raises(SystemExit, match="no robot"):
+        load_class(handed_in("import sys\nsys.exit('no robot')\n" + GREETER))
 
 
 def test_of_several_classes_the_last_heir_or_the_named_one_is_taken(handed_in):

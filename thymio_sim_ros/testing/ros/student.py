@@ -12,16 +12,19 @@ import importlib.util
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import rclpy
 from rclpy.context import Context
+from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 __all__ = ["StudentError", "load_class", "remap_arguments", "start"]
 
 _SPINS = ("spin", "spin_once", "spin_until_future_complete")
+_TURNS = (*_SPINS, "spin_once_until_future_complete")
 
 
 class StudentError(Exception):
@@ -37,11 +40,7 @@ def load_class(source: str | Path, class_name: str = "") -> type[Node]:
     path = Path(source)
     with _nothing_spins():
         module = _run_file(path) if path.suffix == ".py" else importlib.import_module(str(source))
-    classes = {
-        name: value
-        for name, value in vars(module).items()
-        if isinstance(value, type) and issubclass(value, Node) and value.__module__ == module.__name__
-    }
+    classes = _classes(module)
     if class_name:
         chosen = [value for name, value in classes.items() if name == class_name]
     else:
@@ -97,7 +96,7 @@ def start(
     return node
 
 
-def _run_file(path: Path) -> Any:
+def _run_file(path: Path) -> ModuleType:
     if not path.is_file():
         raise StudentError(f"{path}: no such file")
     name = f"{path.stem}_under_test"
@@ -105,17 +104,59 @@ def _run_file(path: Path) -> Any:
     if spec is None or spec.loader is None:
         raise StudentError(f"{path}: not a Python file")
     module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    sys.path.insert(0, str(path.parent))
-    try:
-        spec.loader.exec_module(module)
-    finally:
-        sys.path.remove(str(path.parent))
-        sys.modules.pop(name, None)
-        for value in vars(module).values():
-            if isinstance(value, Node):
-                value.destroy_node()
+    with _neighbours(path.parent.absolute()):
+        sys.modules[name] = module
+        try:
+            spec.loader.exec_module(module)
+        except SystemExit:  # `sys.exit(main())`
+            if not _classes(module):
+                raise
+        finally:
+            sys.modules.pop(name, None)
+            for value in vars(module).values():
+                if isinstance(value, Node):
+                    value.destroy_node()
     return module
+
+
+def _classes(module: ModuleType) -> dict[str, type[Node]]:
+    """The node classes that a module itself defines, by name."""
+    return {
+        name: value
+        for name, value in vars(module).items()
+        if isinstance(value, type) and issubclass(value, Node) and value.__module__ == module.__name__
+    }
+
+
+@contextlib.contextmanager
+def _neighbours(folder: Path) -> Iterator[None]:
+    """What lies in the folder can be imported, whatever has been imported by such a name, and is forgotten afterwards.
+
+    Each student may have a `helpers.py`; nobody is to get another's.
+    """
+    names = {path.stem for path in folder.glob("*.py")} | {path.parent.name for path in folder.glob("*/__init__.py")}
+    aside = {
+        name: module
+        for name, module in list(sys.modules.items())
+        if name.partition(".")[0] in names and not _lies_in(module, folder)
+    }
+    before = sys.modules.keys() - aside.keys()
+    for name in aside:
+        del sys.modules[name]
+    sys.path.insert(0, str(folder))
+    try:
+        yield
+    finally:
+        sys.path.remove(str(folder))
+        for name in sys.modules.keys() - before:
+            if _lies_in(sys.modules[name], folder):
+                del sys.modules[name]
+        sys.modules.update(aside)
+
+
+def _lies_in(module: ModuleType, folder: Path) -> bool:
+    places = [getattr(module, "__file__", None), *getattr(module, "__path__", ())]
+    return any(place and Path(place).is_relative_to(folder) for place in places)
 
 
 @contextlib.contextmanager
@@ -125,16 +166,26 @@ def _nothing_spins() -> Iterator[None]:
     def spin(node: Node, *_args: Any, **_kwargs: Any) -> None:
         node.destroy_node()
 
+    def turn(executor: Executor, *_args: Any, **_kwargs: Any) -> None:
+        for node in executor.get_nodes():
+            executor.remove_node(node)
+            node.destroy_node()
+
     quiet: dict[str, Any] = {"init": _nothing, "shutdown": _nothing, "try_shutdown": _nothing, "ok": lambda **_: False}
-    quiet |= dict.fromkeys(_SPINS, spin)
-    before = {name: getattr(rclpy, name) for name in quiet}
-    for name, value in quiet.items():
-        setattr(rclpy, name, value)
+    kinds = (Executor, SingleThreadedExecutor, MultiThreadedExecutor)
+    owners: list[tuple[Any, dict[str, Any]]] = [
+        (rclpy, quiet | dict.fromkeys(_SPINS, spin)),
+        *((kind, {name: turn for name in _TURNS if name in vars(kind)}) for kind in kinds),
+    ]
+    before = [(owner, name, getattr(owner, name)) for owner, names in owners for name in names]
+    for owner, names in owners:
+        for name, value in names.items():
+            setattr(owner, name, value)
     try:
         yield
     finally:
-        for name, value in before.items():
-            setattr(rclpy, name, value)
+        for owner, name, value in before:
+            setattr(owner, name, value)
 
 
 def _nothing(*_args: Any, **_kwargs: Any) -> contextlib.AbstractContextManager[None]:
