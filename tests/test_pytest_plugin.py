@@ -177,6 +177,13 @@ def test_a_project_with_ros_runs_in_parallel_without_crosstalk(pytester: pytest.
 
 
 @pytest.mark.skipif(not HAS_ROS, reason="needs ROS")
+@pytest.mark.parametrize("capture", ["sys", "tee-sys", "no"])
+def test_output_may_be_captured_in_every_way(pytester: pytest.Pytester, run: Run, capture: str) -> None:
+    pytester.makepyfile("def test_it(ros): assert ros.context.ok()")
+    run(f"--capture={capture}").assert_outcomes(passed=1)
+
+
+@pytest.mark.skipif(not HAS_ROS, reason="needs ROS")
 def test_the_world_and_program_of_a_mark_are_those_of_the_nodes(pytester: pytest.Pytester, run: Run) -> None:
     pytester.makepyfile(
         """

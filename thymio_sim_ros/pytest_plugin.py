@@ -90,7 +90,7 @@ def ros(request: pytest.FixtureRequest) -> Iterator[Ros]:
     yield ros
     ros.close()
     left = [thread.name for thread in set(threading.enumerate()) - threads if not thread.daemon]
-    assert not left, f"threads left behind: {left}"
+    assert not left, f"threads left behind: {left}, expected to end when rclpy.ok() is false"
 
 
 @pytest.fixture

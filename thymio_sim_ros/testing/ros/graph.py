@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import sys
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -36,6 +38,9 @@ DEPTH = 1000
 NOTICE = 2
 """Deliveries until a publisher knows of a subscription: the event, then the task that it makes."""
 
+THREADS_S = 2.0
+"""Real seconds for threads of nodes under test to see that ROS is shut down, and to end."""
+
 TEST_NODE = "test"
 
 
@@ -62,12 +67,16 @@ class Ros:
         self.simulation: Stepped | None = None
         """The simulation of this test, once there is one: it alone lets simulated time pass."""
         self._folder = folder
+        self._threads = set(threading.enumerate())
         # Code under test may ask for the default context (`rclpy.ok()`); somebody else's is not touched.
         self.context = get_default_context()
         if self.context.ok():
             self.context = Context()
         rclpy.init(args=[], context=self.context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
-        self._executor = make_executor(self.context)
+        with contextlib.redirect_stderr(
+            sys.__stderr__
+        ):  # it writes crashes there: `--capture=sys` has no file for that
+            self._executor = make_executor(self.context)
         self._lives: list[Any] = []
         self._nodes: list[Node] = []
         self._turns: dict[Node, Turns] = {}
@@ -276,9 +285,19 @@ class Ros:
                     end.callback(self._turns[node].end)
                 else:
                     end.callback(self._executor.remove_node, node)
+            end.callback(self._end_threads)
             for life in self._lives:
                 end.callback(life.close)
                 end.callback(self._executor.remove_node, life.node)
+
+    def _end_threads(self) -> None:
+        """Shut ROS down before the nodes go, where threads of theirs run: what these ask is `rclpy.ok()`."""
+        running = set(threading.enumerate()) - self._threads
+        if running:
+            self._close_context()
+        deadline = time.monotonic() + THREADS_S
+        for thread in running:
+            thread.join(max(0.0, deadline - time.monotonic()))
 
     def _close_context(self) -> None:
         if self.context is get_default_context():

@@ -1,0 +1,104 @@
+"""Turns and threads of nodes under test: what `rclpy.spin` does elsewhere, in simulated time and in order."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.node import Node
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+from tests.testing.ros.test_graph import Echo
+from thymio_sim_ros.testing.ros import Ros
+
+
+class TwoTimers(Node):
+    """Notes when each of two timers calls, in ms."""
+
+    def __init__(self):
+        super().__init__("two_timers")
+        self.calls = []
+        self.create_timer(0.05, lambda: self.calls.append(("first", self.now_ms())))
+        self.create_timer(0.03, lambda: self.calls.append(("second", self.now_ms())))
+
+    def now_ms(self):
+        return self.get_clock().now().nanoseconds // 1_000_000
+
+
+class Patient(Node):
+    """Its callbacks are coroutines: one asks a service for what it says, the other falls over."""
+
+    def __init__(self):
+        super().__init__("patient")
+        self.mouth = self.create_publisher(String, "said", 10)
+        self.door = self.create_client(Trigger, "door", callback_group=ReentrantCallbackGroup())
+        self.create_subscription(String, "heard", self.hear, 10)
+
+    async def hear(self, message):
+        if message.data == "bang":
+            raise ValueError("I fell over")
+        answer = await self.door.call_async(Trigger.Request())
+        self.mouth.publish(String(data=answer.message))
+
+
+class Looping(Node):
+    """Publishes from a thread of its own as long as ROS is there."""
+
+    def __init__(self):
+        super().__init__("looping")
+        self.mouth = self.create_publisher(String, "said", 10)
+        self.failures = []
+        self.thread = threading.Thread(target=self.loop)
+        self.thread.start()
+
+    def loop(self):
+        pause = threading.Event()
+        try:
+            while rclpy.ok(context=self.context):
+                self.mouth.publish(String(data="la"))
+                pause.wait(0.05)
+        except Exception as error:  # whatever it is, it would be told in another test
+            self.failures.append(error)
+
+
+@pytest.mark.parametrize("_again", range(4))
+def test_timers_are_called_when_they_are_due_and_in_their_order(ros, simulation, _again):
+    """The events executor called the second twice at 60 ms, not at 90 ms, and at 150 ms now first, now last."""
+    sim = simulation()
+    node = ros.start(TwoTimers)
+    sim.step(0.31)
+    due = [("first", 50 * n) for n in range(1, 7)] + [("second", 30 * n) for n in range(1, 11)]
+    assert node.calls == sorted(due, key=lambda call: (call[1], call[0]))
+
+
+def test_callbacks_may_be_coroutines(ros):
+    ros.node.create_service(Trigger, "door", lambda _request, answer: Trigger.Response(message="open"))
+    ros.start(Patient)
+    said = ros.collect(String, "said")
+    heard = ros.publisher(String, "heard")
+    heard.publish(String(data="hello"))
+    assert said.next().data == "open"
+    heard.publish(String(data="bang"))
+    with pytest.raises(ValueError, match="I fell over"):
+        ros.until(lambda: False, 5.0)
+
+
+def test_nodes_that_answer_each_other_do_not_keep_time_from_passing(ros, simulation):
+    sim = simulation()
+    ros.start(Echo, name="one", remappings={"said": "heard"})
+    ros.start(Echo, name="two")
+    ros.publisher(String, "heard").publish(String(data="again"))
+    sim.step(0.1)
+    assert sim.now == pytest.approx(0.1)
+
+
+def test_threads_that_ask_whether_ros_is_there_end_before_their_node_does(ros_domain):
+    ros = Ros(ros_domain)
+    node = ros.start(Looping)
+    ros.collect(String, "said").wait(2)
+    ros.close()
+    assert not node.thread.is_alive()
+    assert node.failures == []
