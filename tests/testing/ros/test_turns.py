@@ -13,6 +13,7 @@ from std_srvs.srv import Trigger
 
 from tests.testing.ros.test_graph import Echo
 from thymio_sim_ros.testing.ros import Ros
+from thymio_sim_ros.testing.ros.student import StudentError, nobody_spins
 
 
 class TwoTimers(Node):
@@ -102,3 +103,53 @@ def test_threads_that_ask_whether_ros_is_there_end_before_their_node_does(ros_do
     ros.close()
     assert not node.thread.is_alive()
     assert node.failures == []
+
+
+class Spinning(Node):
+    """Waits for an answer as it begins, or when it hears something."""
+
+    def __init__(self, at_once):
+        super().__init__("spinning")
+        self.door = self.create_client(Trigger, "door")
+        self.create_subscription(String, "heard", self.ask, 10)
+        if at_once:
+            self.ask()
+
+    def ask(self, _message=None):
+        rclpy.spin_until_future_complete(self, self.door.call_async(Trigger.Request()))
+
+
+@pytest.mark.parametrize("at_once", [True, False])
+def test_who_spins_where_nothing_can_come_is_told_so(ros, at_once):
+    """It waited for ever, and no signal reached it."""
+    ros.node.create_service(Trigger, "door", lambda _request, answer: answer)
+
+    def ask():
+        ros.start(Spinning, arguments={"at_once": at_once})
+        ros.publisher(String, "heard").publish(String())
+        ros.until(lambda: False, 5.0)
+
+    with pytest.raises(StudentError, match=r"rclpy.spin_until_future_complete\(\) in a constructor or callback waits"):
+        ask()
+
+
+def test_a_spin_that_was_imported_by_its_name_is_told_too(ros, tmp_path):
+    path = tmp_path / "spinning.py"
+    path.write_text(
+        "from rclpy import spin\nfrom rclpy.node import Node\n"
+        "class Spinning(Node):\n    def __init__(self):\n        super().__init__('spinning')\n        spin(self)\n"
+    )
+    with pytest.raises(StudentError, match=r"rclpy.spin\(\) in a constructor or callback waits"):
+        ros.start(path)
+
+
+def test_a_spin_with_a_time_limit_or_in_a_thread_is_its_own_affair(ros):
+    node = ros.start(Echo)
+    with nobody_spins():
+        rclpy.spin_once(node, timeout_sec=0)
+        rclpy.spin_until_future_complete(node, rclpy.Future(), None, 0)
+        thread = threading.Thread(target=rclpy.spin_once, args=(node,), daemon=True)
+        thread.start()
+        ros.publisher(String, "heard").publish(String(data="x"))
+        thread.join(20.0)
+    assert not thread.is_alive()

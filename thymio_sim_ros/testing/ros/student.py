@@ -9,8 +9,10 @@ from __future__ import annotations
 import contextlib
 import importlib
 import importlib.util
+import inspect
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -21,9 +23,13 @@ from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecu
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-__all__ = ["StudentError", "load_class", "remap_arguments", "start"]
+__all__ = ["StudentError", "load_class", "nobody_spins", "remap_arguments", "start"]
 
 _SPINS = ("spin", "spin_once", "spin_until_future_complete")
+_SPUN = (
+    "rclpy.{}() in a constructor or callback waits for ever, since only the test lets messages come: expected"
+    " add_done_callback, or await in a callback"
+)
 _TURNS = (*_SPINS, "spin_once_until_future_complete")
 
 
@@ -89,7 +95,8 @@ def start(
             super().__init__(*args, **kwargs)
 
     placed = type(kind.__name__, (kind, Placed), {"__module__": kind.__module__, "__doc__": kind.__doc__})
-    node: Node = placed(**arguments)
+    with nobody_spins():
+        node: Node = placed(**arguments)
     if not reached:
         node.destroy_node()
         raise StudentError(f"{kind.__name__} calls Node.__init__ itself: expected super().__init__(…)")
@@ -163,7 +170,11 @@ def _lies_in(module: ModuleType, folder: Path) -> bool:
 def _nothing_spins() -> Iterator[None]:
     """Lines such as `rclpy.init(); rclpy.spin(Wanderer())` do nothing while a file is loaded."""
 
+    loading = True
+
     def spin(node: Node, *_args: Any, **_kwargs: Any) -> None:
+        if not loading:  # by `from rclpy import spin` it stays what it is now
+            raise StudentError(_SPUN.format("spin"))
         node.destroy_node()
 
     def turn(executor: Executor, *_args: Any, **_kwargs: Any) -> None:
@@ -184,8 +195,33 @@ def _nothing_spins() -> Iterator[None]:
     try:
         yield
     finally:
+        loading = False
         for owner, name, value in before:
             setattr(owner, name, value)
+
+
+@contextlib.contextmanager
+def nobody_spins() -> Iterator[None]:
+    """Who spins in this thread without a time limit is told so: the middleware would wait out of reach of signals."""
+    here = threading.get_ident()
+
+    def told(name: str, spin: Callable[..., Any]) -> Callable[..., Any]:
+        def checked(*args: Any, **kwargs: Any) -> Any:
+            limit = inspect.signature(spin).bind(*args, **kwargs).arguments.get("timeout_sec")
+            if threading.get_ident() == here and limit is None:
+                raise StudentError(_SPUN.format(name))
+            return spin(*args, **kwargs)
+
+        return checked
+
+    before = {name: getattr(rclpy, name) for name in _SPINS}
+    for name, spin in before.items():
+        setattr(rclpy, name, told(name, spin))
+    try:
+        yield
+    finally:
+        for name, spin in before.items():
+            setattr(rclpy, name, spin)
 
 
 def _nothing(*_args: Any, **_kwargs: Any) -> contextlib.AbstractContextManager[None]:

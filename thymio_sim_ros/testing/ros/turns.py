@@ -14,6 +14,8 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor, T
 from rclpy.node import Node
 from rclpy.timer import Timer
 
+from thymio_sim_ros.testing.ros.student import nobody_spins
+
 __all__ = ["Turns"]
 
 MOST_ROUNDS = 10
@@ -50,7 +52,8 @@ class Turns:
             except TimeoutException:
                 return may_be_more
             may_be_more |= not isinstance(entity, Timer) and getattr(entity, "topic_name", "") != "/clock"
-            handler()
+            with nobody_spins():
+                handler()
             handler.result()
 
     def end(self) -> None:
