@@ -38,6 +38,8 @@ def test_a_program_is_a_name_a_path_or_a_text(tmp_path: Path) -> None:
 def test_a_path_that_is_no_file_is_no_text() -> None:
     with pytest.raises(ResourceError, match="no program 'var a'"):
         program_of(Path("var a"))
+    with pytest.raises(ResourceError, match=r"no program 'students/Anna Smith/follower\.aesl': neither a file nor"):
+        program_of("students/Anna Smith/follower.aesl")
 
 
 def test_a_playground_may_be_loaded_already() -> None:

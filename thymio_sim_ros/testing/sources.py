@@ -33,8 +33,8 @@ def playground_of(value: str | Path | Playground, folder: Path | None = None) ->
 def program_of(value: str | Path | ThymioProgram, folder: Path | None = None) -> ThymioProgram:
     """A built-in behaviour's name, a path (relative ones begin in the folder) or a text as a program.
 
-    A single word is a name or a path, anything else that is no file is a text. Raises ProgramError for what the text
-    says, ResourceError for a file that is not there, OSError.
+    A single word is a name or a path, and so is a line that ends in .aesl; anything else that is no file is a text.
+    Raises ProgramError for what the text says, ResourceError for a file that is not there, OSError.
     """
     if isinstance(value, ThymioProgram):
         return value
@@ -46,4 +46,5 @@ def program_of(value: str | Path | ThymioProgram, folder: Path | None = None) ->
 
 def is_name(text: str) -> bool:
     """Whether a text that stands for a program is the name of one, not the program itself."""
-    return bool(text) and (os.path.isfile(text) or len(text.split()) == 1)
+    is_path = text.endswith(".aesl") and len(text.splitlines()) == 1
+    return bool(text) and (is_path or os.path.isfile(text) or len(text.split()) == 1)
