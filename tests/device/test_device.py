@@ -112,6 +112,7 @@ def test_a_button_that_is_held_while_a_program_is_loaded_raises_no_event_until_i
 
 def test_the_robot_s_own_lights_show_what_somebody_writes_to_its_variables():
     device = device_with("")
+    device.feed("temperature", (200,))
     device.advance(20_000_000)
     device.take_commands()
     device.set_variable("temperature", (300,))
