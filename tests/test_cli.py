@@ -6,6 +6,7 @@ import errno
 import json
 import os
 import pathlib
+import select
 import signal
 import socket
 import subprocess
@@ -253,7 +254,7 @@ def test_a_run_that_is_interrupted_keeps_what_it_made(tmp_path, number):
         while not (log.exists() and '"crc"' in log.read_text()):
             assert running.poll() is None, running.communicate()
             assert time.monotonic() < deadline
-            time.sleep(0.05)
+            select.select([], [], [], 0.05)
         running.send_signal(number)
         output, errors = running.communicate(timeout=120)
     assert running.returncode == -number  # so that the loop of a shell around it ends, too
