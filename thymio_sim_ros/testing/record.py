@@ -41,7 +41,7 @@ class Event:
 
 
 class Record:
-    """The past of one robot, oldest first."""
+    """The past of one robot, oldest first; time that goes back begins it anew."""
 
     def __init__(self) -> None:
         self.moments: list[Moment] = []
@@ -53,7 +53,7 @@ class Record:
 
     def look(self, robot: Robot, now_ns: int) -> None:
         """Note how the robot is now, after a tick."""
-        at_s, twist = now_ns / SECOND_NS, robot.twist
+        at_s, twist = self._at_s(now_ns), robot.twist
         self.moments.append(Moment(at_s, robot.pose, twist.linear_m_s, twist.angular_rad_s))
         if robot.body.touching or self._touching:
             touching = frozenset(contact.other for contact in robot.body.touching.values())
@@ -62,7 +62,7 @@ class Record:
 
     def hear(self, name: str, args: Sequence[int], now_ns: int) -> None:
         """Note an event that the program emitted."""
-        self.events.append(Event(now_ns / SECOND_NS, name, tuple(args)))
+        self.events.append(Event(self._at_s(now_ns), name, tuple(args)))
 
     def since(self, seconds: float) -> list[Moment]:
         """The moments from a simulated time on."""
@@ -75,3 +75,9 @@ class Record:
         self.events.clear()
         self.cleared += 1
         self._touching = frozenset()
+
+    def _at_s(self, now_ns: int) -> float:
+        at_s = now_ns / SECOND_NS
+        if self.moments and at_s < self.moments[-1].at_s:
+            self.clear()
+        return at_s

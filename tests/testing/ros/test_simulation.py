@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from geometry_msgs.msg import Twist, Vector3
 from nav_msgs.msg import Odometry
+from std_srvs.srv import Trigger
 
 from tests.testing.test_thymio import WALL
 from thymio_sim_ros.sim.playground import RobotStart
@@ -30,6 +31,18 @@ def test_a_robot_is_seen_as_in_a_classroom(ros, simulation):
     assert reached(sim.thymio, (0.17, 0.0), tolerance=0.02)
     assert slower_than(sim.thymio, 0.11)
     assert sim.thymio.path[-1].at_s == sim.now
+
+
+def test_a_reset_begins_the_past_anew(ros, simulation, runtime):
+    sim = simulation(playground=WALL)
+    runtime('<network><event size="0" name="begun"/><node name="thymio-II">emit begun</node></network>')
+    ros.publisher(Twist, "/cmd_vel").publish(Twist(linear=Vector3(x=0.1)))
+    sim.until(~no_contact(sim.thymio), seconds=10)
+    assert ros.call(Trigger, "/simulator/reset").success
+    sim.step(0.1)
+    assert no_contact(sim.thymio)
+    assert len(sim.thymio.path) == 10
+    assert [event.name for event in sim.thymio.record.events] == ["begun"]
 
 
 def test_a_program_is_asked_and_touched_as_in_a_classroom(simulation, runtime):
