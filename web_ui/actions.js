@@ -2,6 +2,7 @@
 
 import { CHECK_SERVICE, checkRequest, firstFault } from "./editor/checking.js";
 import { PARAMETERS, robotTopic } from "./state/names.js";
+import { textOf } from "./textfile.js";
 
 /** @typedef {import("./protocol/client.js").Client} Client */
 /** @typedef {import("./state/store.js").Store} Store */
@@ -184,7 +185,9 @@ export class Actions {
   async loadFile(file) {
     if (isProgram(file)) {
       if (file.size > LARGEST_PROGRAM) return this.refuse("file.tooLarge", file);
-      await this.loadProgram(file.name, await file.text());
+      const text = await textOf(file);
+      if (text === null) return this.refuse("file.notText", file);
+      await this.loadProgram(file.name, text);
     } else if (KINDS.playground.test(file.name)) {
       if (file.size > LARGEST_PLAYGROUND) return this.refuse("file.tooLarge", file);
       await this.loadPlayground(file.name, new Uint8Array(await file.arrayBuffer()));

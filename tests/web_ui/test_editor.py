@@ -173,6 +173,22 @@ def test_a_file_is_opened_changed_and_saved_without_loss_and_a_draft_outlives_th
     expect(editor, ".cm-content").to_have_text("var a = SIZE_")
 
 
+def test_a_file_is_read_in_its_encoding_and_saved_in_utf_8(editor, tmp_path):
+    declared = '<?xml version="1.0" encoding="{}"?>\n'
+    text = declared + '<network><node nodeId="1" name="thymio-II">var a # größer</node></network>'
+    old, broken = tmp_path / "old.aesl", tmp_path / "broken.aesl"
+    old.write_bytes(text.format("iso-8859-1").encode("iso-8859-1"))
+    broken.write_bytes("var b # größer".encode("iso-8859-1"))
+    editor.set_input_files("#editor-file", str(old))
+    expect(editor, ".cm-content").to_have_text("var a # größer")
+    with editor.expect_download() as saved:
+        editor.click("[data-verb=save]")
+    assert saved.value.path().read_bytes() == text.format("UTF-8").encode()
+    editor.set_input_files("#editor-file", str(broken))
+    expect(editor, ".verdict").to_contain_text("broken.aesl cannot be read as text")
+    expect(editor, ".cm-content").to_have_text("var a # größer")
+
+
 def test_a_file_dropped_on_the_text_is_opened_and_not_written_into_it(editor, tmp_path):
     write(editor, "var mine = 1")
     playground = tmp_path / "mine.json"

@@ -11,6 +11,7 @@ import { parse } from "../playground/document.js";
 import { offGround } from "../playground/judge.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { Fault } from "../playground/rules.js";
+import { textOf } from "../textfile.js";
 import { bar } from "./bar.js";
 import { newPlayground } from "./commands.js";
 import { itemForm } from "./form.js";
@@ -110,8 +111,10 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
   };
   /** @param {File} file */
   const open = async (file) => {
+    const content = await textOf(file);
+    if (content === null) return refuse(faultView(pageText, pageText("file.notText", { name: file.name }), null));
     try {
-      workshop.take(parse(await file.text()), { word: "did.opened", values: { name: file.name } });
+      workshop.take(parse(content), { word: "did.opened", values: { name: file.name } });
       refuse(null);
       scene.reframe();
       scene.look("home");

@@ -9,6 +9,7 @@ import { h } from "../panels/dom.js";
 import { locate } from "../state/index.js";
 import { robotTopic } from "../state/names.js";
 import { faultWords, lineOf, placeWords, stateWord } from "../state/standing.js";
+import { textOf } from "../textfile.js";
 import { readAesl } from "./aesl.js";
 import { breakpointLines, showBreakpoints, showPlace } from "./breakpoints.js";
 import { CHECK_SERVICE, marks } from "./checking.js";
@@ -246,7 +247,9 @@ export function createEditor({ desk, client, store, language, pageText, announce
   /** @param {File} chosen */
   const open = async (chosen) => {
     if (chosen.size > LARGEST_PROGRAM) return tell(t("editor.tooLarge", { name: chosen.name }), "error");
-    openText(chosen.name, await chosen.text());
+    const content = await textOf(chosen);
+    if (content === null) return tell(pageText("file.notText", { name: chosen.name }), "error");
+    openText(chosen.name, content);
   };
   /** @param {string} name @param {string} content */
   const openText = (name, content) => {

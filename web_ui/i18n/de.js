@@ -203,6 +203,7 @@ export const de = {
   "pen.colour": "Farbe des Stifts",
   "pen.width": "Breite des Stifts in Millimetern",
   "file.unknown": "{name}: weder ein Programm (.aesl) noch ein Spielfeld (.json, .playground, .zip)",
+  "file.notText": "{name} lässt sich nicht als Text lesen, in der Kodierung, die darin steht, oder UTF-8",
   "file.tooLarge": "{name}: grösser als 1 MB",
   "notice.dismiss": "Ausblenden",
 };

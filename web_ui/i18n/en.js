@@ -205,6 +205,7 @@ export const en = {
   "pen.colour": "Colour of the pen",
   "pen.width": "Width of the pen in millimetres",
   "file.unknown": "{name}: neither a program (.aesl) nor a playground (.json, .playground, .zip)",
+  "file.notText": "{name} cannot be read as text, in the encoding that it says or UTF-8",
   "file.tooLarge": "{name}: larger than 1 MB",
   "notice.dismiss": "Dismiss",
 };

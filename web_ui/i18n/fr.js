@@ -202,6 +202,7 @@ export const fr = {
   "pen.colour": "Couleur du crayon",
   "pen.width": "Largeur du crayon en millimètres",
   "file.unknown": "{name} : ni un programme (.aesl) ni un terrain (.json, .playground, .zip)",
+  "file.notText": "{name} ne peut pas être lu comme texte, dans l’encodage indiqué ou en UTF-8",
   "file.tooLarge": "{name} : plus de 1 Mo",
   "notice.dismiss": "Masquer",
 };

@@ -203,6 +203,7 @@ export const it = {
   "pen.colour": "Colore della penna",
   "pen.width": "Larghezza della penna in millimetri",
   "file.unknown": "{name}: né un programma (.aesl) né un campo (.json, .playground, .zip)",
+  "file.notText": "{name} non si può leggere come testo, nella codifica indicata o in UTF-8",
   "file.tooLarge": "{name}: più di 1 MB",
   "notice.dismiss": "Nascondere",
 };

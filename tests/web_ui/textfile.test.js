@@ -1,0 +1,37 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { decoded } from "../../web_ui/textfile.js";
+
+/** @param {string} encoding */
+const file = (encoding) => `<?xml version="1.0" encoding="${encoding}"?>\n<network># größer</network>`;
+const utf8 = new TextEncoder();
+
+/** @param {string} text @param {boolean} [isLittle] */
+function utf16(text, isLittle = true) {
+  const view = new DataView(new ArrayBuffer(2 * text.length + 2));
+  [0xfeff, ...[...text].map((letter) => letter.charCodeAt(0))].forEach((word, at) => view.setUint16(2 * at, word, isLittle));
+  return new Uint8Array(view.buffer);
+}
+
+/** @param {string} text */
+const latin = (text) => Uint8Array.from(text, (letter) => letter.charCodeAt(0));
+
+test("a file is read in the encoding that it says, and says how it will be written", () => {
+  assert.equal(decoded(latin(file("iso-8859-1"))), file("UTF-8"));
+  assert.equal(decoded(utf16(file("UTF-16"))), file("UTF-8"));
+  assert.equal(decoded(utf16(file("UTF-16"), false)), file("UTF-8"));
+  assert.equal(decoded(utf16("# größer")), "# größer");
+});
+
+test("text in UTF-8 stays as it is", () => {
+  for (const text of [file("utf-8"), file("UTF8"), "# größer 🤖\r\n", ""]) assert.equal(decoded(utf8.encode(text)), text);
+  assert.equal(decoded(Uint8Array.of(0xef, 0xbb, 0xbf, 0x61)), "a");
+});
+
+test("what is no text in its encoding is refused", () => {
+  for (const bytes of [latin("# größer"), latin(file("utf-8")), utf16("ab").subarray(0, 5)]) {
+    assert.throws(() => decoded(bytes), TypeError);
+  }
+  assert.throws(() => decoded(utf8.encode(file("klingon"))), RangeError);
+});

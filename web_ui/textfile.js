@@ -1,0 +1,31 @@
+// The text of a file: in the encoding that its first bytes or its XML declaration say, else in UTF-8.
+
+const MARKS = /** @type {const} */ ([
+  ["utf-16le", 0xff, 0xfe],
+  ["utf-16be", 0xfe, 0xff],
+]);
+const DECLARED = /^(\s*<\?xml\s[^>]*?encoding\s*=\s*["'])([A-Za-z0-9._-]+)/;
+const HEAD = 200; // bytes in which a declaration ends
+
+/** @param {File} file @returns {Promise<string | null>}  null for what cannot be read as text */
+export async function textOf(file) {
+  try {
+    return decoded(new Uint8Array(await file.arrayBuffer()));
+  } catch {
+    return null;
+  }
+}
+
+/**
+ * The text, without byte order mark. Here it is written back in UTF-8, and so it says.
+ *
+ * @param {Uint8Array} bytes
+ * @returns {string}  TypeError for what is no text in its encoding, RangeError for an encoding that nobody knows
+ */
+export function decoded(bytes) {
+  const head = new TextDecoder("iso-8859-1").decode(bytes.subarray(0, HEAD));
+  const [marked] = MARKS.find(([, first, second]) => bytes[0] === first && bytes[1] === second) ?? [];
+  const encoding = marked ?? DECLARED.exec(head)?.[2] ?? "utf-8";
+  const text = new TextDecoder(encoding, { fatal: true }).decode(bytes);
+  return /^utf-?8$/i.test(encoding) ? text : text.replace(DECLARED, "$1UTF-8");
+}
