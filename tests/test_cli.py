@@ -266,14 +266,21 @@ def test_a_run_that_is_interrupted_keeps_what_it_made(tmp_path, number):
     assert sound.stat().st_size == 44 + seconds * 1e9 // SAMPLE_NS
 
 
-def test_a_second_ctrl_c_ends_at_once():
-    before = signal.getsignal(signal.SIGINT)
+@pytest.fixture
+def ctrl_c():
+    """What Ctrl-C does to a program in front of a terminal; what shells start in the background ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield signal.default_int_handler
+    signal.signal(signal.SIGINT, before)
+
+
+def test_a_second_ctrl_c_ends_at_once(ctrl_c):
     with Interruption() as interruption:
         signal.raise_signal(signal.SIGINT)
         assert interruption.number == signal.SIGINT
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
-    assert signal.getsignal(signal.SIGINT) is before
+    assert signal.getsignal(signal.SIGINT) is ctrl_c
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full here")
