@@ -31,6 +31,9 @@ def editor(suite, page):
     return page
 
 
+RECENT = ".editor .recent optgroup:first-of-type option"
+
+
 def write(page, text):
     """Replace the program by typing, without the editor's own indentation and brackets."""
     page.focus(".cm-content")
@@ -199,6 +202,7 @@ def test_a_file_dropped_on_the_text_is_opened_and_not_written_into_it(editor, tm
     program.write_text('<network><node nodeId="1" name="thymio-II">var other = 1</node></network>')
     drop_file(editor, program, ".cm-content")
     expect(editor, ".cm-content").to_have_text("var other = 1")
+    expect(editor, RECENT).to_have_count(2)
     editor.select_option(".editor .recent", index=2)  # after the heading and the file
     expect(editor, ".cm-content").to_have_text("var mine = 1")
 
@@ -211,6 +215,7 @@ def test_a_draft_that_is_written_over_is_found_among_the_recent_files(editor):
     expect(editor, ".draft").to_contain_text("program.aesl")
     write(editor, "var second = 2")
     expect(editor, ".draft").to_be_hidden()
+    expect(editor, RECENT).to_have_count(1)
     editor.select_option(".editor .recent", index=1)
     expect(editor, ".cm-content").to_have_text("var first = 1")
     playwright.expect(editor.get_by_label("not saved as a file")).to_be_visible()

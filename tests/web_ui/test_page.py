@@ -182,11 +182,13 @@ def test_what_is_refused_is_told_also_when_editor_or_creator_have_the_place_of_i
     open_page(page, suite("--playground", "base", "--program", "none"))
     notices = page.locator(".notice:visible")
     page.click("#editor-switch")
+    page.locator(".cm-content").wait_for()
     for file in (playground, unknown):
         drop_file(page, file, "main")
         playwright.expect(notices.filter(has_text=file.name)).to_have_count(1)
         notices.get_by_role("button").click()
     page.click("#creator-switch")
+    page.locator(".palette").wait_for()
     drop_file(page, program, "main")
     playwright.expect(notices.filter(has_text="bad.aesl")).to_have_count(1)
     page.click("#creator-switch")

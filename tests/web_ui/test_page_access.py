@@ -56,8 +56,7 @@ def test_in_a_low_window_views_and_some_lines_of_the_program_are_in_sight(suite,
     wait_for_frame(page)
     assert page.evaluate(OVERLAPPING) == []
     page.click("#editor-switch")
-    text = page.locator(".cm-scroller").bounding_box()
-    assert text["height"] > 120
+    page.wait_for_function("() => document.querySelector('.cm-scroller')?.getBoundingClientRect().height > 120")
     page.get_by_role("tab", name="Constants").click()
     page.fill("[data-new=constant]", "FAR")
 
