@@ -35,8 +35,9 @@ run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NA
 	@read -r _ _ _ _ group _ _ front _ </proc/$$$$/stat; \
 	if [ "$$group" = "$$front" ]; then set -m; $(VENV)/bin/thymio-sim $(ARGS); else exec $(VENV)/bin/thymio-sim $(ARGS); fi
 
-test: platform $(VENV)/.ready-test web  ## run all tests; ARGS='-k name' goes to pytest
-	@$(PYTHON) -m pytest $(ARGS)
+# Each worker may have a suite and a browser of its own: more than four would wait for memory.
+test: platform $(VENV)/.ready-test web  ## run all tests in parallel; ARGS='-n 0 -k name' goes to pytest
+	@$(PYTHON) -m pytest -n auto --maxprocesses 4 $(ARGS)
 
 lint: $(VENV)/.ready-lint  ## check format, style and types
 	@$(PYTHON) -m ruff format --check .
