@@ -7,7 +7,7 @@ import json
 import math
 
 import pytest
-from geometry_msgs.msg import Point, Pose, PoseWithCovarianceStamped, Quaternion, Twist, TwistStamped, Vector3
+from geometry_msgs.msg import Twist, TwistStamped, Vector3
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import Log
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically
@@ -21,7 +21,6 @@ from std_msgs.msg import (
     Float32,
     Float32MultiArray,
     Float64MultiArray,
-    Header,
     Int16MultiArray,
     String,
 )
@@ -30,10 +29,9 @@ from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import Marker, MarkerArray
 
 from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.nodes import tf_messages
 from thymio_sim_ros.nodes.convert import yaw_of
 from thymio_sim_ros.nodes.life import make_executor
-from thymio_sim_ros.sim.commands import BUTTONS, LED_GROUPS, BodyTwist, MoveRobot
+from thymio_sim_ros.sim.commands import BUTTONS, LED_GROUPS, BodyTwist
 from thymio_sim_ros.sim.world import World
 
 WALL_AHEAD = json.dumps(
@@ -119,18 +117,6 @@ def test_a_robot_that_is_shut_down_is_silent(ros, simulation):
     before = len(sounds)
     sim.step(7.0)
     assert len(sounds) == before
-
-
-@pytest.mark.parametrize(("topic", "huge"), [("/initialpose", 1e200), ("/initialpose", math.nan)])
-def test_a_heading_without_measure_is_refused(ros, simulation, topic, huge):
-    sim = simulation()
-    message = PoseWithCovarianceStamped()
-    message.pose.pose.orientation.z = huge
-    before = sim.world.robots["thymio"].pose
-    logs = ros.collect(Log, "/rosout")
-    ros.publisher(PoseWithCovarianceStamped, topic).publish(message)
-    ros.until(lambda: any("not finite" in log.msg for log in logs))
-    assert sim.world.robots["thymio"].pose == before
 
 
 def test_a_stamped_command_turns_the_robot(ros, simulation):
@@ -356,97 +342,6 @@ def test_the_state_tells_what_a_file_could_not_express(ros, simulation):
 def set_parameter(ros, name, value):
     request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
     return ros.call(SetParameters, "/simulator/set_parameters", request).results[0]
-
-
-def test_transforms_lead_from_map_to_the_wheels(ros, simulation):
-    sim = simulation()
-    received = []
-    ros.node.create_subscription(tf_messages.TFMessage, "/tf", received.append, 100, raw=True)
-    ros.until(lambda: ros.node.count_publishers("/tf"))
-    sim.world.post("thymio", sim_twist())
-    sim.until(lambda: len(received) > 10)
-    frames = {transform.child: transform for transform in tf_messages.decode(bytes(received[-1]))}
-    assert frames["odom"].frame == "map"
-    assert frames["base_link"].frame == "odom"
-    assert frames["left_wheel_link"].frame == "base_link"
-    assert frames["base_link"].translation[0] > 0.01
-
-
-def test_a_robot_that_is_tilted_leans_in_its_odometry_s_frame(ros, simulation):
-    sim = simulation()
-    received = []
-    ros.node.create_subscription(tf_messages.TFMessage, "/tf", received.append, 100, raw=True)
-    ros.until(lambda: ros.node.count_publishers("/tf"))
-    sim.thymio.tilt(pitch_rad=-0.5)
-    sim.until(lambda: len(received) > 2)
-    frames = {transform.child: transform for transform in tf_messages.decode(bytes(received[-1]))}
-    assert frames["base_link"].rotation == pytest.approx((0.0, math.sin(-0.25), 0.0, math.cos(-0.25)))
-    assert frames["odom"].rotation == pytest.approx((0.0, 0.0, 0.0, 1.0))
-
-
-def test_a_robot_can_be_put_somewhere(ros, simulation):
-    sim = simulation()
-    truth = ros.collect(Odometry, "/ground_truth/odom")
-    odometry = ros.collect(Odometry, "/odom")
-    pose = PoseWithCovarianceStamped()
-    pose.pose.pose.position.x, pose.pose.pose.position.y = 0.2, -0.1
-    pose.pose.pose.orientation.z = 1.0
-    pose.pose.pose.orientation.w = 0.0
-    ros.publisher(PoseWithCovarianceStamped, "/initialpose").publish(pose)
-    sim.until(lambda: truth and truth[-1].pose.pose.position.x == pytest.approx(0.2))
-    assert abs(yaw_of(truth[-1].pose.pose.orientation)) == pytest.approx(math.pi)
-    assert odometry[-1].pose.pose.position.x == 0.0
-
-
-@pytest.mark.parametrize(
-    ("frame", "place", "expected"),
-    [
-        ("", (-0.2, 0.1, 1.0), (-0.2, 0.1, 1.0)),
-        ("map", (-0.2, 0.1, 1.0), (-0.2, 0.1, 1.0)),
-        ("odom", (0.3, 0.0, 1.0), (0.0, 0.2, 1.0 + math.pi / 2)),
-        ("base_link", (0.1, 0.05, 3.0), (-0.05, 0.1, 3.0 + math.pi / 2 - math.tau)),
-    ],
-)
-def test_a_robot_is_put_somewhere_in_the_frame_that_a_viewer_shows(ros, simulation, frame, place, expected):
-    """Tools send the pose in the frame that they follow, which is the robot's in our layout for Foxglove."""
-    sim = simulation(playground="borderless", noise=False)
-    publisher = ros.publisher(PoseWithCovarianceStamped, "/initialpose")
-    sim.world.post("thymio", MoveRobot(0.0, -0.1, math.pi / 2))
-    sim.step(0.01)
-    sim.world.post("thymio", BodyTwist(0.1, 0.0))
-    sim.step(1.0)
-    sim.world.post("thymio", BodyTwist(0.0, 0.0))
-    sim.step(0.5)
-    x, y, yaw = place
-    orientation = Quaternion(z=math.sin(yaw / 2), w=math.cos(yaw / 2))
-    message = PoseWithCovarianceStamped(header=Header(frame_id=frame))
-    message.pose.pose = Pose(position=Point(x=x, y=y), orientation=orientation)
-    publisher.publish(message)
-
-    def found():
-        pose = sim.world.robots["thymio"].pose
-        return (pose.x_m, pose.y_m, pose.yaw_rad)
-
-    sim.until(lambda: found() == pytest.approx(expected, abs=0.005), seconds=0.5)
-
-
-def test_a_frame_that_is_not_the_robot_s_is_refused(ros, simulation):
-    sim = simulation()
-    log = ros.collect(Log, "/rosout", where=lambda line: "initialpose" in line.msg)
-    message = PoseWithCovarianceStamped(header=Header(frame_id="anna/base_link"))
-    ros.publisher(PoseWithCovarianceStamped, "/initialpose").publish(message)
-    ros.until(lambda: log)
-    assert "frame 'anna/base_link' found, expected map or odom or base_link" in log[0].msg
-    assert sim.simulator._refused == 1
-
-
-def test_odometry_starts_again_on_request(ros, simulation):
-    sim = simulation()
-    odometry = ros.collect(Odometry, "/odom")
-    ros.publisher(Twist, "/cmd_vel").publish(forward(0.1))
-    sim.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.05)
-    assert ros.call(Trigger, "/reset_odometry").success
-    sim.until(lambda: odometry[-1].pose.pose.position.x < 0.02)
 
 
 def test_the_graph_has_the_driver_s_names(ros, simulation):

@@ -73,9 +73,8 @@ class Ros:
         if self.context.ok():
             self.context = Context()
         rclpy.init(args=[], context=self.context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
-        with contextlib.redirect_stderr(
-            sys.__stderr__
-        ):  # it writes crashes there: `--capture=sys` has no file for that
+        # The events executor has crashes written to a file behind stderr: what `--capture=sys` gives has none.
+        with contextlib.redirect_stderr(sys.__stderr__):
             self._executor = make_executor(self.context)
         self._lives: list[Any] = []
         self._nodes: list[Node] = []
