@@ -15,6 +15,7 @@ import time
 
 import pytest
 
+from tests.processes import free_port
 from thymio_sim_ros import cli, runlog
 from thymio_sim_ros.interruption import Interruption
 from thymio_sim_ros.replay import replay
@@ -120,7 +121,8 @@ def test_a_look_at_the_ports_lets_nobody_in_who_would_then_find_nobody(capsys, m
 
     monkeypatch.setattr(socket, "socket", Socket)
     monkeypatch.setattr(cli.importlib.util, "find_spec", lambda _name: None)
-    assert "ROS 2 is not installed" in refused(capsys)
+    ports = ("--port", str(free_port()), "--foxglove-port", str(free_port()))
+    assert "ROS 2 is not installed" in refused(capsys, *ports)
 
 
 def test_the_runner_repeats_itself_bit_for_bit(capsys):
