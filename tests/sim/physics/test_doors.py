@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+from itertools import pairwise
 from typing import Any
 
 import pytest
 
 from tests.sim.builders import FLOOR, GREY, ROBOT, make, run, send, sense
-from thymio_sim_ros.sim import playground
-from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
+from thymio_sim_ros.sim import playground, thymio2
+from thymio_sim_ros.sim.commands import MotorTargets, MoveObject, MoveRobot
 from thymio_sim_ros.sim.playground import PlaygroundError
 from thymio_sim_ros.sim.world import World
 
@@ -146,17 +147,76 @@ def test_a_closing_door_pushes_a_thing_at_rest() -> None:
     assert crate_now.pose.y_m < -0.32
 
 
-def test_a_robot_between_a_door_and_a_wall_is_squeezed_and_not_thrown() -> None:
-    wall = {"kind": "wall", "start_x_m": 0.3, "start_y_m": -0.42, "end_x_m": 0.7, "end_y_m": -0.42, "color": GREY}
-    world = build(GATE, PLATE, wall)
+SILL_Y_M = -0.36
+SILL = {"kind": "wall", "start_x_m": 0.3, "start_y_m": SILL_Y_M, "end_x_m": 0.7, "end_y_m": SILL_Y_M, "color": GREY}
+"""A wall so near to the end of the closed gate that no robot has room between them."""
+
+
+@pytest.mark.parametrize("others", [0, 14], ids=["alone", "in a crowd"])
+@pytest.mark.parametrize(("move_s", "tick_m"), [(2.0, 0.005), (5.0, 0.002)])
+@pytest.mark.parametrize("yaw_rad", [0.0, math.pi / 2, math.pi])
+def test_a_door_waits_for_a_robot_between_it_and_a_wall(
+    yaw_rad: float, move_s: float, tick_m: float, others: int
+) -> None:
+    """It was squeezed out sideways, or beyond the door."""
+    crowd = [{**ROBOT, "name": f"idle{place}", "x_m": -1.5 + 0.2 * place, "y_m": -1.5} for place in range(others)]
+    opener = {**ROBOT, "name": "opener", "x_m": -0.5, "y_m": 0.34}
+    world = World(make([FLOOR, {**GATE, "move_s": move_s}, PLATE, SILL], (ROBOT, opener, *crowd)), noise=False)
+    run(world, move_s)
+    send(world, MoveRobot(0.5, -0.1, yaw_rad))
+    leave(world)
+    robot, seen = world.robots["thymio"], []
+    for _ in range(700):
+        world.step()
+        seen.append(robot.pose)
+    assert max(math.dist((one.x_m, one.y_m), (next_.x_m, next_.y_m)) for one, next_ in pairwise(seen)) < tick_m
+    assert abs(robot.pose.x_m - 0.5) < 0.03
+    ends = [robot.pose.place(point)[1] for point in thymio2.hull()]
+    assert min(ends) > SILL_Y_M + 0.01 - 0.001
+    assert max(ends) < gate_y(world) - 0.3 + 0.001
+
+    send(world, MoveRobot(1.5, 0.0, 0.0))
+    run(world, move_s + 1.0)
+    assert gate_y(world) == 0.0
+
+
+def test_a_door_that_waits_opens_when_it_is_told_to() -> None:
+    world = build(GATE, PLATE, SILL)
     enter(world)
     run(world, 2.5)
-    send(world, MoveRobot(0.5, -0.1, math.pi / 2))
+    send(world, MoveRobot(0.5, -0.1, 0.0))
     leave(world)
-    world.step()
-    before = world.robots["thymio"].pose
-    for _ in range(300):
-        world.step()
-        pose = world.robots["thymio"].pose
-        assert math.dist((pose.x_m, pose.y_m), (before.x_m, before.y_m)) < 0.03
-        before = pose
+    run(world, 3.0)
+    assert 0.05 < gate_y(world) < 0.07
+    enter(world)
+    run(world, 2.5)
+    assert gate_y(world) == 0.6
+
+
+def test_a_door_waits_for_a_thing_and_for_the_robot_behind_it() -> None:
+    crate = {"kind": "box", "name": "crate", "x_m": 1.0, "y_m": -0.08, "size_x_m": 0.06, "size_y_m": 0.06, **BOX}
+    world = build(GATE, PLATE, SILL, {**crate, "mass_kg": 0.5})
+    enter(world)
+    run(world, 2.5)
+    send(world, MoveRobot(0.5, -0.2, 0.0))
+    world.post("crate", MoveObject(0.5, -0.08, 0.0))
+    leave(world)
+    run(world, 4.0)
+    objects = {thing.name: thing.pose for thing in world.snapshot().objects}
+    assert world.robots["thymio"].pose.y_m == pytest.approx(SILL_Y_M + 0.01 + 0.055, abs=0.005)
+    assert objects["crate"].y_m == pytest.approx(SILL_Y_M + 0.01 + 0.11 + 0.03, abs=0.008)
+    assert objects["gate"].y_m - 0.3 == pytest.approx(SILL_Y_M + 0.01 + 0.11 + 0.06, abs=0.01)
+    send(world, MoveRobot(1.5, 0.0, 0.0))
+    world.post("crate", MoveObject(1.0, -0.08, 0.0))
+    run(world, 3.5)
+    assert world.objects[1].pose.y_m == 0.0
+
+
+def test_a_robot_that_leans_on_the_face_of_a_door_does_not_stop_it() -> None:
+    world = build({**GATE, "size_y_m": 1.2}, PLATE)
+    send(world, MoveRobot(0.4, 0.0, 0.0))
+    send(world, MotorTargets(500, 500))
+    run(world, 1.0)
+    enter(world)
+    run(world, 2.0)
+    assert gate_y(world) == 0.6

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any
 
+import pymunk
+
 from thymio_sim_ros.sim.nearby import Nearby
 from thymio_sim_ros.sim.physics.doors import DoorBody
 from thymio_sim_ros.sim.physics.robots import RobotBody
@@ -45,7 +47,7 @@ class Gates:
         for name, door in self._doors.items():
             door.begin_tick(is_wanted_open=name in wanted_open)
 
-    def end_tick(self) -> None:
+    def end_tick(self, space: pymunk.Space) -> None:
         """Doors are where they are to be."""
         for door in self._doors.values():
-            door.end_tick()
+            door.end_tick(space)

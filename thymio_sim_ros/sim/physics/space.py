@@ -171,7 +171,7 @@ class Physics:
                 self._space.step(SUB_STEP_S)
                 driver.settle(earlier)
             driver.end_tick()
-        self._gates.end_tick()
+        self._gates.end_tick(self._space)
         return driver.contacts()
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
