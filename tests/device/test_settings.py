@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import resource
 from pathlib import Path
 
 import pytest
@@ -52,6 +53,23 @@ def test_nothing_is_stored_without_flash(tmp_path: Path) -> None:
     settings = Settings(file)
     settings[0] = 2
     assert not file.exists()
+
+
+def test_settings_outlive_a_disk_that_is_full(tmp_path: Path) -> None:
+    file = tmp_path / "settings.json"
+    settings = Settings(file)
+    settings[0] = 2
+    settings.flash()
+    settings[0] = 3
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100, limits[1]))
+    try:
+        told = settings.flash()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert told.startswith(f"settings are not stored: {file}: ")
+    assert Settings(file)[0] == 2
+    assert list(tmp_path.iterdir()) == [file]
 
 
 def test_a_place_that_cannot_be_written_is_told(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 import numpy.typing as npt
@@ -196,8 +197,8 @@ class Fleet:
     def contacts(self) -> tuple[Contact, ...]:
         """All contacts, by robot and in the order in which they began."""
         if self._contacts is None or self.changed:
-            touching = (self._bodies[index].touching for index in self._touching.tolist())
-            self._contacts = tuple(contact for own in touching for contact in own.values())
+            touching = [self._bodies[index].touching.values() for index in self._touching.tolist()]
+            self._contacts = tuple(chain.from_iterable(touching))
         return self._contacts
 
     def _glide(self) -> Values:
