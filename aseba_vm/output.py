@@ -22,19 +22,22 @@ def write_file(name: str, data: bytes) -> None:
 
 
 def rewrite_file(name: str, data: bytes) -> None:
-    """Give a file another content; where that fails, it keeps its own. Raises OSError."""
+    """Give a file another content; where that fails, it keeps its own, or is not there as before. Raises OSError."""
     with named(name):
         path = Path(name).resolve()  # what a link leads to
-        with path.open("r+b"):
-            pass  # a file that may not be written is not replaced either
+        is_new = not path.exists()
         handle, new = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
         try:
             with os.fdopen(handle, "wb") as file:
                 file.write(data)
+            with path.open("ab"):
+                pass  # a file that may not be written is not replaced either
             shutil.copymode(path, new)
             os.replace(new, path)
         except BaseException:
             os.unlink(new)
+            if is_new:
+                path.unlink(missing_ok=True)
             raise
 
 

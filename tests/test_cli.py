@@ -15,6 +15,7 @@ import time
 
 import pytest
 
+from tests import disk
 from tests.processes import free_port
 from thymio_sim_ros import cli, runlog
 from thymio_sim_ros.interruption import Interruption
@@ -314,16 +315,14 @@ def test_the_runner_tells_a_program_that_fails_at_once(capsys, tmp_path):
     assert "at 0.00 s: faulty.aesl: fault in init, line 2: division by zero" in capsys.readouterr().err
 
 
-def test_the_runner_tells_what_the_robot_could_not_do(capsys, tmp_path, monkeypatch):
-    def is_full(file, text, encoding):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
+def test_the_runner_tells_what_the_robot_could_not_do(capsys, tmp_path):
     program = tmp_path / "flash.aesl"
     program.write_text("onevent prox\ncall _system.settings.flash()\n")
-    monkeypatch.setattr(pathlib.Path, "write_text", is_full)
-    assert cli.main(["runner", "--seconds", "0.5", "--program", str(program), "--settings", str(tmp_path)]) == 0
-    told = f"settings are not stored: {tmp_path / 'settings.json'}: No space left on device"
+    with disk.files_end_at(100):
+        assert cli.main(["runner", "--seconds", "0.5", "--program", str(program), "--settings", str(tmp_path)]) == 0
+    told = f"settings are not stored: {tmp_path / 'settings.json'}: {disk.TOLD}"
     assert capsys.readouterr().err == f"thymio-sim: thymio, at 0.10 s: {told}\n"
+    assert list(tmp_path.iterdir()) == [program]
 
 
 TWO_NODES = """<network>

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import resource
 from pathlib import Path
 
 import pytest
 
+from tests import disk
 from thymio_sim_ros.device.settings import PARTS, Settings, SettingsError
 from thymio_sim_ros.sim.commands import MotorTargets
 
@@ -61,13 +61,8 @@ def test_settings_outlive_a_disk_that_is_full(tmp_path: Path) -> None:
     settings[0] = 2
     settings.flash()
     settings[0] = 3
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (100, limits[1]))
-    try:
-        told = settings.flash()
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert told.startswith(f"settings are not stored: {file}: ")
+    with disk.files_end_at(100):
+        assert settings.flash() == f"settings are not stored: {file}: {disk.TOLD}"
     assert Settings(file)[0] == 2
     assert list(tmp_path.iterdir()) == [file]
 

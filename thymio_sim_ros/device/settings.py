@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from aseba_vm.output import rewrite_file, write_file
+from aseba_vm.output import rewrite_file
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.tones import VOLUME_OFF
 
@@ -76,8 +76,7 @@ class Settings:
         text = json.dumps(parts, indent=1) + "\n"
         try:
             self._file.parent.mkdir(parents=True, exist_ok=True)
-            write = rewrite_file if self._file.exists() else write_file
-            write(str(self._file), text.encode())
+            rewrite_file(str(self._file), text.encode())
         except OSError as error:
             return f"settings are not stored: {self._file}: {error.strerror}"
         return ""
