@@ -1,4 +1,4 @@
-"""Where a command line writes, and how it ends: files, the standard output, Ctrl-C."""
+"""Where programs write, and how a command line ends: files, the standard output, Ctrl-C."""
 
 from __future__ import annotations
 

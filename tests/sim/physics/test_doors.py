@@ -147,6 +147,22 @@ def test_a_closing_door_pushes_a_thing_at_rest() -> None:
     assert crate_now.pose.y_m < -0.32
 
 
+def test_a_robot_between_a_door_and_a_wall_is_squeezed_and_not_thrown() -> None:
+    wall = {"kind": "wall", "start_x_m": 0.3, "start_y_m": -0.42, "end_x_m": 0.7, "end_y_m": -0.42, "color": GREY}
+    world = build(GATE, PLATE, wall)
+    enter(world)
+    run(world, 2.5)
+    send(world, MoveRobot(0.5, -0.1, math.pi / 2))
+    leave(world)
+    world.step()
+    before = world.robots["thymio"].pose
+    for _ in range(300):
+        world.step()
+        pose = world.robots["thymio"].pose
+        assert math.dist((pose.x_m, pose.y_m), (before.x_m, before.y_m)) < 0.03
+        before = pose
+
+
 SILL_Y_M = -0.36
 SILL = {"kind": "wall", "start_x_m": 0.3, "start_y_m": SILL_Y_M, "end_x_m": 0.7, "end_y_m": SILL_Y_M, "color": GREY}
 """A wall so near to the end of the closed gate that no robot has room between them."""
