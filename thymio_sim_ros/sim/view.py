@@ -99,7 +99,7 @@ class SensorView(Protocol):
 
     @property
     def proximity_model(self) -> str:
-        """ "default" or "enki" (thymio-robot.md section 7.1)."""
+        """One of `thymio2.PROXIMITY_MODELS`."""
         ...
 
     @property

@@ -7,6 +7,8 @@ import math
 import statistics
 
 import pytest
+from hypothesis import given
+from hypothesis.strategies import floats
 
 from tests.sim.builders import FLOOR, ROBOT, box, make, post_wall, sense
 from tests.sim.fake_view import FakeView
@@ -14,7 +16,7 @@ from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.noise import Noise
 from thymio_sim_ros.sim.rays import ConvexObstacle, DiscObstacle
 from thymio_sim_ros.sim.readings import ProximityReading
-from thymio_sim_ros.sim.sensors.proximity import SENSOR, response
+from thymio_sim_ros.sim.sensors.proximity import SENSOR
 from thymio_sim_ros.sim.units import PROXIMITY_FULL
 from thymio_sim_ros.sim.world import World
 
@@ -30,6 +32,13 @@ def measure(view: FakeView) -> ProximityReading:
 def wall_ahead(distance_m: float, *, height_m: float = 0.1) -> ConvexObstacle:
     near = 0.0795 + distance_m
     return ConvexObstacle(((near, -1.0), (near + 0.1, -1.0), (near + 0.1, 1.0), (near, 1.0)), height_m)
+
+
+def wall_at(angle_deg: float, distance_m: float, from_x_m: float = 0.0795) -> ConvexObstacle:
+    """A long flat wall, seen at this angle off the robot's axis, whose plane is so far from a point on that axis."""
+    cos, sin = math.cos(math.radians(angle_deg)), math.sin(math.radians(angle_deg))
+    corners = ((distance_m, -2.0), (distance_m + 0.1, -2.0), (distance_m + 0.1, 2.0), (distance_m, 2.0))
+    return ConvexObstacle(tuple((from_x_m + cos * x - sin * y, sin * x + cos * y) for x, y in corners), 0.1)
 
 
 @pytest.mark.parametrize(
@@ -59,7 +68,7 @@ def test_things_lower_than_the_sensor_are_not_seen(height_m: float, seen: bool) 
 
 
 @pytest.mark.parametrize(("radius_m", "distance_m"), [(0.01, 0.03), (0.02, 0.06)])
-def test_a_thin_post_ahead_is_seen_by_default_and_missed_as_the_reference_does(
+def test_a_thin_post_ahead_is_counted_by_default_and_missed_as_the_reference_does(
     radius_m: float, distance_m: float
 ) -> None:
     post = (DiscObstacle(0.0795 + distance_m + radius_m, 0.0, radius_m, 0.1),)
@@ -67,9 +76,39 @@ def test_a_thin_post_ahead_is_seen_by_default_and_missed_as_the_reference_does(
     assert measure(FakeView(obstacles=post)).ranges_m[FRONT] == pytest.approx(distance_m, abs=1e-4)
 
 
-def test_a_missing_side_ray_counts_as_the_slanted_centre_ray() -> None:
-    slanted = 0.05 / math.cos(math.radians(15))
-    assert response((math.inf, 0.05, math.inf), "default") == pytest.approx(response((slanted, 0.05, slanted), "enki"))
+@pytest.mark.parametrize("angle_deg", range(-75, 80, 5))
+def test_the_count_of_a_flat_wall_falls_with_its_distance_at_every_angle(angle_deg: int) -> None:
+    walls = [(wall_at(angle_deg, 0.0005 * step),) for step in range(1, 300)]
+    for model in ("default", "cone"):
+        counts = swept(walls, model)
+        assert counts == sorted(counts, reverse=True)
+        assert counts[0] > 2000
+        assert counts[-1] == 0
+
+
+@pytest.mark.parametrize("angle_deg", [-20, -10, 0, 10, 20])
+def test_a_slanted_wall_reads_as_the_nearest_part_of_it_in_the_cone(angle_deg: int) -> None:
+    reading = measure(FakeView(obstacles=(wall_at(angle_deg, 0.09),)))
+    assert reading.ranges_m[FRONT] == pytest.approx(0.09, rel=0.05)
+
+
+def test_whatever_is_seen_gives_at_least_what_the_end_of_the_range_gives() -> None:
+    counts = [count for sweep in SWEEPS.values() for count in swept(sweep, "default")]
+    assert min(filter(None, counts)) >= 1226
+
+
+@given(angle_deg=floats(-180, 180), near_m=floats(0.08, 0.25), gap_m=floats(0.0, 0.1))
+def test_no_sensor_reads_a_farther_wall_as_nearer(angle_deg: float, near_m: float, gap_m: float) -> None:
+    """Distances from the middle of the robot, whose sensors are all within 8 cm of it."""
+    walls = (wall_at(angle_deg, near_m, from_x_m=0.0), wall_at(angle_deg, near_m + gap_m, from_x_m=0.0))
+    near, far = (measure(FakeView(obstacles=(wall,))).words for wall in walls)
+    assert all(count >= other for count, other in zip(near, far, strict=True))
+
+
+def test_in_the_reference_a_slanted_wall_at_the_end_of_the_range_reads_as_a_near_one() -> None:
+    """Its subtracted ray ends at 13.5 cm, the others at 14 cm."""
+    nearer, farther = swept([(wall_at(20, 0.126),), (wall_at(20, 0.128),)], "enki")
+    assert farther > nearer + 1000
 
 
 def test_the_sensors_stand_in_the_order_of_the_firmware() -> None:

@@ -17,7 +17,6 @@ _SENSORS, _RAYS, _MODEL, _SEEN = range(len(COUNTS))
 """`model` is its number among `PROXIMITY_MODELS`."""
 _DEFAULT, _CONE = map(thymio2.PROXIMITY_MODELS.index, ("default", "cone"))
 
-_FAR = math.inf
 _FULL = float(units.PROXIMITY_FULL)
 _RANGE_M = thymio2.PROXIMITY_RANGE_M
 COS_CONE = math.cos(thymio2.PROXIMITY_HALF_CONE_RAD)
@@ -40,10 +39,9 @@ def proximity(counts: Ints, cosines: Floats, numbers: Ints, distances: Floats, n
             right = distances[3 * row]
             centre = distances[3 * row + 1]
             left = distances[3 * row + 2]
-            slanted = centre / COS_CONE
-            if counts[_MODEL] == _DEFAULT and centre < _FAR:
-                right = slanted if right == _FAR else right
-                left = slanted if left == _FAR else left
-            value = proximity_response(right) + proximity_response(centre) + proximity_response(left)
-            value = value - 2.0 * proximity_response(slanted)
+            if counts[_MODEL] == _DEFAULT:
+                value = proximity_response(min(min(right * COS_CONE, centre), left * COS_CONE))
+            else:
+                value = proximity_response(right) + proximity_response(centre) + proximity_response(left)
+                value = value - 2.0 * proximity_response(centre / COS_CONE)
         found[numbers[row]] = round(min(max(value + noise[row], 0.0), _FULL))

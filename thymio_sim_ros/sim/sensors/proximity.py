@@ -1,13 +1,15 @@
 """Seven horizontal proximity sensors with rays over 30 degrees (thymio-robot.md section 7.1).
 
-F is `units.proximity_response`; d are the distances of a sensor's rays, from right to left. Then noise, then limits.
-For a wall across the axis every model gives F of its distance.
+F is `units.proximity_response`; d are the distances of a sensor's rays, from right to left, and a the angles between
+ray and axis. Noise is added, then the count is clamped. A wall across the axis gives F of its distance in every model.
+Model "default": three rays, the largest F(d cos a), since the strongest echo outweighs the others. Every term falls
+with d, so the count of a flat wall falls with its distance at every angle; whatever is seen gives at least F of the
+range, 1226, as a real sensor gives at least 1000.
 Model "enki": three rays, F(left) + F(centre) + F(right) - 2 F(centre / cos 15°), the last term only when the centre ray
-hits; a thin post straight ahead is invisible.
-Model "default": the same, but a side ray that misses what the centre ray hits counts as centre / cos 15°, so that thin
-things are seen.
-Model "cone": nine rays, the mean of F(d cos a) with a the ray's angle to the axis; it knows no jumps, and a thing that
-fills a part of the cone reads that part of F.
+hits; a thin post straight ahead is invisible. The subtracted term ends at 13.5 cm and the others at 14 cm, so the count
+of a slanted wall jumps there.
+Model "cone": nine rays, the mean of F(d cos a); it has no jumps, and an object that fills a part of the cone gives that
+part of F.
 An operator can say what a sensor counts instead (`actuators/cover.py`).
 `ranges_m` is the distance of a wall across the axis that would give the same count, as the robot's driver has it.
 """
@@ -68,9 +70,9 @@ def response(distances_m: Sequence[float], model: str) -> float:
         straight = map(float.__mul__, distances_m, _COSINES[model])
         return math.fsum(map(_within_range, distances_m, straight)) / len(distances_m)
     right, centre, left = distances_m
+    if model == "default":
+        return units.proximity_response(min(right * COS_CONE, centre, left * COS_CONE))
     slanted = centre / COS_CONE
-    if model != "enki" and centre < math.inf:
-        right, left = min(right, slanted) if right == math.inf else right, slanted if left == math.inf else left
     total = units.proximity_response(right) + units.proximity_response(centre) + units.proximity_response(left)
     return total - 2.0 * units.proximity_response(slanted)
 
@@ -83,9 +85,9 @@ def responses(distances_m: Values, model: str) -> Values:
         mean: Values = reduce(np.add, found.T) / distances_m.shape[1]  # one after the other, as the kernel does
         return mean
     right, centre, left = distances_m.T
+    if model == "default":
+        return units.proximity_responses(np.minimum(np.minimum(right * COS_CONE, centre), left * COS_CONE))
     slanted = centre / COS_CONE
-    if model != "enki":
-        right, left = (np.where(np.isinf(side) & ~np.isinf(centre), slanted, side) for side in (right, left))
     of = units.proximity_responses(np.stack((right, centre, left, slanted)))
     total: Values = of[0] + of[1] + of[2] - 2.0 * of[3]
     return total
