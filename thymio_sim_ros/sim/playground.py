@@ -167,7 +167,8 @@ def _build(data: object, name: str, beside: Beside, notes: tuple[str, ...]) -> P
     _check_pictures(shapes)
     robots = tuple(read(RobotStart, item, f"robots[{index}]") for index, item in enumerate(robot_items))
     checks.check_names(shapes, robots)
-    primitives = _primitives(shapes)
+    with pictures.budgeted():
+        primitives = _primitives(shapes)
     solids = tuple(primitive for primitive in primitives if isinstance(primitive, Solid))
     checks.check_starts(robots, solids)
     checks.check_doors(shapes, primitives)
