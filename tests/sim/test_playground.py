@@ -259,3 +259,12 @@ def test_a_robot_that_starts_beside_the_ground_is_accepted_with_a_remark() -> No
 
 def test_without_any_ground_there_is_nothing_to_remark() -> None:
     assert make([], [ROBOT]).notes == ()
+
+
+def test_a_ground_that_is_painted_over_and_over_is_refused() -> None:
+    ground = {**FLOOR, "size_x_m": 5.0, "size_y_m": 5.0}
+    sheet = {"kind": "picture", "size_x_m": 5.0, "image": png_uri([[WHITE]])}
+    playground.loads(json.dumps({**GOOD, "shapes": [ground, sheet, sheet]}), "good")
+    error = refused_with(shapes=[ground, *[sheet] * 10])
+    assert (error.key, error.found) == ("shapes", "a ground that takes 4.28 times as long to paint as is allowed")
+    assert refused_with(shapes=[ground] * 50, robots=[]).key == "shapes"

@@ -1,7 +1,7 @@
 """SVG → PNG in a process of its own, so that a picture can neither stop this one nor take its memory.
 
-resvg draws with the interpreter's lock held and cannot be interrupted. A new interpreter (`svg_worker`) starts in 30 ms,
-imports nothing but resvg, and is killed when its time is up. A fork of this process would not work: it has threads.
+resvg draws with the interpreter's lock held and cannot be interrupted. A new interpreter (`svg_worker`) starts in 30
+ms, imports only resvg, and is killed when its time is up. A fork of this process would not work: it has threads.
 """
 
 from __future__ import annotations
