@@ -267,4 +267,5 @@ def test_a_ground_that_is_painted_over_and_over_is_refused() -> None:
     playground.loads(json.dumps({**GOOD, "shapes": [ground, sheet, sheet]}), "good")
     error = refused_with(shapes=[ground, *[sheet] * 10])
     assert (error.key, error.found) == ("shapes", "a ground that takes 4.28 times as long to paint as is allowed")
-    assert refused_with(shapes=[ground] * 50, robots=[]).key == "shapes"
+    floors = [ground | {"name": f"floor_{number}"} for number in range(50)]
+    assert refused_with(shapes=floors).key == "shapes"

@@ -43,7 +43,7 @@ def cost(floors: Sequence[Floor], paints: Sequence[Mark]) -> int:
 
 
 def _grid(floors: Sequence[Floor]) -> tuple[float, tuple[int, int], tuple[int, int]]:
-    """Of the picture of these floors: size of a pixel in m, column and row of the first one, number of rows, columns."""
+    """Of the picture of these floors: size of a pixel in m, column and row of the first, number of rows and columns."""
     corners = [vertex for floor in floors for vertex in floor.vertices] or [(0.0, 0.0)]
     low_x, low_y = (min(corner[axis] for corner in corners) for axis in (0, 1))
     high_x, high_y = (max(corner[axis] for corner in corners) for axis in (0, 1))
