@@ -147,7 +147,8 @@ def _plain_css(text: str) -> str:
 
 def encode_png(pixels: Pixels, *, most: int = MAX_SIDE) -> bytes:
     """The pixels as a PNG file, made smaller where a side has more than `most`."""
-    image = _pillow("").frombytes("RGBA", (pixels.columns, pixels.rows), pixels.rgba)
+    # frombuffer copies nothing
+    image = _pillow("").frombuffer("RGBA", (pixels.columns, pixels.rows), pixels.rgba, "raw", "RGBA", 0, 1)
     image.thumbnail((most, most))
     out = io.BytesIO()
     image.save(out, "PNG", compress_level=6)
@@ -194,17 +195,16 @@ def _check_scans(data: bytes, key: str) -> None:
 def _rgba(image: Any, image_module: ModuleType) -> Pixels:
     """The pixels of a picture of Pillow, a band of rows at a time: Pillow's own ways hold them three times over."""
     columns, rows = image.size
-    rgba = bytearray(4 * columns * rows)
+    rgba = io.BytesIO()
     height = max(1, _BAND_PIXELS // columns)
     for top in range(0, rows, height):
         band = image.crop((0, top, columns, min(rows, top + height)))
         if band.mode.startswith("I"):
             # Pillow would cut 16 bit greys off at 255.
             band = image_module.fromarray((np.asarray(band).astype(np.uint32) >> 8).clip(0, 255).astype(np.uint8))
-        begin = 4 * columns * top
-        rgba[begin : begin + 4 * columns * band.height] = band.convert("RGBA").tobytes()
+        rgba.write(band.convert("RGBA").tobytes())
     image.close()
-    return Pixels(columns, rows, bytes(rgba))
+    return Pixels(columns, rows, rgba.getvalue())
 
 
 def _pillow(key: str) -> ModuleType:
