@@ -155,10 +155,10 @@ def connected(port: int, stack: ExitStack) -> Viewer:
     """A viewer, once the bridge listens; the stack disconnects it."""
     deadline = time.monotonic() + START_S
     while True:
-        connecting = connect(
-            f"ws://127.0.0.1:{port}", subprotocols=SUBPROTOCOLS, max_queue=None, max_size=None, ping_interval=None
-        )
         try:
+            connecting = connect(
+                f"ws://127.0.0.1:{port}", subprotocols=SUBPROTOCOLS, max_queue=None, max_size=None, ping_interval=None
+            )
             return Viewer(stack.enter_context(connecting))
         except OSError:
             if time.monotonic() > deadline:
