@@ -48,6 +48,7 @@ class DeferredLoad(Generic[T]):
         self._thread: threading.Thread | None = None
         self._mailbox: Mailbox[_Request[T]] = Mailbox(node, self._finish)
         self._waiting = 0
+        self._is_closed = False
         self._ready: _Request[T] | None = None
         for service in node.services:
             if service.srv_name.endswith(_SERVICES):
@@ -62,7 +63,8 @@ class DeferredLoad(Generic[T]):
         return self._ready.loaded
 
     def close(self) -> None:
-        """Answer nothing any more."""
+        """Load and answer nothing any more; a value that is being loaded now is dropped when it is there."""
+        self._is_closed = True
         self._mailbox.close()
 
     def _defer(self, service: Service) -> None:
@@ -102,7 +104,7 @@ class DeferredLoad(Generic[T]):
             self._thread.start()
 
     def _run(self) -> None:
-        while True:
+        while not self._is_closed:
             waiting = self._queue.get()
             try:
                 waiting.loaded = self._load(waiting.value)
