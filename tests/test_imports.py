@@ -46,6 +46,9 @@ DECLARATIONS = _names(
 RULES = {
     "aseba_vm": Rule(_names("aseba_vm"), never=NO_WALL_CLOCK),
     f"{OURS}.sim": Rule(_names("sim", "registry"), frozenset({"numpy"}), NO_WALL_CLOCK),
+    # the one place where the core measures wall time: a picture that takes too long to draw is refused
+    f"{OURS}.sim.svg_process": Rule(_names("sim"), never=NO_WALL_CLOCK - {"time"}),
+    f"{OURS}.sim.svg_worker": Rule(frozenset(), frozenset({"resvg_py"}), NO_WALL_CLOCK),
     # one compiler of WebAssembly for the process: that of the machine
     f"{OURS}.sim.kernel": Rule(_names("sim.kernel", "aseba_vm"), frozenset({"numpy"}), NO_WALL_CLOCK),
     f"{OURS}.sim.physics": Rule(_names("sim"), frozenset({"numpy", "pymunk"}), NO_WALL_CLOCK),

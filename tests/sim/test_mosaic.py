@@ -28,3 +28,9 @@ def test_a_picture_full_of_details_gets_coarser() -> None:
     tiles = mosaic(Pixels(500, 500, noise.tobytes()))
     assert 1000 < len(tiles) <= 4000
     assert max(tile.top for tile in tiles) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("most", [-1, 1, 2, 50, 5000])
+def test_the_number_of_tiles_can_be_limited_further(most: int) -> None:
+    noise = np.random.default_rng(1).integers(1, 256, (300, 300, 4)).astype(np.uint8)
+    assert 1 <= len(mosaic(Pixels(300, 300, noise.tobytes()), most=most)) <= max(1, min(most, 4000))

@@ -18,12 +18,15 @@ image = pytest.importorskip("PIL.Image")
 
 
 def decode(uri: str, width_m: float = 0.1) -> Pixels:
-    return pictures.decode(uri, key="image", width_m=width_m)
+    """As a playground of its own, on a machine that may be busy."""
+    with pictures.budgeted() as budget:
+        budget.svg_seconds = 60.0
+        return pictures.decode(uri, key="image", width_m=width_m)
 
 
 def refused(uri: str) -> FieldError:
     with pytest.raises(FieldError) as caught:
-        decode(uri)
+        pictures.decode(uri, key="image", width_m=0.1)
     return caught.value
 
 
@@ -105,11 +108,65 @@ def test_the_size_of_an_svg_may_be_written_in_many_ways(attributes: str) -> None
         ('<use xmlns:x="http://www.w3.org/1999/xlink" x:href="other.svg#a"/>', "a reference to 'other.svg#a'"),
         ('<filter id="f"><feTurbulence numOctaves="9999999"/></filter>', "<filter>"),
         ("<script>alert(1)</script>", "<script>"),
+        ('<rect fill="url(other.svg#a)"/>', "a reference to 'other.svg#a'"),
+        ('<rect style="fill:u\\72l( other.svg )"/>', "a reference to 'other.svg'"),
+        ("<style>@import 'other.css';</style>", "@import in <style>"),
+        ("<style>a{}@\\69mport 'other.css';</style>", "@import in <style>"),
+        ("<style>rect { fill: URL(#a) }</style>", "url(…) in <style>"),
     ],
 )
 def test_an_svg_that_depends_on_something_else_is_refused(body: str, found: str) -> None:
     error = refused(svg_uri(body))
     assert (error.key, error.found) == ("image (SVG line 1)", found)
+
+
+EFFECTS = ("filter", "mask", "mix-blend-mode", "isolation", "marker-start")
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<g style="{0}:x"/>',
+        '<g style="fill:red; {1} : x"/>',
+        '<g style="{0}/* */:x !important"/>',
+        '<g style="{2}:x"/>',
+        "<style>g {{ {0}: x }}</style>",
+        "<style><![CDATA[@media all {{ g {{ fill: red; {1}/**/:x }} }}]]></style>",
+    ],
+)
+def test_an_effect_in_css_is_refused(effect: str, body: str) -> None:
+    escaped = f"\\{ord(effect[0]):x} {effect[1:]}"
+    error = refused(svg_uri(body.format(effect, effect.upper(), escaped)))
+    assert (error.key, error.found) == ("image (SVG line 1)", f"'{effect}' in a style")
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_an_effect_as_an_attribute_is_refused(effect: str) -> None:
+    assert refused(svg_uri(f'<g {effect}="x"/>')).found == f'{effect}="x"'
+
+
+def test_an_attribute_in_the_name_space_of_svg_is_refused() -> None:
+    body = '<g xmlns:s="http://www.w3.org/2000/svg" s:style="filter:blur(9px)"/>'
+    assert refused(svg_uri(body)).found == "the attribute svg:style with a name space"
+
+
+def test_a_mask_is_refused() -> None:
+    assert refused(svg_uri('<mask id="m"><rect/></mask>')).found == "<mask>"
+
+
+def test_effects_that_are_none_are_drawn_as_drawing_programs_write_them() -> None:
+    pytest.importorskip("resvg_py")
+    style = "fill:#808080;mix-blend-mode:normal;isolation:auto;filter:none;marker:none;mask:none !important"
+    found = decode(svg_uri(f'<rect width="100" height="50" style="{style}" filter="none"/>'))
+    assert color_at(found, 5, 5) == (128, 128, 128, 255)
+
+
+def test_equal_styles_are_parsed_once_and_others_are_limited() -> None:
+    style = "fill:#80" + "8" * 200
+    assert "characters of CSS" in refused(svg_uri("".join(f'<g style="{style}{n}"/>' for n in range(1500)))).found
+    pytest.importorskip("resvg_py")
+    assert decode(svg_uri(f'<g style="{style}"/>' * 1500)).columns == 100
 
 
 DOUBLING = {
@@ -226,3 +283,60 @@ def test_without_its_package_a_picture_is_refused_with_the_way_out(
     monkeypatch.setitem(sys.modules, module, None)
     error = refused(uri)
     assert (error.key, error.expected) == ("image", f"`pip install {package}`")
+
+
+def test_an_svg_that_takes_too_long_is_refused() -> None:
+    pytest.importorskip("resvg_py")
+    body = '<g opacity=".5"><rect width="100" height="50"/></g>' * 5000
+    assert "longer than 2 s" in refused(svg_uri(body)).found
+
+
+def test_the_pictures_of_a_playground_share_the_time_to_draw(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pictures.svg, "draw", lambda *_, seconds: (png([[WHITE]]), seconds / 2 + 0.6))
+    with pictures.budgeted() as budget:
+        for _ in range(2):
+            pictures.decode(svg_uri("<rect/>"), key="image", width_m=0.1)
+    assert budget.svg_seconds == pytest.approx(2.0 - 1.6 - 0.8)
+
+
+def test_the_pictures_of_a_playground_share_a_budget_of_pixels() -> None:
+    picture = data_uri(png_of_size(5000, 4000), "image/png")
+    with pictures.budgeted() as budget:
+        budget.pixels = 19_000_000
+        error = refused(picture)
+        assert error.found == "5000 x 4000 pixels, where 19000000 of the playground's 32000000 are left for pictures"
+        assert budget.pixels == 19_000_000
+        pictures.decode(png_uri([[WHITE] * 3] * 2), key="image", width_m=0.1)
+    assert budget.pixels == 19_000_000 - 6
+
+
+def test_the_svg_texts_of_a_playground_have_a_limit() -> None:
+    with pictures.budgeted() as budget:
+        budget.svg_bytes = 100
+        assert "bytes of SVG" in refused(svg_uri("<rect/>")).found
+
+
+def test_a_jpeg_that_is_painted_over_and_over_is_refused() -> None:
+    out = io.BytesIO()
+    image.new("RGB", (64, 64), (255, 255, 255)).save(out, "JPEG", progressive=True)
+    data = out.getvalue()
+    assert decode(data_uri(data, "image/jpeg")).columns == 64
+    scan = data[data.rindex(b"\xff\xda") : -2]
+    assert "scans" in refused(data_uri(data[:-2] + scan * 40 + data[-2:], "image/jpeg")).found
+
+
+@pytest.mark.parametrize("mode", ["1", "L", "LA", "P", "RGB", "RGBA", "I;16"])
+def test_bands_give_the_same_pixels_as_the_whole_picture(mode: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    source = image.effect_noise((70, 50), 80).convert("RGB")
+    if mode == "I;16":
+        whole = image.frombytes("I;16", (70, 50), bytes(n % 251 for n in range(7000)))
+    else:
+        whole = source.quantize(17) if mode == "P" else source.convert(mode)
+    out = io.BytesIO()
+    whole.save(out, "PNG", **({"transparency": 3} if mode == "P" else {}))
+    uri = data_uri(out.getvalue(), "image/png")
+    at_once = decode(uri)
+    monkeypatch.setattr(pictures, "_BAND_PIXELS", 70 * 7)
+    assert decode(uri) == at_once
+    if mode != "I;16":
+        assert at_once.rgba == image.open(io.BytesIO(out.getvalue())).convert("RGBA").tobytes()

@@ -10,7 +10,7 @@ import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, box, make
 from tests.sim.images import BLACK, WHITE, png, png_uri
-from thymio_sim_ros.sim import playground
+from thymio_sim_ros.sim import pictures, playground
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.playground import MAX_BYTES, PlaygroundError
 
@@ -259,3 +259,23 @@ def test_a_robot_that_starts_beside_the_ground_is_accepted_with_a_remark() -> No
 
 def test_without_any_ground_there_is_nothing_to_remark() -> None:
     assert make([], [ROBOT]).notes == ()
+
+
+def test_a_ground_that_is_painted_over_and_over_is_refused() -> None:
+    ground = {**FLOOR, "size_x_m": 5.0, "size_y_m": 5.0}
+    sheet = {"kind": "picture", "size_x_m": 5.0, "image": png_uri([[WHITE]])}
+    playground.loads(json.dumps({**GOOD, "shapes": [ground, sheet, sheet]}), "good")
+    error = refused_with(shapes=[ground, *[sheet] * 10])
+    assert (error.key, error.found) == ("shapes", "a ground that takes 4.28 times as long to paint as is allowed")
+    floors = [ground | {"name": f"floor_{number}"} for number in range(50)]
+    assert refused_with(shapes=floors).key == "shapes"
+
+
+def test_the_pixels_of_all_pictures_together_are_limited() -> None:
+    sheet = {"kind": "picture", "size_x_m": 1.0, "image": png_uri([[WHITE] * 4000] * 900)}
+    error = refused_with(shapes=[FLOOR, *[sheet] * 9])
+    left = pictures.MAX_PIXELS_IN_ALL - 8 * 4000 * 900
+    assert (error.key, error.found) == (
+        "shapes[9].image",
+        f"4000 x 900 pixels, where {left} of the playground's 32000000 are left for pictures",
+    )

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from tests.sim.images import BLACK, CLEAR, RED, WHITE, Rows, printed
+from thymio_sim_ros.sim import prints
 from thymio_sim_ros.sim.geometry import Point, Pose
 from thymio_sim_ros.sim.picture import Picture
 from thymio_sim_ros.sim.primitives import Color, Floor, Paint, Print
-from thymio_sim_ros.sim.prints import few_colors, rastered
+from thymio_sim_ros.sim.prints import bands, few_colors
 
 GREY = (128 / 255,) * 3
 
@@ -65,14 +67,19 @@ def test_later_marks_cover_earlier_ones() -> None:
     assert seen(ground(over, sheet), (0.0, 0.0)) == [(0.0, 0.0, 0.0)]
 
 
+def rastered(mark: Print) -> npt.NDArray[np.uint8]:
+    """Red, green, blue, opacity of two rows of a hundred pixels of a millimetre about the origin."""
+    return np.concatenate([words for _, words in bands(mark, 0.001, (-50, -1), (2, 100))])[..., None].view(np.uint8)
+
+
 def test_a_picture_finer_than_the_ground_is_averaged() -> None:
     stripes: Rows = [[WHITE, BLACK] * 100] * 4
-    _, colors = rastered(printed(stripes, 0.1, 0.002), 0.001, (-50, -1), (2, 100))
+    colors = rastered(printed(stripes, 0.1, 0.002))
     assert {tuple(color) for color in colors[:, :, :3].reshape(-1, 3).tolist()} == {(128, 128, 128)}
 
 
 def test_averaging_does_not_mix_in_what_is_clear() -> None:
-    _, colors = rastered(printed([[WHITE, CLEAR] * 100] * 4, 0.1, 0.002), 0.001, (-50, -1), (2, 100))
+    colors = rastered(printed([[WHITE, CLEAR] * 100] * 4, 0.1, 0.002))
     assert colors[0, 50].tolist() == [255, 255, 255, 128]
 
 
@@ -80,18 +87,37 @@ def test_beside_the_ground_nothing_is_printed() -> None:
     assert seen(ground(printed([[BLACK]], 0.1, 0.1, Pose(9.0, 9.0, 0.0))), (0.0, 0.0)) == [GREY]
 
 
+def codes(colors: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:
+    return colors.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], dtype=np.uint32)
+
+
 def test_few_colors_stay_as_they_are() -> None:
     colors = np.array([[1, 2, 3], [4, 5, 6], [1, 2, 3]], dtype=np.uint8)
-    palette, which = few_colors(colors, 2)
-    assert (palette[which] == colors).all()
+    palette, table = few_colors([codes(colors[:1]), codes(colors[1:])], 2)
+    assert (palette[table[codes(colors)]] == colors).all()
 
 
 def test_many_colors_become_near_ones_with_the_same_mean_grey() -> None:
     colors = np.random.default_rng(1).integers(0, 256, (5000, 3)).astype(np.uint8)
-    palette, which = few_colors(colors, 500)
+    palette, table = few_colors([codes(colors[:2000]), codes(colors[2000:])], 500)
+    found = palette[table[codes(colors)]]
     assert len(palette) <= 500
-    assert abs(palette[which].astype(int) - colors).max() <= 64
-    assert palette[which].mean() == pytest.approx(colors.mean(), abs=0.3)
+    assert abs(found.astype(int) - colors).max() <= 64
+    assert found.mean() == pytest.approx(colors.mean(), abs=0.3)
+
+
+@pytest.mark.parametrize("yaw_rad", [0.0, 0.4])
+@pytest.mark.parametrize("size_m", [0.2, 0.9])
+def test_bands_give_the_same_ground_as_the_whole_print(
+    yaw_rad: float, size_m: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    noise = np.random.default_rng(2).integers(0, 256, (500, 400, 4)).astype(np.uint8)
+    photo = Print("photo", Pose(0.1, 0.2, yaw_rad), size_m, 0.3, 400, 500, noise.tobytes())
+    at_once = ground(photo)
+    monkeypatch.setattr(prints, "_BAND_PIXELS", 5000)
+    banded = ground(photo)
+    assert (banded.pixels == at_once.pixels).all()
+    assert (banded.greys == at_once.greys).all()
 
 
 def test_a_photograph_leaves_colors_for_pens() -> None:

@@ -5,7 +5,10 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import os
 import struct
+import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -161,3 +164,60 @@ def test_a_fault_of_the_text_is_told_with_its_place(text: str, message: str) -> 
     with pytest.raises(PlaygroundError) as caught:
         playground.loads(text, "t")
     assert str(caught.value).startswith(message)
+
+
+MEMORY = """
+import resource, time
+from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.sim.playground import PlaygroundError
+text = {text}
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+begin = time.process_time()
+try:
+    load_playground(text)
+except PlaygroundError as error:
+    assert len(str(error)) < 5000, len(str(error))
+    print(time.process_time() - begin, (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024)
+"""
+HUGE = {
+    "text": """'{"format":1,"title":"x","description":"' + "a" * 20_000_000 + '"}'""",
+    "wide text": """'{"format":1,"title":"x","description":"' + "a" * 20_000_000 + chr(0x1f600) + '"}'""",
+    "escapes": """'{"format":1,"title":"x","description":"' + "\\\\n" * 10_000_000 + '"}'""",
+    "key": """'{"format":1,"' + "a" * 20_000_000 + '":1}'""",
+    "picture": """'{"format":1,"shapes":[{"image":"data:' + "a" * 20_000_000 + '"}]}'""",
+    "text before a fault": """'{"title":"' + "a" * 20_000_000 + '","x":NaN}'""",
+    "lists": """'{"shapes":[' + "[]," * 6_600_000""",
+    "nested lists": """'{"shapes":' + "[" * 20_000_000""",
+    "quotes": """'{' + '""' * 10_000_000""",
+    "numbers": """'{"shapes":[' + "1," * 990_000 + "1]}" """,
+    "text of XML": """"<aseba-playground><a>" + "a\\n" * 10_000_000 + "</a></aseba-playground>" """,
+    "attribute of XML": """'<a b="' + "a " * 10_000_000 + '"/>'""",
+    "tag of XML": """"<" + "a" * 20_000_000 + "/>" """,
+    "nested XML": """"<a>" * 6_000_000""",
+    "elements of XML": """"<a>" + "<b/>" * 5_000_000""",
+}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="measures memory as POSIX does")
+@pytest.mark.parametrize("kind", HUGE)
+def test_a_huge_text_is_refused_at_little_cost(kind: str) -> None:
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    code = MEMORY.format(text=HUGE[kind])
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    seconds, megabytes = map(float, done.stdout.split())
+    assert megabytes < 150
+    assert seconds < 5  # of a busy machine; 1 s is the aim
+
+
+@pytest.mark.parametrize(("open_", "close"), [("[", "]"), ('{"a":', "}")])
+@pytest.mark.parametrize("depth", [50, 500, 5_000, 50_000])
+def test_nested_json_is_refused_with_a_short_error(open_: str, close: str, depth: int) -> None:
+    nested = open_ * depth + "1" + close * depth
+    for text in (nested, f'{{"format":1,"title":{nested}}}', f'{{"format":1,"shapes":[{nested}]}}'):
+        assert len(str(refused(text.encode()))) < 1000
+
+
+def test_a_text_that_is_too_long_is_refused_with_its_place() -> None:
+    error = refused(b'{"format": 1,\n "title": "' + b"a" * source.MAX_TEXT + b'"}')
+    assert (error.key, error.found) == ("line 2, column 11", f"a text of {source.MAX_TEXT + 2} bytes")

@@ -25,6 +25,16 @@ def test_names_are_those_without_a_name_space_but_for_one() -> None:
     assert (root.tag, root.attributes) == ("a", {"b": "4", "xlink:href": "#3"})
 
 
+def test_attributes_in_the_name_space_of_svg_keep_it() -> None:
+    root = parse('<a xmlns:s="http://www.w3.org/2000/svg" s:style="1" style="2"/>')
+    assert root.attributes == {"svg:style": "1", "style": "2"}
+
+
+def test_text_is_that_directly_in_an_element() -> None:
+    root = parse("<a>1<b>2</b>3<c/><![CDATA[4]]></a>")
+    assert (root.text, [element.text for element in root.walk()]) == ("134", ["134", "2", ""])
+
+
 def test_broken_xml_is_refused_at_its_line() -> None:
     assert refused("<a>\n<b></a>").line == 2
 

@@ -31,8 +31,14 @@ MOST_TEXELS = 2048
 """Side of the largest picture that is sent to be looked at; graphics hardware takes at least twice that."""
 
 
+MOST_TILES = 16_000
+"""Rectangles of the mosaics of all pictures together: each is six points, which take time to make and to send."""
+
+
 def playground_markers(primitives: Iterable[Drawable], frame: str = MAP_FRAME) -> MarkerArray:
     """Markers of all primitives, in their order; neighbouring paint of one shape and color is one marker."""
+    primitives = list(primitives)
+    prints = sum(isinstance(primitive, Print) for primitive in primitives)
     markers = [Marker(action=Marker.DELETEALL)]
     layer = 0
     for (kind, name, color), group in itertools.groupby(primitives, key=_sort_of):
@@ -42,7 +48,7 @@ def playground_markers(primitives: Iterable[Drawable], frame: str = MAP_FRAME) -
                 markers.append(_solid(primitive, len(markers)))
             elif isinstance(primitive, Print):
                 layer += 1
-                markers.append(_print(primitive, len(markers), layer * LAYER_M))
+                markers.append(_print(primitive, len(markers), layer * LAYER_M, MOST_TILES // prints))
             else:
                 outlines.append(primitive.vertices)
         if not outlines:
@@ -87,7 +93,7 @@ def _patches(namespace: str, number: int, outlines: Sequence[Sequence[Point]], c
     return marker
 
 
-def _print(printed: Print, number: int, height_m: float) -> Marker:
+def _print(printed: Print, number: int, height_m: float, tiles: int) -> Marker:
     """The picture twice: as a texture (our page, RViz), and as a mosaic of plain colors for viewers without them."""
     marker = _marker(f"paint/{printed.name}", number, (1.0, 1.0, 1.0))
     marker.type = Marker.TRIANGLE_LIST
@@ -95,7 +101,7 @@ def _print(printed: Print, number: int, height_m: float) -> Marker:
     marker.pose.position = PointMsg(x=printed.pose.x_m, y=printed.pose.y_m, z=height_m)
     marker.pose.orientation = quaternion(printed.pose.yaw_rad)
     pixels = Pixels(printed.columns, printed.rows, printed.rgba)
-    for tile in mosaic(pixels):
+    for tile in mosaic(pixels, most=tiles):
         red, green, blue, opacity = tile.color
         marker.colors += [ColorRGBA(r=red, g=green, b=blue, a=opacity)] * 6
         for u, v in _fan(_corners(tile)):

@@ -12,7 +12,7 @@ from __future__ import annotations
 import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.context import Context
@@ -24,6 +24,7 @@ from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import dds_profile, driver_topics, params, qos, robot_ports, sim_interfaces
 from thymio_sim_ros.nodes.audience import Audience
+from thymio_sim_ros.nodes.deferred_load import DeferredLoad
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
@@ -33,13 +34,14 @@ from thymio_sim_ros.nodes.robot_ports import RobotPorts
 from thymio_sim_ros.nodes.roster import Roster
 from thymio_sim_ros.nodes.simulator_params import SimulatorParams
 from thymio_sim_ros.nodes.transforms import TRANSFORMING, Transforms, frames_of
-from thymio_sim_ros.nodes.world_ports import Pace, WorldPorts, WorldState
+from thymio_sim_ros.nodes.world_ports import Pace, SceneMessages, WorldPorts, WorldState
 from thymio_sim_ros.nodes.world_services import WorldServices
 from thymio_sim_ros.runlog import RunLog
 from thymio_sim_ros.sim.clock import TICK_NS, Pacer
 from thymio_sim_ros.sim.columns import rows_of
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.ground import Ground
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError, RobotStart
 from thymio_sim_ros.sim.world import World
 
@@ -64,6 +66,16 @@ MOST_AT_ONCE = 2 * MOST_PUT_OFF
 """Ticks done at once at most, when the machine was busy with other things; what is owed beyond is dropped."""
 
 
+@dataclass(frozen=True, slots=True)
+class _Prepared:
+    """A playground and what takes long to make from it, ready for a world; robots are named as wanted."""
+
+    name: str
+    playground: Playground
+    ground: Ground
+    scene: SceneMessages
+
+
 class Simulator:
     """The simulator node and its world. Invariant: only `turn`, `advance` and callbacks of `node` touch the world."""
 
@@ -73,7 +85,8 @@ class Simulator:
             self.params = params.declare(self.node, defaults or SimulatorParams())
             params.warn_of_unknown(self.node, "ros.md")
             qos.check_overrides(self.node)
-            self.playground_name, playground = self._load(self.params.playground)
+            self._loader = DeferredLoad(self.node, "playground", self._prepare)
+            prepared = self._prepare(self.params.playground)
             self._log = self._open_log(self.params.log)
         except (PlaygroundError, resources.ResourceError, StartError, OSError) as error:
             self.node.destroy_node()
@@ -98,10 +111,11 @@ class Simulator:
         self._transforms = Transforms(self.node, self._audience, self.params.transform_options)
         self._port_options = replace(self.params.port_options, extra=driver_topics.found(self.node))
         self._roster = Roster(self._ports, self.params.naming)
-        self._set_world(self._new_world(playground, self.params))
+        self.playground_name, self._scene = prepared.name, prepared.scene
+        self._set_world(self._new_world(prepared.playground, self.params, prepared.ground))
         self._services = WorldServices(self.node, self)
         self._interfaces = sim_interfaces.offered(self.node, self)
-        self._accepted: tuple[str, World] | None = None
+        self._accepted: tuple[_Prepared, World] | None = None
         self.node.add_on_set_parameters_callback(self._check_parameters)
         self.node.add_post_set_parameters_callback(self._apply_parameters)
 
@@ -213,6 +227,7 @@ class Simulator:
     def close(self) -> None:
         """Destroy the node; the world goes with it."""
         self.end()
+        self._loader.close()
         if self._interfaces is not None:
             self._interfaces.close()
         self.node.destroy_node()
@@ -281,10 +296,12 @@ class Simulator:
         self._usual_ticks = max(1, round(factor))
         self._most_put_off = max(1, min(MOST_PUT_OFF, int(MOST_PUT_OFF * factor)))
 
-    def _load(self, playground: str) -> tuple[str, Playground]:
-        """Its name and itself, robots named as wanted."""
-        name, loaded = load_playground(playground)
-        return name, self.params.renamed(loaded)
+    def _prepare(self, value: str) -> _Prepared:
+        """Load a playground; on any thread. PlaygroundError, ResourceError, StartError, OSError."""
+        name, loaded = load_playground(value)
+        playground = self.params.renamed(loaded)
+        scene = SceneMessages.of(playground, self.params.map_frame, with_map=self.params.publish_map)
+        return _Prepared(name, playground, Ground(playground.floors, playground.paints), scene)
 
     def _set_world(self, world: World) -> None:
         for note in world.playground.notes:
@@ -319,7 +336,7 @@ class Simulator:
         )
 
     @staticmethod
-    def _new_world(playground: Playground, chosen: SimulatorParams) -> World:
+    def _new_world(playground: Playground, chosen: SimulatorParams, ground: Ground | None = None) -> World:
         return World(
             playground,
             seed=chosen.seed,
@@ -327,6 +344,7 @@ class Simulator:
             proximity_model=chosen.proximity_model,
             motor_model=chosen.motor_model,
             periods_ns=chosen.periods_ns,
+            ground=ground,
         )
 
     def _begin(self) -> None:
@@ -335,7 +353,7 @@ class Simulator:
         self._soon_ns = 0
         self._roster.begin(self.world.robots)
         self._transforms.begin(self._roster.names)
-        self._world_ports.publish_scene(self.world.playground)
+        self._world_ports.publish_scene(self._scene)
         self._world_ports.publish_objects(self.world, last=True)
         self._publish_state()
         self._world_ports.publish_clock(0, last=True)
@@ -401,8 +419,9 @@ class Simulator:
         value = params.changes(parameters).get("playground")
         if value is not None:
             try:
-                name, playground = self._load(value)
-                self._accepted = name, self._new_world(playground, params.updated(self.params, parameters))
+                prepared = self._loader.load(value)
+                chosen = params.updated(self.params, parameters)
+                self._accepted = prepared, self._new_world(prepared.playground, chosen, prepared.ground)
             except (PlaygroundError, resources.ResourceError, StartError, OSError) as error:
                 return SetParametersResult(successful=False, reason=str(error))
             except Exception as error:  # our own fault in reading a file: a class goes on without it
@@ -419,8 +438,8 @@ class Simulator:
         if "real_time_factor" in changed:
             self._set_pace()
         if "playground" in changed and self._accepted is not None:
-            self.playground_name, world = self._accepted
-            self._accepted = None
+            prepared, world = self._accepted
+            self.playground_name, self._scene, self._accepted = prepared.name, prepared.scene, None
             self._set_world(world)
         elif "seed" in changed:
             self._set_world(self._new_world(self.world.playground, self.params))

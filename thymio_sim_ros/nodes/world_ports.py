@@ -120,6 +120,21 @@ class Pace:
     limited: int
 
 
+@dataclass(frozen=True, slots=True)
+class SceneMessages:
+    """Everything in a playground that stays where it is, as messages; a pure function of the playground."""
+
+    markers: MarkerArray
+    map: OccupancyGrid | None
+
+    @classmethod
+    def of(cls, playground: Playground, frame: str, *, with_map: bool) -> SceneMessages:
+        """The messages; making them takes a second for large pictures."""
+        fixed = [solid for solid in playground.solids if solid.is_fixed]
+        markers = playground_markers((*playground.floors, *playground.paints, *fixed), frame)
+        return cls(markers, occupancy(playground.floors, fixed, frame) if with_map else None)
+
+
 class WorldPorts:
     """Publishers of the simulator that belong to no robot."""
 
@@ -177,13 +192,11 @@ class WorldPorts:
         """Latched state as JSON."""
         self._publishers["~/state"].publish(String(data=state.as_json()))
 
-    def publish_scene(self, playground: Playground) -> None:
+    def publish_scene(self, scene: SceneMessages) -> None:
         """Latched markers of all in the playground that stays where it is."""
-        fixed = [solid for solid in playground.solids if solid.is_fixed]
-        markers = playground_markers((*playground.floors, *playground.paints, *fixed), self._map_frame)
-        self._publishers["/markers"].publish(markers)
-        if "/map" in self._publishers:
-            self._publishers["/map"].publish(occupancy(playground.floors, fixed, self._map_frame))
+        self._publishers["/markers"].publish(scene.markers)
+        if scene.map is not None:
+            self._publishers["/map"].publish(scene.map)
 
     def publish_objects(self, world: World, *, last: bool) -> None:
         """Latched markers of movable things and doors, when they have moved.

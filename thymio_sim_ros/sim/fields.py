@@ -12,6 +12,7 @@ import difflib
 import functools
 import math
 import re
+import reprlib
 import types
 import typing
 from collections.abc import Mapping, Sequence
@@ -56,10 +57,19 @@ OBJECT_RESTITUTION = 0.1
 """Between a movable thing and a robot: the middle of 0…0.2 (thymio-robot.md section 11)."""
 
 
+_LONGEST_PART = 2000
+"""Characters of each part of an error, which may repeat a key or a tag of any length."""
+
+
+def _clipped(text: str) -> str:
+    return text if len(text) <= _LONGEST_PART else f"{text[: _LONGEST_PART - 3]}..."
+
+
 class FieldError(Exception):
     """A value that a field refuses: the key's path, what was found, what was expected."""
 
     def __init__(self, key: str, found: str, expected: str) -> None:
+        key, found, expected = (_clipped(part) for part in (key, found, expected))
         super().__init__(f"{key}: found {found}, expected {expected}")
         self.key = key
         self.found = found
@@ -172,7 +182,7 @@ def image_keys(kind: type[Any]) -> tuple[str, ...]:
 
 def nearest(word: str, words: Sequence[str]) -> str:
     """What is expected in place of a word that is none of some: the nearest first, then all of them."""
-    near = difflib.get_close_matches(word, words, 1)
+    near = difflib.get_close_matches(word[:_DESCRIBED], words, 1)
     listed = "one of " + ", ".join(words)
     return f"'{near[0]}' ({listed})" if near else listed
 
@@ -182,10 +192,17 @@ def join(key: str, name: str) -> str:
     return f"{key}.{name}" if key else name
 
 
+_DESCRIBED = 60
+_REPR = reprlib.Repr()
+_REPR.maxlevel, _REPR.maxlong, _REPR.maxstring, _REPR.maxother = 8, _DESCRIBED, 2 * _DESCRIBED, 2 * _DESCRIBED
+_REPR.maxlist = _REPR.maxdict = _DESCRIBED
+"""Neither the size nor the depth of a value matters to how long it takes to describe."""
+
+
 def describe(value: object) -> str:
     """A value of a file in a few words."""
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
+    text = repr(value[:_DESCRIBED]) if isinstance(value, str) else _REPR.repr(value)
+    return text if len(text) <= _DESCRIBED else f"{text[: _DESCRIBED - 3]}..."
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,15 +28,16 @@ class Tile:
     color: tuple[float, float, float, float]
 
 
-def mosaic(pixels: Pixels) -> list[Tile]:
-    """At most 4000 tiles: rows of equal colors in one piece, in as many rows as that allows."""
+def mosaic(pixels: Pixels, *, most: int = _MOST_TILES) -> list[Tile]:
+    """At most `most` tiles, 1 to 4000: rows of equal colors in one piece, in as many rows as that allows."""
+    most = max(1, min(most, _MOST_TILES))
     image = np.frombuffer(pixels.rgba, dtype=np.uint8).reshape(pixels.rows, pixels.columns, 4)
     finest = _FINEST
     while True:
         scale = min(1.0, finest / max(pixels.columns, pixels.rows))
         columns, rows = max(1, round(pixels.columns * scale)), max(1, round(pixels.rows * scale))
         tiles = _tiles(image, columns, rows)
-        if len(tiles) <= _MOST_TILES:
+        if len(tiles) <= most:
             return tiles
         finest //= 2
 

@@ -14,9 +14,9 @@ import numpy.typing as npt
 
 from thymio_sim_ros.sim.geometry import Point
 from thymio_sim_ros.sim.primitives import Color, Floor, Mark, Print
-from thymio_sim_ros.sim.prints import few_colors, rastered
+from thymio_sim_ros.sim.prints import Area, area_of, bands, few_colors, laid_on
 
-__all__ = ["Area", "Picture"]
+__all__ = ["MAX_COST", "Area", "Picture", "cost"]
 
 _PIXEL_M = 0.001
 _MAX_PIXELS = 25_000_000
@@ -25,23 +25,42 @@ _MAX_COLORS = 65_534
 _SPARE_COLORS = 1000
 """Left free by prints, for paint and pens that come later."""
 
-Area = tuple[int, int, int, int]
-"""Pixels of the picture: left, bottom, right, top; the last two not included."""
+MAX_COST = 1_200_000_000
+"""The `cost` of a picture that is accepted: two prints on the largest ground, or thirty floors of its size."""
+_ROW_COST, _PRINT_COST = 2000, 20
+"""What a row and a pixel of a print cost in pixels of paint, measured."""
+
+
+def cost(floors: Sequence[Floor], paints: Sequence[Mark]) -> int:
+    """What it takes to make the picture of a ground, in pixels of paint; about a nanosecond each."""
+    pixel_m, origin, shape = _grid(floors)
+    found = 0
+    for mark in (*floors, *paints):
+        left, bottom, right, top = area_of(mark, pixel_m, origin, shape)
+        rows = top - bottom
+        found += rows * (_ROW_COST + (right - left) * (_PRINT_COST if isinstance(mark, Print) else 1))
+    return found
+
+
+def _grid(floors: Sequence[Floor]) -> tuple[float, tuple[int, int], tuple[int, int]]:
+    """Of the picture of these floors: size of a pixel in m, column and row of the first, number of rows and columns."""
+    corners = [vertex for floor in floors for vertex in floor.vertices] or [(0.0, 0.0)]
+    low_x, low_y = (min(corner[axis] for corner in corners) for axis in (0, 1))
+    high_x, high_y = (max(corner[axis] for corner in corners) for axis in (0, 1))
+    pixel_m = max(_PIXEL_M, math.sqrt((high_x - low_x) * (high_y - low_y) / _MAX_PIXELS))
+    origin = (math.floor(low_x / pixel_m), math.floor(low_y / pixel_m))
+    width = math.ceil(high_x / pixel_m) - origin[0] + 1
+    height = math.ceil(high_y / pixel_m) - origin[1] + 1
+    return pixel_m, origin, (height, width)
 
 
 class Picture:
     """Colors by number; number 0 is where there is no floor. Invariant: drawing never makes nor removes floor."""
 
     def __init__(self, floors: Sequence[Floor], paints: Sequence[Mark]) -> None:
-        corners = [vertex for floor in floors for vertex in floor.vertices] or [(0.0, 0.0)]
-        low_x, low_y = (min(corner[axis] for corner in corners) for axis in (0, 1))
-        high_x, high_y = (max(corner[axis] for corner in corners) for axis in (0, 1))
-        self.pixel_m = max(_PIXEL_M, math.sqrt((high_x - low_x) * (high_y - low_y) / _MAX_PIXELS))
-        self.origin = (math.floor(low_x / self.pixel_m), math.floor(low_y / self.pixel_m))
-        """Column and row of the first pixel, counted from the world's origin."""
-        width = math.ceil(high_x / self.pixel_m) - self.origin[0] + 1
-        height = math.ceil(high_y / self.pixel_m) - self.origin[1] + 1
-        self.pixels = np.zeros((height, width), dtype=np.uint16)
+        self.pixel_m, self.origin, shape = _grid(floors)
+        """Size of a pixel, and column and row of the first one, counted from the world's origin."""
+        self.pixels = np.zeros(shape, dtype=np.uint16)
         """Color numbers by row (y) and column (x)."""
         self.greys = np.zeros(_MAX_COLORS + 1)
         """Grey 0…1 of each color: the mean of its parts."""
@@ -147,18 +166,22 @@ class Picture:
 
     def _print(self, printed: Print) -> None:
         """Put a print on the floor; what is half transparent lets half of the ground through."""
-        (left, bottom, right, top), rgba = rastered(printed, self.pixel_m, self.origin, self.pixels.shape)
-        under = self.pixels[bottom:top, left:right]
-        covered = (rgba[..., 3] > 0) & (under > 0)
-        color, opacity = rgba[..., :3][covered], rgba[..., 3][covered]
-        if (opacity < 255).any():
-            part = opacity[:, None] / 255
-            ground = np.array(self._palette)[under[covered]] * 255
-            color = np.rint(color * part + ground * (1 - part)).astype(np.uint8)
-        if len(color):
-            colors, which = few_colors(color, max(1, _MAX_COLORS + 1 - len(self._palette) - _SPARE_COLORS))
-            numbers = [self._number((red / 255, green / 255, blue / 255)) for red, green, blue in colors.tolist()]
-            under[covered] = np.array(numbers, dtype=np.uint16)[which]
+        palette = np.array(self._palette) * 255
+        covered, codes = [], []
+        for (left, bottom, right, top), words in bands(printed, self.pixel_m, self.origin, self.pixels.shape):
+            under = self.pixels[bottom:top, left:right]
+            here = (words >= 1 << 24) & (under > 0)
+            covered.append((left, bottom, right, top, np.packbits(here)))
+            codes.append(laid_on(words[here], under[here], palette))
+        if not sum(map(len, codes)):
+            return
+        colors, table = few_colors(codes, max(1, _MAX_COLORS + 1 - len(self._palette) - _SPARE_COLORS))
+        found = [self._number((red / 255, green / 255, blue / 255)) for red, green, blue in colors.tolist()]
+        numbers = np.array(found, dtype=np.uint16)
+        for (left, bottom, right, top, packed), code in zip(covered, codes, strict=True):
+            under = self.pixels[bottom:top, left:right]
+            here = np.unpackbits(packed, count=under.size).reshape(under.shape).astype(bool)
+            under[here] = numbers[table[code]]
 
     def _number(self, color: Color) -> int:
         """The number of a color; when there are too many colors, of the nearest grey among them."""

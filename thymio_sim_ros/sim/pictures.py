@@ -1,6 +1,7 @@
 """Ground pictures: a data URI of a PNG, JPEG or SVG → pixels; and pixels → PNG. The only user of Pillow.
 
-Pictures come from strangers: sizes are checked before anything is unpacked. Why Pillow and resvg: docs/decisions.md.
+Pictures come from strangers: sizes are checked before anything is unpacked, those of one picture and those of all
+pictures of a playground together (`Budget`). Why Pillow and resvg: docs/decisions.md.
 """
 
 from __future__ import annotations
@@ -12,27 +13,72 @@ import re
 import struct
 import warnings
 import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 
-from thymio_sim_ros.sim import svg
+from thymio_sim_ros.sim import svg, svg_process
 from thymio_sim_ros.sim.fields import FieldError, describe
 from thymio_sim_ros.sim.optional import imported
 
-__all__ = ["MAX_PICTURE_BYTES", "MEDIA_TYPES", "Pixels", "css_color", "data_uri", "decode", "encode_png"]
+__all__ = [
+    "MAX_PICTURE_BYTES",
+    "MAX_PIXELS_IN_ALL",
+    "MEDIA_TYPES",
+    "Budget",
+    "Pixels",
+    "budgeted",
+    "css_color",
+    "data_uri",
+    "decode",
+    "encode_png",
+]
 
 MAX_PICTURE_BYTES = 4_000_000
 """Largest picture as a file."""
 MAX_SIDE = 8192
 MAX_PIXELS = 25_000_000
-"""As many as a ground has at most (sim/ground.py)."""
+"""Of one picture: as many as a ground has at most (sim/picture.py)."""
+MAX_PIXELS_IN_ALL = 32_000_000
+"""Of all pictures of a playground; each pixel takes four bytes for as long as the playground is there."""
+MAX_SVG_BYTES_IN_ALL = 6_000_000
+MAX_SCANS = 40
+"""Passes over a JPEG; cameras and drawing programs write one to ten, and each costs as much as the whole picture."""
 
 MEDIA_TYPES = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg", ".svg": "image/svg+xml"}
 """Ending of a file → media type of its data URI."""
 
+_BAND_PIXELS = 1_000_000
+
 _PILLOW_ERRORS = (OSError, SyntaxError, ValueError, EOFError, OverflowError, struct.error, zlib.error)
+
+
+@dataclass(slots=True)
+class Budget:
+    """What the pictures of one playground may still cost together. Invariant: only `decode` reduces it."""
+
+    pixels: int = MAX_PIXELS_IN_ALL
+    svg_bytes: int = MAX_SVG_BYTES_IN_ALL
+    svg_seconds: float = svg_process.MAX_SECONDS
+
+
+_budget: ContextVar[Budget] = ContextVar("budget of pictures")
+"""Shapes of other packages decode pictures too, so it is not handed through their interface."""
+
+
+@contextmanager
+def budgeted() -> Iterator[Budget]:
+    """Meanwhile every `decode` of this thread draws on one budget."""
+    token = _budget.set(Budget())
+    try:
+        yield _budget.get()
+    finally:
+        _budget.reset(token)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +96,11 @@ def data_uri(data: bytes, media_type: str) -> str:
 
 
 def decode(uri: str, *, key: str, width_m: float) -> Pixels:
-    """The pixels of a data URI; an SVG is drawn finely enough for `width_m`. FieldError names `key`."""
+    """The pixels of a data URI; an SVG is drawn finely enough for `width_m`. FieldError names `key`.
+
+    Within `budgeted`, pictures share its limits; elsewhere each has them for itself.
+    """
+    budget = _budget.get(None) or Budget()
     head, _, body = uri.partition(",")
     media_type = head.removeprefix("data:").removesuffix(";base64")
     if media_type not in MEDIA_TYPES.values():
@@ -62,8 +112,13 @@ def decode(uri: str, *, key: str, width_m: float) -> Pixels:
     if len(data) > MAX_PICTURE_BYTES:
         raise FieldError(key, f"{len(data)} bytes", f"a picture of at most {MAX_PICTURE_BYTES}")
     if media_type == MEDIA_TYPES[".svg"]:
-        data = svg.draw(data, key, width_m)
-    return _unpack(data, key)
+        budget.svg_bytes -= len(data)
+        if budget.svg_bytes < 0:
+            found = f"more than {MAX_SVG_BYTES_IN_ALL} bytes of SVG so far"
+            raise FieldError(key, found, "fewer or simpler ones, or PNG pictures")
+        data, seconds = svg.draw(data, key, width_m, seconds=budget.svg_seconds)
+        budget.svg_seconds -= seconds
+    return _unpack(data, key, budget)
 
 
 def css_color(value: object, *, key: str) -> str:
@@ -92,34 +147,64 @@ def _plain_css(text: str) -> str:
 
 def encode_png(pixels: Pixels, *, most: int = MAX_SIDE) -> bytes:
     """The pixels as a PNG file, made smaller where a side has more than `most`."""
-    image = _pillow("").frombytes("RGBA", (pixels.columns, pixels.rows), pixels.rgba)
+    # frombuffer copies nothing
+    image = _pillow("").frombuffer("RGBA", (pixels.columns, pixels.rows), pixels.rgba, "raw", "RGBA", 0, 1)
     image.thumbnail((most, most))
     out = io.BytesIO()
     image.save(out, "PNG", compress_level=6)
     return out.getvalue()
 
 
-def _unpack(data: bytes, key: str) -> Pixels:
+def _unpack(data: bytes, key: str, budget: Budget) -> Pixels:
     image_module = _pillow(key)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", image_module.DecompressionBombWarning)
             image = image_module.open(io.BytesIO(data), formats=("PNG", "JPEG"))
         columns, rows = image.size
-        if max(columns, rows) > MAX_SIDE or columns * rows > MAX_PIXELS:
-            expected = f"at most {MAX_SIDE} a side and {MAX_PIXELS} in all"
-            raise FieldError(key, f"{columns} x {rows} pixels", expected)
-        if image.format == "JPEG":  # a camera was held upright, perhaps
+        _check_size(columns, rows, key, budget)
+        if image.format == "JPEG":
+            _check_scans(data, key)
+            # a camera was held upright, perhaps
             image = imported("PIL.ImageOps", "Pillow", key).exif_transpose(image)
-        if image.mode.startswith("I"):
-            # Pillow would cut 16 bit greys off at 255.
-            image = image_module.fromarray((np.asarray(image).astype(np.uint32) >> 8).clip(0, 255).astype(np.uint8))
-        columns, rows = image.size
-        return Pixels(columns, rows, image.convert("RGBA").tobytes())
+        return _rgba(image, image_module)
     except image_module.DecompressionBombError as error:
         raise FieldError(key, "pixels without measure", f"at most {MAX_PIXELS} pixels") from error
     except _PILLOW_ERRORS as error:
         raise FieldError(key, "a picture that cannot be read", "a whole PNG or JPEG") from error
+
+
+def _check_size(columns: int, rows: int, key: str, budget: Budget) -> None:
+    """Refuse a picture by what its header says, before it is unpacked; charge the budget for it."""
+    size = f"{columns} x {rows} pixels"
+    if max(columns, rows) > MAX_SIDE or columns * rows > MAX_PIXELS:
+        raise FieldError(key, size, f"at most {MAX_SIDE} a side and {MAX_PIXELS} in all")
+    if columns * rows > budget.pixels:
+        found = f"{size}, where {budget.pixels} of the playground's {MAX_PIXELS_IN_ALL} are left for pictures"
+        raise FieldError(key, found, "fewer or smaller pictures; one pixel for each millimetre is enough")
+    budget.pixels -= columns * rows
+
+
+def _check_scans(data: bytes, key: str) -> None:
+    """Refuse a progressive JPEG that goes over its pixels again and again."""
+    scans = data.count(b"\xff\xda")
+    if scans > MAX_SCANS:
+        raise FieldError(key, f"a JPEG of {scans} scans", f"at most {MAX_SCANS}")
+
+
+def _rgba(image: Any, image_module: ModuleType) -> Pixels:
+    """The pixels of a picture of Pillow, a band of rows at a time: Pillow's own ways hold them three times over."""
+    columns, rows = image.size
+    rgba = io.BytesIO()
+    height = max(1, _BAND_PIXELS // columns)
+    for top in range(0, rows, height):
+        band = image.crop((0, top, columns, min(rows, top + height)))
+        if band.mode.startswith("I"):
+            # Pillow would cut 16 bit greys off at 255.
+            band = image_module.fromarray((np.asarray(band).astype(np.uint32) >> 8).clip(0, 255).astype(np.uint8))
+        rgba.write(band.convert("RGBA").tobytes())
+    image.close()
+    return Pixels(columns, rows, rgba.getvalue())
 
 
 def _pillow(key: str) -> ModuleType:

@@ -167,11 +167,14 @@ def _build(data: object, name: str, beside: Beside, notes: tuple[str, ...]) -> P
     _check_pictures(shapes)
     robots = tuple(read(RobotStart, item, f"robots[{index}]") for index, item in enumerate(robot_items))
     checks.check_names(shapes, robots)
-    primitives = _primitives(shapes)
+    with pictures.budgeted():
+        primitives = _primitives(shapes)
     solids = tuple(primitive for primitive in primitives if isinstance(primitive, Solid))
     checks.check_starts(robots, solids)
     checks.check_doors(shapes, primitives)
     floors = tuple(primitive for primitive in primitives if isinstance(primitive, Floor))
+    paints = tuple(primitive for primitive in primitives if isinstance(primitive, Paint | Print))
+    checks.check_ground(floors, paints)
     return Playground(
         name=name,
         title=titles.title,
@@ -180,7 +183,7 @@ def _build(data: object, name: str, beside: Beside, notes: tuple[str, ...]) -> P
         robots=robots,
         solids=solids,
         floors=floors,
-        paints=tuple(primitive for primitive in primitives if isinstance(primitive, Paint | Print)),
+        paints=paints,
         translations=translations,
         triggers=tuple(primitive for primitive in primitives if isinstance(primitive, Trigger)),
         notes=(*notes, *checks.off_floor(robots, solids, floors)),

@@ -5,14 +5,15 @@ Each check raises FieldError with the key of what is wrong.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
+from thymio_sim_ros.sim import picture
 from thymio_sim_ros.sim.fields import FieldError, describe
 from thymio_sim_ros.sim.placement import Occupied, footprint_of, footprint_of_robot
 from thymio_sim_ros.sim.playground_values import NamedShape, RobotStart
-from thymio_sim_ros.sim.primitives import Floor, Primitive, Solid, Trigger
+from thymio_sim_ros.sim.primitives import Floor, Mark, Primitive, Solid, Trigger
 
-__all__ = ["check_doors", "check_names", "check_starts", "off_floor"]
+__all__ = ["check_doors", "check_ground", "check_names", "check_starts", "off_floor"]
 
 
 def check_names(shapes: Iterable[NamedShape], robots: Iterable[RobotStart]) -> None:
@@ -24,6 +25,14 @@ def check_names(shapes: Iterable[NamedShape], robots: Iterable[RobotStart]) -> N
         if name in seen:
             raise FieldError(f"{key}.name", f"'{name}' as in {seen[name]}", "a name of its own")
         seen[name] = key
+
+
+def check_ground(floors: Sequence[Floor], paints: Sequence[Mark]) -> None:
+    """Refuse a ground that is painted over so often that nothing else could be done for long."""
+    cost = picture.cost(floors, paints)
+    if cost > picture.MAX_COST:
+        found = f"a ground that takes {cost / picture.MAX_COST:.3g} times as long to paint as is allowed"
+        raise FieldError("shapes", found, "fewer or smaller floors and pictures, or a smaller ground")
 
 
 def check_starts(robots: Iterable[RobotStart], solids: Iterable[Solid]) -> None:

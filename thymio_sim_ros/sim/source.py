@@ -29,6 +29,12 @@ __all__ = ["MAX_BYTES", "Beside", "Source", "folder", "nothing_beside", "read_so
 MAX_BYTES = 32_000_000
 """Largest file; pictures inside it count."""
 MAX_ARCHIVE_FILES = 200
+MAX_TEXT = 100_000
+"""Bytes of a text in JSON, as it is written there; what a playground says is far shorter."""
+MAX_PICTURE_TEXT = 8_000_000
+"""Bytes of a picture in JSON, a data URI in ASCII; with room for `\\/`, as some write the slash."""
+MAX_PARTS = 1_000_000
+"""Values in JSON: each takes some fifty bytes, be it written with two."""
 
 Beside = Callable[[str], bytes]
 """A file beside the playground by its name, or FieldError; one byte more than `MAX_PICTURE_BYTES` at most."""
@@ -40,9 +46,10 @@ _CANNOT_UNPACK = (
     zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, OSError, RuntimeError, ValueError,
 )  # fmt: skip
 """What a damaged, encrypted or exotic archive raises; of places before its begin the file says ValueError."""
-_WORDS = re.compile(r'"(?:[^"\\]|\\.)*"|NaN|-?Infinity')
+_WORDS = re.compile(r'"(?:[^"\\]++|\\.)*+"|NaN|-?Infinity')
 """Strings of JSON, and words that Python takes for numbers outside them."""
-_PARTS = re.compile(r'"(?:[^"\\]|\\.)*"|[{}]')
+_PARTS = re.compile(r'"(?:[^"\\]++|\\.)*+"|[{}]')
+_STRINGS = re.compile(rb'"(?:[^"\\]++|\\.)*+"?', re.DOTALL)
 _COLON = re.compile(r"\s*:")
 """What makes a string a key."""
 _HALVES = re.compile(r"[\ud800-\udfff]")
@@ -72,6 +79,7 @@ def read_source(data: bytes, name: str, beside: Beside) -> Source:
     data = data.removeprefix(_BOM)
     if data.lstrip().startswith(b"<"):
         return _read_xml(data, name, beside)
+    _check_parts(data)
     try:
         parsed = _parse_json(data.decode("utf-8"))
     except UnicodeDecodeError as error:
@@ -149,6 +157,21 @@ def _extract(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
             return file.read(most)
     except _CANNOT_UNPACK as error:
         raise FieldError(describe(name), "an entry that cannot be unpacked", "a plain zip archive") from error
+
+
+def _check_parts(data: bytes) -> None:
+    """Refuse JSON that would take far more memory than its bytes: it is neither decoded nor parsed before."""
+    if sum(map(data.count, (b",", b"[", b"{"))) > MAX_PARTS or data.count(b'"') > 2 * MAX_PARTS:
+        raise FieldError("", f"more than {MAX_PARTS} values", "a playground")
+    for match in _STRINGS.finditer(data):
+        begin, size = match.start(), match.end() - match.start()
+        if size <= MAX_TEXT:
+            continue
+        is_picture = data.startswith(b'"data:', begin) and match.group().isascii()
+        most = MAX_PICTURE_TEXT if is_picture else MAX_TEXT
+        if size > most:
+            line, column = data.count(b"\n", 0, begin) + 1, begin - data.rfind(b"\n", 0, begin)
+            raise FieldError(f"line {line}, column {column}", f"a text of {size} bytes", f"at most {most}")
 
 
 def _parse_json(text: str) -> object:

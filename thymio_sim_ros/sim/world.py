@@ -56,10 +56,12 @@ class World:
         proximity_model: str = PROXIMITY_MODELS[0],
         motor_model: str = MOTOR_MODELS[0],
         periods_ns: Mapping[str, int] | None = None,
+        ground: Ground | None = None,
     ) -> None:
         """`motor_model`: one of `commands.MOTOR_MODELS`, ValueError for another.
 
         `periods_ns` names the sensors that measure and how often; None: all of them, as often as the robot does.
+        `ground` is that of the playground where it has been made already; it belongs to the world from now on.
         """
         if proximity_model not in PROXIMITY_MODELS:
             raise ValueError(f"proximity model {proximity_model!r}: expected one of {', '.join(PROXIMITY_MODELS)}")
@@ -71,7 +73,7 @@ class World:
         self.options = WorldOptions(seed, noise, proximity_model, motor_model, periods)
         self.journal: Journal | None = None
         """Who is told what happens from now on."""
-        self._ground = Ground(playground.floors, playground.paints)
+        self._ground = Ground(playground.floors, playground.paints) if ground is None else ground
         self._footing = Footing(playground.floors)
         self._fixed = Occupied(footprint_of(solid) for solid in playground.solids if solid.is_fixed)
         self._begin()

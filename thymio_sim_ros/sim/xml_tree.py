@@ -19,6 +19,7 @@ MAX_ELEMENTS = 100_000
 _SPACE = " "
 """Between a name space and a name; no name holds one."""
 _KNOWN = {f"http://www.w3.org/1999/xlink{_SPACE}href": "xlink:href"}
+_SVG = f"http://www.w3.org/2000/svg{_SPACE}"
 
 
 class XmlError(Exception):
@@ -35,7 +36,8 @@ class XmlError(Exception):
 class Element:
     """An element: its name without its name space, attributes, children, text directly in it.
 
-    Attributes are those without a name space, and `xlink:href`, whatever its prefix is; others mean nothing here.
+    Attributes are those without a name space, `xlink:href`, whatever its prefix is, and those in the name space of SVG
+    as `svg:name`; others mean nothing here.
     """
 
     tag: str
@@ -48,9 +50,11 @@ class Element:
 
     def walk(self) -> Iterator[Element]:
         """This element and everything below it, in the order of the text."""
-        yield self
-        for child in self.children:
-            yield from child.walk()
+        waiting = [self]
+        while waiting:
+            element = waiting.pop()
+            yield element
+            waiting.extend(reversed(element.children))
 
 
 def parse(data: bytes | str) -> Element:
@@ -66,6 +70,8 @@ class _Builder:
         self._open: list[Element] = []
         self._root: Element | None = None
         self._count = 0
+        self._texts: list[list[str]] = []
+        """Text of each open element so far, in the pieces that the parser gives."""
         self._parser.buffer_text = True
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
@@ -88,22 +94,31 @@ class _Builder:
         self._count += 1
         if len(self._open) >= MAX_DEPTH or self._count > MAX_ELEMENTS:
             raise XmlError(line, "elements without measure", f"at most {MAX_ELEMENTS}, {MAX_DEPTH} deep")
-        own = {_KNOWN.get(key, key): value for key, value in attributes.items() if key in _KNOWN or _SPACE not in key}
+        named = ((_attribute(key), value) for key, value in attributes.items())
+        own = {key: value for key, value in named if key is not None}
         element = Element(name.rpartition(_SPACE)[2], own, line, self._parser.CurrentByteIndex)
         if self._open:
             self._open[-1].children.append(element)
         else:
             self._root = element
         self._open.append(element)
+        self._texts.append([])
 
     def _end(self, _name: str) -> None:
-        self._open.pop()
+        self._open.pop().text = "".join(self._texts.pop())
 
     def _text(self, data: str) -> None:
-        self._open[-1].text += data
+        self._texts[-1].append(data)
 
     def _entity(self, name: str, *_declaration: object) -> None:
         raise XmlError(self._parser.CurrentLineNumber, f"a declaration of the entity '{name}'", "no entities")
 
     def _external(self, *_reference: object) -> int:
         raise XmlError(self._parser.CurrentLineNumber, "a reference to something outside", "a file that stands alone")
+
+
+def _attribute(key: str) -> str | None:
+    """The name of an attribute in `Element.attributes`; None for one that means nothing here."""
+    if _SPACE not in key:
+        return key
+    return f"svg:{key.removeprefix(_SVG)}" if key.startswith(_SVG) else _KNOWN.get(key)

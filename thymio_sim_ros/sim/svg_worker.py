@@ -1,0 +1,54 @@
+"""The process that draws one SVG; `svg_process` starts this file as a script, without the rest of the package.
+
+Arguments: the folder that holds `resvg_py`, and bytes of memory. Input: the SVG in UTF-8. Output: the PNG, or, with the
+exit code `REFUSED`, the reason why there is none. It limits itself before it reads anything.
+"""
+
+from __future__ import annotations
+
+import sys
+
+__all__ = ["CSS_DPI", "REFUSED"]
+
+REFUSED = 3
+CSS_DPI = 96.0
+"""What a millimetre in an SVG is in pixels; only proportions matter here."""
+_CPU_S = 2
+"""Of processor time; `svg_process` limits the wall time."""
+
+
+def _limit(memory: int) -> None:
+    """Where the system has such limits: not on Windows, and that of memory hardly on macOS."""
+    try:
+        import resource
+    except ImportError:
+        return
+    wanted = (("RLIMIT_CPU", _CPU_S), ("RLIMIT_AS", memory), ("RLIMIT_CORE", 0), ("RLIMIT_FSIZE", 0))
+    for name, most in wanted:
+        try:
+            number = getattr(resource, name)
+            hard = resource.getrlimit(number)[1]
+            most = most if hard == resource.RLIM_INFINITY else min(most, hard)
+            resource.setrlimit(number, (most, most))
+        except (AttributeError, ValueError, OSError):
+            continue
+
+
+def _main(folder: str, memory: str) -> int:
+    _limit(int(memory))
+    sys.path.append(folder)
+    import resvg_py
+
+    try:
+        drawn = resvg_py.svg_to_bytes(
+            svg_string=sys.stdin.buffer.read().decode("utf-8"), dpi=CSS_DPI, skip_system_fonts=True
+        )
+    except ValueError as error:
+        sys.stdout.buffer.write(" ".join(str(error).split())[:200].encode("utf-8", "replace"))
+        return REFUSED
+    sys.stdout.buffer.write(drawn)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(_main(*sys.argv[1:]))
