@@ -150,6 +150,9 @@ MESSAGES: Mapping[str, str] = {
     "fault-emit-too-long": "damaged program: an event has too many values",
     "fault-breakpoint-out-of-range": "a breakpoint lies outside the code",
     # hints: what was probably meant (aseba_vm/hints.py)
+    "check-summary": "{0} files checked: {1} with errors, {2} with warnings",
+    "fmt-summary": "{0} files read: {1} with an irregular layout, {2} refused",
+    "fmt-different": "the layout is not regular",
     "label-hint": "Hint",
     "hint-comment": "a comment is written with '{1}' instead of '{0}'",
     "hint-semicolon": "Aseba needs no ';': a space or a new line is enough",
