@@ -291,7 +291,7 @@ def test_a_mistake_is_explained_and_corrected_by_its_button(editor):
 
 def test_a_mistake_is_corrected_from_the_keyboard_and_that_can_be_undone(editor):
     write(editor, "var a\na == 3\n")
-    expect(editor, ".editor-hint .words").to_contain_text("a variable gets a new value with '='")
+    expect(editor, ".editor-hint .meant").to_contain_text("a variable gets a new value with '='")
     editor.focus(".editor-hint .correct")
     editor.keyboard.press("Enter")
     expect(editor, ".verdict").to_contain_text("No errors")
@@ -304,10 +304,10 @@ def test_a_mistake_is_corrected_from_the_keyboard_and_that_can_be_undone(editor)
 
 def test_a_hint_without_a_correction_has_no_button_and_is_in_the_language_of_the_page(editor):
     write(editor, "var a = 1.5\n")
-    expect(editor, ".editor-hint .words").to_contain_text("Aseba has whole numbers only")
+    expect(editor, ".editor-hint .meant").to_contain_text("Aseba has whole numbers only")
     expect(editor, ".editor-hint .correct").to_be_hidden()
     editor.select_option("header .language", "fr")
-    expect(editor, ".editor-hint .words").to_contain_text("Aseba n'a que des nombres entiers")
+    expect(editor, ".editor-hint .meant").to_contain_text("Aseba n'a que des nombres entiers")
 
 
 def test_the_mark_in_the_text_offers_the_correction_too(editor):

@@ -25,7 +25,7 @@ export function repairWords(t, text, { from, to, insert }) {
 
 /** @param {import("../i18n/index.js").Translate} t @param {() => void} correct */
 export function hintBar(t, correct) {
-  const words = h("span", { class: "words" });
+  const words = h("span", { class: "meant" });
   const button = h("button", { type: "button", class: "correct", title: t("hint.key"), onclick: correct });
   const element = h("div", { class: "editor-hint", hidden: true }, words, button);
   return {

@@ -326,8 +326,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
     bar.element,
     head.draft,
     h("div", { class: "editor-body" }, code, tools.element),
-    hints.element,
-    foot.element,
+    h("div", { class: "editor-end" }, hints.element, foot.element),
   );
   const forgetKeys = watchKeys(element, deeds);
 
