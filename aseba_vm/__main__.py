@@ -11,20 +11,27 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 
-from aseba_vm import aesl
+from aseba_vm import lint
 from aseba_vm.aesl_reader import MAX_EVENT_WORDS
 from aseba_vm.bytecode import describe
 from aseba_vm.compiler import Program, assemble
 from aseba_vm.errors import AeslError, CompileError, TargetError, TextError
-from aseba_vm.excerpt import excerpt
-from aseba_vm.layout import formatted
+from aseba_vm.findings import (
+    WARNING,
+    Finding,
+    finding_of_compile_error,
+    finding_of_text_error,
+    is_colored,
+    table_of,
+    user_language,
+)
 from aseba_vm.lexer import is_name
 from aseba_vm.listing import listing
+from aseba_vm.messages import LANGUAGES, wording
 from aseba_vm.outbox import Emitted, NativeCalled
-from aseba_vm.output import end_by, print_bytes, rewrite_file, standard_output, write_file
+from aseba_vm.output import end_by, standard_output, write_file
 from aseba_vm.sources import Source, SourceError, network_of, read_text, sources_of
 from aseba_vm.target import TargetDescription
 from aseba_vm.targets import THYMIO_II
@@ -39,15 +46,17 @@ _STAGES = ("tokens", "tree", "expanded", "optimised", "code", "words")
 _EXAMPLES = """\
 examples:
   aseba check robot.aesl
+  aseba check programs/ more.aesl --lang de
   aseba compile robot.aesl --format json -o robot.json
   aseba dis robot.aesl --stage tree
   aseba run count.aseba --global ping=1 --raise ping=5 --show n
-  aseba fmt --write robot.aesl
+  aseba fmt --write robot.aesl programs/
 
 Without installation: python -m aseba_vm check robot.aesl
 
-A file is an .aesl file if it begins with '<', else the bare text of a program; '-' is the standard input.
-exit codes: 0 done, 1 the program is wrong or stopped with a fault, 2 wrong use or unreadable file.
+A file is an .aesl file if it begins with '<', else the bare text of a program; '-' is the standard input. Of a folder
+check and fmt take all files *.aesl and *.aseba below it.
+exit codes: 0 done, 1 a program is wrong or stopped with a fault, 2 wrong use or unreadable file.
 """
 
 
@@ -60,19 +69,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     command: Callable[[argparse.Namespace], int] = options.command
     options.text = ""
+    options.language = options.lang or user_language(os.environ)
     try:
         with standard_output():
             return command(options)
     except SourceError as refusal:
-        print(_told(refusal, options), file=sys.stderr)
+        _print(options, finding_of_compile_error(refusal.source, refusal.error, table_of(options.language)))
         return WRONG_PROGRAM
     except AeslError as error:
-        print(
-            error.located(options.file), _excerpt(options, error.line - 1, error.column - 1), sep="\n", file=sys.stderr
-        )
+        _print(options, finding_of_text_error(options.file, error, table_of(options.language)))
         return WRONG_USE if error.kind == "aesl-other-robot" else WRONG_PROGRAM
     except TextError as error:
-        print(error.located(options.file), file=sys.stderr)
+        _print(options, finding_of_text_error(options.file, error, table_of(options.language)))
     except BrokenPipeError:
         pass  # nobody reads on, and no more is to be said
     except OSError as error:
@@ -88,9 +96,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _check(options: argparse.Namespace) -> int:
-    for source in _read(options):
-        _compile_source(options, source, with_warnings=True)
-    return DONE
+    return lint.check(options, _target(options))
 
 
 def _compile(options: argparse.Namespace) -> int:
@@ -165,7 +171,7 @@ def _execute(machine: VirtualMachine, program: Program, source: Source, options:
     if fault is not None:
         row = program.row_of(fault.pc)
         place = options.file if row is None else f"{options.file}:{source.node.rows_in_file()[row] + 1}"
-        print(f"{place}: stopped: {fault.sentence}", file=sys.stderr)
+        print(f"{place}: stopped: {fault.sentence_in(options.language)}", file=sys.stderr)
     elif machine.is_active:
         print(f"{options.file}: still running after {options.limit} instructions", file=sys.stderr)
         machine.stop()
@@ -179,41 +185,15 @@ def _trace(machine: VirtualMachine, program: Program, rows: Sequence[int], pc: i
     print(f"{pc:5} {line:>5}  {describe(machine.bytecode[pc : pc + 3]):32} [{stack}]")
 
 
-def _fmt(options: argparse.Namespace) -> int:
-    file = read_text(options.file)
-    options.text = file.text
-    network = network_of(file.text, THYMIO_II.name)
-    nodes = tuple(replace(node, code=_formatted(node, options)) for node in network.nodes)
-    if network.pieces:
-        result = aesl.dumps(replace(network, nodes=nodes))
-    else:
-        result = nodes[0].code.replace("\n", "\r\n" if "\r\n" in file.text else "\n")
-    if options.check:
-        return DONE if result == file.text else WRONG_PROGRAM
-    if options.write and options.file != "-":
-        if result != file.text:
-            rewrite_file(options.file, file.encoded(result))
-    else:
-        print_bytes(file.encoded(result))
-    return DONE
-
-
-def _formatted(node: aesl.Node, options: argparse.Namespace) -> str:
-    try:
-        return formatted(node.code)
-    except CompileError as error:
-        raise SourceError(Source(options.file, node), error) from error
-
-
 # -- files -------------------------------------------------------------------------------------------------------------
 
 
 def _read(options: argparse.Namespace) -> list[Source]:
     """The programs of the file for the chosen node, or for the target."""
     options.text = read_text(options.file).text
-    name = options.node or _target(options).name
-    network = network_of(options.text, name)
-    return sources_of(network, options.file, name, options.events, options.constants)
+    kind = _target(options).name
+    network = network_of(options.text, options.node or kind)
+    return sources_of(network, options.file, kind, options.node, options.events, options.constants)
 
 
 def _target(options: argparse.Namespace) -> TargetDescription:
@@ -234,25 +214,16 @@ def _compile_source(options: argparse.Namespace, source: Source, *, with_warning
         program = assemble(source.stages(_target(options)), _target(options))
     except CompileError as error:
         raise SourceError(source, error) from error
-    if with_warnings:
-        for warning in program.warnings:
-            row, col = source.place(warning.pos.offset)
-            print(f"{options.file}:{row + 1}:{col + 1}: warning: {warning}", file=sys.stderr)
-            print(_excerpt(options, row, col), file=sys.stderr)
+    for warning in program.warnings if with_warnings else ():
+        row, col = source.place(warning.pos.offset)
+        sentence = wording(warning.kind, warning.arguments, table_of(options.language))
+        _print(options, Finding(options.file, row + 1, col + 1, WARNING, warning.kind, sentence))
     return program
 
 
-def _told(refusal: SourceError, options: argparse.Namespace) -> str:
-    """The error with its place, and the line there."""
-    error = refusal.error
-    if error.pos is None:
-        return error.located(options.file)
-    row, col = refusal.source.place(error.pos.offset)
-    return f"{options.file}:{row + 1}:{col + 1}: {error}\n{_excerpt(options, row, col)}"
-
-
-def _excerpt(options: argparse.Namespace, row: int, col: int) -> str:
-    return excerpt(options.text, row, col, is_coloured=sys.stderr.isatty() and "NO_COLOR" not in os.environ)
+def _print(options: argparse.Namespace, finding: Finding) -> None:
+    label = wording("label-hint", (), table_of(options.language))
+    print(finding.text(options.text, label=label, is_colored=is_colored()), file=sys.stderr)
 
 
 def _as_data(program: Program) -> dict[str, object]:
@@ -278,7 +249,13 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    check = _command(commands, "check", _check, "report the first error, or warnings")
+    check = _command(commands, "check", _check, "report the first error of each program, or warnings")
+    check.add_argument(
+        "--format",
+        choices=("text", "json"),
+        default="text",
+        help="json: all findings on the output, default: %(default)s",
+    )
     compiling = _command(commands, "compile", _compile, "write the bytecode")
     compiling.add_argument("--format", choices=("hex", "json", "listing"), default="hex", help="default: %(default)s")
     compiling.add_argument("-o", "--output", metavar="FILE", help="default: standard output")
@@ -300,15 +277,20 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument(
         "--limit", metavar="N", type=partial(_number, lowest=1, highest=10**12), default=1_000_000, help=limit_help
     )
-    fmt = commands.add_parser(
-        "fmt", help="lay the source out regularly", description="Indent the source and space it regularly."
-    )
-    fmt.set_defaults(command=_fmt)
-    fmt.add_argument("file", metavar="FILE")
-    fmt.add_argument("--write", action="store_true", help="change the file")
-    fmt.add_argument("--check", action="store_true", help="change nothing; exit code 1 if the file would change")
-    for command in (check, compiling, dis, run):
+    fmt = _command(commands, "fmt", lint.format_files, "indent and space programs regularly")
+    result = fmt.add_mutually_exclusive_group()
+    result.add_argument("--write", action="store_true", help="change the files")
+    result.add_argument("--check", action="store_true", help="change nothing; exit code 1 if a file would change")
+    result.add_argument("--diff", action="store_true", help="as --check, and show the changes")
+    for command in (check, fmt):
+        command.add_argument("files", metavar="FILE", nargs="+", help=".aesl file, bare program text, folder, or -")
+    for command in (compiling, dis, run):
         command.add_argument("file", metavar="FILE", help=".aesl file, bare program text, or -")
+    for command in (check, compiling, dis, run, fmt):
+        command.add_argument(
+            "--lang", choices=sorted(LANGUAGES), help="language of messages, default: that of the locale"
+        )
+    for command in (check, compiling, dis, run):
         command.add_argument("--target", metavar="FILE", help="target description in JSON, default: Thymio II")
         command.add_argument("--node", metavar="NAME", help="node of the .aesl file, default: that of the target")
         command.add_argument(

@@ -218,12 +218,10 @@ class _Reader:
         return flag == "true"
 
     def node(self, attributes: Mapping[str, str]) -> _OpenNode:
-        name = self.attribute(attributes, "name")
-        written_id = attributes.get("nodeId", "0")
+        name = attributes.get("name", "")  # editors name a node after the device, or not at all
+        written_id = attributes.get("nodeId", "").strip() or "0"
         node_id = int(written_id) if _NUMBER.fullmatch(written_id) else written_id
         if self.is_strict:
-            if not name.strip():
-                raise self.wrong("aesl-node-name", "name", ())
             if not (0 <= node_id <= 0xFFFF if isinstance(node_id, int) else _UUID.fullmatch(node_id)):
                 raise self.wrong("aesl-node-id", "nodeId", (written_id,))
             if node_id != 0:
@@ -259,6 +257,9 @@ class _Reader:
         return attributes[name]
 
     def number(self, attributes: Mapping[str, str], name: str) -> int:
+        """Return the value of an attribute; a missing one is 0 unless the reading is strict."""
+        if name not in attributes and not self.is_strict:
+            return 0
         text = self.attribute(attributes, name)
         if not _NUMBER.fullmatch(text):
             raise self.wrong("aesl-number", name, (name, text))

@@ -11,6 +11,7 @@ from aseba_vm.check import check_sizes, check_types
 from aseba_vm.emit import check_stack, emit
 from aseba_vm.errors import CompileError
 from aseba_vm.expand import expand
+from aseba_vm.hints import Attempt, find_hint
 from aseba_vm.lexer import Token, tokenise
 from aseba_vm.optimise import optimise
 from aseba_vm.parser import parse
@@ -93,17 +94,42 @@ def compile_stages(
     events: Sequence[tuple[str, int]] = (),
     constants: Sequence[tuple[str, int]] = (),
 ) -> Stages:
-    """Run all passes and keep what each one made. Raises CompileError."""
-    if target.variables_end > target.variables_size:
-        raise CompileError("target-too-small")
-    tokens = tokenise(source)
-    tree = parse(tokens, target, events, constants)
-    check_sizes(tree)
-    expanded = expand(tree, target.variables_size)
-    check_types(expanded)
-    optimised = optimise(expanded)
-    segments = emit(optimised)
-    check_stack(segments, target.stack_size)
+    """Run all passes and keep what each one made. Raises CompileError, with a hint where one is known."""
+    result = _attempt(source, target, events, constants)
+    if isinstance(result, Stages):
+        return result
+
+    def again(text: str) -> Attempt | None:
+        other = _attempt(text, target, events, constants)
+        return other if isinstance(other, Attempt) else None
+
+    result.error.hint = find_hint(source, target, result, again)
+    raise result.error
+
+
+def _attempt(
+    source: str,
+    target: TargetDescription,
+    events: Sequence[tuple[str, int]],
+    constants: Sequence[tuple[str, int]],
+) -> Attempt | Stages:
+    """Run all passes; return what they made, or the error and the pass that found it."""
+    stage = 0
+    try:
+        if target.variables_end > target.variables_size:
+            raise CompileError("target-too-small")
+        tokens = tokenise(source)
+        stage = 1
+        tree = parse(tokens, target, events, constants)
+        stage = 2
+        check_sizes(tree)
+        expanded = expand(tree, target.variables_size)
+        check_types(expanded)
+        optimised = optimise(expanded)
+        segments = emit(optimised)
+        check_stack(segments, target.stack_size)
+    except CompileError as error:
+        return Attempt(stage, error)
     return Stages(tokens, tree, expanded, optimised, segments)
 
 

@@ -5,9 +5,10 @@ An error is data (kind, arguments, position); its wording comes from :mod:`aseba
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from aseba_vm.messages import wording
+from aseba_vm.messages import MESSAGES, wording
 
 Argument = int | str | tuple[int | str, ...]
 
@@ -28,6 +29,41 @@ class SourcePos:
         return SourcePos(self.offset, self.row + row, self.col + col if self.row == 0 else self.col)
 
 
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """Replace the characters of a program from offset ``start`` to ``end`` (exclusive) by ``text``."""
+
+    start: int
+    end: int
+    text: str
+
+    def applied(self, source: str) -> str:
+        """Return a program with the edit."""
+        return source[: self.start] + self.text + source[self.end :]
+
+
+@dataclass(frozen=True, slots=True)
+class Hint:
+    """What was probably meant where a program is refused, as data.
+
+    ``kind`` is a stable identifier, ``arguments`` its ordered values, ``edit`` a change that repairs the place, ``row``
+    a row of the program, from 0, that the sentence names after the arguments.
+    """
+
+    kind: str
+    arguments: tuple[Argument, ...] = ()
+    edit: Edit | None = None
+    row: int | None = None
+
+    def __str__(self) -> str:
+        return self.worded()
+
+    def worded(self, messages: Mapping[str, str] = MESSAGES, rows: Sequence[int] = ()) -> str:
+        """Return the sentence; ``rows`` leads from rows of the program to rows of its file, both from 0."""
+        lines = () if self.row is None else ((rows[self.row] if rows else self.row) + 1,)
+        return wording(self.kind, (*self.arguments, *lines), messages)
+
+
 class AsebaError(Exception):
     """Base of everything this package raises about other people's input."""
 
@@ -35,7 +71,8 @@ class AsebaError(Exception):
 class CompileError(AsebaError):
     """A program that is refused: the first error met, in the order of the language spec, section 11.
 
-    ``kind`` is a stable identifier, ``arguments`` its ordered values, ``pos`` the place or None.
+    ``kind`` is a stable identifier, ``arguments`` its ordered values, ``pos`` the place or None; ``hint`` says what was
+    probably meant, if that is known (:mod:`aseba_vm.hints`).
     """
 
     def __init__(self, kind: str, arguments: tuple[Argument, ...] = (), pos: SourcePos | None = None) -> None:
@@ -43,6 +80,7 @@ class CompileError(AsebaError):
         self.kind = kind
         self.arguments = arguments
         self.pos = pos
+        self.hint: Hint | None = None
 
     def __str__(self) -> str:
         return wording(self.kind, self.arguments)

@@ -112,7 +112,6 @@ MESSAGES: Mapping[str, str] = {
     " not a digit or '.' first, and no word of the language",
     "aesl-event-twice": "found event '{0}' again, expected it once; it is defined in line {1} already",
     "aesl-constant-twice": "found constant '{0}' again, expected it once; it is defined in line {1} already",
-    "aesl-node-name": "found a node with an empty name, expected a kind of robot such as thymio-II",
     "aesl-node-id": 'found nodeId="{0}", expected a number from 0 to 65535 or a UUID',
     "aesl-node-twice": "found node '{0}' with number {1} again, expected it once; it is in line {2} already",
     "aesl-other-robot": "found no program for '{0}', only for {1}; expected <node name=\"{0}\">",
@@ -128,6 +127,13 @@ MESSAGES: Mapping[str, str] = {
     "xml-entity": "found an unknown entity, expected &lt; &gt; &amp; &quot; &apos; or the number of a character",
     "xml-empty": "found nothing, expected <network>",
     "xml-other": "found XML that cannot be read, expected well-formed XML ({0})",
+    # notes: what was guessed about a file
+    "note-only-node": "node '{0}' runs here, as it is the only one of the file",
+    "note-next-node": "node '{0}' runs here, as no robot has its name and this one was the next without a program",
+    "note-guessed-node": "no robot is called '{0}': the next robot without a program runs this node",
+    "note-left-out-node": "node '{0}' is left out, as it does not compile for a Thymio: {1}",
+    "note-checked-as": "node '{0}' is checked as a program for '{1}'",
+    "note-made-for": "the program was made for the device '{0}'",
     # faults of the machine
     "fault-index": "index {0} is outside an array of {1}",
     "fault-deque": "a deque was given a wrong index or too many values",
@@ -143,6 +149,51 @@ MESSAGES: Mapping[str, str] = {
     "fault-jump-out-of-range": "damaged program: jump outside the code",
     "fault-emit-too-long": "damaged program: an event has too many values",
     "fault-breakpoint-out-of-range": "a breakpoint lies outside the code",
+    # hints: what was probably meant (aseba_vm/hints.py)
+    "check-summary": "{0} files checked: {1} with errors, {2} with warnings",
+    "fmt-summary": "{0} files read: {1} with an irregular layout, {2} refused",
+    "fmt-different": "the layout is not regular",
+    "label-hint": "Hint",
+    "hint-comment": "a comment is written with '{1}' instead of '{0}'",
+    "hint-semicolon": "Aseba needs no ';': a space or a new line is enough",
+    "hint-braces": "Aseba has no braces: a block begins with 'then' or 'do' and finishes with 'end'."
+    " Right: if a == 1 then … end",
+    "hint-text": "Aseba knows whole numbers only, no texts; a comment begins with '#'",
+    "hint-look-alike": "this character only looks like '{0}', as it often does in text copied from a web page;"
+    " write '{0}'",
+    "hint-invisible": "there is an invisible character here ({0}), perhaps copied from a web page;"
+    " a normal space is right",
+    "hint-not-equal": "'not equal' is written '!=', without a space",
+    "hint-not": "'not' is written as a word. Right: if not (a == 1) then",
+    "hint-decimals": "Aseba has whole numbers only, and {0} is none. Use smaller units,"
+    " such as 1500 milliseconds for 1.5 seconds",
+    "hint-comparison": "this comparison is written '{0}'",
+    "hint-equals-in-condition": "'=' gives a variable a new value; to compare two values write '=='."
+    " Right: if a == 1 then",
+    "hint-and": "'and' is written as a word. Right: if a == 1 and b == 2 then",
+    "hint-or": "'or' is written as a word. Right: if a == 1 or b == 2 then",
+    "hint-assignment": "a variable gets a new value with '='. Right: a = 1",
+    "hint-step": "'++' and '--' stand after the variable. Right: {0}",
+    "hint-elseif": "instead of '{0}' write 'elseif'. Right: elseif a == 2 then",
+    "hint-small-letters": "words of the language have small letters only: write '{1}' instead of '{0}'",
+    "hint-truth": "'{0}' does not exist; use 1 for true and 0 for false. Right: if a == 1 then",
+    "hint-call": "'{0}' is a function of the robot, so 'call' stands before it. Right: call {0}(…)",
+    "hint-callsub": "'{0}' is a subroutine. Right: callsub {0}",
+    "hint-sub-arguments": "a subroutine takes no values: put them into variables before. Right: callsub {0}",
+    "hint-native-in-expression": "a function gives its result to a variable that stands between its parentheses."
+    " Right: call {0}(…) on a line of its own",
+    "hint-callsub-parentheses": "a subroutine has no parentheses. Right: callsub {0}",
+    "hint-parentheses": "a function has parentheses, with its values between them. Right: call {0}(…)",
+    "hint-else-if": "'else if' in line {0} begins a second block, which needs an 'end' of its own;"
+    " write 'elseif' to go on with the first",
+    "hint-missing-end": "the '{0}' of line {1} has no 'end'",
+    "hint-extra-end": "this 'end' closes nothing:"
+    " 'if', 'when', 'while' and 'for' have an 'end', 'onevent' and 'sub' have none",
+    "hint-block-word": "'{0}' belongs here. Right: if a == 1 then … end, while a < 9 do … end",
+    "hint-for": "this loop is written differently. Right: for i in 0:9 do … end",
+    "hint-late-var": "all variables stand at the top of the program: write 'var {0}' there",
+    "hint-late-const": "all constants stand at the top of the program, before the variables: write 'const {0}' there",
+    "hint-truth-of-number": "a condition compares two values. Right: {0} != 0",
     # warnings
     "warning-unreachable": "this is never executed: it comes after a return",
     "warning-constant-when": "the condition of this 'when' never changes, so there is no moment when it becomes true",

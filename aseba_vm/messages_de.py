@@ -99,7 +99,6 @@ GERMAN: Mapping[str, str] = {
     " am Anfang weder Ziffer noch '.', und kein Wort der Sprache",
     "aesl-event-twice": "gefunden: das Ereignis '{0}' noch einmal, erwartet: einmal; es steht schon in Zeile {1}",
     "aesl-constant-twice": "gefunden: die Konstante '{0}' noch einmal, erwartet: einmal; sie steht schon in Zeile {1}",
-    "aesl-node-name": "gefunden: ein Knoten ohne Namen, erwartet: eine Art von Roboter wie thymio-II",
     "aesl-node-id": 'gefunden: nodeId="{0}", erwartet: eine Zahl von 0 bis 65535 oder eine UUID',
     "aesl-node-twice": "gefunden: den Knoten '{0}' mit der Nummer {1} noch einmal, erwartet: einmal;"
     " er steht in Zeile {2}",
@@ -117,6 +116,14 @@ GERMAN: Mapping[str, str] = {
     " erwartet: &lt; &gt; &amp; &quot; &apos; oder die Nummer eines Zeichens",
     "xml-empty": "gefunden: nichts, erwartet: <network>",
     "xml-other": "gefunden: XML, das sich nicht lesen lässt, erwartet: wohlgeformtes XML ({0})",
+    "note-only-node": "der Knoten '{0}' läuft hier, weil er der einzige der Datei ist",
+    "note-next-node": "der Knoten '{0}' läuft hier, weil kein Roboter so heißt"
+    " und dieser der nächste ohne Programm war",
+    "note-guessed-node": "kein Roboter heißt '{0}': der nächste Roboter ohne Programm bekommt diesen Knoten",
+    "note-left-out-node": "der Knoten '{0}' wird ausgelassen,"
+    " weil er sich nicht für einen Thymio übersetzen lässt: {1}",
+    "note-checked-as": "der Knoten '{0}' wird als Programm für '{1}' geprüft",
+    "note-made-for": "das Programm wurde für das Gerät '{0}' geschrieben",
     "fault-index": "der Index {0} liegt außerhalb eines Feldes mit {1} Elementen",
     "fault-deque": "eine Deque bekam einen falschen Index oder zu viele Werte",
     "fault-division-by-zero": "Division durch null",
@@ -131,6 +138,49 @@ GERMAN: Mapping[str, str] = {
     "fault-jump-out-of-range": "beschädigtes Programm: Sprung aus dem Programm hinaus",
     "fault-emit-too-long": "beschädigtes Programm: ein Ereignis hat zu viele Werte",
     "fault-breakpoint-out-of-range": "ein Haltepunkt liegt außerhalb des Programms",
+    "check-summary": "{0} Dateien geprüft: {1} mit Fehlern, {2} mit Warnungen",
+    "fmt-summary": "{0} Dateien gelesen: {1} unregelmäßig gesetzt, {2} abgelehnt",
+    "fmt-different": "die Anordnung ist nicht regelmäßig",
+    "label-hint": "Tipp",
+    "hint-comment": "ein Kommentar wird mit '{1}' statt mit '{0}' geschrieben",
+    "hint-semicolon": "Aseba braucht kein ';': ein Leerzeichen oder eine neue Zeile genügt",
+    "hint-braces": "Aseba hat keine geschweiften Klammern: ein Block beginnt mit 'then' oder 'do'"
+    " und hört mit 'end' auf. Richtig: if a == 1 then … end",
+    "hint-text": "Aseba kennt nur ganze Zahlen, keine Texte; ein Kommentar beginnt mit '#'",
+    "hint-look-alike": "dieses Zeichen sieht nur aus wie '{0}', oft kommt es von einer Webseite; schreib '{0}'",
+    "hint-invisible": "hier steht ein unsichtbares Zeichen ({0}), vielleicht von einer Webseite kopiert;"
+    " richtig ist ein gewöhnliches Leerzeichen",
+    "hint-not-equal": "„ungleich“ schreibt man '!=', ohne Leerzeichen",
+    "hint-not": "„nicht“ schreibt man als Wort: not. Richtig: if not (a == 1) then",
+    "hint-decimals": "Aseba hat nur ganze Zahlen, und {0} ist keine. Nimm kleinere Einheiten,"
+    " zum Beispiel 1500 Millisekunden für 1,5 Sekunden",
+    "hint-comparison": "diesen Vergleich schreibt man '{0}'",
+    "hint-equals-in-condition": "'=' gibt einer Variablen einen neuen Wert; zwei Werte vergleicht man mit '=='."
+    " Richtig: if a == 1 then",
+    "hint-and": "„und“ schreibt man als Wort: and. Richtig: if a == 1 and b == 2 then",
+    "hint-or": "„oder“ schreibt man als Wort: or. Richtig: if a == 1 or b == 2 then",
+    "hint-assignment": "einen neuen Wert bekommt eine Variable mit '='. Richtig: a = 1",
+    "hint-step": "'++' und '--' stehen nach der Variablen. Richtig: {0}",
+    "hint-elseif": "statt '{0}' schreibt man 'elseif'. Richtig: elseif a == 2 then",
+    "hint-small-letters": "Wörter der Sprache schreibt man klein: '{1}' statt '{0}'",
+    "hint-truth": "'{0}' gibt es nicht; 1 steht für wahr und 0 für falsch. Richtig: if a == 1 then",
+    "hint-call": "'{0}' ist eine Funktion des Roboters, davor steht 'call'. Richtig: call {0}(…)",
+    "hint-callsub": "'{0}' ist ein Unterprogramm. Richtig: callsub {0}",
+    "hint-sub-arguments": "ein Unterprogramm bekommt keine Werte: leg sie vorher in Variablen. Richtig: callsub {0}",
+    "hint-native-in-expression": "eine Funktion gibt ihr Ergebnis einer Variablen, die zwischen ihren Klammern steht."
+    " Richtig: call {0}(…) auf einer eigenen Zeile",
+    "hint-callsub-parentheses": "ein Unterprogramm hat keine Klammern. Richtig: callsub {0}",
+    "hint-parentheses": "eine Funktion hat Klammern, dazwischen stehen ihre Werte. Richtig: call {0}(…)",
+    "hint-else-if": "'else if' in Zeile {0} beginnt einen zweiten Block, der ein eigenes 'end' braucht;"
+    " mit 'elseif' geht der erste weiter",
+    "hint-missing-end": "dem '{0}' von Zeile {1} fehlt ein 'end'",
+    "hint-extra-end": "dieses 'end' schließt nichts:"
+    " 'if', 'when', 'while' und 'for' haben ein 'end', 'onevent' und 'sub' keines",
+    "hint-block-word": "hier gehört '{0}' hin. Richtig: if a == 1 then … end, while a < 9 do … end",
+    "hint-for": "diese Schleife schreibt man anders. Richtig: for i in 0:9 do … end",
+    "hint-late-var": "alle Variablen stehen oben im Programm: schreib 'var {0}' dorthin",
+    "hint-late-const": "alle Konstanten stehen oben im Programm, vor den Variablen: schreib 'const {0}' dorthin",
+    "hint-truth-of-number": "eine Bedingung vergleicht zwei Werte. Richtig: {0} != 0",
     "warning-unreachable": "das wird nie ausgeführt: es steht nach einem return",
     "warning-constant-when": "die Bedingung dieses 'when' ändert sich nie, sie kann also nie wahr werden",
     "warning-endless-for": "diese Schleife endet vielleicht nie:"

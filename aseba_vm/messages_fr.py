@@ -100,7 +100,6 @@ FRENCH: Mapping[str, str] = {
     "aesl-event-twice": "trouvé : l'événement '{0}' encore une fois, attendu : une fois ; il est déjà à la ligne {1}",
     "aesl-constant-twice": "trouvé : la constante '{0}' encore une fois, attendu : une fois ;"
     " elle est déjà à la ligne {1}",
-    "aesl-node-name": "trouvé : un nœud sans nom, attendu : un genre de robot comme thymio-II",
     "aesl-node-id": 'trouvé : nodeId="{0}", attendu : un nombre de 0 à 65535 ou un UUID',
     "aesl-node-twice": "trouvé : le nœud '{0}' de numéro {1} encore une fois, attendu : une fois ;"
     " il est à la ligne {2}",
@@ -117,6 +116,13 @@ FRENCH: Mapping[str, str] = {
     "xml-entity": "trouvé : une entité inconnue, attendu : &lt; &gt; &amp; &quot; &apos; ou le numéro d'un caractère",
     "xml-empty": "trouvé : rien, attendu : <network>",
     "xml-other": "trouvé : du XML illisible, attendu : du XML bien formé ({0})",
+    "note-only-node": "le nœud '{0}' s'exécute ici, car c'est le seul du fichier",
+    "note-next-node": "le nœud '{0}' s'exécute ici, car aucun robot n'a ce nom"
+    " et celui-ci était le prochain sans programme",
+    "note-guessed-node": "aucun robot ne s'appelle '{0}' : le prochain robot sans programme exécute ce nœud",
+    "note-left-out-node": "le nœud '{0}' est laissé de côté, car il ne se compile pas pour un Thymio : {1}",
+    "note-checked-as": "le nœud '{0}' est vérifié comme programme pour '{1}'",
+    "note-made-for": "le programme a été écrit pour l'appareil '{0}'",
     "fault-index": "l'indice {0} est hors d'un tableau de {1}",
     "fault-deque": "une file a reçu un indice faux ou trop de valeurs",
     "fault-division-by-zero": "division par zéro",
@@ -131,6 +137,51 @@ FRENCH: Mapping[str, str] = {
     "fault-jump-out-of-range": "programme endommagé : saut hors du programme",
     "fault-emit-too-long": "programme endommagé : un événement a trop de valeurs",
     "fault-breakpoint-out-of-range": "un point d'arrêt est hors du programme",
+    "check-summary": "{0} fichiers vérifiés : {1} avec des erreurs, {2} avec des avertissements",
+    "fmt-summary": "{0} fichiers lus : {1} à la mise en page irrégulière, {2} refusés",
+    "fmt-different": "la mise en page n'est pas régulière",
+    "label-hint": "Conseil",
+    "hint-comment": "un commentaire s'écrit avec '{1}' au lieu de '{0}'",
+    "hint-semicolon": "Aseba n'a pas besoin de ';' : une espace ou une nouvelle ligne suffit",
+    "hint-braces": "Aseba n'a pas d'accolades : un bloc commence par 'then' ou 'do' et finit par 'end'."
+    " Correct : if a == 1 then … end",
+    "hint-text": "Aseba ne connaît que des nombres entiers, pas de textes ; un commentaire commence par '#'",
+    "hint-look-alike": "ce caractère ressemble seulement à '{0}', il vient souvent d'une page web ; écris '{0}'",
+    "hint-invisible": "il y a ici un caractère invisible ({0}), peut-être copié d'une page web ;"
+    " il faut une espace ordinaire",
+    "hint-not-equal": "« différent » s'écrit '!=', sans espace",
+    "hint-not": "« non » s'écrit avec le mot not. Correct : if not (a == 1) then",
+    "hint-decimals": "Aseba n'a que des nombres entiers, et {0} n'en est pas un. Prends une unité plus petite,"
+    " par exemple 1500 millisecondes pour 1,5 seconde",
+    "hint-comparison": "cette comparaison s'écrit '{0}'",
+    "hint-equals-in-condition": "'=' donne une nouvelle valeur à une variable ; pour comparer deux valeurs, écris '=='."
+    " Correct : if a == 1 then",
+    "hint-and": "« et » s'écrit avec le mot and. Correct : if a == 1 and b == 2 then",
+    "hint-or": "« ou » s'écrit avec le mot or. Correct : if a == 1 or b == 2 then",
+    "hint-assignment": "une variable reçoit une nouvelle valeur avec '='. Correct : a = 1",
+    "hint-step": "'++' et '--' se placent après la variable. Correct : {0}",
+    "hint-elseif": "au lieu de '{0}', écris 'elseif'. Correct : elseif a == 2 then",
+    "hint-small-letters": "les mots du langage s'écrivent en minuscules : '{1}' au lieu de '{0}'",
+    "hint-truth": "'{0}' n'existe pas ; 1 veut dire vrai et 0 faux. Correct : if a == 1 then",
+    "hint-call": "'{0}' est une fonction du robot, il faut 'call' devant. Correct : call {0}(…)",
+    "hint-callsub": "'{0}' est un sous-programme. Correct : callsub {0}",
+    "hint-sub-arguments": "un sous-programme ne reçoit pas de valeurs : mets-les d'abord dans des variables."
+    " Correct : callsub {0}",
+    "hint-native-in-expression": "une fonction donne son résultat à une variable placée entre ses parenthèses."
+    " Correct : call {0}(…) sur une ligne à part",
+    "hint-callsub-parentheses": "un sous-programme n'a pas de parenthèses. Correct : callsub {0}",
+    "hint-parentheses": "une fonction a des parenthèses, avec ses valeurs dedans. Correct : call {0}(…)",
+    "hint-else-if": "'else if' à la ligne {0} commence un deuxième bloc, qui a besoin de son propre 'end' ;"
+    " avec 'elseif', le premier continue",
+    "hint-missing-end": "il manque un 'end' au '{0}' de la ligne {1}",
+    "hint-extra-end": "ce 'end' ne ferme rien :"
+    " 'if', 'when', 'while' et 'for' ont un 'end', 'onevent' et 'sub' n'en ont pas",
+    "hint-block-word": "il faut '{0}' ici. Correct : if a == 1 then … end, while a < 9 do … end",
+    "hint-for": "cette boucle s'écrit autrement. Correct : for i in 0:9 do … end",
+    "hint-late-var": "toutes les variables sont en haut du programme : écris 'var {0}' là-haut",
+    "hint-late-const": "toutes les constantes sont en haut du programme, avant les variables :"
+    " écris 'const {0}' là-haut",
+    "hint-truth-of-number": "une condition compare deux valeurs. Correct : {0} != 0",
     "warning-unreachable": "ceci n'est jamais exécuté : c'est après un return",
     "warning-constant-when": "la condition de ce 'when' ne change jamais, elle ne peut donc jamais devenir vraie",
     "warning-endless-for": "cette boucle pourrait ne jamais finir :"

@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left, bisect_right
-from dataclasses import dataclass, field
+from collections.abc import Collection
+from dataclasses import dataclass, field, replace
+
+_OTHER_DEVICES = re.compile(r"e-?puck|dummynode|marxbot|handbot|smartrob", re.IGNORECASE)
+"""Names of nodes that are kinds of devices other than Thymios; any other unknown name may be that of one Thymio."""
+_VPL_PLUGINS = frozenset(("ThymioVisualProgramming", "ThymioVPL"))
+_VPL_DATA = "vplroot"
+_VPL_EVENTS = (("pair_run", 1), ("debug_log", 14))
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,3 +92,48 @@ class Network:
         same_name = [node for node in self.nodes if node.name == name]
         exact = [node for node in same_name if node.node_id == node_id]
         return next(iter(exact or same_name), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """The nodes of a file that one kind of device can run: ``named`` after it, ``guessed`` with a name of their own
+    (that of a device, or none); ``others`` are for other devices.
+    """
+
+    named: tuple[Node, ...]
+    guessed: tuple[Node, ...]
+    others: tuple[Node, ...]
+
+    @property
+    def nodes(self) -> tuple[Node, ...]:
+        """All nodes to be run, named ones first."""
+        return (*self.named, *self.guessed)
+
+
+def select(network: Network, names: Collection[str]) -> Selection:
+    """Sort the nodes of a network for devices of these names.
+
+    Editors name a node after the device it was connected to (``Thymio_4 on LAPTOP``), so an unknown name says nothing
+    about the program. Only nodes named after another kind of device, such as ``e-puck``, are left out, and only if the
+    file has other nodes.
+    """
+    named = tuple(node for node in network.nodes if node.name in names)
+    unknown = tuple(node for node in network.nodes if node.name not in names)
+    others = tuple(node for node in unknown if is_other_device(node))
+    guessed = tuple(node for node in unknown if not is_other_device(node))
+    return Selection(named, guessed, others) if named or guessed else Selection((), others, ())
+
+
+def is_other_device(node: Node) -> bool:
+    """Return whether a node is named after a kind of device that is no Thymio."""
+    return _OTHER_DEVICES.match(node.name.strip()) is not None
+
+
+def with_vpl_events(network: Network) -> Network:
+    """Add the events that VPL declares by itself if a node has VPL data and the file does not declare them."""
+    plugins = [plugin for node in network.nodes for plugin in node.plugins]
+    if not any(plugin.name in _VPL_PLUGINS or plugin.element == _VPL_DATA for plugin in plugins):
+        return network
+    declared = {name for name, _ in network.events}
+    missing = tuple(event for event in _VPL_EVENTS if event[0] not in declared)
+    return replace(network, events=(*network.events, *missing))

@@ -41,7 +41,7 @@ from aseba_vm.tree import (
 )
 from aseba_vm.vectors import check_address, size_of
 
-_COMPOUND = frozenset(("+=", "-=", "*=", "/=", "%=", "|=", "^=", "&=", "<<=", ">>="))
+COMPOUND = frozenset(("+=", "-=", "*=", "/=", "%=", "|=", "^=", "&=", "<<=", ">>="))
 
 
 def parse(
@@ -353,7 +353,7 @@ class _Parser:
         if token.kind in ("++", "--"):
             self.stream.advance()
             return Compound(token.kind[0], left, None, token.pos)
-        if token.kind != "=" and token.kind not in _COMPOUND:
+        if token.kind != "=" and token.kind not in COMPOUND:
             raise CompileError("expected-assignment", (token.described,), token.pos)
         self.stream.advance()
         right: Expression = yield self.expressions.expression()

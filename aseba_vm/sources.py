@@ -10,6 +10,7 @@ from pathlib import Path
 from aseba_vm import aesl
 from aseba_vm.compiler import Stages, compile_stages
 from aseba_vm.errors import AeslError, CompileError
+from aseba_vm.network import select, with_vpl_events
 from aseba_vm.output import named
 from aseba_vm.target import TargetDescription
 from aseba_vm.textfile import TextFile, decoded
@@ -19,17 +20,22 @@ Definitions = tuple[tuple[str, int], ...]
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A program and its definitions, and how to tell places in its file."""
+    """A program and its definitions, and places in its file; ``is_guessed``: its node has a name of its own."""
 
     name: str
     node: aesl.Node
     events: Definitions = ()
     constants: Definitions = ()
+    is_guessed: bool = False
+
+    def compiled(self, target: TargetDescription) -> Stages:
+        """Compile. Raises CompileError."""
+        return compile_stages(self.node.code, target, self.events, self.constants)
 
     def stages(self, target: TargetDescription) -> Stages:
         """Compile. Raises SourceError, which has its place in the file."""
         try:
-            return compile_stages(self.node.code, target, self.events, self.constants)
+            return self.compiled(target)
         except CompileError as error:
             raise SourceError(self, error) from error
 
@@ -60,13 +66,25 @@ def network_of(text: str, name: str) -> aesl.Network:
 
 
 def sources_of(
-    network: aesl.Network, file: str, node: str, events: Sequence[tuple[str, int]], constants: Sequence[tuple[str, int]]
+    network: aesl.Network,
+    file: str,
+    kind: str,
+    node: str | None,
+    events: Sequence[tuple[str, int]],
+    constants: Sequence[tuple[str, int]],
 ) -> list[Source]:
-    """Return all programs of a file for nodes of a name. Raises AeslError if there are none."""
+    """Return the programs of a file for a kind of device, or of the nodes of one name.
+
+    Raises AeslError if no node has that name.
+    """
+    network = with_vpl_events(network)
     definitions = (*network.events, *events), (*network.constants, *constants)
-    found = [Source(file, program, *definitions) for program in network.nodes if program.name == node]
+    selection = select(network, {kind}) if node is None else None
+    if selection is not None:
+        return [Source(file, each, *definitions, each in selection.guessed) for each in selection.nodes]
+    found = [Source(file, each, *definitions) for each in network.nodes if each.name == node]
     if not found:
         row, col = network.nodes[0].place(0)
         names = ", ".join(dict.fromkeys(f"'{program.name}'" for program in network.nodes))
-        raise AeslError("aesl-other-robot", (node, names), row + 1, col + 1)
+        raise AeslError("aesl-other-robot", (str(node), names), row + 1, col + 1)
     return found

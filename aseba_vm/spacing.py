@@ -23,13 +23,13 @@ def spaced(text: str, start: int, end: int, tokens: Sequence[Token], first: int,
     parts: list[str] = []
     at = start
     for index in range(first, last):
-        begin = _begin(tokens[index])
+        begin = token_begin(tokens[index])
         comment = text[at:begin].strip()
         if comment:
             parts += [" " if parts else "", comment, " "]
         elif index > first:
             parts.append(_kept(text[at:begin], tokens, index) or _gap(tokens, index))
-        at = _end(text, tokens[index])
+        at = token_end(text, tokens[index])
         parts.append(text[begin:at])
     rest = text[at:end].rstrip()
     comment = rest.lstrip()
@@ -37,13 +37,14 @@ def spaced(text: str, start: int, end: int, tokens: Sequence[Token], first: int,
     return "".join([*parts, (before if _is_column(before) else " ") if parts and comment else "", comment])
 
 
-def _begin(token: Token) -> int:
-    """Where a token begins; shifts carry the place of their second character (language spec, section 3)."""
+def token_begin(token: Token) -> int:
+    """Return the offset at which a token begins; shifts carry the place of their second character (spec, section 3)."""
     return token.pos.offset - (token.kind in _SHIFTS)
 
 
-def _end(text: str, token: Token) -> int:
-    begin = _begin(token)
+def token_end(text: str, token: Token) -> int:
+    """Return the offset behind the last character of a token."""
+    begin = token_begin(token)
     word = _WORD.match(text, begin)
     return word.end() if word else begin + len(token.kind)
 

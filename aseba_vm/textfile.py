@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from aseba_vm.errors import TextError
 
 _MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
+_UNMARKED = ((b"<\0", "utf-16-le"), (b"\0<", "utf-16-be"))
+"""How XML begins in UTF-16 without a mark."""
 _DECLARED = re.compile(rb"\s*<\?xml\s[^>]*?encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"']")
 
 
@@ -26,10 +28,12 @@ class TextFile:
 
 def decoded(data: bytes) -> TextFile:
     """Return the text of a file. Raises TextError with the place of the first byte that is wrong."""
-    encoding = next((name for mark, name in _MARKS if data.startswith(mark)), None)
+    encoding = next((name for mark, name in (*_MARKS, *_UNMARKED) if data.startswith(mark)), None)
     if encoding is None:
         declared = _DECLARED.match(data)
         encoding = declared[1].decode("ascii") if declared else "utf-8"
+        if encoding.lower().startswith("utf-16"):  # the declaration could not be read if that were true
+            encoding = "utf-8"
     try:
         return TextFile(data.decode(encoding), encoding)
     except UnicodeDecodeError as error:

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from aseba_vm import AeslError, aesl, compile
 from aseba_vm.aesl import Network, Node, Plugin
 from aseba_vm.messages import MESSAGES
+from aseba_vm.network import select
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.vectors import SHIPPED
 
@@ -138,7 +139,6 @@ TWO = '<node name="a"/>\n'
         ("<network>\n</network>", "aesl-no-node", (2, 1)),
         ("<network/>", "aesl-no-node", (1, 1)),
         (f"<network>\n{TWO * 65}</network>", "aesl-many-nodes", (66, 1)),
-        ("<network><node name=' '/></network>", "aesl-node-name", (1, 22)),
         ("<network><node name='a' nodeId='x'/></network>", "aesl-node-id", (1, 33)),
         ("<network><node name='a' nodeId='65536'/></network>", "aesl-node-id", (1, 33)),
         ("<network><node name='a' nodeId='1'/>\n<node nodeId='1' name='a'/></network>", "aesl-node-twice", (2, 15)),
@@ -313,3 +313,55 @@ def test_rows_of_the_code_are_found_in_the_file():
     text = "<n>\n<node name=''>a\n<!--\n-->b\r\n<![CDATA[\nc\n]]><x>\n</x>\n</node></n>"
     assert aesl.loads(text).nodes[0].rows_in_file() == (1, 3, 4, 5, 7, 8)
     assert Node("a", code="a\nb").rows_in_file() == (0, 1)
+
+
+# -- files of other writers
+
+
+def test_a_forgiving_reading_takes_missing_numbers_as_zero():
+    text = '<network><event name="e"/><constant name="N"/><node/></network>'
+    network = aesl.loads(text)
+    assert (network.events, network.constants) == ((("e", 0),), (("N", 0),))
+    with pytest.raises(AeslError) as caught:
+        aesl.loads(text, strict=True)
+    assert caught.value.kind == "aesl-attribute-missing"
+
+
+@pytest.mark.parametrize("opening", ["<node>", "<node name=''>", "<node name=\"it's\" nodeId=''>", "<node nodeId=' '>"])
+def test_a_node_needs_neither_name_nor_number(opening):
+    text = f"<!DOCTYPE aesl-source>\r\n<network>{opening}a</node></network>"
+    (node,) = aesl.loads(text, strict=True).nodes
+    assert (node.node_id, node.code) == (0, "a")
+    assert aesl.dumps(aesl.loads(text)) == text
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        "\ufeff<network><node>é</node></network>".encode("utf-16-le"),
+        "\ufeff<network><node>é</node></network>".encode("utf-16-be"),
+        "<network><node>é</node></network>".encode("utf-16-le"),
+        "<network><node>é</node></network>".encode("utf-16-be"),
+        b'<?xml version="1.0" encoding="UTF-16"?>' + "<network><node>é</node></network>".encode(),
+        "\ufeff<network><node>é</node></network>".encode(),
+        '<?xml version="1.0" encoding="windows-1252"?><network><node>é</node></network>'.encode("cp1252"),
+    ],
+)
+def test_the_encodings_of_other_writers_are_read(data):
+    assert aesl.loads(data, strict=True).nodes[0].code == "é"
+
+
+@pytest.mark.parametrize(
+    ("names", "guessed", "others"),
+    [
+        (["thymio-II", "e-puck"], [], ["e-puck"]),
+        (["Thymio_4 on PC", "e-puck3"], ["Thymio_4 on PC"], ["e-puck3"]),
+        (["dummynode-0", "e-puck0"], ["dummynode-0", "e-puck0"], []),
+        (["", "thymio-II", "x"], ["", "x"], []),
+    ],
+)
+def test_nodes_are_selected_for_a_kind_of_device(names, guessed, others):
+    selection = select(Network(nodes=tuple(map(Node, names))), {"thymio-II"})
+    assert [node.name for node in selection.guessed] == guessed
+    assert [node.name for node in selection.others] == others
+    assert {node.name for node in selection.named} <= {"thymio-II"}

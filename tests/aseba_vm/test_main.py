@@ -33,6 +33,11 @@ n = {code}
 """
 
 
+@pytest.fixture(autouse=True)
+def in_english(monkeypatch):
+    monkeypatch.setenv("LC_ALL", "C")
+
+
 @pytest.fixture
 def file(tmp_path):
     def write(text, name="robot.aseba"):
@@ -358,8 +363,14 @@ def test_a_refused_file_is_not_rewritten(file):
         assert lines.read() == "onevent tap\n a = $"
 
 
-def test_a_folder_is_code_2(tmp_path, capsys):
+def test_a_folder_without_programs_is_code_2(tmp_path, capsys):
+    (tmp_path / "notes.txt").write_text("no program")
     assert main(["check", str(tmp_path)]) == 2
+    assert capsys.readouterr().err == f"aseba: {tmp_path}: no program (.aesl, .aseba) in this folder\n"
+
+
+def test_only_check_and_fmt_take_a_folder(tmp_path, capsys):
+    assert main(["compile", str(tmp_path)]) == 2
     assert capsys.readouterr().err == f"aseba: {tmp_path}: Is a directory\n"
 
 
@@ -430,3 +441,136 @@ def test_an_event_of_the_robot_hides_one_of_the_network(file, capsys):
     text = "var n = 0\nonevent tap\nn = n + 1\n"
     assert main(["run", file(text), "--global", "tap=0", "--raise", "tap"]) == 0
     assert "n 1" in capsys.readouterr().out.splitlines()
+
+
+# -- many files, languages, hints --------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def folder(tmp_path):
+    home = tmp_path / "programs"
+    for name, text in {
+        "b.aesl": AESL.format(code="nothing"),
+        "a.aseba": "sub s",
+        "sub/c.AESL": AESL.format(code="1"),
+        "sub/broken.aesl": "<network>",
+        "sub/bytes.aesl": "\udcff",
+        ".hidden/d.aesl": "x",
+        "notes.txt": "no program",
+    }.items():
+        (home / name).parent.mkdir(parents=True, exist_ok=True)
+        (home / name).write_bytes(text.encode("utf-8", "surrogateescape"))
+    return home
+
+
+def test_every_file_of_a_folder_is_checked_in_order(folder, capsys):
+    assert main(["check", str(folder), str(folder / "b.aesl")]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    places = re.findall(rf"(?m)^{re.escape(str(folder))}/(\S+?):\d+:\d+: (warning)?", err)
+    assert places == [("a.aseba", "warning"), ("b.aesl", ""), ("sub/broken.aesl", ""), ("sub/bytes.aesl", "")]
+    assert err.endswith("5 files checked: 3 with errors, 1 with warnings\n")
+
+
+def test_the_exit_code_is_that_of_the_worst_file(file, capsys):
+    good, wrong = file("var a", "good.aseba"), file("a", "wrong.aseba")
+    assert main(["check", good, wrong]) == 1
+    assert main(["check", good, good]) == 0
+    assert main(["check", good, f"{good}.none", wrong]) == 2
+    err = capsys.readouterr().err
+    assert f"aseba: {good}.none: No such file or directory\n" in err
+    assert f"{wrong}:1:1: no variable is called 'a'" in err.partition("none")[2]
+
+
+def test_findings_are_given_as_json(folder, file, capsys):
+    name = file("var a\nif a = 1 then\nend", "hint.aseba")
+    assert main(["check", "--format", "json", str(folder / "a.aseba"), name]) == 1
+    out, err = capsys.readouterr()
+    warning, error = json.loads(out)
+    assert (warning["severity"], warning["kind"]) == ("warning", "warning-uncalled-subroutine")
+    assert (error["file"], error["line"], error["column"], error["severity"]) == (name, 2, 6, "error")
+    assert (error["kind"], error["message"]) == ("expected-token", "expected 'then' but found '='")
+    assert error["hint"].startswith("'=' gives a variable a new value")
+    assert error["edit"] == {"line": 2, "column": 6, "end_line": 2, "end_column": 7, "text": "=="}
+    assert err == "2 files checked: 1 with errors, 1 with warnings\n"
+
+
+def test_a_hint_follows_the_error(file, capsys):
+    name = file("var a\nif a = 1 then\nend")
+    assert main(["check", name]) == 1
+    assert capsys.readouterr().err.splitlines() == [
+        f"{name}:2:6: expected 'then' but found '='",
+        "if a = 1 then",
+        "     ^",
+        "Hint: '=' gives a variable a new value; to compare two values write '=='. Right: if a == 1 then",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("environment", "word"),
+    [
+        ({"LC_ALL": "de_CH.UTF-8"}, "keine Variable heißt"),
+        ({"LC_ALL": "", "LC_MESSAGES": "fr_FR.UTF-8", "LANG": "de_DE"}, "aucune variable"),
+        ({"LC_ALL": "", "LC_MESSAGES": "", "LANG": "it"}, "nessuna variabile"),
+        ({"LC_ALL": "", "LC_MESSAGES": "", "LANG": "ja_JP.UTF-8"}, "no variable"),
+        ({"LC_ALL": "", "LC_MESSAGES": "", "LANG": ""}, "no variable"),
+        ({"LC_ALL": "en_US.UTF-8", "LANGUAGE": "xx:it:de"}, "nessuna variabile"),
+        ({"LC_ALL": "C", "LANGUAGE": "de"}, "no variable"),
+        ({"LC_ALL": "deutsch"}, "no variable"),
+    ],
+)
+def test_messages_are_in_the_language_of_the_user(environment, word, file, capsys, monkeypatch):
+    for name in ("LC_ALL", "LC_MESSAGES", "LANG", "LANGUAGE"):
+        monkeypatch.setenv(name, environment.get(name, ""))
+    main(["check", file("zzzz = 1")])
+    assert word in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["check", "compile", "dis", "run", "fmt"])
+def test_every_command_takes_a_language(command, file, capsys):
+    assert main([command, "--lang", "de", file("var a = $")]) == 1
+    assert "mit dem Zeichen U+24 kann kein Wort beginnen" in capsys.readouterr().err
+
+
+def test_a_guessed_node_is_a_note(file, capsys):
+    text = AESL.format(code="1").replace("thymio-II", "Thymio_4 on LAPTOP - 8636")
+    name = file(text, "suite.aesl")
+    assert main(["check", name]) == 0
+    node = "node 'Thymio_4 on LAPTOP - 8636'"
+    assert capsys.readouterr().err == f"{name}:5:51: note: {node} is checked as a program for 'thymio-II'\n"
+    both = text.replace("</network>", '<node name="thymio-II">var a</node></network>')
+    assert main(["check", file(both.replace("n = 1", "n = x y"), "both.aesl")]) == 0
+    assert f"note: {node} is left out, as it does not compile for a Thymio" in capsys.readouterr().err
+
+
+def test_vpl_files_are_checked_with_the_events_of_vpl(file, capsys):
+    vpl = "emit pair_run 0<toolsPlugins><ThymioVisualProgramming><vplroot/></ThymioVisualProgramming></toolsPlugins>"
+    assert main(["check", file(f"<network><node>{vpl}</node></network>", "vpl.aesl")]) == 0
+    assert "no event" not in capsys.readouterr().err
+
+
+def test_many_files_are_formatted_and_a_broken_one_is_left(folder, capsys):
+    (folder / "a.aseba").write_text("sub   s\n")
+    assert main(["fmt", "--check", str(folder)]) == 2
+    err = capsys.readouterr().err
+    assert f"{folder}/a.aseba: the layout is not regular\n" in err
+    assert err.endswith("5 files read: 3 with an irregular layout, 2 refused\n")
+    assert main(["fmt", "--write", str(folder)]) == 2
+    assert (folder / "a.aseba").read_text() == "sub s\n"
+    assert (folder / "sub/broken.aesl").read_text() == "<network>"
+    assert main(["fmt", "--check", str(folder / "a.aseba"), str(folder / "b.aesl")]) == 0
+
+
+def test_a_difference_is_shown_and_nothing_changed(file, capsys):
+    name = file("sub   s\nreturn")
+    assert main(["fmt", "--diff", name]) == 1
+    out, _ = capsys.readouterr()
+    assert out.splitlines()[:4] == [f"--- {name}", f"+++ {name}", "@@ -1,2 +1,2 @@", "-sub   s"]
+    assert main(["fmt", "--write", name]) == 0
+    assert main(["fmt", "--diff", name]) == 0
+
+
+def test_the_standard_input_is_formatted(monkeypatch, capsysbinary):
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"sub   s")))
+    assert main(["fmt", "-"]) == 0
+    assert capsysbinary.readouterr().out == b"sub s\n"

@@ -75,3 +75,56 @@ def test_constants_take_the_place_of_the_file_s_or_are_added():
     text = '<network><constant name="A" value="1"/><node name="thymio-II">var a = A + B</node></network>'
     (program,) = load_file(text, "test.aesl", constants={"A": 40, "B": 2}).programs
     assert program.constants == (("A", 40), ("B", 2))
+
+
+SUITE = "Thymio_4 on LAPTOP-8J2 - 8636"
+
+
+@pytest.mark.parametrize("name", [SUITE, "Serielles USB-Gerät", "e-puck"])
+def test_the_only_node_is_for_all_robots_whatever_its_name(name):
+    shares = share_out(file_of((name, "{01234567-89ab-cdef-0123-456789abcdef}", "a")), [ANNA, BERT])
+    assert codes(shares) == {"anna": "a", "bert": "a"}
+    assert shares["bert"].notes == (f"node '{name}' runs here, as it is the only one of the file",)
+
+
+@pytest.mark.parametrize("opening", ["<node>", "<node name=''>", "<node nodeId='' name=' '>"])
+def test_the_only_node_needs_no_name(opening):
+    shares = share_out(load_file(f"<network>{opening}var a</node></network>", "test.aesl"), [Member("", 1)])
+    assert codes(shares) == {"": "a"}
+
+
+def test_nodes_named_after_devices_go_to_robots_by_number_and_then_in_order():
+    shares = share_out(file_of((SUITE, 0, "a"), ("Serielles USB-Gerät", 7, "b"), ("third", 1, "c")), [ANNA, BERT])
+    assert codes(shares) == {"anna": "c", "bert": "a"}
+    assert shares["bert"].notes == (
+        f"node '{SUITE}' runs here, as no robot has its name and this one was the next without a program",
+        "no robot is left for node 'Serielles USB-Gerät' 7",
+    )
+
+
+def test_a_robot_s_own_node_comes_before_one_named_after_a_device():
+    shares = share_out(file_of((SUITE, 1, "device"), ("anna", 9, "own")), [ANNA, BERT])
+    assert codes(shares) == {"anna": "own", "bert": "device"}
+
+
+def test_two_nodes_of_one_name_go_to_two_robots():
+    shares = share_out(file_of((SUITE, 0, "a"), (SUITE, 0, "b")), [ANNA, BERT])
+    assert codes(shares) == {"anna": "a", "bert": "b"}
+
+
+def test_a_device_s_program_that_does_not_compile_is_left_out_where_others_have_a_robot_s_name():
+    shares = share_out(file_of((SUITE, 0, "a = b"), ("anna", 0, "own")), [ANNA, BERT])
+    assert codes(shares) == {"anna": "own", "bert": None}
+    assert "is left out, as it does not compile for a Thymio: test.aesl: line 2, column" in shares["bert"].notes[0]
+
+
+def test_a_device_s_program_that_does_not_compile_is_an_error_otherwise():
+    with pytest.raises(ProgramError, match=r"line 2, column \d+: node 'Thymio_4 on"):
+        file_of((SUITE, 0, "a = b"), ("other", 0, "a"))
+
+
+def test_the_error_of_a_program_for_another_device_says_so():
+    with pytest.raises(
+        ProgramError, match=r"no variable is called 'ir'.*; the program was made for the device 'e-puck'"
+    ):
+        file_of(("e-puck", 1, "a = ir"))

@@ -78,10 +78,15 @@ def test_broken_xml_is_an_error_with_its_place():
     assert (error["line"], error["kind"]) == (3, "xml-closing-tag")
 
 
-def test_a_file_for_another_robot_is_an_error_unless_a_robot_has_that_name():
-    text = '<network><node name="anna">var a</node></network>'
-    assert [error["kind"] for error in check(Question(text))["errors"]] == ["aesl-other-robot"]
-    assert check(Question(text, robots=("anna",)))["errors"] == []
+def test_a_guess_about_a_node_is_a_note_in_the_language():
+    text = '<network>\n<node name="anna">var a</node>{}</network>'
+    (note,) = check(Question(text.format("")))["notes"]
+    assert (note["kind"], note["node"], note["line"]) == ("note-only-node", "anna", 2)
+    assert check(Question(text.format(""), robots=("anna",)))["notes"] == []
+    answer = check(Question(text.format('<node name="bert">a = 1</node>'), robots=("anna",), language="de"))
+    assert answer["errors"] == []
+    (note,) = answer["notes"]
+    assert note["message"].startswith("der Knoten 'bert' wird ausgelassen")
 
 
 def test_a_text_that_is_too_long_is_not_read():

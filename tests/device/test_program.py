@@ -61,9 +61,30 @@ def test_errors_have_their_place_in_the_file(text, line, column, word):
     assert str(error).startswith(f"my.aesl: line {line}, column {column}: ")
 
 
-def test_a_file_for_another_robot_names_what_it_found():
-    with pytest.raises(ProgramError, match="'e-puck'"):
-        load_program('<network><node name="e-puck">var a</node></network>', "a.aesl")
+def test_the_only_program_of_a_file_is_taken_whatever_its_node_is_called():
+    assert load_program('<network><node name="my Thymio">var a</node></network>', "a.aesl").program.addresses["a"]
+
+
+VPL = """<network>{event}<node name="{name}">emit pair_run 0
+_emit debug_log [1, 2]
+<toolsPlugins><ThymioVisualProgramming><vplroot xml-format-version="1"/></ThymioVisualProgramming></toolsPlugins></node>
+</network>"""
+
+
+@pytest.mark.parametrize("name", ["thymio-II", "", "Thymio_4 on LAPTOP-8J2 - 8636"])
+def test_the_events_of_vpl_need_no_declaration(name):
+    assert load_program(VPL.format(event="", name=name), "vpl.aesl").events == (("pair_run", 1), ("debug_log", 14))
+
+
+def test_an_event_of_vpl_that_is_declared_stays_as_it_is():
+    text = VPL.format(event='<event size="1" name="pair_run"/>', name="thymio-II")
+    assert load_program(text, "vpl.aesl").events == (("pair_run", 1), ("debug_log", 14))
+    assert load_program(text.replace("pair_run", "ping"), "vpl.aesl").events[0] == ("ping", 1)
+
+
+def test_other_programs_declare_the_events_of_vpl_themselves():
+    with pytest.raises(ProgramError, match="no event is called 'pair_run'"):
+        load_program(VPL.format(event="", name="").replace("ThymioVisual", "Other").replace("vplroot", "x"), "a.aesl")
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
 
-import { AeslError, newAesl, readAesl, withCode, withEntry } from "../../web_ui/editor/aesl.js";
+import { AeslError, allEvents, newAesl, readAesl, withCode, withEntry } from "../../web_ui/editor/aesl.js";
 import { codeOf, opened } from "../../web_ui/editor/documents.js";
 
 const BEHAVIOURS = new URL("../../thymio_sim_ros/device/behaviours/", import.meta.url);
@@ -151,3 +151,23 @@ for (const [what, text, line, column, words] of /** @type {[string, string, numb
     );
   });
 }
+
+test("a file of VPL has the events that VPL declares by itself", () => {
+  const vpl = "<toolsPlugins><ThymioVisualProgramming><vplroot/></ThymioVisualProgramming></toolsPlugins>";
+  const added = ["pair_run 1", "debug_log 14"];
+  /** @param {string} inside */
+  const events = (inside) => allEvents(readAesl(`<network>${inside}</network>`)).map(({ name, value }) => `${name} ${value}`);
+  assert.deepEqual(events(`<node>a${vpl}</node>`), added);
+  assert.deepEqual(events(`<event size="1" name="pair_run"/><node>a${vpl}</node>`), added);
+  assert.deepEqual(events(`<event size="2" name="e"/><node>a${vpl}</node>`), ["e 2", ...added]);
+  assert.deepEqual(events("<node>a</node>"), []);
+});
+
+test("name and number of a node, and unknown parts, are kept when its code changes", () => {
+  const head = `<!DOCTYPE aesl-source>\r\n<network>\r\n<mystery a='1'/><node name="Thymio_4 on PC" nodeId='{5f8a}'>`;
+  const tail = "<toolsPlugins><a><b/></a></toolsPlugins></node>\r\n<!-- end --></network>";
+  assert.equal(withCode(`${head}var a${tail}`, 0, "var b"), `${head}var b${tail}`);
+  for (const opening of ["<node>", "<node name=''>", '<node name="Serielles USB-Gerät">']) {
+    assert.equal(withCode(`<network>${opening}a</node></network>`, 0, "b"), `<network>${opening}b</node></network>`);
+  }
+});

@@ -1,10 +1,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { marks, readVerdict } from "../../web_ui/editor/checking.js";
+import { firstFault, marks, notesOf, readVerdict } from "../../web_ui/editor/checking.js";
 import { Desk, eventKey } from "../../web_ui/editor/desk.js";
 import { blank, isUnsaved } from "../../web_ui/editor/documents.js";
 import { explain, signature, suggestions } from "../../web_ui/editor/help.js";
+import { repairWords } from "../../web_ui/editor/hint.js";
 import { History } from "../../web_ui/editor/history.js";
 import { Link } from "../../web_ui/editor/link.js";
 import { csv, parseNumbers } from "../../web_ui/editor/numbers.js";
@@ -399,3 +400,30 @@ for (const [language, table] of Object.entries(WORDS)) {
     if (language !== "en") assert.deepEqual(Object.keys(PHRASES[language]), Object.keys(PHRASES.de));
   });
 }
+
+const REFUSED = {
+  line: 2,
+  column: 4,
+  message: "expected 'do'",
+  hint: { kind: "hint-block-word", message: "'do' belongs here", edit: { line: 1, column: 4, end_line: 1, end_column: 4, text: " do" } },
+};
+
+test("a hint becomes a sentence and a change of the text", () => {
+  const [mark] = marks("😀ab\n123456", { errors: [REFUSED], warnings: [] });
+  assert.equal(mark.hint, "'do' belongs here");
+  assert.deepEqual(mark.repair, { from: 4, to: 4, insert: " do" });
+  const answer = { result: { reason: JSON.stringify({ errors: [REFUSED], notes: [{ message: "guessed" }] }) } };
+  assert.equal(firstFault(answer)?.text, "expected 'do' ('do' belongs here)");
+  assert.deepEqual(notesOf(answer), ["guessed"]);
+});
+
+test("the button of a repair says what it does", () => {
+  /** @param {string} key @param {Record<string, any>} [values] */
+  const t = (key, values = {}) => [key, ...Object.values(values)].join(" ");
+  assert.equal(repairWords(t, "a = 1", { from: 2, to: 3, insert: "==" }), "hint.change ==");
+  assert.equal(repairWords(t, "a b", { from: 1, to: 1, insert: " then" }), "hint.insert then");
+  assert.equal(repairWords(t, "a;", { from: 1, to: 2, insert: "" }), "hint.remove ;");
+  assert.equal(repairWords(t, "a", { from: 0, to: 1, insert: "b\nc" }), "hint.correct");
+  assert.equal(repairWords(t, "a\u00a0b", { from: 1, to: 2, insert: " " }), "hint.correct");
+  assert.equal(repairWords(t, "a", { from: 0, to: 0, insert: "x".repeat(30) }), "hint.correct");
+});

@@ -261,3 +261,79 @@ def test_each_of_two_robots_has_its_program(suite, page):
         page.click(f".editor-head [data-tab={name}]")
         expect(page, "[data-variable=ours]").to_have_text("33")
         expect(page, ".cm-content").to_have_text("var ours = 33")
+
+
+MISTAKES = [
+    ("var a\nif a = 1 then\na = 2\nend\n", "Change it to ==", "var a\nif a == 1 then\na = 2\nend\n"),
+    ("sound.freq(440, 1)\n", "Insert call", "call sound.freq(440, 1)\n"),
+    ("var a\nwhile a < 3 do\na++\n", "Insert end", "var a\nwhile a < 3 do\na++\nend\n"),
+    ("var a\na = 1; a = 2;\n", "Correct it", "var a\na = 1 a = 2\n"),
+    ("onevent tap\nend\n", "Remove end", "onevent tap\n"),
+]
+
+
+def text_of(page):
+    """The program in the editor."""
+    return page.locator(".cm-content .cm-line").all_inner_texts()
+
+
+def test_a_mistake_is_explained_and_corrected_by_its_button(editor):
+    for source, words, repaired in MISTAKES:
+        write(editor, source)
+        button = editor.locator(".editor-hint .correct")
+        playwright.expect(button).to_have_text(words)
+        expect(editor, ".verdict").to_have_attribute("data-kind", "error")
+        button.click()
+        expect(editor, ".verdict").to_contain_text("No errors")
+        expect(editor, ".editor-hint").to_be_hidden()
+        assert [line.strip("\n") for line in text_of(editor)] == repaired.split("\n")
+
+
+def test_a_mistake_is_corrected_from_the_keyboard_and_that_can_be_undone(editor):
+    write(editor, "var a\na == 3\n")
+    expect(editor, ".editor-hint .meant").to_contain_text("a variable gets a new value with '='")
+    editor.focus(".editor-hint .correct")
+    editor.keyboard.press("Enter")
+    expect(editor, ".verdict").to_contain_text("No errors")
+    editor.keyboard.press("Control+z")
+    expect(editor, ".editor-hint .correct").to_have_text("Change it to =")
+    editor.focus(".cm-content")
+    editor.keyboard.press("Control+.")
+    expect(editor, ".verdict").to_contain_text("No errors")
+
+
+def test_a_hint_without_a_correction_has_no_button_and_is_in_the_language_of_the_page(editor):
+    write(editor, "var a = 1.5\n")
+    expect(editor, ".editor-hint .meant").to_contain_text("Aseba has whole numbers only")
+    expect(editor, ".editor-hint .correct").to_be_hidden()
+    editor.select_option("header .language", "fr")
+    expect(editor, ".editor-hint .meant").to_contain_text("Aseba n'a que des nombres entiers")
+
+
+def test_the_mark_in_the_text_offers_the_correction_too(editor):
+    write(editor, "var a\nif a = 1 then\nend\n")
+    editor.locator(".cm-lintRange-error").hover()
+    expect(editor, ".cm-tooltip-lint .cm-diagnosticText").to_contain_text("to compare two values write '=='")
+    editor.locator(".cm-tooltip-lint .cm-diagnosticAction").click()
+    expect(editor, ".verdict").to_contain_text("No errors")
+
+
+def test_a_file_of_thymio_suite_is_opened_loaded_and_saved_under_its_own_name(editor, tmp_path):
+    text = (
+        "<!DOCTYPE aesl-source>\n<network>\n<mystery/>\n"
+        '<node nodeId="{01234567-89ab-cdef-0123-456789abcdef}" name="Thymio_4 on LAPTOP - 8636">emit pair_run 0\n'
+        "<toolsPlugins><ThymioVisualProgramming><vplroot/></ThymioVisualProgramming></toolsPlugins></node>\n</network>\n"
+    )
+    path = tmp_path / "suite.aesl"
+    path.write_text(text)
+    editor.set_input_files("#editor-file", str(path))
+    expect(editor, ".verdict").to_contain_text("No errors")
+    editor.focus(".cm-content")
+    editor.keyboard.press("Control+Enter")
+    expect(editor, ".verdict").to_contain_text("node 'Thymio_4 on LAPTOP - 8636' runs here")
+    editor.focus(".cm-content")
+    editor.keyboard.press("Control+Home")
+    editor.keyboard.insert_text("call leds.top(0, 0, 0)\n")
+    with editor.expect_download() as download:
+        editor.click("[data-verb=save]")
+    assert download.value.path().read_text() == text.replace("emit pair_run", "call leds.top(0, 0, 0)\nemit pair_run")

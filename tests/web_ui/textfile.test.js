@@ -35,3 +35,11 @@ test("what is no text in its encoding is refused", () => {
   }
   assert.throws(() => decoded(utf8.encode(file("klingon"))), RangeError);
 });
+
+test("UTF-16 is known by the first tag, and what declares it wrongly is UTF-8", () => {
+  const text = '<?xml version="1.0" encoding="UTF-16"?><network/>';
+  const right = text.replace("UTF-16", "UTF-8");
+  const low = Uint8Array.from([...text].flatMap((letter) => [letter.charCodeAt(0), 0]));
+  const high = Uint8Array.from([...text].flatMap((letter) => [0, letter.charCodeAt(0)]));
+  for (const bytes of [low, high, new TextEncoder().encode(text)]) assert.equal(decoded(bytes), right);
+});

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from aseba_vm.messages import wording
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.program import ThymioFile, ThymioProgram, called
 
@@ -29,14 +30,21 @@ class Share:
 
 def share_out(file: ThymioFile, robots: Sequence[Member]) -> dict[str, Share]:
     """Robot's name → its share. The only program of a file is for all, unless it names one of them."""
-    common = [f"not for a Thymio, left out: node '{other}'" for other in file.others]
+    common = [*file.notes, *(f"not for a Thymio, left out: node '{other}'" for other in file.others)]
     names = {robot.name for robot in robots}
     only = file.programs[0]
-    if len(file.programs) == 1 and (only.node.name not in names or only.node.name in ("", target().name)):
+    if len(file.programs) == 1 and (only.node.name not in names or _is_general(only)):
+        if not _is_general(only):
+            common.insert(0, wording("note-only-node", (only.node.name,)))
         return {robot.name: Share(only, tuple(common)) for robot in robots}
     given, left = _match(file.programs, robots)
     common += [f"no robot is left for {called(program.node)}" for program in left]
     return {robot.name: _share(robot, given.get(robot.name), common) for robot in robots}
+
+
+def _is_general(program: ThymioProgram) -> bool:
+    """Whether its node names no device, but at most the kind of robot."""
+    return program.node.name in ("", target().name)
 
 
 def _match(
@@ -64,6 +72,8 @@ def _share(robot: Member, program: ThymioProgram | None, common: Sequence[str]) 
     if program is None:
         return Share(None, (*common, "the file has no program left for this robot: it runs nothing"))
     node = program.node
+    if node.name != robot.name and not _is_general(program):
+        return Share(program, (wording("note-next-node", (node.name,)), *common))
     if node.name != robot.name and node.node_id not in (0, robot.number):
         return Share(program, (*common, f"{called(node)} runs here, on number {robot.number}, as it was next in order"))
     return Share(program, tuple(common))

@@ -12,6 +12,7 @@ from typing import Any
 
 from aseba_vm import AeslError, CompileError, Program, SourcePos, aesl, compile
 from aseba_vm.aesl_reader import MAX_EVENT_WORDS
+from aseba_vm.errors import Hint
 from aseba_vm.identifiers import LETTER_OR_DIGIT
 from aseba_vm.lexer import KEYWORDS
 from aseba_vm.messages import LANGUAGES, MESSAGES, wording
@@ -19,7 +20,7 @@ from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros.device.help import help_of
 from thymio_sim_ros.device.layout import THYMIO, target
 from thymio_sim_ros.device.outline import outline
-from thymio_sim_ros.device.program import ThymioProgram, memory_use, parse, select
+from thymio_sim_ros.device.program import ThymioProgram, is_left_out, made_for, memory_use, parse, select
 
 __all__ = [
     "ENGLISH",
@@ -59,18 +60,24 @@ def check(question: Question) -> dict[str, Any]:
         return refusal(text)
     try:
         network = parse(question.source)
-        nodes, _ = select(network, question.robots)
     except AeslError as error:
         sentence = _sentence(error.kind, error.arguments, question.language)
-        return _answer([_finding(error.kind, sentence, error.line, error.column, 1, "")])
+        return _answer([_finding(error.kind, sentence, error.line, error.column, 1, "") | {"hint": None}])
     if not aesl.is_aesl(question.source):
         network = replace(network, events=question.events, constants=question.constants)
+    selection = select(network, question.robots)
     answer = _answer(
         events=[{"name": name, "size": size} for name, size in network.events],
         constants=[{"name": name, "value": value} for name, value in network.constants],
     )
-    for node in nodes:
+    for node in selection.nodes:
         errors, warnings, told = _check_node(node, network, question)
+        if errors and is_left_out(node, selection):
+            answer["notes"].append(_note("note-left-out-node", node, question, errors[0]["message"]))
+            continue
+        if node in selection.guessed:
+            kind = "note-only-node" if len(selection.nodes) == 1 else "note-guessed-node"
+            answer["notes"].append(_note(kind, node, question))
         answer["errors"] += errors
         answer["warnings"] += warnings
         answer["nodes"].append(told)
@@ -145,7 +152,7 @@ def is_hidden(name: str) -> bool:
 
 def refusal(text: str) -> dict[str, Any]:
     """The answer to a request that cannot be answered."""
-    return _answer([_finding("request", text, None, None, 0, "")])
+    return _answer([_finding("request", text, None, None, 0, "") | {"hint": None}])
 
 
 def _answer(
@@ -156,6 +163,7 @@ def _answer(
     return {
         "errors": list(errors),
         "warnings": [],
+        "notes": [],
         "events": list(events),
         "constants": list(constants),
         "nodes": [],
@@ -171,7 +179,9 @@ def _check_node(
         program = compile(node.code, target(question.layout), events=network.events, constants=network.constants)
     except CompileError as error:
         sentence = _sentence(error.kind, error.arguments, question.language)
-        errors.append(_placed(node, error.kind, sentence, error.pos))
+        sentence += made_for(node, LANGUAGES.get(question.language, MESSAGES))
+        finding = _placed(node, error.kind, sentence, error.pos)
+        errors.append(finding | {"hint": _hint(node, error.hint, question.language)})
     else:
         warnings = _doubts(node, program, question.language)
     told = {
@@ -183,6 +193,13 @@ def _check_node(
         "use": None if program is None else memory_use(program, question.layout),
     }
     return errors, warnings, told
+
+
+def _note(kind: str, node: aesl.Node, question: Question, *arguments: str) -> dict[str, Any]:
+    """What was guessed about a node, at its code."""
+    row, column = node.place(0)
+    sentence = _sentence(kind, (node.name, *arguments), question.language)
+    return _finding(kind, sentence, row + 1, column + 1, 0, node.name)
 
 
 def _names(node: aesl.Node, program: Program | None) -> dict[str, Any]:
@@ -213,6 +230,25 @@ def _placed(node: aesl.Node, kind: str, sentence: str, pos: SourcePos | None) ->
     word = _WORD.match(node.code, pos.offset)
     length = 1 if word is None else word.end() - word.start()
     return _finding(kind, sentence, row + 1, column + 1, length, node.name)
+
+
+def _hint(node: aesl.Node, hint: Hint | None, language: str) -> dict[str, Any] | None:
+    """What was probably meant; places of the edit are those of the file, its text is that of the program."""
+    if hint is None:
+        return None
+    edit = None
+    if hint.edit is not None:
+        row, column = node.place(hint.edit.start)
+        end_row, end_column = node.place(hint.edit.end)
+        edit = {
+            "line": row + 1,
+            "column": column + 1,
+            "end_line": end_row + 1,
+            "end_column": end_column + 1,
+            "text": hint.edit.text,
+        }
+    sentence = hint.worded(LANGUAGES.get(language, MESSAGES), node.rows_in_file())
+    return {"kind": hint.kind, "message": sentence, "edit": edit}
 
 
 def _finding(kind: str, sentence: str, line: int | None, column: int | None, length: int, node: str) -> dict[str, Any]:

@@ -7,9 +7,23 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 from aseba_vm import AeslError, CompileError, Program, aesl, compile
+from aseba_vm.messages import MESSAGES, wording
+from aseba_vm.network import Selection, is_other_device, with_vpl_events
+from aseba_vm.network import select as select_nodes
 from thymio_sim_ros.device.layout import THYMIO, target
 
-__all__ = ["ProgramError", "ThymioFile", "ThymioProgram", "load_file", "load_program", "memory_use", "parse", "select"]
+__all__ = [
+    "ProgramError",
+    "ThymioFile",
+    "ThymioProgram",
+    "is_left_out",
+    "load_file",
+    "load_program",
+    "made_for",
+    "memory_use",
+    "parse",
+    "select",
+]
 
 NO_CONSTANTS: Mapping[str, int] = MappingProxyType({})
 
@@ -51,10 +65,14 @@ class ThymioProgram:
 
 @dataclass(frozen=True, slots=True)
 class ThymioFile:
-    """The programs of a file in its order, at least one; kinds of robot that other nodes of it are for."""
+    """The programs of a file, at least one, those of named nodes first; the names of nodes for other devices.
+
+    `notes` are sentences about nodes that are left out for another reason.
+    """
 
     programs: tuple[ThymioProgram, ...]
     others: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def load_program(text: str, name: str, layout: str = THYMIO) -> ThymioProgram:
@@ -76,34 +94,49 @@ def load_file(
 ) -> ThymioFile:
     """All programs of a text for Thymios or for robots of these names; ProgramError if one of them is wrong.
 
-    `constants` take the place of those that the file defines, or are added to them.
+    A node with a name of its own counts as one for a Thymio; if it does not compile while the file has nodes that are
+    named after a robot, it is left out with a note. `constants` take the place of those that the file defines, or are
+    added to them.
     """
     try:
         network = parse(text, constants)
-        nodes, others = select(network, robots)
     except AeslError as error:
         raise ProgramError(name, error.line, error.column, str(error)) from error
-    is_one = len(nodes) == 1
-    return ThymioFile(tuple(_compile(name, text, node, network, layout, is_one=is_one) for node in nodes), others)
+    selection = select(network, robots)
+    is_one = len(selection.nodes) == 1
+    programs, notes = [], []
+    for node in selection.nodes:
+        try:
+            programs.append(_compile(name, text, node, network, layout, is_one=is_one))
+        except ProgramError as error:
+            if not is_left_out(node, selection):
+                raise
+            notes.append(wording("note-left-out-node", (node.name, str(error))))
+    others = tuple(dict.fromkeys(node.name for node in selection.others))
+    return ThymioFile(tuple(programs), others, tuple(notes))
 
 
 def parse(text: str, constants: Mapping[str, int] = NO_CONSTANTS) -> aesl.Network:
-    """What a file says, or bare text as a node without a name. Raises AeslError."""
+    """What a file says, or bare text as a node without a name; with the events of VPL. Raises AeslError."""
     text = text.removeprefix("\ufeff").replace("\r\n", "\n")
     network = aesl.loads(text, strict=True) if aesl.is_aesl(text) else aesl.bare(text, "")
+    network = with_vpl_events(network)
     return replace(network, constants=tuple({**dict(network.constants), **constants}.items()))
 
 
-def select(network: aesl.Network, robots: Collection[str] = ()) -> tuple[list[aesl.Node], tuple[str, ...]]:
-    """The nodes for Thymios or for robots of these names, and the names of the others. AeslError if there are none."""
-    wanted = {"", target().name, *robots}
-    nodes = [node for node in network.nodes if node.name in wanted]
-    others = tuple(dict.fromkeys(node.name for node in network.nodes if node.name not in wanted))
-    if not nodes:
-        line, column = network.nodes[0].place(0)
-        found = ", ".join(f"'{other}'" for other in others)
-        raise AeslError("aesl-other-robot", (target().name, found), line + 1, column + 1)
-    return nodes, others
+def select(network: aesl.Network, robots: Collection[str] = ()) -> Selection:
+    """The nodes for Thymios or for robots of these names."""
+    return select_nodes(network, {"", target().name, *robots})
+
+
+def is_left_out(node: aesl.Node, selection: Selection) -> bool:
+    """Whether a file is accepted without this node if it does not compile."""
+    return bool(selection.named) and node in selection.guessed
+
+
+def made_for(node: aesl.Node, messages: Mapping[str, str] = MESSAGES) -> str:
+    """What is added to the error of a node that is named after another kind of device; else nothing."""
+    return f"; {wording('note-made-for', (node.name,), messages)}" if is_other_device(node) else ""
 
 
 def memory_use(program: Program, layout: str = THYMIO) -> dict[str, tuple[int, int]]:
@@ -127,7 +160,9 @@ def _compile(
     try:
         program = compile(node.code, target(layout), events=network.events, constants=network.constants)
     except CompileError as error:
-        message = str(error) if is_one else f"{called(node)}: {error}"
+        message = (str(error) if is_one else f"{called(node)}: {error}") + made_for(node)
+        if error.hint is not None:
+            message += f" ({error.hint.worded(rows=node.rows_in_file())})"
         if error.pos is None:
             raise ProgramError(name, None, None, message) from error
         row, col = node.place(error.pos.offset)

@@ -37,6 +37,7 @@ from thymio_sim_ros.sim.playground_values import (
 from thymio_sim_ros.sim.primitives import Floor, Paint, Primitive, Print, Solid, Trigger
 from thymio_sim_ros.sim.shapes import ShapeKind, all_shapes
 from thymio_sim_ros.sim.source import MAX_BYTES, Beside
+from thymio_sim_ros.sim.starts import set_free
 
 __all__ = [
     "Headline",
@@ -53,6 +54,8 @@ __all__ = [
 ]
 
 FORMAT = 1
+SVGZ = ".svgz"
+"""Ending of an SVG packed with gzip; it is unpacked at once."""
 MAX_SHAPES = 1000
 MAX_ROBOTS = 1000
 MAX_PRIMITIVES = 10_000
@@ -145,7 +148,7 @@ def _read(data: bytes, name: str, path: str, beside: Beside) -> Playground:
     try:
         found = source.read_source(data, name, beside)
         places = found.places
-        return _build(found.data, name, found.beside, found.notes)
+        return _build(found, name)
     except FieldError as error:
         raise PlaygroundError(path, _original(error.key, places), error.found, error.expected) from error
 
@@ -156,8 +159,8 @@ def _original(key: str, places: Mapping[str, str]) -> str:
     return f"{places[item]} ({key})" if item in places else key
 
 
-def _build(data: object, name: str, beside: Beside, notes: tuple[str, ...]) -> Playground:
-    members = _members(data)
+def _build(found: source.Source, name: str) -> Playground:
+    members, beside, notes = _members(found.data), found.beside, found.notes
     shape_items = _items(members.pop("shapes", []), "shapes", MAX_SHAPES)
     robot_items = _items(members.pop("robots", []), "robots", MAX_ROBOTS)
     translations = _translations(members.pop("translations", {}))
@@ -170,9 +173,12 @@ def _build(data: object, name: str, beside: Beside, notes: tuple[str, ...]) -> P
     with pictures.budgeted():
         primitives = _primitives(shapes)
     solids = tuple(primitive for primitive in primitives if isinstance(primitive, Solid))
+    floors = tuple(primitive for primitive in primitives if isinstance(primitive, Floor))
+    if found.sets_free:
+        robots, freed = set_free(robots, solids, floors)
+        notes += freed
     checks.check_starts(robots, solids)
     checks.check_doors(shapes, primitives)
-    floors = tuple(primitive for primitive in primitives if isinstance(primitive, Floor))
     paints = tuple(primitive for primitive in primitives if isinstance(primitive, Paint | Print))
     checks.check_ground(floors, paints)
     return Playground(
@@ -238,11 +244,14 @@ def _embedded(value: object, key: str, beside: Beside) -> object:
     """A picture's file as a data URI; anything else as it is."""
     if not isinstance(value, str) or value.startswith("data:"):
         return value
-    media_type = pictures.MEDIA_TYPES.get(Path(value).suffix.lower())
+    suffix = Path(value).suffix.lower()
+    is_packed = suffix == SVGZ
+    media_type = pictures.MEDIA_TYPES.get(".svg" if is_packed else suffix)
     if media_type is None:
-        raise FieldError(key, describe(value), "a file that ends in " + ", ".join(pictures.MEDIA_TYPES))
+        raise FieldError(key, describe(value), "a file that ends in " + ", ".join((*pictures.MEDIA_TYPES, SVGZ)))
     try:
-        return pictures.data_uri(beside(value), media_type)
+        data = beside(value)
+        return pictures.data_uri(source.unpacked_svg(data) if is_packed else data, media_type)
     except FieldError as error:
         raise FieldError(key, error.found, error.expected) from error
 

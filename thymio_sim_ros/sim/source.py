@@ -21,10 +21,11 @@ from typing import NoReturn
 from thymio_sim_ros.sim import xml_tree
 from thymio_sim_ros.sim.fields import FieldError, describe
 from thymio_sim_ros.sim.foreign import aseba, thesis
+from thymio_sim_ros.sim.html_entities import without_html_entities
 from thymio_sim_ros.sim.pictures import MAX_PICTURE_BYTES
 from thymio_sim_ros.sim.xml_tree import XmlError
 
-__all__ = ["MAX_BYTES", "Beside", "Source", "folder", "nothing_beside", "read_source"]
+__all__ = ["MAX_BYTES", "Beside", "Source", "folder", "nothing_beside", "read_source", "unpacked_svg"]
 
 MAX_BYTES = 32_000_000
 """Largest file; pictures inside it count."""
@@ -41,6 +42,8 @@ Beside = Callable[[str], bytes]
 
 _ZIP = b"PK\x03\x04"
 _BOM = b"\xef\xbb\xbf"
+_GZIP = 16
+"""Added to the window size of zlib for data with a header of gzip."""
 _PLAYGROUND_ENDINGS = (".xml", ".playground", ".json")
 _CANNOT_UNPACK = (
     zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, OSError, RuntimeError, ValueError,
@@ -61,12 +64,16 @@ _IN_FOLDER = "a file in the playground's folder"
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Data of our format, unchecked; the files beside it; for a converted file what was lost, and places in it."""
+    """Data of our format, unchecked; the files beside it; for a converted file what was lost, and places in it.
+
+    `sets_free`: the simulator that the file is for pushes robots out of the things in which they start.
+    """
 
     data: object
     beside: Beside
     notes: tuple[str, ...] = ()
     places: Mapping[str, str] = field(default_factory=dict)
+    sets_free: bool = False
 
 
 def read_source(data: bytes, name: str, beside: Beside) -> Source:
@@ -111,13 +118,26 @@ def folder(path: Path) -> Beside:
     return read_file
 
 
+def unpacked_svg(data: bytes) -> bytes:
+    """The SVG in an `.svgz` file, which is packed with gzip; FieldError without a key. One byte more than
+    `MAX_PICTURE_BYTES` at most is unpacked."""
+    unpacker = zlib.decompressobj(zlib.MAX_WBITS | _GZIP)
+    try:
+        unpacked = unpacker.decompress(data, MAX_PICTURE_BYTES + 1)
+    except zlib.error as error:
+        raise FieldError("", "an .svgz file that cannot be unpacked", "an SVG packed with gzip") from error
+    if not unpacker.eof and len(unpacked) <= MAX_PICTURE_BYTES:
+        raise FieldError("", "an .svgz file that is cut off", "a whole one")
+    return unpacked
+
+
 def _read_xml(data: bytes, name: str, beside: Beside) -> Source:
     try:
-        root = xml_tree.parse(data)
+        root = xml_tree.parse(without_html_entities(data))
     except XmlError as error:
         raise FieldError(f"line {error.line}", error.found, error.expected) from error
     converted = aseba.convert(root, name)
-    return Source(converted.data(), beside, tuple(converted.notes), converted.places)
+    return Source(converted.data(), beside, tuple(converted.notes), converted.places, sets_free=True)
 
 
 def _unzip(data: bytes) -> tuple[bytes, Beside]:

@@ -18,12 +18,26 @@ export { AeslError } from "./xml.js";
  * @property {Unit[]} units     of the code, with where each stands in the file
  * @property {string} code
  */
-/** @typedef {{ text: string, root: Span & { inner: number, empty: boolean }, events: Entry[], constants: Entry[], nodes: Node[] }} Aesl */
+/**
+ * @typedef {object} Aesl
+ * @property {string} text
+ * @property {Span & { inner: number, empty: boolean }} root
+ * @property {Entry[]} events
+ * @property {Entry[]} constants
+ * @property {Node[]} nodes
+ * @property {boolean} vpl      whether a node has the data of a VPL program
+ */
 
 export const LEAST = -32768;
 export const GREATEST = 32767;
 /** Words of an event at most (docs/aseba_ros.md, `limits.event_values`). */
 export const LARGEST_EVENT = 258;
+/** Elements in which editors keep a VPL program. */
+const VPL = ["ThymioVisualProgramming", "ThymioVPL", "vplroot"];
+const VPL_EVENTS = [
+  { name: "pair_run", value: 1 },
+  { name: "debug_log", value: 14 },
+];
 
 /**
  * A new file with this code for one Thymio.
@@ -45,6 +59,17 @@ export function newAesl(code = "") {
   ].join("\n");
 }
 
+/**
+ * The events that a program can use: those of the file, and in a file of VPL those that VPL declares by itself.
+ *
+ * @param {Aesl} aesl
+ * @returns {{ name: string, value: number }[]}
+ */
+export function allEvents({ events, vpl }) {
+  const added = vpl ? VPL_EVENTS.filter(({ name }) => !events.some((event) => event.name === name)) : [];
+  return [...events, ...added];
+}
+
 /** Whether a text is meant as .aesl rather than as bare Aseba. @param {string} text */
 export function looksLikeAesl(text) {
   return /^\uFEFF?\s*</.test(text);
@@ -57,8 +82,9 @@ export function looksLikeAesl(text) {
  * @returns {Aesl}
  */
 export function readAesl(text) {
+  const root = { from: 0, to: 0, inner: 0, empty: false };
   /** @type {Aesl} */
-  const aesl = { text, root: { from: 0, to: 0, inner: 0, empty: false }, events: [], constants: [], nodes: [] };
+  const aesl = { text, root, events: [], constants: [], nodes: [], vpl: false };
   let depth = 0;
   let rootSeen = false;
   /** @type {Node | null} */ let node = null;
@@ -87,6 +113,7 @@ export function readAesl(text) {
       } else if (depth === 1 && part.name === "constant") {
         aesl.constants.push((listed = entry(text, part, "value", LEAST, GREATEST)));
       }
+      if (depth > 2 && node !== null && VPL.includes(part.name)) aesl.vpl = true;
       if (!part.closed) depth += 1;
     } else if (part.kind === "close") {
       depth -= 1;

@@ -1,6 +1,9 @@
 // The compiler's opinion of a text: what to ask the check service, and where its answer belongs in the text.
 
-/** @typedef {{ line: number | null, column: number | null, length?: number, message: string, kind?: string }} Remark */
+/** @typedef {{ line: number, column: number, end_line: number, end_column: number, text: string }} Edit */
+/** @typedef {{ kind: string, message: string, edit: Edit | null }} Hint  what was probably meant */
+/** @typedef {{ line: number | null, column: number | null, length?: number, message: string, kind?: string, hint?: Hint | null }} Remark */
+/** @typedef {{ from: number, to: number, insert: string }} Repair  an edit as a change of the text */
 /** @typedef {{ variables: [number, number], bytecode: [number, number], stack: [number, number] }} Use */
 /**
  * @typedef {object} Verdict
@@ -9,7 +12,7 @@
  * @property {Use | null} use
  * @property {{ name: string, size?: number }[]} variables
  */
-/** @typedef {{ from: number, to: number, severity: "error" | "warning", message: string }} Mark */
+/** @typedef {{ from: number, to: number, severity: "error" | "warning", message: string, hint?: string, repair?: Repair | null }} Mark */
 /** @typedef {{ name: string, value: number }} Entry */
 
 /** @typedef {{ text: string, line: number | null, column: number | null }} Fault */
@@ -56,7 +59,15 @@ export function targetRequest(language) {
 /** The first error of a whole file in the words of a language; null without one. @param {any} answer @returns {Fault | null} */
 export function firstFault(answer) {
   const found = readVerdict(answer).errors.find(({ kind }) => kind !== NO_ANSWER);
-  return found === undefined ? null : { text: found.message, line: found.line, column: found.column };
+  if (found === undefined) return null;
+  const text = found.hint ? `${found.message} (${found.hint.message})` : found.message;
+  return { text, line: found.line, column: found.column };
+}
+
+/** What was guessed about the nodes of a file, as sentences. @param {any} answer @returns {string[]} */
+export function notesOf(answer) {
+  const { notes = [] } = JSON.parse(answer.result.reason);
+  return notes.map((/** @type {{ message: string }} */ { message }) => message);
 }
 
 /** @param {any} answer @returns {Verdict} */
@@ -80,15 +91,27 @@ export function marks(text, { errors, warnings }) {
     starts.push(at);
     at += line.length + 1;
   }
-  /** @param {Remark} remark @param {Mark["severity"]} severity @returns {Mark} */
-  const mark = ({ line, column, length = 1, message }, severity) => {
+  /** The offset of a place, and of one some characters behind it in its line.
+   * @param {number | null} line @param {number | null} column @param {number} length */
+  const range = (line, column, length) => {
     const index = Math.min(Math.max((line ?? 1) - 1, 0), lines.length - 1);
     const points = [...lines[index]]; // a column counts characters, not halves of them
     const first = Math.max((column ?? 1) - 1, 0);
     const before = points.slice(0, first).join("").length;
-    const under = points.slice(first, first + Math.max(length, 1)).join("").length;
+    const under = points.slice(first, first + length).join("").length;
     const from = starts[index] + before;
-    return { from, to: from + under, severity, message };
+    return { from, to: from + under };
+  };
+  /** @param {Remark} remark @param {Mark["severity"]} severity @returns {Mark} */
+  const mark = ({ line, column, length = 1, message, hint }, severity) => {
+    const edit = hint?.edit ?? null;
+    const repair = edit && {
+      from: range(edit.line, edit.column, 0).from,
+      to: range(edit.end_line, edit.end_column, 0).from,
+      insert: edit.text,
+    };
+    const place = { ...range(line, column, Math.max(length, 1)), severity, message };
+    return hint ? { ...place, hint: hint.message, repair } : place;
   };
   const found = [
     ...errors.map((remark) => mark(remark, "error")),

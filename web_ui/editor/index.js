@@ -10,13 +10,14 @@ import { locate } from "../state/index.js";
 import { robotTopic } from "../state/names.js";
 import { faultWords, lineOf, placeWords, stateWord } from "../state/standing.js";
 import { textOf } from "../textfile.js";
-import { readAesl } from "./aesl.js";
+import { allEvents, readAesl } from "./aesl.js";
 import { breakpointLines, showBreakpoints, showPlace } from "./breakpoints.js";
 import { CHECK_SERVICE, marks } from "./checking.js";
 import { isInRobot } from "./documents.js";
 import { download } from "./download.js";
 import { footer } from "./footer.js";
 import { header } from "./header.js";
+import { hintBar, repairWords } from "./hint.js";
 import { Lexicon } from "./lexicon.js";
 import { Link } from "./link.js";
 import { createText } from "./text.js";
@@ -31,6 +32,7 @@ export { Desk } from "./desk.js";
 export { splitEditorTopic } from "./state.js";
 
 const CHECK_DELAY_MS = 300;
+const THYMIO = "thymio-II";
 
 /** @typedef {import("./link.js").Verb} Verb */
 /** @typedef {import("./documents.js").Document} Document */
@@ -51,6 +53,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
   const link = new Link(client);
   const { workspace } = desk;
   /** @type {Verdict | null} */ let verdict = null;
+  /** @type {{ text: string, repair: import("./checking.js").Repair } | null} */ let correction = null;
   /** @type {import("./aesl.js").Aesl} */ let file = readAesl(workspace.current.text);
   let fileText = workspace.current.text;
   /** @type {any} */ let statusShown = null;
@@ -94,7 +97,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
 
   const vocabulary = () => ({
     target: target(),
-    events: file.events,
+    events: allEvents(file),
     constants: file.constants,
     variables: verdict?.variables ?? [],
   });
@@ -108,7 +111,17 @@ export function createEditor({ desk, client, store, language, pageText, announce
     vocabulary,
     changed: codeChanged,
     toggleBreakpoint: (line) => toggleBreakpoint(line),
+    repairWords: (content, repair) => repairWords(t, content, repair),
+    correct: () => correct(),
   });
+  /** Do what the hint proposes; the text is checked again. */
+  const correct = () => {
+    if (correction === null || !text.repair(correction.text, correction.repair)) return;
+    correction = null;
+    hints.show(null);
+    announce(t("hint.done"));
+  };
+  const hints = hintBar(t, correct);
 
   /** Ask the compiler, a moment after the last change. */
   const checkSoon = () => {
@@ -118,8 +131,8 @@ export function createEditor({ desk, client, store, language, pageText, announce
   const check = async () => {
     const number = ++checks;
     const source = workspace.code;
-    const { events, constants } = readAesl(workspace.current.text);
-    const answer = await link.check({ source, language, events, constants });
+    const known = readAesl(workspace.current.text);
+    const answer = await link.check({ source, language, events: allEvents(known), constants: known.constants });
     if (number !== checks || source !== workspace.code) return; // a later one is on its way
     verdict = answer;
     if (answer === null) {
@@ -127,14 +140,18 @@ export function createEditor({ desk, client, store, language, pageText, announce
       foot.tell({ text: t("verdict.unknown"), kind: "" });
       return;
     }
-    text.mark(marks(source, answer));
+    const found = marks(source, answer);
+    text.mark(found);
     const [first] = [...answer.errors, ...answer.warnings];
+    const { hint = "", repair = null } = found.find((mark) => mark.hint !== undefined) ?? {};
+    correction = repair && { text: source, repair };
+    hints.show(hint === "" ? null : { text: hint, button: repair === null ? "" : repairWords(t, source, repair) });
     if (first === undefined) foot.tell({ text: `✓ ${t("verdict.good")}`, kind: "good" });
     else {
       const kind = answer.errors.length > 0 ? "error" : "warning";
       const said = first.line === null ? first.message : t("verdict.at", { line: first.line, message: first.message });
       foot.tell({ text: `${kind === "error" ? "✕" : "⚠"} ${said}`, kind });
-      if (kind === "error") announce(said);
+      if (kind === "error") announce(hint === "" ? said : `${said}. ${hint}`);
     }
     redraw();
   };
@@ -143,6 +160,8 @@ export function createEditor({ desk, client, store, language, pageText, announce
   const show = () => {
     text.show(`${workspace.tab} ${workspace.current.node} ${workspace.current.name}`, workspace.code);
     verdict = null;
+    correction = null;
+    hints.show(null);
     statusShown = null;
     check();
     redraw();
@@ -192,6 +211,10 @@ export function createEditor({ desk, client, store, language, pageText, announce
     }
     workspace.loaded(tab, source);
     tell(t("editor.loaded", { name }), "good");
+    if (readAesl(source).nodes.some((node) => node.name !== THYMIO)) {
+      const notes = await link.notes(source, language);
+      if (notes.length > 0) tell(`${t("editor.loaded", { name })}: ${notes.join("; ")}`, "warning");
+    }
     // Those that stand there now: one may have been set while the robot answered.
     if (workspace.tab === tab && breakpointLines(text.view.state).length > 0) await sendBreakpoints();
     redraw();
@@ -303,7 +326,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
     bar.element,
     head.draft,
     h("div", { class: "editor-body" }, code, tools.element),
-    foot.element,
+    h("div", { class: "editor-end" }, hints.element, foot.element),
   );
   const forgetKeys = watchKeys(element, deeds);
 

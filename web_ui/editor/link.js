@@ -1,7 +1,7 @@
 // What the editor asks of the Aseba runtime, as calls, parameters and messages (docs/aseba_ros.md).
 
 import { robotTopic } from "../state/names.js";
-import { CHECK_SERVICE, checkRequest, firstFault, readVerdict, targetRequest } from "./checking.js";
+import { CHECK_SERVICE, checkRequest, firstFault, notesOf, readVerdict, targetRequest } from "./checking.js";
 
 /** @typedef {import("../protocol/client.js").Client} Client */
 /** @typedef {{ ok: boolean, message: string }} Answer */
@@ -28,6 +28,13 @@ export class Link {
     const question = checkRequest({ source, language, events: [], constants: [] });
     const { ok, value } = await this.client.call(CHECK_SERVICE, question);
     return ok && value !== undefined ? firstFault(value) : null;
+  }
+
+  /** What is guessed about the nodes of a file, in a language. @param {string} source @param {string} language */
+  async notes(source, language) {
+    const question = checkRequest({ source, language, events: [], constants: [] });
+    const { ok, value } = await this.client.call(CHECK_SERVICE, question);
+    return ok && value !== undefined ? notesOf(value) : [];
   }
 
   /** What every robot has, with help in a language. @param {string} language @returns {Promise<import("./state.js").Target | null>} */

@@ -60,8 +60,11 @@ const KEPT = { history: historyField, breakpoints: breakpointField, folds: foldS
  * @param {() => Omit<Vocabulary, "definitions">} options.vocabulary
  * @param {(code: string) => void} options.changed   a person changed the text
  * @param {(line: number) => void} options.toggleBreakpoint
+ * @param {(text: string, repair: import("./checking.js").Repair) => string} options.repairWords  of its button
+ * @param {() => void} options.correct               a person wants the first repair
  */
-export function createText({ parent, kept, label, phrases, vocabulary, changed, toggleBreakpoint }) {
+export function createText(options) {
+  const { parent, kept, label, phrases, vocabulary, changed, toggleBreakpoint, repairWords, correct } = options;
   /** @param {EditorState} state @returns {Vocabulary} */
   const words = (state) => ({
     ...vocabulary(),
@@ -125,6 +128,7 @@ export function createText({ parent, kept, label, phrases, vocabulary, changed, 
         },
       },
       { key: "Mod-g", run: gotoLine },
+      { key: "Mod-.", run: () => (correct(), true) },
       { key: "Mod-d", run: toggleLineComment },
       ...closeBracketsKeymap,
       ...completionKeymap,
@@ -165,9 +169,36 @@ export function createText({ parent, kept, label, phrases, vocabulary, changed, 
     },
     /** @param {import("./checking.js").Mark[]} marks */
     mark(marks) {
-      const end = view.state.doc.length;
-      const fitting = marks.map((mark) => ({ ...mark, from: Math.min(mark.from, end), to: Math.min(mark.to, end) }));
+      const { doc } = view.state;
+      const end = doc.length;
+      const fitting = marks.map(({ from, to, severity, message, hint, repair }) => ({
+        from: Math.min(from, end),
+        to: Math.min(to, end),
+        severity,
+        message: hint === undefined ? message : `${message}\n${hint}`,
+        actions: repair
+          ? [{ name: repairWords(doc.toString(), repair), apply: () => void this.repair(doc.toString(), repair) }]
+          : [],
+      }));
       view.dispatch(setDiagnostics(view.state, fitting));
+    },
+    /**
+     * Correct the text if it is still the one that was checked; whether it is.
+     *
+     * @param {string} checked
+     * @param {import("./checking.js").Repair} repair
+     */
+    repair(checked, { from, to, insert }) {
+      if (view.state.doc.toString() !== checked) return false;
+      const anchor = from + insert.length;
+      view.dispatch({
+        changes: { from, to, insert },
+        selection: { anchor },
+        scrollIntoView: true,
+        userEvent: "input.correct",
+      });
+      view.focus();
+      return true;
     },
   };
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import math
 from pathlib import Path
 from typing import Any
@@ -238,9 +239,99 @@ def test_what_our_format_refuses_is_located_in_the_original() -> None:
     )
 
 
-def test_a_robot_in_a_wall_is_located_in_the_original() -> None:
-    with pytest.raises(PlaygroundError, match=r"line 4: <robot> \(robots\[0\]\): found 'thymio_0' inside 'ground'"):
-        playground.loads(text(WORLD + "\n<robot x='1' y='1'/>"), "mine.playground")
+def test_a_robot_that_starts_inside_something_is_set_free_with_a_notice() -> None:
+    body = WORLD + "\n<wall x='50' y='30' l1='10' l2='10' h='5' color='white' name='block'/>" + ROBOT
+    loaded = playground.loads(text(body), "mine.playground")
+    (robot,) = loaded.robots
+    assert loaded.notes == (
+        f"robots[0]: 'thymio_0' started inside 'block', it was set free at {robot.x_m:.3f}, {robot.y_m:.3f} m",
+    )
+    assert 0.07 < math.dist((robot.x_m, robot.y_m), (0.5, 0.3)) < 0.14
+    assert robot.yaw_rad == 0.0
+    assert playground.loads(text(body), "mine.playground") == loaded
+    world = World(loaded)
+    world.step()
+
+
+def test_a_robot_in_the_border_is_set_free_inside_it() -> None:
+    loaded = playground.loads(text(WORLD + "\n<robot x='0' y='0'/><robot x='100' y='60' angle='3'/>"), "mine")
+    assert len(loaded.notes) == 2
+    assert all(0.0 < robot.x_m < 1.0 and 0.0 < robot.y_m < 0.6 for robot in loaded.robots)
+
+
+def test_of_two_robots_in_one_place_the_second_is_moved() -> None:
+    loaded = playground.loads(text(WORLD + ROBOT + ROBOT), "mine")
+    first, second = loaded.robots
+    assert (first.x_m, first.y_m) == (0.5, 0.3)
+    assert "'thymio_1' started inside 'thymio_0'" in loaded.notes[0]
+    assert math.dist((first.x_m, first.y_m), (second.x_m, second.y_m)) > 0.1
+
+
+def test_a_robot_that_cannot_be_set_free_is_located_in_the_original() -> None:
+    full = "\n<wall x='50' y='30' l1='98' l2='58' h='5' color='white'/>"
+    with pytest.raises(PlaygroundError, match=r"line 4: <robot> \(robots\[0\]\): found 'thymio_0' inside 'wall'"):
+        playground.loads(text(WORLD + full + ROBOT), "mine.playground")
+
+
+def test_named_characters_of_html_are_read() -> None:
+    body = "<description lang='de'>&uuml;</description><description>a &ndash; b&nbsp;&Eacute;&amp;&lt;</description>"
+    loaded = playground.loads(text(WORLD + body), "mine.playground")
+    assert loaded.description == "a – b É&<"
+    assert loaded.translations[0][1].description == "ü"
+
+
+@pytest.mark.parametrize(
+    "declared",
+    [
+        '<!ENTITY ndash "x">',
+        '<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">',
+        '<!ENTITY a SYSTEM "file:///etc/passwd">',
+        '<!ENTITY % a SYSTEM "http://127.0.0.1/">%a;',
+    ],
+)
+def test_declared_entities_are_refused_as_before(declared: str) -> None:
+    content = text(WORLD + "<description>&ndash;&a;</description>").replace(
+        "<!DOCTYPE aseba-playground>", f"<!DOCTYPE aseba-playground [{declared}]>"
+    )
+    with pytest.raises(PlaygroundError, match=r"no entities|XML|stands alone"):
+        playground.loads(content, "mine.playground")
+
+
+def test_an_unknown_entity_is_refused_and_comments_are_left_alone() -> None:
+    with pytest.raises(PlaygroundError, match="undefined entity"):
+        playground.loads(text(WORLD + "<description>&nothing;</description>"), "mine")
+    assert playground.loads(text(WORLD + "<!-- &nothing; &ndash; --><description>a</description>"), "mine").description
+
+
+SVG = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 6"><rect width="5" height="6" fill="black"/></svg>'
+
+
+def test_a_packed_svg_is_the_ground(tmp_path: Path) -> None:
+    body = WORLD.replace("/>", ' groundTexture="map.{}"/>')
+    (tmp_path / "map.svg").write_bytes(SVG)
+    (tmp_path / "map.svgz").write_bytes(gzip.compress(SVG))
+    for ending in ("svg", "svgz"):
+        (tmp_path / "maze.playground").write_text(text(body.format(ending)))
+        loaded = playground.load(tmp_path / "maze.playground")
+        ground = Ground(loaded.floors, loaded.paints)
+        assert ground.sample(0.2, 0.3) != ground.sample(0.8, 0.3)
+        samples = ground.sample(0.2, 0.3), ground.sample(0.8, 0.3)
+        assert [round(sample.reflectance) for sample in samples] == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("data", "found"),
+    [
+        (b"no gzip", "cannot be unpacked"),
+        (gzip.compress(SVG)[:-12], "cut off"),
+        (gzip.compress(b" " * 300_000_000), "a picture of at most"),
+    ],
+)
+def test_a_broken_or_endless_packed_svg_is_refused(data: bytes, found: str, tmp_path: Path) -> None:
+    (tmp_path / "map.svgz").write_bytes(data)
+    (tmp_path / "maze.playground").write_text(text(WORLD.replace("/>", ' groundTexture="map.svgz"/>')))
+    with pytest.raises(PlaygroundError, match=found):
+        playground.load(tmp_path / "maze.playground")
 
 
 def test_another_xml_is_refused() -> None:
