@@ -7,6 +7,7 @@ import random
 import pytest
 
 from aseba_vm import VirtualMachine
+from aseba_vm.costs import Cost, Costs
 from aseba_vm.engine import INTERPRETER
 from aseba_vm.natives import NATIVES
 from aseba_vm.outbox import BadCode
@@ -16,6 +17,7 @@ from tests.aseba_vm.engines import TRANSLATORS
 pytestmark = pytest.mark.usefixtures("translators_work")
 
 LIMITS = (0, 1, -1, 2, 127, 128, 16383, 16384, 16385, -16384, -16385, 32767, -32767, -32768)
+COSTS = Costs(others=Cost(7, 1))
 STOP, PUSH, NATIVE = 0, 0x1000, 0xC000
 
 
@@ -42,7 +44,7 @@ def test_a_native_does_the_same_in_every_engine(name, engine):
     source = random.Random(name)
     for _ in range(40):
         words = [3, 0xFFFF, 3, *_call(number, source), STOP]
-        machines = [VirtualMachine(THYMIO_II, engine=each) for each in (INTERPRETER, engine)]
+        machines = [VirtualMachine(THYMIO_II, engine=each, costs=COSTS) for each in (INTERPRETER, engine)]
         for machine in machines:
             machine.set_bytecode(words)
         for _ in range(4):
