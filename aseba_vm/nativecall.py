@@ -50,7 +50,9 @@ class Machine(Protocol):
     variables: Variables
     random_state: int
     node_id: int
-    surcharge: int
+
+    def charge(self, instructions: int) -> None:
+        """Take more of the budget."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +147,7 @@ class NativeCall:
 
     def charge(self, instructions: int) -> None:
         """Take more of the budget than the declared cost, for work whose amount only the call itself knows."""
-        self.machine.surcharge += instructions
+        self.machine.charge(instructions)
 
     def report(self, fault: NativeFault) -> None:
         """Note a fault without ending the native."""

@@ -334,6 +334,11 @@ class VirtualMachine:
         else:
             self.stop_on(NodeSpecific(pc, fault.reason))
 
+    def charge(self, instructions: int) -> None:
+        """Take more of the budget for the native that is being called, where natives cost anything."""
+        if self.costs is not NO_COSTS:
+            self.surcharge += instructions
+
     def price(self, number: int, popped: Sequence[int]) -> int:
         """Return what a call of a native takes of the budget, beyond its instruction. For the interpreter."""
         return self._natives[number][0].price(popped)

@@ -197,7 +197,7 @@ def main() -> int:
     found = []
     heads = ("get", "source", "bridge", "stop", "acts", "end", "factor", "start")
     print(f"{'program':16s}" + "".join(f"{head:>8s}" for head in heads) + "  status")
-    for program in sorted(PROGRAMS.glob(f"*{options.only}*.aesl")):
+    for program in sorted(path for path in PROGRAMS.glob("*.aesl") if options.only in path.stem):
         with tempfile.TemporaryDirectory() as folder:
             figures = measure(program, options.robots, options.port, Path(folder))
         found.append(figures)

@@ -109,4 +109,4 @@ def test_a_long_sound_is_charged_for_its_bytes(tmp_path: Path) -> None:
 
 def test_a_load_without_faults_says_nothing() -> None:
     assert Load(FEWEST_CUTS - 1, {"leds.top": 9}, {}, {}).sentence == ""
-    assert "replaced" in Load(replaced=3).sentence
+    assert "replaced" in Load(replaced=30).sentence

@@ -12,6 +12,8 @@ __all__ = ["Load", "Meter"]
 
 FEWEST_CUTS = 3
 """Runs in a period of observation that calls use up, before the program counts as too fast."""
+FEWEST_REPLACED = 10
+"""Commands of the same period that were replaced, before that is said."""
 MOST_NAMED = 3
 """Natives or events that a sentence names."""
 
@@ -41,7 +43,7 @@ class Load:
                 f"the program does more than the robot can carry out ({_listed(asked)}) and is slowed down; "
                 "do it less often, for example in a timer event"
             )
-        if self.replaced:
+        if self.replaced >= FEWEST_REPLACED:
             parts.append(f"commands replaced by later ones before they were sent: {self.replaced}")
         if self.lost:
             parts.append(
