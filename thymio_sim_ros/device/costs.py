@@ -13,7 +13,7 @@ from aseba_vm.natives import NATIVES
 
 __all__ = ["BYTES_PER_INSTRUCTION", "COSTS"]
 
-BYTES_PER_INSTRUCTION = 250
+BYTES_PER_INSTRUCTION = 100
 """Bytes of a sound that are read from the card and sent, or written to it, in the time of an instruction."""
 
 _CALL = Cost(16)
