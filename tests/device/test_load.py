@@ -108,5 +108,6 @@ def test_a_long_sound_is_charged_for_its_bytes(tmp_path: Path) -> None:
 
 
 def test_a_load_without_faults_says_nothing() -> None:
-    assert Load(FEWEST_CUTS - 1, {"leds.top": 9}, {}, {}).sentence == ""
+    assert Load(FEWEST_CUTS - 1, 10, {"leds.top": 9}).sentence == ""
+    assert "leds.top: 9" in Load(1, 1, {"leds.top": 9}).sentence
     assert "replaced" in Load(replaced=30).sentence

@@ -199,8 +199,7 @@ class AsebaDevice:
                 break  # a robot that restarts takes a while
             if queue.policy.kills and vm.is_active and not queue.waits:
                 break  # the rest of a long handler belongs to the next step
-        if self.is_busy and meter.charged - charged >= budget // 2:
-            meter.count_cut()
+        meter.count_run(is_cut=self.is_busy and meter.charged - charged >= budget // 2)
         if not vm.is_active:
             self._notice_periods()
 

@@ -11,7 +11,8 @@ from thymio_sim_ros.device.costs import COSTS
 __all__ = ["Load", "Meter"]
 
 FEWEST_CUTS = 3
-"""Runs in a period of observation that calls use up, before the program counts as too fast."""
+"""Runs in a period of observation that calls use up, before the program counts as too fast; or two of three, where
+many robots share the machine."""
 FEWEST_REPLACED = 10
 """Commands of the same period that were replaced, before that is said."""
 MOST_NAMED = 3
@@ -22,11 +23,12 @@ MOST_NAMED = 3
 class Load:
     """A period of observation: calls by native, events by name, and events that were lost as too many waited.
 
-    `cuts`: runs that ended because natives and events had used up the budget. `replaced`: commands that were not sent
-    as later ones took their place.
+    `cuts`: those of the `runs` that ended because natives and events had used up the budget. `replaced`: commands that
+    were not sent as later ones took their place.
     """
 
     cuts: int = 0
+    runs: int = 0
     calls: Mapping[str, int] = field(default_factory=dict)
     emitted: Mapping[str, int] = field(default_factory=dict)
     lost: Mapping[str, int] = field(default_factory=dict)
@@ -36,7 +38,7 @@ class Load:
     def sentence(self) -> str:
         """What is too fast, what became of it and what to do; empty if all could be served."""
         parts = []
-        if self.cuts >= FEWEST_CUTS:
+        if self.cuts >= FEWEST_CUTS or (self.cuts and self.cuts * 3 >= self.runs * 2):
             asked = Counter({f"emit {name}": count for name, count in self.emitted.items()})
             asked.update({f"call {name}": count for name, count in self.calls.items()})
             parts.append(
@@ -59,15 +61,15 @@ class Meter:
     def __init__(self) -> None:
         self.charged = 0
         """Instructions charged for natives that reach the robot and for events, since the beginning."""
-        self._cuts = 0
+        self._cuts = self._runs = 0
         self._calls: Counter[str] = Counter()
         self._emitted: Counter[str] = Counter()
         self._lost: Counter[str] = Counter()
 
-    def count_call(self, native: str) -> None:
-        """A native was called."""
+    def count_call(self, native: str, words: int) -> None:
+        """A native was called with so many words of arguments together."""
         self._calls[native] += 1
-        self.charged += COSTS.of(native).base
+        self.charged += COSTS.of(native).of(words)
 
     def count_event(self, event: str, words: int) -> None:
         """An event was emitted."""
@@ -78,14 +80,15 @@ class Meter:
         """An event could not wait any more."""
         self._lost[event] += 1
 
-    def count_cut(self) -> None:
-        """A run ended because natives and events had used up its budget."""
-        self._cuts += 1
+    def count_run(self, *, is_cut: bool) -> None:
+        """A run ended; `is_cut`: because natives and events had used up its budget."""
+        self._runs += 1
+        self._cuts += is_cut
 
     def take(self) -> Load:
         """Return what was counted since the last time."""
-        load = Load(self._cuts, dict(self._calls), dict(self._emitted), dict(self._lost))
-        self._cuts = 0
+        load = Load(self._cuts, self._runs, dict(self._calls), dict(self._emitted), dict(self._lost))
+        self._cuts = self._runs = 0
         for counter in (self._calls, self._emitted, self._lost):
             counter.clear()
         return load

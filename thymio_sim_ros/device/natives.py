@@ -34,7 +34,7 @@ def native_functions(send: Send, body: Body, meter: Meter) -> dict[str, Native]:
 
 def _commanding(native: aseba_face.Native, send: Send, meter: Meter) -> Native:
     def call_native(call: NativeCall) -> None:
-        meter.count_call(native.name)
+        meter.count_call(native.name, sum(call.sizes))
         words = call.words()
         try:
             command = native.command(words)
@@ -47,7 +47,7 @@ def _commanding(native: aseba_face.Native, send: Send, meter: Meter) -> Native:
 
 def _serving(name: str, serve: Callable[[NativeCall, Body], None], body: Body, meter: Meter) -> Native:
     def call_native(call: NativeCall) -> None:
-        meter.count_call(name)
+        meter.count_call(name, sum(call.sizes))
         serve(call, body)
 
     return call_native

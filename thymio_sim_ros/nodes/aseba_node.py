@@ -108,19 +108,20 @@ class AsebaRuntime:
     def turn(self, executor: Executor) -> None:
         """Handle messages, then let robots take turns that wait for one, for a slice of wall time.
 
-        Where a slice was not enough, the rest of the process has the interpreter for as long.
+        Where a slice was not enough for programs without an end, the rest of the process has the interpreter for as
+        long.
         """
         with self._bus.slice():
-            if self._bus.has_waiting:
-                self._rest(executor)
             busy = [ports for ports in self.robots if ports.is_busy]
+            if busy and self._bus.has_waiting:
+                self._rest(executor)
             wait_s = min((ports.resumes_s for ports in busy), default=inf) - time.monotonic()
             if wait_s > 0.0 and not self._bus.has_waiting:
                 executor.spin_once(timeout_sec=min(wait_s, SPIN_SLICE_S))
                 return
             deliver(executor)
             now_s = time.monotonic()
-            self._bus.settle(*[ports for ports in busy if ports.resumes_s <= now_s])
+            self._bus.settle(*[ports for ports in busy if ports.is_busy and ports.resumes_s <= now_s])
 
     @staticmethod
     def _rest(executor: Executor) -> None:
