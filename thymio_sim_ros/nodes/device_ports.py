@@ -234,7 +234,7 @@ class DevicePorts:
         self._replaced = 0
         overload = load.sentence if self.device.status.state == RUNNING else ""
         if overload and not self._overload:
-            self._node.get_logger().warning(f"{self.names.name or 'robot'}: {overload}")
+            self.warn(f"{self.names.name or 'robot'}:", overload)
         self._overload = overload
         self._tell()
 
