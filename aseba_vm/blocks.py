@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from aseba_vm.bytecode import EDGE, LENGTH, Op, signed, signed12
+from aseba_vm.costs import FREE, Cost
 from aseba_vm.nativecall import Signature
 from aseba_vm.statements import (
     Assign,
@@ -35,6 +36,7 @@ from aseba_vm.statements import (
     Temp,
     Unary,
     arguments,
+    words_of,
 )
 
 MAX_EMITTED = 516
@@ -56,12 +58,13 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class Memories:
-    """What of a machine the translation depends on: sizes in words and the natives."""
+    """What of a machine the translation depends on: sizes in words, the natives, the cost of an event."""
 
     variables: int
     bytecode: int
     stack: int
     natives: tuple[Signature, ...]
+    emit: Cost = FREE
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,6 +197,7 @@ class _Builder:
                 right, left = stack.pop(), stack.pop()
                 stack.append(Binary(operand, left, right))
             case Op.EMIT if second + third <= memory and third <= MAX_EMITTED:
+                self.cost += self.memories.emit.of(third)
                 self.statements.append(Emit(self.place, self.cost, self._keep(), operand, second, third))
                 self._begin(pc + 3)
             case Op.NATIVE if operand < len(self.memories.natives):
@@ -203,13 +207,17 @@ class _Builder:
         return None
 
     def _native(self, pc: int, number: int) -> End | None:
-        count = self.memories.natives[number].count
+        signature = self.memories.natives[number]
+        count = signature.count
         if len(self.stack) < count:
             return Leave(self.place, 0)
         popped = tuple(self.stack[len(self.stack) - count :][::-1])
         del self.stack[len(self.stack) - count :]
-        place, cost = self.place, self.cost
-        known = arguments(popped, self.memories.natives[number]) or ()
+        words = words_of(popped, signature) if signature.cost.per_word else 0
+        if words is None:  # only the call itself knows what it costs
+            return Leave(self.place, 0)
+        place, cost = self.place, self.cost + signature.cost.of(words)
+        known = arguments(popped, signature) or ()
         if any(address + size > self.memories.variables for address, size in known):
             return Leave(place, 0)
         keep = self._keep()

@@ -1,7 +1,8 @@
 """The natives for deques: rings of words inside an array (VM spec, section 12).
 
 Word 0 of the array is the number of elements, word 1 the start, the rest the ring. The moves do not always keep the
-contents when the start is not 0; programs and the reference agree on that, so it is reproduced.
+contents when the start is not 0; programs and the reference agree on that, so it is reproduced. An insertion behind the
+last element, with nonsense as the start, moves words round the ring up to 65536 times: that is charged.
 """
 
 from __future__ import annotations
@@ -10,11 +11,15 @@ from collections.abc import Mapping
 
 from aseba_vm.nativecall import DequeFault, Native, NativeCall, wrap
 
+_MOVE = 2
+"""What it costs to move a word, in instructions."""
+
 
 class _Deque:
     """The deque that is argument 0 of a call."""
 
     def __init__(self, call: NativeCall) -> None:
+        self.call = call
         self.memory = call.memory
         self.address = call.addresses[0]
         self.length = call.sizes[0]
@@ -58,6 +63,9 @@ class _Deque:
         if last <= 0 and delta < 0:
             raise DequeFault
         target &= 0xFFFF
+        words = last - target if delta > 0 else target - last
+        if words > 2 * self.capacity:
+            self.call.charge(_MOVE * words)
         while target <= last if delta > 0 else target >= last:
             source = target + delta
             rest = source % self.capacity if source >= 0 else -(-source % self.capacity)

@@ -20,6 +20,7 @@ from aseba_vm import engine_python, engine_wasm
 from aseba_vm.blocks import Blocks, Memories, find_blocks
 from aseba_vm.bytecode import WAS_TRUE
 from aseba_vm.codememory import CodeMemory
+from aseba_vm.costs import Costs
 from aseba_vm.host import Host, PythonHost, Run
 from aseba_vm.interpreter import ACTIVE
 from aseba_vm.nativecall import Native, NativeFault, Signature
@@ -53,12 +54,14 @@ class Machine(Protocol):
     """What the engine needs of a machine: its state, its interpreter, its natives."""
 
     target: TargetDescription
+    costs: Costs
     variables: Variables
     stack: list[int]
     pc: int
     sp: int
     flags: int
     instructions: int
+    surcharge: int
     random_state: int
     outbox: list[Message]
     code: CodeMemory
@@ -68,7 +71,7 @@ class Machine(Protocol):
         """The words of the bytecode memory, settled."""
 
     def interpret(self, limit: int) -> int:
-        """Execute at most ``limit`` instructions; return how many were."""
+        """Execute until ``limit`` is spent; return what was."""
 
     def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
         """Call a native; return False if its arguments lie outside memory."""
@@ -169,9 +172,11 @@ class Engine:
         self._is_eager = is_eager
         self._is_wasm = is_wasm
         target = machine.target
-        signatures = tuple(Signature.of(native) for native in target.natives)
+        signatures = tuple(Signature.of(native, machine.costs.of(native.name)) for native in target.natives)
         self._natives = tuple(_known(signature, natives) for signature in signatures)
-        self._memories = Memories(target.variables_size, target.bytecode_size, target.stack_size, signatures)
+        self._memories = Memories(
+            target.variables_size, target.bytecode_size, target.stack_size, signatures, machine.costs.emit
+        )
         self._translation = _NOTHING
         self._host: Host | None = None
         self._is_known = False
@@ -204,7 +209,7 @@ class Engine:
             self._host = None
 
     def run(self, limit: int) -> int:
-        """Execute at most ``limit`` instructions of the active event; return how many were."""
+        """Execute the active event until ``limit`` is spent; return what was."""
         machine = self._machine
         ready = self._ready.get(machine.pc)
         left = limit
@@ -304,6 +309,9 @@ class Engine:
         self._is_settled = False
         rest, pc, kind, words = run(left)
         machine.pc = pc
+        if machine.surcharge:
+            rest -= machine.surcharge
+            machine.surcharge = 0
         done = left - rest
         machine.instructions += done
         if words:
@@ -316,7 +324,7 @@ class Engine:
             if self._failure is not None:
                 failure, self._failure = self._failure, None
                 raise failure
-            if machine.flags & ACTIVE and rest:
+            if machine.flags & ACTIVE and rest > 0:
                 done += self._interpret(1)
         elif kind != GO_ON:
             raise RuntimeError(f"translated code trapped at {pc}: a defect of the translator")
@@ -347,7 +355,7 @@ class Engine:
         except BaseException as failure:
             self._failure = failure
             return 1
-        return 0 if machine.flags & ACTIVE and self._is_known else 1
+        return 0 if machine.flags & ACTIVE and self._is_known and not machine.surcharge else 1
 
     def refuse_translated(self, pc: int, reason: int) -> None:
         """Let the event end with one of ``FAULTS``, counted from 1."""

@@ -52,10 +52,17 @@ class Machine(Protocol):
     sp: int
     flags: int
     instructions: int
+    surcharge: int
     outbox: list[Message]
 
     def count_popped(self, number: int) -> int:
         """Return how many words a native pops."""
+
+    def price(self, number: int, popped: Sequence[int]) -> int:
+        """Return what a call of a native takes of the budget, beyond its instruction."""
+
+    def price_of_emit(self, words: int) -> int:
+        """Return what an event takes of the budget, beyond its instruction."""
 
     def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
         """Call a native; return False if its arguments lie outside memory."""
@@ -65,7 +72,18 @@ class Machine(Protocol):
 
 
 def interpret(machine: Machine, limit: int) -> int:
-    """Execute at most ``limit`` instructions while the event is active; return how many were."""
+    """Execute instructions while the event is active and less than ``limit`` is spent; return what was spent.
+
+    An instruction takes one of the budget, a native or an event what it costs besides: the last may go beyond.
+    """
+    spent = _stretch(machine, limit)
+    while spent < limit and machine.flags & ACTIVE:
+        spent += _stretch(machine, limit - spent)
+    return spent
+
+
+def _stretch(machine: Machine, limit: int) -> int:
+    """Execute until ``limit`` is spent, the event ends, or an operation took more than its instruction."""
     code, variables, stack = machine.code.operations, machine.variables.words, machine.stack
     size = len(code)
     pc, sp = machine.pc, machine.sp
@@ -174,16 +192,25 @@ def interpret(machine: Machine, limit: int) -> int:
                     return _bad(machine, pc, sp, executed, "variable-out-of-range")
                 machine.outbox.append(Emitted(first, tuple(variables[address : address + count])))
                 pc += 3
+                price = machine.price_of_emit(count)
+                if price:
+                    executed += price
+                    break
             elif kind == NATIVE:
                 try:
                     reason, sp = _call(machine, first, pc, sp)
                 except BaseException:  # the native failed after it took its arguments: the next is the one after it
                     machine.pc, machine.sp = pc + 1, sp - machine.count_popped(first)
-                    machine.instructions += executed + 1
+                    machine.instructions += executed + 1 + machine.surcharge
+                    machine.surcharge = 0
                     raise
                 if reason:
                     return _bad(machine, pc, sp, executed, reason)
                 pc += 1
+                if machine.surcharge:
+                    executed += machine.surcharge
+                    machine.surcharge = 0
+                    break
                 if not machine.flags & ACTIVE:
                     break
             else:
@@ -214,7 +241,11 @@ def _call(machine: Machine, number: int, pc: int, sp: int) -> tuple[str, int]:
     if sp + 1 < count:
         return "stack-underflow", sp
     popped = machine.stack[sp - count + 1 : sp + 1][::-1]
-    return "" if machine.invoke(number, pc, popped) else "variable-out-of-range", sp - count
+    machine.surcharge = machine.price(number, popped)
+    if machine.invoke(number, pc, popped):
+        return "", sp - count
+    machine.surcharge = 0
+    return "variable-out-of-range", sp - count
 
 
 def _bad(machine: Machine, pc: int, sp: int, executed: int, reason: str) -> int:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from aseba_vm.costs import FREE, Cost
 from aseba_vm.outbox import NativeCalled
 from aseba_vm.target import NativeFunction
 from aseba_vm.variables import Variables
@@ -50,20 +51,24 @@ class Machine(Protocol):
     random_state: int
     node_id: int
 
+    def charge(self, instructions: int) -> None:
+        """Take more of the budget."""
+
 
 @dataclass(frozen=True, slots=True)
 class Signature:
     """A native ready to be called: how many words it pops, and for each parameter its size.
 
-    A size that is not fixed is minus its place among the words popped.
+    A size that is not fixed is minus its place among the words popped. ``cost``: what a call takes of the budget.
     """
 
     native: NativeFunction
     count: int
     sizes: tuple[int, ...]
+    cost: Cost = FREE
 
     @classmethod
-    def of(cls, native: NativeFunction) -> Signature:
+    def of(cls, native: NativeFunction, cost: Cost = FREE) -> Signature:
         """Derive the signature from the declaration."""
         count = len(native.parameters)
         places: dict[int, int] = {}
@@ -73,7 +78,13 @@ class Signature:
             parameter.size if parameter.size > 0 else -places[_size_key(native, index)]
             for index, parameter in enumerate(native.parameters)
         )
-        return cls(native, count + len(places), sizes)
+        return cls(native, count + len(places), sizes, cost)
+
+    def price(self, popped: Sequence[int]) -> int:
+        """Return what a call with the words it pops takes of the budget, beyond its instruction."""
+        if not self.cost.per_word:
+            return self.cost.base
+        return self.cost.of(sum([size if size > 0 else popped[-size] & 0xFFFF for size in self.sizes]))
 
 
 def _size_key(native: NativeFunction, index: int) -> int:
@@ -133,6 +144,10 @@ class NativeCall:
         address, size = self.addresses[argument], self.sizes[argument]
         words = [wrap(value) for value in values[:size]]
         self.memory[address : address + len(words)] = words
+
+    def charge(self, instructions: int) -> None:
+        """Take more of the budget than the declared cost, for work whose amount only the call itself knows."""
+        self.machine.charge(instructions)
 
     def report(self, fault: NativeFault) -> None:
         """Note a fault without ending the native."""

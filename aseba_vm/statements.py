@@ -178,6 +178,17 @@ class Leave(NamedTuple):
 End = Branch | Jump | Enter | Return | Stop | Leave
 
 
+def words_of(popped: Sequence[Expr], signature: Signature) -> int | None:
+    """Return the words of all arguments of a native together, or None if a size is not constant."""
+    total = 0
+    for size in signature.sizes:
+        length = Const(size) if size > 0 else popped[-size]
+        if not isinstance(length, Const):
+            return None
+        total += length.value & 0xFFFF
+    return total
+
+
 def arguments(popped: Sequence[Expr], signature: Signature) -> list[tuple[int, int]] | None:
     """Return address and size of each argument of a native, or None if they are not all constant."""
     found: list[tuple[int, int]] = []

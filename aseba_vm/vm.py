@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from aseba_vm.codememory import CodeMemory
 from aseba_vm.compiler import Program
+from aseba_vm.costs import NO_COSTS, Costs
 from aseba_vm.engine import AUTO, Engine, new_engine
 from aseba_vm.interpreter import ACTIVE, interpret
 from aseba_vm.nativecall import DequeFault, DivisionFault, Native, NativeCall, NativeFault, Signature, wrap
@@ -49,17 +50,20 @@ class VirtualMachine:
         *,
         on_reset: Callable[[VirtualMachine], None] | None = None,
         kills_long_events: bool = False,
+        costs: Costs = NO_COSTS,
         engine: str = AUTO,
     ) -> None:
         """Build an idle machine with empty memories.
 
         ``natives`` are functions by name, added to the standard ones or in their place; one that is missing pops its
         arguments and leaves a NativeCalled. ``on_reset`` is the node's share in a reset. ``kills_long_events``: an
-        event that reaches the limit of ``run`` is abandoned, as in the 2.x fork, not continued. ``engine`` says how
-        events are run, one of :data:`aseba_vm.engine.ENGINES`; they differ in time only.
+        event that reaches the limit of ``run`` is abandoned, as in the 2.x fork, not continued. ``costs`` are what
+        natives and events take of that limit, and add to ``instructions``. ``engine`` says how events are run, one of
+        :data:`aseba_vm.engine.ENGINES`; they differ in time only.
         """
         self.target = target
         self.node_id = node_id
+        self.costs = costs
         self.variables = Variables(target.variables_size)
         self.pc = 0
         self.sp = -1
@@ -67,6 +71,8 @@ class VirtualMachine:
         self.outbox: list[Message] = []
         self.fault: Fault | None = None
         self.instructions = 0
+        self.surcharge = 0
+        """What the native that is being called takes of the budget, until it is counted."""
         self.random_state = 0
         self.tracer: Callable[[int], None] | None = None
         self.stack: list[int] = [0] * target.stack_size
@@ -75,7 +81,9 @@ class VirtualMachine:
         self._on_reset = on_reset
         self._kills_long_events = kills_long_events
         self._functions = {**NATIVES, **(natives or {})}
-        self._natives = [(Signature.of(native), self._functions.get(native.name)) for native in target.natives]
+        self._natives = [
+            (Signature.of(native, costs.of(native.name)), self._functions.get(native.name)) for native in target.natives
+        ]
         self._engine: Engine | None = None
         self.use_engine(engine)
 
@@ -237,7 +245,10 @@ class VirtualMachine:
     # -- running (VM spec, section 10.3)
 
     def run(self, limit: int = 0) -> bool:
-        """Execute the active event for at most ``limit`` instructions (0: to its end); tell whether it ran at all."""
+        """Execute the active event until ``limit`` instructions are spent (0: to its end); tell whether it ran at all.
+
+        With ``costs`` the last operation may go beyond the limit.
+        """
         if self.flags & (ACTIVE | STEP_BY_STEP) != ACTIVE:
             return False
         self.flags |= RUNNING
@@ -254,7 +265,7 @@ class VirtualMachine:
             self.flags &= ~RUNNING
             raise
         self.flags &= ~RUNNING
-        if self._kills_long_events and executed == limit:
+        if self._kills_long_events and limit and executed >= limit:
             self.flags &= ~ACTIVE
             self.outbox.append(EventKilled(self.pc))
         return True
@@ -293,7 +304,7 @@ class VirtualMachine:
         self._engine = new_engine(name, self, self._functions)
 
     def interpret(self, limit: int) -> int:
-        """Execute at most ``limit`` instructions without translation; return how many were. For the engine."""
+        """Execute without translation until ``limit`` is spent; return what was. For the engine."""
         self._settle()
         return interpret(self, limit)
 
@@ -322,6 +333,19 @@ class VirtualMachine:
             self.stop_on(OutOfBounds(pc))
         else:
             self.stop_on(NodeSpecific(pc, fault.reason))
+
+    def charge(self, instructions: int) -> None:
+        """Take more of the budget for the native that is being called, where natives cost anything."""
+        if self.costs is not NO_COSTS:
+            self.surcharge += instructions
+
+    def price(self, number: int, popped: Sequence[int]) -> int:
+        """Return what a call of a native takes of the budget, beyond its instruction. For the interpreter."""
+        return self._natives[number][0].price(popped)
+
+    def price_of_emit(self, words: int) -> int:
+        """Return what an event takes of the budget, beyond its instruction. For the interpreter."""
+        return self.costs.emit.of(words)
 
     def count_popped(self, number: int) -> int:
         """Return how many words a native pops. For the interpreter."""

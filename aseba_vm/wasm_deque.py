@@ -151,9 +151,6 @@ FUNCTIONS: dict[str, str] = {
     "deque.set": _native(
         "set", "q words index length size", f"{_INDEX} (call $deque_set_at {_ON_RING} (local.get $index))"
     ),
-    "deque.insert": _native(
-        "insert", "q words index length size", f"{_INDEX} (call $deque_insert_at {_ON_RING} (local.get $index))"
-    ),
     "deque.erase": _native(
         "erase",
         "q index count length",
@@ -174,12 +171,14 @@ FUNCTIONS: dict[str, str] = {
     "deque_get_at": _transfer("deque_get_at", _OUTSIDE_AT, _RING_AT),
     "deque_set_at": _transfer("deque_set_at", _RING_AT, _OUTSIDE_AT),
 }
-"""Functions by name, without ``$``; :func:`move` is ``deque_move``."""
+"""Functions by name, without ``$``; :func:`move` is ``deque_move``.
+
+``deque.insert`` is called in Python, which charges it for what it moves.
+"""
 
 NEEDS: dict[str, tuple[str, ...]] = {
     "deque.get": ("deque_get_at",),
     "deque.set": ("deque_set_at",),
-    "deque.insert": ("deque_insert_at",),
     "deque.erase": ("deque_erase_at",),
     "deque.push_front": ("deque_insert_at",),
     "deque.push_back": ("deque_insert_at",),

@@ -5,17 +5,22 @@ from __future__ import annotations
 import itertools
 import json
 import math
+from pathlib import Path
 
 import pytest
 
+from aseba_vm.engine import INTERPRETER
+from tests.aseba_vm.engines import TRANSLATORS
 from tests.tracks import farthest_in_laps
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.loading import load_playground, read_program
-from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.runner import BUDGET, MOST_ROUNDS, Runner
 from thymio_sim_ros.sim import playground as playgrounds
 from thymio_sim_ros.sim.commands import BodyTwist, MoveRobot, WheelVelocities
 from thymio_sim_ros.sim.playground import RobotStart
+
+RUNAWAYS = sorted((Path(__file__).parent / "data" / "runaway").glob("*.aesl"))
 
 TALK = """<network><event size="1" name="hello"/><node name="thymio-II">
 var heard[2]
@@ -288,3 +293,26 @@ def test_a_robot_follows_the_line_that_another_one_draws():
     assert painter.pose.x_m > 0.8
     assert all(0.35 < radius < 0.45 for radius in way)
     assert follower.pose.y_m > -0.3
+
+
+def runaway(path, engine, card):
+    options = DeviceOptions(card=card, settings=card.with_name(f"{card.name}-settings"))
+    runner = Runner(playgrounds.loads(TWO, "two"), load_program(path.read_text(), path.name), options=options)
+    told = []
+    for device in runner.devices.values():
+        device._vm.use_engine(engine)
+    for _ in range(4):
+        before = [device._vm.instructions for device in runner.devices.values()]
+        runner.step()
+        spent = [device._vm.instructions - each for device, each in zip(runner.devices.values(), before, strict=True)]
+        told.append((spent, [device.memory() for device in runner.devices.values()], list(runner.emitted)))
+    return told
+
+
+@pytest.mark.parametrize("path", RUNAWAYS, ids=lambda path: path.stem)
+def test_a_program_without_an_end_gets_its_budget_whatever_runs_it(path, tmp_path):
+    wanted = runaway(path, INTERPRETER, tmp_path / INTERPRETER)
+    longest_call = 2 * 0x10000 + 5000
+    assert all(0 < sum(spent) <= len(spent) * (MOST_ROUNDS * BUDGET + longest_call) for spent, _, _ in wanted[:1])
+    for engine in TRANSLATORS:
+        assert runaway(path, engine, tmp_path / engine) == wanted

@@ -11,6 +11,7 @@ import pytest
 
 from aseba_vm import CompileError, VirtualMachine, compile, engine, engine_python
 from aseba_vm.bytecode import Op
+from aseba_vm.costs import NO_COSTS, Cost, Costs
 from aseba_vm.engine import INTERPRETER, WASM
 from aseba_vm.engine_wasm import is_available
 from aseba_vm.targets import THYMIO_II
@@ -37,9 +38,29 @@ def _state(machine):
     )
 
 
-def _compare(words, seed, engines):
+COSTS = Costs(
+    {"math.copy": Cost(3, 1), "math.fill": Cost(0, 2), "leds.top": Cost(40), "leds.rc": Cost(700), "math.rand": Cost()},
+    Cost(5, 1),
+    Cost(20, 3),
+)
+
+
+def _light(call):
+    """A native whose cost depends on what it is told."""
+    call.charge(call.value(0) % 7 * 10)
+
+
+def _compare(words, seed, engines, costs=(NO_COSTS, COSTS)):
     """Run the same events in two machines, one of them changing engines, and compare them after each."""
-    machines = [VirtualMachine(THYMIO_II, engine=INTERPRETER), VirtualMachine(THYMIO_II, engine=engines[0])]
+    for each in costs:
+        _compare_at(each, words, seed, engines)
+
+
+def _compare_at(costs, words, seed, engines):
+    machines = [
+        VirtualMachine(THYMIO_II, {"leds.top": _light}, costs=costs, engine=engine)
+        for engine in (INTERPRETER, engines[0])
+    ]
     source = random.Random(seed)
     for machine in machines:
         machine.set_bytecode(words)
@@ -193,6 +214,36 @@ def _states_around_a_failing_native(engine):
 @pytest.mark.parametrize("engine", TRANSLATORS)
 def test_a_native_that_raises_leaves_the_machine_after_its_call(engine):
     assert list(_states_around_a_failing_native(engine)) == list(_states_around_a_failing_native(INTERPRETER))
+
+
+ENDLESS = {
+    "emit": "while k == 0 do\ni++\nemit pair [i, k]\nend",
+    "native": "while k == 0 do\ni++\ncall leds.rc(i)\nend",
+    "vector": "while k == 0 do\ni++\ncall math.fill(t, i)\nend",
+    "own cost": "while k == 0 do\ni = (i + 1) % 30000\ncall leds.top(i, i, i)\nend",
+    "subroutine": "while k == 0 do\ncallsub go\nend\nsub go\ni++\nemit ping i\ncall math.copy(t[0:3], t[4:7])",
+}
+
+
+@pytest.mark.parametrize("engine", AVAILABLE)
+@pytest.mark.parametrize("program", ENDLESS)
+def test_calls_and_events_are_charged_and_every_engine_stops_at_the_same_place(engine, program):
+    compiled = compile(f"var i\nvar k\nvar t[40]\n{ENDLESS[program]}", THYMIO_II, EVENTS)
+    machines = [
+        VirtualMachine(THYMIO_II, {"leds.top": _light}, costs=COSTS, engine=each) for each in (INTERPRETER, engine)
+    ]
+    for machine in machines:
+        machine.load(compiled)
+    for limit in (1, 10, 777, 5000, 5000, 5000, 5000):
+        before = machines[0].instructions
+        for machine in machines:
+            machine.run(limit)
+        assert limit <= machines[0].instructions - before < limit + 710
+        assert _state(machines[0]) == _state(machines[1])
+    plain = VirtualMachine(THYMIO_II, engine=engine)
+    plain.load(compiled)
+    plain.run(machines[0].instructions)
+    assert plain.variables[128] > 1.5 * machines[0].variables[128] > 1
 
 
 @pytest.mark.parametrize("engine", AVAILABLE)

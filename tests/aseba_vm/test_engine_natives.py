@@ -6,16 +6,18 @@ import random
 
 import pytest
 
-from aseba_vm import VirtualMachine
+from aseba_vm import VirtualMachine, compile
+from aseba_vm.costs import Cost, Costs
 from aseba_vm.engine import INTERPRETER
 from aseba_vm.natives import NATIVES
 from aseba_vm.outbox import BadCode
 from aseba_vm.targets import THYMIO_II
-from tests.aseba_vm.engines import TRANSLATORS
+from tests.aseba_vm.engines import AVAILABLE, TRANSLATORS
 
 pytestmark = pytest.mark.usefixtures("translators_work")
 
 LIMITS = (0, 1, -1, 2, 127, 128, 16383, 16384, 16385, -16384, -16385, 32767, -32767, -32768)
+COSTS = Costs(others=Cost(7, 1))
 STOP, PUSH, NATIVE = 0, 0x1000, 0xC000
 
 
@@ -42,14 +44,15 @@ def test_a_native_does_the_same_in_every_engine(name, engine):
     source = random.Random(name)
     for _ in range(40):
         words = [3, 0xFFFF, 3, *_call(number, source), STOP]
-        machines = [VirtualMachine(THYMIO_II, engine=each) for each in (INTERPRETER, engine)]
+        machines = [VirtualMachine(THYMIO_II, engine=each, costs=COSTS) for each in (INTERPRETER, engine)]
         for machine in machines:
             machine.set_bytecode(words)
         for _ in range(4):
             memory = [_word(source) for _ in range(140)]
             if name.startswith("deque"):
                 place = words[-3] & 0xFFF
-                memory[place - 180 : place - 178] = [source.randrange(6), source.randrange(6)]
+                nonsense = source.choice((6, 6, 6, 0x7FFF))
+                memory[place - 180 : place - 178] = [source.randrange(6), source.randrange(nonsense)]
             for machine in machines:
                 machine.write_variables(180, memory)
                 machine.resume()
@@ -66,3 +69,16 @@ def test_a_native_does_the_same_in_every_engine(name, engine):
                 quick.random_state,
             )
             assert plain.take_messages() == quick.take_messages()
+
+
+@pytest.mark.parametrize("engine", AVAILABLE)
+def test_moves_round_and_round_a_deque_are_charged(engine):
+    text = "var q[10]\nvar n\nvar k\nwhile k == 0 do\nq[0] = 0\nq[1] = {start}\ncall deque.insert(q, n, 3)\nend"
+    spent = {}
+    for start in (0, -1):
+        machine = VirtualMachine(THYMIO_II, engine=engine, costs=COSTS)
+        machine.load(compile(text.format(start=start), THYMIO_II))
+        machine.run(100)
+        spent[start] = machine.instructions
+    assert spent[0] < 200
+    assert 2 * 65000 < spent[-1] < 2 * 66000

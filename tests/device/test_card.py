@@ -182,3 +182,52 @@ def test_links_that_lead_round_and_pipes_are_no_files(card: Card) -> None:
     os.symlink(card.folder / "u1.dat", card.folder / "u2.dat")
     os.mkfifo(card.folder / "u3.dat")
     assert [card.open(number) for number in (1, 2, 3)] == [False] * 3
+
+
+def test_a_card_holds_so_many_files(card: Card, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cards, "MOST_FILES", 3)
+    assert [card.open(number) for number in range(5)] == [True, True, True, False, False]
+    assert "holds 3 files" in card.refusal
+    assert not card.write_sound("r1", b"abc")
+    assert card.open(2)
+    assert card.refusal == ""
+    (card.folder / "u0.dat").unlink()
+    assert card.open(7)
+    assert sorted(path.name for path in card.folder.iterdir()) == ["u1.dat", "u2.dat", "u7.dat"]
+
+
+def test_a_card_holds_so_many_bytes_in_all_files(card: Card, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cards, "MOST_BYTES", 60)
+    (card.folder / "notes.txt").write_bytes(b"ten bytes.")
+    card.open(1)
+    assert (card.write([1] * 20), card.refusal) == (20, "")
+    card.open(2)
+    assert (card.write([2] * 20), card.refusal) == (5, "the card is full: it holds 60 bytes")
+    assert not card.write_sound("r1", b"")
+    card.open(1)
+    assert (card.write([3] * 20), card.refusal) == (20, "")
+    assert sum(path.stat().st_size for path in card.folder.iterdir()) == 60
+
+
+def test_a_gap_counts_as_bytes(card: Card, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cards, "MOST_BYTES", 2 * 0xFFFF)
+    card.open(1)
+    card.seek(0xFFFF)
+    assert card.write([1]) == 0
+    card.seek(0xFFFE)
+    assert card.write([1, 2]) == 1
+
+
+def test_the_folder_is_not_listed_for_every_name(card: Card, monkeypatch: pytest.MonkeyPatch) -> None:
+    card.open(0)
+    listed = []
+    monkeypatch.setattr(os, "scandir", lambda folder: listed.append(folder) or pytest.fail("listed"))
+    for number in range(1, 100):
+        assert card.open(number)
+        assert card.read_sound(f"p{number}") is None
+    assert listed == []
+
+
+def test_a_sound_is_measured_without_being_read(card: Card) -> None:
+    card.write_sound("r1", bytes(100))
+    assert (card.sound_bytes("r1"), card.sound_bytes("r2")) == (100, 0)

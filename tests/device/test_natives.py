@@ -13,6 +13,7 @@ from aseba_vm.natives import NATIVES
 from tests.sim.builders import make
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.load import Meter
 from thymio_sim_ros.device.natives import native_functions
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.program import load_program
@@ -243,7 +244,7 @@ def test_in_the_playground_a_program_has_its_turn_before_an_event_cuts_it_off() 
 
 def test_no_native_of_the_robot_is_left_without_a_function() -> None:
     device = AsebaDevice()
-    functions = native_functions(device._outputs.send, device.body)
+    functions = native_functions(device._outputs.send, device.body, Meter())
     assert sorted({*functions, *NATIVES}) == sorted(native.name for native in target().natives)
 
 

@@ -89,48 +89,62 @@ class Body:
         if complaint:
             self.tell(complaint)
 
-    def play_system_sound(self, number: int) -> None:
-        """One of the robot's own sounds, or the card's in place of a number that is none; −1 stops."""
+    def play_system_sound(self, number: int) -> int:
+        """One of the robot's own sounds, or the card's in place of a number that is none; −1 stops. Bytes read."""
         if number == -1:
             self._send(StopSound())
-        elif 0 <= number < len(SYSTEM_SOUNDS) or not self._play_file(f"s{number}"):
+            return 0
+        found = None if 0 <= number < len(SYSTEM_SOUNDS) else self._play_file(f"s{number}")
+        if found is None:
             self._send(PlaySystemSound(number))
+        return found or 0
 
-    def play(self, name: str, number: int) -> None:
-        """A sound of the card, by the letter of its kind and its number; −1 stops, and so does one that is missing."""
-        if number == -1:
+    def play(self, name: str, number: int) -> int:
+        """A sound of the card, by the letter of its kind and its number; −1 stops, and so does one that is missing.
+
+        Returns the bytes read.
+        """
+        found = None if number == -1 else self._play_file(f"{name}{number}")
+        if found is None:
             self._send(StopSound())
-        elif not self._play_file(f"{name}{number}"):
-            self._send(StopSound())
+        if found is None and number != -1:
             self.tell(f"there is no {name}{number}.wav on the card" if self.card else f"no card: {name}{number}.wav")
+        return found or 0
 
-    def record(self, number: int) -> None:
-        """Begin to record; −1 stops and stores."""
-        self.stop_recording()
+    def record(self, number: int) -> int:
+        """Begin to record; −1 stops and stores. Returns the bytes written."""
+        written = self.stop_recording()
         if number >= 0 and self.card is not None:
             self._recorder = Recorder(number, self._now_ns)
+        return written
 
-    def stop_recording(self) -> None:
-        """Store what was recorded, if something is being recorded."""
+    def stop_recording(self) -> int:
+        """Store what was recorded, if something is being recorded; returns the bytes written."""
         recorder, self._recorder = self._recorder, None
-        if (
-            recorder is not None
-            and self.card is not None
-            and not self.card.write_sound(f"r{recorder.number}", recorder.samples)
-        ):
+        if recorder is None or self.card is None:
+            return 0
+        samples = recorder.samples
+        if not self.card.write_sound(f"r{recorder.number}", samples):
             self.tell(f"r{recorder.number}.wav cannot be stored on the card")
+            self.tell_full_card()
+        return len(samples)
+
+    def tell_full_card(self) -> None:
+        """Tell the user if the card has refused a program something as it is full."""
+        if self.card is not None and self.card.refusal:
+            self.tell(self.card.refusal)
 
     def recorded_bytes(self, number: int) -> int:
         """Samples of a record; 0 when there is none."""
-        found = self.card.read_sound(f"r{number}") if self.card is not None else None
-        return 0 if found is None else len(found[0])
+        return 0 if self.card is None else self.card.sound_bytes(f"r{number}")
 
-    def _play_file(self, name: str) -> bool:
+    def _play_file(self, name: str) -> int | None:
+        """Play a sound of the card; the bytes read, None if there is none."""
         found = self.card.read_sound(name) if self.card is not None else None
         if found is None:
-            return False
+            return None
         samples, complaint = found
         if complaint:
             self.tell(complaint)
         self._send(PlaySamples(samples))
-        return True
+        return len(samples)

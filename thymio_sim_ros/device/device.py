@@ -11,14 +11,17 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from aseba_vm import VirtualMachine
+from aseba_vm.costs import NO_COSTS
 from aseba_vm.messages import LANGUAGES
 from aseba_vm.outbox import BadCode, DivisionByZero, Emitted, NodeSpecific, OutOfBounds
 from thymio_sim_ros.device.body import RESTART, Body
 from thymio_sim_ros.device.breakpoints import Breakpoints, LineDebugger
 from thymio_sim_ros.device.card import Card
+from thymio_sim_ros.device.costs import COSTS
 from thymio_sim_ros.device.events import POLICIES, EventQueue, GlobalEvent
 from thymio_sim_ros.device.inputs import Inputs
 from thymio_sim_ros.device.layout import LAYOUTS, target
+from thymio_sim_ros.device.load import Load, Meter
 from thymio_sim_ros.device.natives import native_functions
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.outputs import Outputs
@@ -34,6 +37,8 @@ __all__ = ["AsebaDevice", "DeviceStatus", "EmittedEvent"]
 _SOUND, _BATTERY = "sound", "battery"
 """The sensors whose first word is `mic.intensity`, and whose last tells whether a charger is connected."""
 INT16 = range(-0x8000, 0x8000)
+MOST_NOTICES = 50
+"""Different notices of a device; a program can make ever new ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +91,13 @@ class AsebaDevice:
             tell=self._tell,
             recalibrate=self._outputs.tell_motors_again,
         )
+        self._meter = Meter()
         self._vm = VirtualMachine(
-            self._target, native_functions(self._outputs.send, self.body), node_id, on_reset=self._on_reset
+            self._target,
+            native_functions(self._outputs.send, self.body, self._meter),
+            node_id,
+            on_reset=self._on_reset,
+            costs=NO_COSTS if self._queue.policy.kills else COSTS,
         )
         self._inputs = Inputs(self.layout, self._queue.policy.periods_ns, self._vm, self._happen)
         self.load(load_program("", "none", self.layout))
@@ -168,14 +178,18 @@ class AsebaDevice:
         self._now_ns = now_ns
 
     def run(self, budget: int) -> None:
-        """Execute handlers until nothing waits, or so many instructions were executed."""
+        """Execute handlers until nothing waits, or so many instructions were executed; natives and events count more.
+
+        Where events end handlers, the reference counts a native as one instruction to decide when: there the charges
+        are compared with the budget between handlers.
+        """
         if not self.is_busy:
             return
         self._note_writing()
-        vm, queue = self._vm, self._queue
+        vm, queue, meter = self._vm, self._queue, self._meter
         turn = queue.policy.turn
-        end = vm.instructions + budget
-        while self.is_busy and vm.instructions < end:
+        end, charged = vm.instructions + budget, meter.charged
+        while self.is_busy and vm.instructions < end and not (queue.policy.kills and meter.charged - charged >= budget):
             if not vm.is_active or (queue.policy.kills and queue.waits and vm.instructions > self._begun):
                 self._start_next()
             elif queue.has_incoming and vm.instructions - self._begun >= turn:
@@ -185,6 +199,7 @@ class AsebaDevice:
                 break  # a robot that restarts takes a while
             if queue.policy.kills and vm.is_active and not queue.waits:
                 break  # the rest of a long handler belongs to the next step
+        meter.count_run(is_cut=self.is_busy and meter.charged - charged >= budget // 2)
         if not vm.is_active:
             self._notice_periods()
 
@@ -206,6 +221,7 @@ class AsebaDevice:
         if self._vm.is_step_by_step and (self._vm.is_active or self._state != PAUSED):
             return
         if not self._queue.receive(GlobalEvent(self._names.index(name), source, tuple(args))):
+            self._meter.count_lost(name)
             self._tell(f"more events arrive than the program can handle: {name} is lost")
 
     def resume(self) -> None:
@@ -312,6 +328,10 @@ class AsebaDevice:
         happened, self._happened = self._happened, []
         return happened
 
+    def take_load(self) -> Load:
+        """How much the program asked of the robot since the last time."""
+        return self._meter.take()
+
     def take_notices(self) -> list[str]:
         """What the user should know, each thing once."""
         notices, self._notices = self._notices, []
@@ -407,6 +427,7 @@ class AsebaDevice:
         for message in self._vm.take_messages():
             if isinstance(message, Emitted):
                 if message.number < len(self._names):
+                    self._meter.count_event(self._names[message.number], len(message.arguments))
                     self._events.append(EmittedEvent(self._names[message.number], message.arguments))
             elif isinstance(message, OutOfBounds | DivisionByZero | NodeSpecific | BadCode) and not self.body.wanted:
                 line = self._program.line_of(message.pc)
@@ -429,7 +450,7 @@ class AsebaDevice:
             self.set_variable(name, (0,))
 
     def _tell(self, notice: str) -> None:
-        if notice not in self._noticed:
+        if notice not in self._noticed and len(self._noticed) < MOST_NOTICES:
             self._noticed.add(notice)
             self._notices.append(notice)
 

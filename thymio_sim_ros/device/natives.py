@@ -12,6 +12,8 @@ from aseba_vm import Native, NativeCall
 from aseba_vm.nativecall import NativeFault
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.body import RESTART, SWITCH_OFF, Body
+from thymio_sim_ros.device.costs import BYTES_PER_INSTRUCTION
+from thymio_sim_ros.device.load import Meter
 from thymio_sim_ros.sim import aseba_face
 from thymio_sim_ros.sim.commands import Command
 
@@ -24,14 +26,15 @@ DONE, FAILED = 0, -1
 """What `sd.open` and `sd.seek` answer."""
 
 
-def native_functions(send: Send, body: Body) -> dict[str, Native]:
-    """All functions that are not the machine's own, by name."""
-    actuators = {native.name: _commanding(native, send) for native in bindings.natives().values()}
-    return actuators | {name: _serving(serve, body) for name, serve in BODY_NATIVES.items()}
+def native_functions(send: Send, body: Body, meter: Meter) -> dict[str, Native]:
+    """All functions that are not the machine's own, by name; `meter` counts their calls."""
+    actuators = {native.name: _commanding(native, send, meter) for native in bindings.natives().values()}
+    return actuators | {name: _serving(name, serve, body, meter) for name, serve in BODY_NATIVES.items()}
 
 
-def _commanding(native: aseba_face.Native, send: Send) -> Native:
+def _commanding(native: aseba_face.Native, send: Send, meter: Meter) -> Native:
     def call_native(call: NativeCall) -> None:
+        meter.count_call(native.name, sum(call.sizes))
         words = call.words()
         try:
             command = native.command(words)
@@ -42,8 +45,16 @@ def _commanding(native: aseba_face.Native, send: Send) -> Native:
     return call_native
 
 
-def _serving(serve: Callable[[NativeCall, Body], None], body: Body) -> Native:
-    return lambda call: serve(call, body)
+def _serving(name: str, serve: Callable[[NativeCall, Body], None], body: Body, meter: Meter) -> Native:
+    def call_native(call: NativeCall) -> None:
+        meter.count_call(name, sum(call.sizes))
+        serve(call, body)
+
+    return call_native
+
+
+def _charge_bytes(call: NativeCall, count: int) -> None:
+    call.charge(count // BYTES_PER_INSTRUCTION)
 
 
 def _reboot(_call: NativeCall, body: Body) -> None:
@@ -76,19 +87,19 @@ def _flash_settings(_call: NativeCall, body: Body) -> None:
 
 
 def _record(call: NativeCall, body: Body) -> None:
-    body.record(call.value(0))
+    _charge_bytes(call, body.record(call.value(0)))
 
 
 def _play(call: NativeCall, body: Body) -> None:
-    body.play("p", call.value(0))
+    _charge_bytes(call, body.play("p", call.value(0)))
 
 
 def _replay(call: NativeCall, body: Body) -> None:
-    body.play("r", call.value(0))
+    _charge_bytes(call, body.play("r", call.value(0)))
 
 
 def _system_sound(call: NativeCall, body: Body) -> None:
-    body.play_system_sound(call.value(0))
+    _charge_bytes(call, body.play_system_sound(call.value(0)))
 
 
 def _duration(call: NativeCall, body: Body) -> None:
@@ -103,10 +114,12 @@ def _open(call: NativeCall, body: Body) -> None:
         call.write(1, [DONE])
     else:
         call.write(1, [DONE if card is not None and card.open(number) else FAILED])
+        body.tell_full_card()
 
 
 def _write(call: NativeCall, body: Body) -> None:
     call.write(1, [0 if body.card is None else body.card.write(call.read(0))])
+    body.tell_full_card()
 
 
 def _read(call: NativeCall, body: Body) -> None:

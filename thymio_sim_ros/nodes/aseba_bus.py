@@ -1,12 +1,17 @@
 """How the robots of a runtime share the machine and the air: turns, and events from one to the others.
 
 An event waits for its hearer's turn, so that robots that answer each other cannot starve the rest: after some rounds
-what is left waits for the node's next turn.
+what is left waits for the node's next turn. So does, in a process of our own, what is left after a slice of wall time:
+the node serves messages and services every few milliseconds whatever programs do, and robots take their turns in the
+order in which they began to wait. Tests in lock-step have no slices, since their results must not depend on wall time.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from math import inf
 
 from rclpy.node import Node
 
@@ -18,6 +23,9 @@ __all__ = ["Bus"]
 
 MOST_ROUNDS = 10
 """Times that robots may answer each other's events at once (as in the runner)."""
+
+SLICE_S = 0.005
+"""Wall time in each turn of the node after which no other robot begins its turn."""
 
 COMPUTER = 0
 """Number of the sender of what comes from ROS."""
@@ -34,24 +42,47 @@ class Bus:
         self._told = told
         self._woken: dict[DevicePorts, None] = {}
         self._is_settling = False
+        self._slice_end_s: float | None = inf
+        """When no other robot begins its turn; None: a slice after the next one begins."""
         self._network = AsebaNetwork(node, self._hear_others)
 
+    @property
+    def has_waiting(self) -> bool:
+        """Whether robots wait for a turn."""
+        return bool(self._woken)
+
+    @contextmanager
+    def slice(self) -> Iterator[None]:
+        """Meanwhile robots take turns for a slice of wall time, which begins with the first of them."""
+        self._slice_end_s = None
+        try:
+            yield
+        finally:
+            self._slice_end_s = inf
+
     def settle(self, *robots: DevicePorts) -> None:
-        """Let robots take their turns, then those that they wake, for some rounds."""
+        """Let robots take their turns, then those that they wake, for some rounds and until the slice ends."""
         self._woken.update(dict.fromkeys(robots))
         if self._is_settling:
             return
+        if self._slice_end_s is None:
+            self._slice_end_s = time.monotonic() + SLICE_S
         self._is_settling = True
         try:
             for _ in range(MOST_ROUNDS):
-                woken, self._woken = self._woken, {}
-                for robot in woken:
+                for robot in list(self._woken):
+                    if time.monotonic() >= self._slice_end_s:
+                        return
+                    del self._woken[robot]
                     robot.turn()
                 if not self._woken:
                     return
-            self._woken.clear()  # their events wait in their devices
         finally:
             self._is_settling = False
+
+    def forget(self, robot: DevicePorts) -> None:
+        """A robot goes."""
+        self._woken.pop(robot, None)
 
     def pass_on(self, sender: DevicePorts, event: str, args: Sequence[int]) -> None:
         """Robots of one runtime hear each other directly, others by the network's topic; nobody hears himself."""

@@ -8,8 +8,10 @@ with its place, and the old program goes on. A robot without a program is switch
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 from types import MappingProxyType
 from typing import Any
 
@@ -35,7 +37,7 @@ from thymio_sim_ros.device.program import ProgramError
 from thymio_sim_ros.device.settings import SettingsError
 from thymio_sim_ros.loading import check_behaviour, shipped_behaviours
 from thymio_sim_ros.nodes import aseba_params, params, qos, scripts
-from thymio_sim_ros.nodes.aseba_bus import Bus
+from thymio_sim_ros.nodes.aseba_bus import SLICE_S, Bus
 from thymio_sim_ros.nodes.aseba_params import RuntimeParams, WrongValueError
 from thymio_sim_ros.nodes.check_service import CheckService
 from thymio_sim_ros.nodes.device_ports import DevicePorts, Wishes
@@ -104,14 +106,29 @@ class AsebaRuntime:
         return f"Program: {', '.join(programs) or 'none'}"
 
     def turn(self, executor: Executor) -> None:
-        """Handle messages; let handlers that used up their budget go on."""
-        busy = [ports for ports in self.robots if ports.is_busy]
-        if not busy:
-            executor.spin_once(timeout_sec=SPIN_SLICE_S)
-        else:
+        """Handle messages, then let robots take turns that wait for one, for a slice of wall time.
+
+        Where a slice was not enough for programs without an end, the rest of the process has the interpreter for as
+        long.
+        """
+        with self._bus.slice():
+            busy = [ports for ports in self.robots if ports.is_busy]
+            if busy and self._bus.has_waiting:
+                self._rest(executor)
+            wait_s = min((ports.resumes_s for ports in busy), default=inf) - time.monotonic()
+            if wait_s > 0.0 and not self._bus.has_waiting:
+                executor.spin_once(timeout_sec=min(wait_s, SPIN_SLICE_S))
+                return
             deliver(executor)
-            for ports in busy:
-                ports.run()
+            now_s = time.monotonic()
+            self._bus.settle(*[ports for ports in busy if ports.is_busy and ports.resumes_s <= now_s])
+
+    @staticmethod
+    def _rest(executor: Executor) -> None:
+        """Do no more than handle messages for a while."""
+        end_s = time.monotonic() + SLICE_S
+        while (wait_s := end_s - time.monotonic()) > 0.0:
+            executor.spin_once(timeout_sec=wait_s)
 
     def end(self) -> None:
         """Stop the wheels that programs drive."""
@@ -290,6 +307,8 @@ class AsebaRuntime:
         self._publish_statuses([ports.status.message])
 
     def _publish_diagnostics(self) -> None:
+        for ports in self.robots:
+            ports.observe_load()
         self._publish_statuses([ports.status.message for ports in self.robots])
 
     def _publish_statuses(self, statuses: Iterable[DiagnosticStatus]) -> None:

@@ -6,8 +6,9 @@ ROS driver; commands leave on the topics that any robot listens to.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from rclpy.node import Node
@@ -21,7 +22,7 @@ from thymio_sim_ros.device.fleet import Share
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.program import ThymioProgram, load_program
-from thymio_sim_ros.device.status import OFF
+from thymio_sim_ros.device.status import OFF, RUNNING
 from thymio_sim_ros.nodes import direct, driver_senses, qos
 from thymio_sim_ros.nodes.event_ports import EventPorts
 from thymio_sim_ros.nodes.names import RobotNames
@@ -34,6 +35,10 @@ __all__ = ["DevicePorts", "Surroundings", "Wishes"]
 
 RUN_BUDGET = 5000
 """Instructions per turn; a handler that needs more goes on in the next (a robot does 65535 between polls)."""
+CONTINUE_S = 0.01
+"""Wall time after a turn in which a handler goes on without a message: the simulator measures as often."""
+MOST_COMMANDS = 64
+"""Commands of a turn that are all sent; of more, and of a turn that the budget has cut, the latest of each kind are."""
 
 ALL = "*"
 """In place of the names of local events: all there are."""
@@ -64,6 +69,9 @@ class Surroundings(Protocol):
     def told(self, ports: DevicePorts, /) -> None:
         """The status of this robot is another."""
 
+    def forget(self, robot: DevicePorts, /) -> None:
+        """This robot goes: it takes no more turns."""
+
 
 class DevicePorts:
     """An `AsebaDevice` with the topics and services of its robot."""
@@ -91,6 +99,9 @@ class DevicePorts:
         self._wishes = wishes or Wishes()
         self._program = self._own = self._host.program
         self._is_closed = False
+        self._turned_s = 0.0
+        self._replaced = 0
+        self._overload = ""
         self._has_driver, self._is_fed = has_driver, is_fed
         self._outputs = OutputPorts(node, names, has_driver=has_driver)
         self.warn = Warner(node)
@@ -129,6 +140,11 @@ class DevicePorts:
     def is_busy(self) -> bool:
         """Whether a handler still has instructions to execute."""
         return self.device.is_busy
+
+    @property
+    def resumes_s(self) -> float:
+        """The time by `time.monotonic` when a busy robot takes its next turn, if nothing else gives it one."""
+        return self._turned_s + CONTINUE_S
 
     @property
     def program(self) -> ThymioProgram:
@@ -196,9 +212,10 @@ class DevicePorts:
         now_ns = self._node.get_clock().now().nanoseconds
         self.device.advance(now_ns)
         self.device.run(RUN_BUDGET)
+        is_cut = self.device.is_busy
         events = self._host.take_events()
-        for command in self.device.take_commands():
-            self._outputs.send(command)
+        commands = self.device.take_commands()
+        self._replaced += self._outputs.send_all(commands, latest=is_cut or len(commands) > MOST_COMMANDS)
         for name in self.device.take_local_events():
             self._events.publish(name, ())
         for event in events:
@@ -208,7 +225,21 @@ class DevicePorts:
             self._begin()
         for notice in self._host.take_notices():
             self._node.get_logger().warning(f"{self.names.name or 'robot'}: {notice}")
-        if self.status.tell(self.device.status):
+        self._tell()
+        self._turned_s = time.monotonic()
+
+    def observe_load(self) -> None:
+        """Tell whether the program has done more than can be served since the last time."""
+        load = replace(self.device.take_load(), replaced=self._replaced)
+        self._replaced = 0
+        overload = load.sentence if self.device.status.state == RUNNING else ""
+        if overload and not self._overload:
+            self.warn(f"{self.names.name or 'robot'}:", overload)
+        self._overload = overload
+        self._tell()
+
+    def _tell(self) -> None:
+        if self.status.tell(self.device.status, self._overload):
             self._around.told(self)
 
     def look(self) -> None:
@@ -223,9 +254,9 @@ class DevicePorts:
         """The robot does not go on without its program: wheels stop, and nothing runs any more."""
         if not self._is_closed:
             self._is_closed = True
+            self._around.forget(self)
             self.device.stop()
-            for command in self.device.take_commands():
-                self._outputs.send(command)
+            self._outputs.send_all(self.device.take_commands(), latest=True)
 
     def close(self) -> None:
         """`halt` it; its topics and services go."""
@@ -282,7 +313,8 @@ class DevicePorts:
     ) -> Callable[[Trigger.Request, Trigger.Response], Trigger.Response]:
         def callback(_request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
             act()
-            self.run()
+            self.turn()  # at once, whichever robots wait for theirs
+            self._around.settle()
             status = self.device.status
             response.success = status.state != OFF
             response.message = (

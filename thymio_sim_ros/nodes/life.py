@@ -42,9 +42,9 @@ SPIN_SLICE_S = 0.1
 MOST_FAULTS = 10
 """Turns that fail one after the other before a node gives up."""
 
-CLOSE_S = 4.0
+CLOSE_S = 3.0
 """Longest time for leaving the graph: Fast DDS compares each endpoint with all others once more, which takes a minute
-with a hundred robots. `ros2 launch` kills after 10 s, and whoever pressed Ctrl-C does not wait that long."""
+with a hundred robots. `ros2 launch` kills after 10 s, and Ctrl-C ends within 5 s, whatever programs do."""
 
 
 class StartError(Exception):

@@ -7,7 +7,7 @@ a robot that is found a moment later, or that was started again meanwhile.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -72,7 +72,7 @@ class OutputPorts:
 
     def send(self, command: Command) -> None:
         """Tell the robot; nothing for a command that has no topic."""
-        topic = command_topics.topic_of(command) or plugin_topics.topic_of(command)
+        topic = _topic(command)
         if topic is None:
             return
         outlet = self._outlets[topic]
@@ -82,6 +82,20 @@ class OutputPorts:
         self._told.pop(key, None)
         if outlet.holds or not told.listeners:
             self._told[key] = told
+
+    def send_all(self, commands: Sequence[Command], *, latest: bool = False) -> int:
+        """Send commands in order; `latest`: of those about the same thing the last only. How many were left out."""
+        kept = commands
+        if latest:
+            last: dict[Hashable, Command] = {}
+            for command in commands:
+                key = _topic(command), _part(command)
+                last.pop(key, None)
+                last[key] = command
+            kept = list(last.values())
+        for command in kept:
+            self.send(command)
+        return len(commands) - len(kept)
 
     def look(self) -> None:
         """Tell those who have come what holds, and what nobody has heard: in the order of old, once no more come."""
@@ -108,6 +122,10 @@ class OutputPorts:
     def _count(self) -> dict[str, int]:
         """How many listen to each topic."""
         return {topic: outlet.count() for topic, outlet in self._outlets.items()}
+
+
+def _topic(command: Command) -> str | None:
+    return command_topics.topic_of(command) or plugin_topics.topic_of(command)
 
 
 def _part(command: Command) -> Hashable:

@@ -38,7 +38,7 @@ class StatusPorts:
         self._node = node
         self._name = f"aseba: {names.name or 'robot'}"
         self._number = number
-        self._last: tuple[DeviceStatus, int | None] | None = None
+        self._last: tuple[DeviceStatus, int | None, str] | None = None
         self._constant: list[KeyValue] = []
         self._program = ""
         self.message = DiagnosticStatus(name=self._name)
@@ -54,17 +54,20 @@ class StatusPorts:
         fixed = _target_json(loaded.program.layout, spoken)
         self._target.publish(String(data=f'{fixed[:-1]}, "program": {told}}}'))
 
-    def tell(self, status: DeviceStatus) -> bool:
-        """Publish the status if it is news; whether it was."""
-        shown = status if status.state != RUNNING else DeviceStatus(RUNNING)
-        if self._last == (shown, shown.pc):
+    def tell(self, status: DeviceStatus, overload: str = "") -> bool:
+        """Publish the status if it is news; whether it was. `overload`: what the program does too fast."""
+        is_running = status.state == RUNNING
+        shown = DeviceStatus(RUNNING) if is_running else status
+        overload = overload if is_running else ""
+        if self._last == (shown, shown.pc, overload):
             return False
-        self._last = (shown, shown.pc)
+        self._last = (shown, shown.pc, overload)
+        level = DiagnosticStatus.WARN if overload else DiagnosticStatus.OK
         self.message = DiagnosticStatus(
-            level=DiagnosticStatus.ERROR if shown.state == FAULT else DiagnosticStatus.OK,
+            level=DiagnosticStatus.ERROR if shown.state == FAULT else level,
             name=self._name,
             hardware_id=f"node {self._number}",
-            message=shown.fault or shown.state,
+            message=shown.fault or overload or shown.state,
             values=[
                 KeyValue(key="state", value=shown.state),
                 *self._constant,
@@ -73,6 +76,7 @@ class StatusPorts:
                 KeyValue(key="pc", value=_text(shown.pc)),
                 KeyValue(key="fault", value=shown.fault),
                 KeyValue(key="faults", value=json.dumps(dict(shown.faults))),
+                KeyValue(key="overload", value=overload),
             ],
         )
         if shown.state == FAULT:
