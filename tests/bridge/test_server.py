@@ -278,11 +278,11 @@ def test_while_the_owner_is_behind_a_busy_client_waits_and_others_are_served() -
             await other.subscribe(1)
             await busy.send(ms.ClientAdvertise((ms.ClientChannel(1, "/a", "cdr", "std_msgs/Bool"),)))
             await busy.settle()
-            server.sink.is_full = True
+            server.sink.full = True
             await busy.send(ms.ClientMessageData(1, b"first"), ms.ClientMessageData(1, b"second"))
             server.publish(b"data")
             assert (await other.next(ms.MessageData)).payload == b"data"
-            server.sink.is_full = False
+            server.sink.full = False
             await server.sink.until(lambda events: len(events) == 4)
             assert [event.payload for event in server.sink.events if isinstance(event, ev.ClientSent)] == [
                 b"first",
