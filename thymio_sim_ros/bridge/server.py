@@ -43,6 +43,10 @@ __all__ = ["BridgeServer", "EventSink", "ServerSettings"]
 _FLUSH_PERIOD_S = 0.01
 _FULL_PAUSE_S = 0.005
 _CLOSE_S = 0.3
+BACKLOG = 128
+"""So many clients may wait to be let in."""
+_ACCEPTED_AT_ONCE = 4
+"""Connections that are accepted in one turn of the loop: a handshake takes it 3 ms."""
 _NO_WAYS: tuple[Routes, tuple[Way, ...]] = ((), ())
 _TIME_SLOT = -1
 """Where an outlet keeps the newest time; no subscription has this id."""
@@ -102,6 +106,7 @@ class BridgeServer:
         self._rest_lock: asyncio.Lock
         """Clients rest one after the other: see `_rest`."""
         self._is_crowded = False
+        self._is_closing = False
         self._connections: set[SharedConnection] = set()
         """Those that are no clients yet, too."""
 
@@ -127,12 +132,15 @@ class BridgeServer:
                 ping_interval=settings.ping_interval_s,
                 ping_timeout=settings.ping_timeout_s,
                 close_timeout=_CLOSE_S,
+                backlog=_ACCEPTED_AT_ONCE,
                 logger=log,
             )
+            listener.listen(BACKLOG)  # more may wait than are accepted at once
             self._servers.append(server)
 
     async def close(self) -> None:
         """Say goodbye to all clients; those that do not listen are cut off after `_CLOSE_S`."""
+        self._is_closing = True
         for server in self._servers:
             server.close()
         closed = asyncio.gather(*(server.wait_closed() for server in self._servers))
@@ -243,10 +251,12 @@ class BridgeServer:
         """Receive a client's messages until it leaves."""
         spent_s = 0.0
         async for frame in connection:
+            if self._is_closing:
+                return
             began_s = time.thread_time()
             self._receive(client, frame)
             spent_s += time.thread_time() - began_s
-            while self._sink.is_full(client):
+            while self._sink.is_full(client) and not self._is_closing:
                 await asyncio.sleep(_FULL_PAUSE_S)
             if spent_s >= SLICE_S:
                 await self._rest(spent_s)
@@ -259,7 +269,8 @@ class BridgeServer:
         however many are busy.
         """
         async with self._rest_lock:
-            await asyncio.sleep(spent_s)
+            if not self._is_closing:
+                await asyncio.sleep(spent_s)
 
     def _greeting_frame(self, message: ServerMessage) -> bytes:
         """The frame of a message of the greeting; those of 1500 topics are 2 MB and the same for every newcomer."""

@@ -39,7 +39,7 @@ from thymio_sim_ros.nodes.foxglove_values import UnfitValueError, from_ros, to_r
 __all__ = ["Parameters"]
 
 _LIST = "/list_parameters"
-_PORTION = 25
+_PORTION = 8
 """Parameters that a node is given to set at once: between two portions it has time for others."""
 
 _FIRST_ANSWER_S = 1.0

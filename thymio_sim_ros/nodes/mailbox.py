@@ -57,10 +57,12 @@ class Mailbox(Generic[T]):
 
     def is_full(self, sender: int = 0) -> bool:
         """Whether values of a weight of `capacity` wait: a polite sender pauses; `post` accepts more all the same."""
-        return self._weights[sender] >= self._capacity
+        return not self._is_closed and self._weights[sender] >= self._capacity
 
     def post(self, value: T) -> None:
-        """Append a value; from any thread."""
+        """Append a value; from any thread. Does nothing once the box is closed."""
+        if self._is_closed:
+            return
         sender = self._sender(value)
         with self._lock:
             self._queue.put(sender, value)
