@@ -169,7 +169,7 @@ def advertise(peer: Peer) -> Iterator[bytes]:
     count = 256
     name = f"/attack_{peer.socket.getsockname()[1]}"
     opened = [
-        {"id": number, "topic": f"{name}/{number}", "encoding": "cdr", "schemaName": "std_msgs/Bool"}
+        {"id": number, "topic": f"{name}/c{number}", "encoding": "cdr", "schemaName": "std_msgs/Bool"}
         for number in range(count)
     ]
     while True:
