@@ -353,8 +353,7 @@ ATTACKS: dict[str, tuple[Attack, int]] = {
 
 
 def attack(name: str, port: int) -> None:
-    """Never returns. At a lower priority than the suite: attackers elsewhere would not take its processor either."""
-    os.nice(20)
+    """Never returns."""
     act, count = ATTACKS[name]
     threading.stack_size(1 << 18)
     if name == "connections":
