@@ -66,7 +66,9 @@ def serve_ours(port: int, rate: float, size: int) -> None:
     from thymio_sim_ros.bridge import ServerInfo, ServerThread, events, messages
 
     class Sink:
-        is_full = False
+        def is_full(self, client: int) -> bool:
+            """Never."""
+            return False
 
         def post(self, event: events.Event) -> None:
             """Nobody is interested."""

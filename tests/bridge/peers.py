@@ -35,17 +35,25 @@ def run(scenario: Coroutine[Any, Any, T]) -> T:
 
 
 class Sink:
-    """Keeps what the server tells its owner."""
+    """Keeps what the server tells its owner, and answers for it who asks for parameters."""
 
     def __init__(self) -> None:
         self.events: list[ev.Event] = []
-        self.is_full = False
+        self.full = False
+        self.answer: Callable[[ev.Command], None] = lambda command: None
         self._arrived = asyncio.Event()
 
     def post(self, event: ev.Event) -> None:
         """Take an event."""
+        if isinstance(event, ev.ParametersAsked):
+            self.answer(ev.ShowParameters(event.client, event.names or None, event.request_id))
+            return
         self.events.append(event)
         self._arrived.set()
+
+    def is_full(self, client: int) -> bool:
+        """Whether the owner is behind."""
+        return self.full
 
     async def until(self, condition: Callable[[list[ev.Event]], bool]) -> None:
         """Wait until the events satisfy the condition."""
@@ -127,6 +135,7 @@ async def bridge(settings: ServerSettings | None = None) -> AsyncIterator[Bridge
     sink = Sink()
     board = Switchboard(ServerInfo("test", tuple(Capability), ("cdr", "json")))
     server = BridgeServer(board, sink, settings)
+    sink.answer = server.carry_out
     (listener,) = listen("127.0.0.1", 0)
     await server.start([listener])
     server.carry_out(ev.AddChannels((CHANNEL,)))

@@ -9,7 +9,17 @@ import pytest
 from thymio_sim_ros.bridge import Capability, ServerInfo
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.channels import MAX_CLIENT_CHANNELS, MAX_REFUSALS, Letter, Switchboard
+from thymio_sim_ros.bridge.channels import (
+    MAX_ALL_CLIENT_CHANNELS,
+    MAX_CALLS,
+    MAX_CLIENT_CHANNELS,
+    MAX_OPEN_SIZE,
+    MAX_REFUSALS,
+    MAX_WATCHED,
+    MAX_WISHES,
+    Letter,
+    Switchboard,
+)
 from thymio_sim_ros.bridge.graph import ConnectionGraph
 from thymio_sim_ros.bridge.vocabulary import StatusLevel
 
@@ -260,6 +270,20 @@ def test_a_client_cannot_open_endless_channels() -> None:
     assert len(outcome.events) == MAX_CLIENT_CHANNELS
 
 
+def test_all_clients_together_cannot_open_endless_channels() -> None:
+    clients = tuple(range(1, 1 + MAX_ALL_CLIENT_CHANNELS // MAX_CLIENT_CHANNELS))
+    board = switchboard(*clients, 99)
+    for client in clients:
+        board.receive(client, ms.ClientAdvertise(tuple(client_channel(n) for n in range(MAX_CLIENT_CHANNELS))))
+    one = ms.ClientAdvertise((client_channel(1),))
+    text = f"channel 1 for /cmd_vel: more than {MAX_ALL_CLIENT_CHANNELS} channels of all clients"
+    assert refusals(board.receive(99, one).letters) == [(99, text)]
+    board.receive(clients[0], ms.ClientUnadvertise((0,)))
+    assert board.receive(99, one).events == [ev.ClientChannelOpened(99, client_channel(1))]
+    board.leave(clients[1])
+    assert board.receive(clients[0], ms.ClientAdvertise((client_channel(0),))).letters == []
+
+
 # --- services, assets ---
 
 
@@ -274,6 +298,45 @@ def test_a_call_of_an_unknown_service_fails_with_a_status_beside_it() -> None:
         Letter((A,), ms.ServiceCallFailure(6, 1, "no service 6")),
         Letter((A,), ms.Status(StatusLevel.ERROR, "no service 6")),
     ]
+
+
+def call(number: int, payload: bytes = b"") -> ms.ServiceRequest:
+    return ms.ServiceRequest(5, number, "cdr", payload)
+
+
+def test_more_open_calls_than_the_limit_are_refused_at_once_and_others_are_not_concerned() -> None:
+    board = switchboard(A, B)
+    for number in range(MAX_CALLS):
+        assert board.receive(A, call(number)).letters == []
+    outcome = board.receive(A, call(99))
+    text = f"/s: {MAX_CALLS} calls of this client wait already"
+    assert outcome.events == []
+    assert outcome.letters == [
+        Letter((A,), ms.ServiceCallFailure(5, 99, text)),
+        Letter((A,), ms.Status(StatusLevel.ERROR, text)),
+    ]
+    assert board.receive(B, call(99)).events == [ev.ServiceCalled(B, call(99))]
+
+
+@pytest.mark.parametrize("answer", [ms.ServiceResponse(5, 0, "cdr", b""), ms.ServiceCallFailure(5, 0, "no")])
+def test_an_answer_makes_room_for_another_call(answer: ms.ServiceResponse | ms.ServiceCallFailure) -> None:
+    board = switchboard(A)
+    for number in range(MAX_CALLS):
+        board.receive(A, call(number))
+    assert board.apply(ev.Answer(A, answer, 0)) == [Letter((A,), answer)]
+    assert board.receive(A, call(99)).letters == []
+    assert board.receive(A, call(100)).events == []
+
+
+def test_a_large_request_is_accepted_alone_and_refused_beside_others() -> None:
+    board = switchboard(A)
+    large = call(1, bytes(MAX_OPEN_SIZE + 1))
+    assert board.receive(A, large).events == [ev.ServiceCalled(A, large)]
+    assert refusals(board.receive(A, call(2, b"small")).letters[1:]) == [
+        (A, "/s: more than 16 MiB of this client's requests wait already")
+    ]
+    board.apply(ev.Answer(A, ms.ServiceCallFailure(5, 1, "done"), len(large.payload)))
+    assert board.receive(A, call(3, b"small")).letters == []
 
 
 def test_a_vanished_service_cannot_be_called() -> None:
@@ -298,20 +361,60 @@ def with_parameters(*clients: int) -> Switchboard:
     return board
 
 
-def test_no_names_mean_all_parameters() -> None:
-    letters = with_parameters(A).receive(A, ms.GetParameters((), "q")).letters
+def test_asking_for_values_is_the_owners_business() -> None:
+    outcome = with_parameters(A).receive(A, ms.GetParameters(("/n.name",), "q"))
+    assert outcome.events == [ev.ParametersAsked(A, ("/n.name",), "q")]
+    assert outcome.letters == []
+
+
+def test_watching_tells_the_owner_which_names() -> None:
+    outcome = with_parameters(A).receive(A, ms.SubscribeParameterUpdates(("/n.name",)))
+    assert outcome.events == [ev.ParametersWatched(A, ("/n.name",))]
+
+
+def test_an_answer_about_all_parameters_carries_all() -> None:
+    letters = with_parameters(A).apply(ev.ShowParameters(A, None, "q"))
     assert letters == [Letter((A,), ms.ParameterValues((SPEED, NAME), "q"))]
-
-
-def test_unknown_names_are_left_out() -> None:
-    letters = with_parameters(A).receive(A, ms.GetParameters(("/n.name", "/n.no"))).letters
-    assert letters == [Letter((A,), ms.ParameterValues((NAME,)))]
 
 
 def test_setting_is_the_owners_business() -> None:
     outcome = with_parameters(A).receive(A, ms.SetParameters((SPEED,), "q"))
     assert outcome.events == [ev.ParametersSet(A, (SPEED,), "q")]
     assert outcome.letters == []
+
+
+def test_more_open_sets_than_the_limit_are_refused_with_the_value_in_force() -> None:
+    board = with_parameters(A, B)
+    for _ in range(MAX_WISHES):
+        assert board.receive(A, ms.SetParameters((SPEED,), "q")).letters == []
+    outcome = board.receive(A, ms.SetParameters((ms.Parameter("/n.speed", 9.0),), "late"))
+    text = f"/n.speed: {MAX_WISHES} requests of this client wait already"
+    assert outcome.events == []
+    assert outcome.letters == [
+        Letter((A,), ms.Status(StatusLevel.ERROR, text, "parameter:/n.speed")),
+        Letter((A,), ms.ParameterValues((SPEED,), "late")),
+    ]
+    assert board.receive(B, ms.SetParameters((SPEED,), "q")).events == [ev.ParametersSet(B, (SPEED,), "q")]
+    board.apply(ev.ShowParameters(A, ("/n.speed",), "q"))
+    assert board.receive(A, ms.SetParameters((SPEED,), "q")).letters == []
+
+
+def test_more_open_gets_than_the_limit_are_refused_with_a_status() -> None:
+    board = with_parameters(A)
+    for _ in range(MAX_WISHES):
+        board.receive(A, ms.GetParameters((), "q"))
+    outcome = board.receive(A, ms.GetParameters((), "late"))
+    assert outcome.events == []
+    text = f"parameters (request 'late'): {MAX_WISHES} requests of this client wait already"
+    assert refusals(outcome.letters) == [(A, text)]
+
+
+def test_a_client_may_not_watch_ever_more_names() -> None:
+    board = with_parameters(A)
+    names = tuple(f"/n.x{number}" for number in range(MAX_WATCHED))
+    assert board.receive(A, ms.SubscribeParameterUpdates(names)).letters == []
+    outcome = board.receive(A, ms.SubscribeParameterUpdates(("/n.speed",)))
+    assert (len(refusals(outcome.letters)), outcome.events) == (1, [])
 
 
 def test_an_answer_carries_the_value_in_force() -> None:

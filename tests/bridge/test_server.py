@@ -278,16 +278,31 @@ def test_while_the_owner_is_behind_a_busy_client_waits_and_others_are_served() -
             await other.subscribe(1)
             await busy.send(ms.ClientAdvertise((ms.ClientChannel(1, "/a", "cdr", "std_msgs/Bool"),)))
             await busy.settle()
-            server.sink.is_full = True
+            server.sink.full = True
             await busy.send(ms.ClientMessageData(1, b"first"), ms.ClientMessageData(1, b"second"))
             server.publish(b"data")
             assert (await other.next(ms.MessageData)).payload == b"data"
-            server.sink.is_full = False
+            server.sink.full = False
             await server.sink.until(lambda events: len(events) == 4)
             assert [event.payload for event in server.sink.events if isinstance(event, ev.ClientSent)] == [
                 b"first",
                 b"second",
             ]
+
+    run(scenario())
+
+
+def test_a_client_that_waits_for_the_owner_does_not_hold_up_the_end() -> None:
+    async def scenario() -> None:
+        async with bridge() as server, server.client() as busy:
+            await busy.send(ms.ClientAdvertise((ms.ClientChannel(1, "/a", "cdr", "std_msgs/Bool"),)))
+            await busy.settle()
+            server.sink.full = True
+            await busy.send(*[ms.ClientMessageData(1, b"data")] * 100)
+            await server.sink.until(lambda events: len(events) == 2)
+            async with asyncio.timeout(DEADLINE_S):
+                await server.server.close()
+            assert server.server.client_count == 0
 
     run(scenario())
 

@@ -59,10 +59,10 @@ def test_a_full_box_says_so_and_takes_more_all_the_same(ros):
     handled = []
     mailbox = Mailbox(ros.make_node("full"), handled.append, capacity=2)
     for number in range(3):
-        assert mailbox.is_full == (number == 2)
+        assert mailbox.is_full() == (number == 2)
         mailbox.post(number)
     mailbox.drain()
-    assert (handled, mailbox.is_full) == ([0, 1, 2], False)
+    assert (handled, mailbox.is_full()) == ([0, 1, 2], False)
 
 
 def test_a_closed_box_handles_nothing(ros):
@@ -83,3 +83,37 @@ def test_posting_to_an_executor_that_has_ended_is_harmless(ros):
     executor.shutdown()
     mailbox.post(1)
     node.destroy_node()
+
+
+def test_senders_are_served_in_turn_and_fill_their_own_place_only(ros):
+    handled = []
+    mailbox = Mailbox(ros.make_node("fair"), handled.append, sender=lambda value: value[0], capacity=3)
+    for number in range(3):
+        mailbox.post((1, number))
+    mailbox.post((2, 0))
+    assert (mailbox.is_full(1), mailbox.is_full(2)) == (True, False)
+    mailbox.drain()
+    assert handled == [(1, 0), (2, 0), (1, 1), (1, 2)]
+    assert not mailbox.is_full(1)
+
+
+def test_heavy_values_fill_the_box_sooner(ros):
+    mailbox = Mailbox(ros.make_node("heavy"), lambda value: None, weight=lambda value: value, capacity=10)
+    mailbox.post(9)
+    assert not mailbox.is_full()
+    mailbox.post(1)
+    assert mailbox.is_full()
+
+
+def test_a_flood_leaves_the_executor_time_for_others(executor):
+    """Each handled value posts the next, so that the box is never empty."""
+    turned, node = executor
+    others = []
+    mailbox = Mailbox(node, lambda value: mailbox.post(value + 1), slice_s=0.001)
+    turned.spin_once(timeout_sec=0)
+    mailbox.post(0)
+    turned.create_task(others.append, "served")
+    for _ in range(20):
+        turned.spin_once(timeout_sec=1.0)
+    assert others == ["served"]
+    mailbox.close()

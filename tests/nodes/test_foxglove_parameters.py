@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from rcl_interfaces.msg import ParameterType, ParameterValue
+from rcl_interfaces.srv import DescribeParameters, GetParameters, GetParameterTypes, ListParameters, SetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -128,6 +130,88 @@ def test_a_node_that_does_not_answer_at_first_is_asked_again(ros, bridge):
     slow = Node("slow", context=ros.context, enable_rosout=False)
     slow.declare_parameter("speed", 2.5)
     with Studio(server.port, ros.until) as studio:
+        studio.send(ms.SubscribeParameterUpdates(("/slow.speed",)))
         ros.until(lambda: "/slow" in server._parameters._unread, what="the node did not answer in time")
         ros.add(slow)
         assert studio.parameter("/slow.speed") == 2.5
+
+
+class Stranger:
+    """A node that notes which of its parameter services are asked."""
+
+    def __init__(self, ros, name="stranger"):
+        node = ros.make_node(name)
+        self.asked = []
+        for kind in (ListParameters, GetParameters, SetParameters, GetParameterTypes, DescribeParameters):
+            service = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in kind.__name__)
+            node.create_service(kind, f"~/{service[1:]}", self.note)
+
+    def note(self, request, response):
+        self.asked.append(type(request).__name__)
+        if isinstance(request, ListParameters.Request):
+            response.result.names = ["here"]
+        if isinstance(request, GetParameters.Request):
+            response.values = [ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=5)]
+        return response
+
+
+def test_strangers_are_not_asked_before_a_client_asks(ros, bridge, peer):
+    """A node that is asked may print warnings in a student's terminal."""
+    stranger = Stranger(ros)
+    server = bridge()
+    ros.until(lambda: "/stranger" in server._parameters._present)
+    with Studio(server.port, ros.until) as studio:
+        # What our page does: it watches parameters of our nodes, and no others.
+        studio.send(ms.SubscribeParameterUpdates(("/peer.speed",)))
+        assert studio.parameter("/peer.speed") == 1.5
+        assert set_and_answer(studio, ms.Parameter("/peer.count", 5))[-1].parameters[0].value == 5
+        assert stranger.asked == []
+        studio.send(ms.GetParameters((), "all"))
+        answer = studio.next(ms.ParameterValues, lambda values: values.id == "all")
+        assert ms.Parameter("/stranger.here", 5) in answer.parameters
+        assert stranger.asked == ["ListParameters_Request", "GetParameters_Request"]
+
+
+def test_new_strangers_are_not_asked_when_the_last_client_has_left(ros, bridge, peer):
+    server = bridge()
+    with Studio(server.port, ros.until) as studio:
+        studio.send(ms.GetParameters((), "all"))
+        studio.next(ms.ParameterValues)
+    ros.until(lambda: not server._parameters._wants_all)
+    stranger = Stranger(ros)
+    ros.until(lambda: "/stranger" in server._parameters._present)
+    with Studio(server.port, ros.until) as studio:
+        assert studio.parameter("/peer.speed") == 1.5
+    assert stranger.asked == []
+
+
+def test_a_node_that_does_not_answer_delays_the_first_answer_by_a_second_only(ros, bridge, peer):
+    server = bridge()
+    mute = Node("mute", context=ros.context, enable_rosout=False)  # not spun
+    with Studio(server.port, ros.until) as studio:
+        ros.until(lambda: {"/mute", "/peer"} <= server._parameters._present)
+        studio.send(ms.GetParameters((), "all"))
+        answer = studio.next(ms.ParameterValues)
+        assert ms.Parameter("/peer.count", 3) in answer.parameters
+        assert "/mute" in server._parameters._reading
+    mute.destroy_node()
+
+
+def test_a_watched_node_that_comes_later_is_asked_then(ros, bridge):
+    with Studio(bridge().port, ros.until) as studio:
+        studio.send(ms.SubscribeParameterUpdates(("/later.now",)))
+        node = ros.add(Node("later", context=ros.context, enable_rosout=False))
+        node.declare_parameter("now", 7)
+        assert studio.next(ms.ParameterValues).parameters == (ms.Parameter("/later.now", 7),)
+
+
+def test_2000_wishes_at_once_are_set_or_refused_and_others_are_served(ros, bridge, peer):
+    port = bridge().port
+    with Studio(port, ros.until) as busy, Studio(port, ros.until) as other:
+        assert other.parameter("/peer.count") == 3
+        for number in range(2000):
+            busy.send(ms.SetParameters((ms.Parameter("/peer.count", number),), str(number)))
+        assert set_and_answer(other, ms.Parameter("/peer.speed", 2.5))[-1].parameters[0].value == 2.5
+        answers = {busy.next(ms.ParameterValues).id for _ in range(2000)}
+        assert answers == {str(number) for number in range(2000)}
+        assert set_and_answer(busy, ms.Parameter("/peer.count", 5))[-1].parameters[0].value == 5

@@ -9,6 +9,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import Bool, String
 
 from tests.bridge.studio import Studio
+from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.nodes import tf_messages
 from thymio_sim_ros.nodes.foxglove_topics import Topics
@@ -110,6 +111,8 @@ def test_publishers_are_asked_for_their_qos_when_their_number_has_changed_and_el
     topics.update({name: ["std_msgs/msg/String"] for name in names})
     for channel in commands[0].channels:
         topics.want(channel.id)
+    while topics.poll():  # unspun: an executor keeps a subscription that is destroyed outside of its callbacks
+        pass
     asked = []
     ask = ros.node.get_publishers_info_by_topic
     monkeypatch.setattr(ros.node, "get_publishers_info_by_topic", lambda name: asked.append(name) or ask(name))
@@ -135,6 +138,48 @@ def test_publishers_are_asked_for_their_qos_when_their_number_has_changed_and_el
     ros.until(lambda: ros.node.count_publishers("/two") == 1)
     assert refresh_one_by_one(10) == ["/one", "/two"]
     assert heard("/two") == ReliabilityPolicy.BEST_EFFORT
+    topics.close()
+
+
+def test_a_flood_of_changing_wishes_costs_a_share_of_time_and_the_last_wish_counts(ros):
+    for number in range(20):
+        ros.node.create_publisher(Bool, f"/flood{number}", 1)
+    commands, woken = [], []
+    topics = Topics(ros.node, commands.append, lambda *_data: None, lambda: 0, wake=lambda: woken.append(True))
+    topics.update({f"/flood{number}": ["std_msgs/msg/Bool"] for number in range(20)})
+    ids = [channel.id for channel in commands[0].channels]
+    for _ in range(200):
+        for channel_id in ids:
+            topics.want(channel_id)
+        for channel_id in ids:
+            topics.unwant(channel_id)
+    topics.want(ids[3])
+    assert woken
+    subscribed = [command for command in commands if isinstance(command, ev.KeepLast)]
+    assert len(subscribed) < 200 * 20 / 4
+    while topics.poll():
+        pass
+    assert topics.subscribed == ("/flood3",)
+    topics.close()
+
+
+def test_a_refresh_of_many_topics_goes_on_where_it_stopped(ros, monkeypatch):
+    names = [f"/many{number}" for number in range(10)]
+    commands = []
+    topics = Topics(ros.node, commands.append, lambda *_data: None, lambda: 0)
+    topics.update({name: ["std_msgs/msg/Bool"] for name in names})
+    for channel in commands[0].channels:
+        topics.want(channel.id)
+    while topics.poll():
+        pass
+    counted = []
+    monkeypatch.setattr(ros.node, "count_publishers", lambda name: counted.append(name) or 0)
+    monkeypatch.setattr(ros.node, "get_publishers_info_by_topic", lambda name: counted.append(name) or [])
+    slices = 1
+    while not topics.refresh(slice_s=0.0):
+        slices += 1
+    assert slices > len(names) / 2
+    assert sorted(counted) == names
     topics.close()
 
 

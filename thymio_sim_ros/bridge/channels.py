@@ -20,6 +20,21 @@ from thymio_sim_ros.bridge.vocabulary import Capability, StatusLevel
 MAX_CLIENT_CHANNELS = 256
 """Channels that one client may open: each may cost a publisher."""
 
+MAX_ALL_CLIENT_CHANNELS = 512
+"""Channels that all clients together may open."""
+
+MAX_CALLS = 64
+"""Service calls of one client that may wait for their answers."""
+
+MAX_WISHES = 64
+"""Requests of one client to get or to set parameters that may wait for their answers."""
+
+MAX_OPEN_SIZE = 16 << 20
+"""Bytes of all these requests of one client; one request alone may be larger."""
+
+MAX_WATCHED = 20_000
+"""Names of parameters that one client may watch."""
+
 MAX_ENDED = 1000
 """Subscriptions of vanished channels that are remembered for each client."""
 
@@ -68,6 +83,10 @@ class Switchboard:
         self._services: dict[int, ms.Service] = {}
         self._parameters: dict[str, ms.Parameter] = {}
         self._graph = ConnectionGraph()
+        self._client_channels = 0
+        """Open channels of all clients."""
+        self._greeting: list[ms.ServerMessage] | None = None
+        """What a newcomer is told of channels and services, as long as these are the same."""
         self.kept: dict[int, deque[ev.Data]] = {}
         """What newcomers get of each channel of which something is kept."""
         self.routed: dict[int, Routes] = {}
@@ -97,11 +116,13 @@ class Switchboard:
         greeting: list[ms.ServerMessage] = [self._info]
         if Capability.TIME in self._info.capabilities:
             greeting.append(ms.Time(self._time_ns))
-        if self._channels:
-            greeting.append(ms.Advertise(tuple(self._channels.values())))
-        if self._services:
-            greeting.append(ms.AdvertiseServices(tuple(self._services.values())))
-        return greeting
+        if self._greeting is None:
+            self._greeting = []
+            if self._channels:
+                self._greeting.append(ms.Advertise(tuple(self._channels.values())))
+            if self._services:
+                self._greeting.append(ms.AdvertiseServices(tuple(self._services.values())))
+        return greeting + self._greeting
 
     def leave(self, client: int) -> list[ev.Event]:
         """A client is gone with all it had."""
@@ -110,6 +131,7 @@ class Switchboard:
         for channel_id in state.subscriptions.values():
             self._unroute(client, channel_id, outcome)
         outcome.events += (ev.ClientChannelClosed(client, channel_id) for channel_id in state.channels)
+        self._client_channels -= len(state.channels)
         if state.graph is not None:
             self._graph_left(outcome)
         return outcome.events
@@ -176,8 +198,11 @@ class Switchboard:
                 outcome.refuse(client, f"{where}: expected encoding {expected}, found {channel.encoding}")
             elif len(channels) >= MAX_CLIENT_CHANNELS:
                 outcome.refuse(client, f"{where}: more than {MAX_CLIENT_CHANNELS} channels")
+            elif self._client_channels >= MAX_ALL_CLIENT_CHANNELS:
+                outcome.refuse(client, f"{where}: more than {MAX_ALL_CLIENT_CHANNELS} channels of all clients")
             else:
                 channels[channel.id] = channel
+                self._client_channels += 1
                 outcome.events.append(ev.ClientChannelOpened(client, channel))
         self._clients[client] = replace(state, channels=channels)
 
@@ -188,6 +213,7 @@ class Switchboard:
             if channels.pop(channel_id, None) is None:
                 outcome.refuse(client, f"no client channel {channel_id}", StatusLevel.WARNING)
             else:
+                self._client_channels -= 1
                 outcome.events.append(ev.ClientChannelClosed(client, channel_id))
         self._clients[client] = replace(state, channels=channels)
 
@@ -198,22 +224,54 @@ class Switchboard:
             outcome.refuse(client, f"message on client channel {message.channel_id}, which is not advertised")
 
     def _call(self, client: int, message: ms.ServiceRequest, outcome: Outcome) -> None:
-        if message.service_id in self._services:
-            outcome.events.append(ev.ServiceCalled(client, message))
+        event = ev.ServiceCalled(client, message)
+        state, size = self._clients[client], ev.size_of(event)
+        if message.service_id not in self._services:
+            text = f"no service {message.service_id}"
+        elif state.calls >= MAX_CALLS:
+            text = f"{self._services[message.service_id].name}: {MAX_CALLS} calls of this client wait already"
+        elif not _has_room(state, size):
+            text = f"{self._services[message.service_id].name}: {_TOO_MUCH}"
+        else:
+            outcome.events.append(event)
+            self._clients[client] = replace(state, calls=state.calls + 1, open_size=state.open_size + size)
             return
-        text = f"no service {message.service_id}"
         outcome.tell(client, ms.ServiceCallFailure(message.service_id, message.call_id, text))
         outcome.refuse(client, text)
 
     def _get_parameters(self, client: int, message: ms.GetParameters, outcome: Outcome) -> None:
-        outcome.tell(client, self._values(message.parameter_names or self._parameters, message.id))
+        self._wish(ev.ParametersAsked(client, message.parameter_names, message.id), outcome)
 
     def _set_parameters(self, client: int, message: ms.SetParameters, outcome: Outcome) -> None:
-        outcome.events.append(ev.ParametersSet(client, message.parameters, message.id))
+        self._wish(ev.ParametersSet(client, message.parameters, message.id), outcome)
+
+    def _wish(self, event: ev.ParametersAsked | ev.ParametersSet, outcome: Outcome) -> None:
+        state, size = self._clients[event.client], ev.size_of(event)
+        if state.wishes >= MAX_WISHES:
+            text = f"{MAX_WISHES} requests of this client wait already"
+        elif not _has_room(state, size):
+            text = _TOO_MUCH
+        else:
+            outcome.events.append(event)
+            self._clients[event.client] = replace(state, wishes=state.wishes + 1, open_size=state.open_size + size)
+            return
+        if isinstance(event, ev.ParametersAsked):
+            outcome.refuse(event.client, f"parameters (request {event.request_id!r:.40}): {text}")
+            return
+        names = tuple(item.name for item in event.parameters)
+        for name in names[:MAX_REFUSALS]:
+            outcome.tell(event.client, ms.Status(StatusLevel.ERROR, f"{name}: {text}", ms.parameter_status(name)))
+        if event.request_id is not None:
+            outcome.tell(event.client, self._values(names, event.request_id))
 
     def _watch_parameters(self, client: int, message: ms.SubscribeParameterUpdates, outcome: Outcome) -> None:
         state = self._clients[client]
-        self._clients[client] = replace(state, parameters=state.parameters.union(message.parameter_names))
+        names = state.parameters.union(message.parameter_names)
+        if len(names) > MAX_WATCHED:
+            outcome.refuse(client, f"parameters: expected at most {MAX_WATCHED} names to watch, found {len(names)}")
+            return
+        self._clients[client] = replace(state, parameters=names)
+        outcome.events.append(ev.ParametersWatched(client, message.parameter_names))
 
     def _unwatch_parameters(self, client: int, message: ms.UnsubscribeParameterUpdates, outcome: Outcome) -> None:
         state = self._clients[client]
@@ -242,18 +300,23 @@ class Switchboard:
     # --- the owner's commands ---
 
     def _add_channels(self, command: ev.AddChannels, letters: list[Letter]) -> None:
+        self._greeting = None
         self._channels.update((channel.id, channel) for channel in command.channels)
         self._tell_all(ms.Advertise(command.channels), letters)
 
     def _remove_channels(self, command: ev.RemoveChannels, letters: list[Letter]) -> None:
+        self._greeting = None
+        ended: dict[int, dict[int, None]] = {}
         for channel_id in command.channel_ids:
             self._channels.pop(channel_id, None)
             self.kept.pop(channel_id, None)
             for client, subscription_id in self.routed.pop(channel_id, ()):
-                state = self._clients[client]
-                left = {key: value for key, value in state.subscriptions.items() if key != subscription_id}
-                ended = (*state.ended[-MAX_ENDED:], subscription_id)
-                self._clients[client] = replace(state, subscriptions=left, ended=ended)
+                ended.setdefault(client, {})[subscription_id] = None
+        for client, gone in ended.items():
+            state = self._clients[client]
+            left = {key: value for key, value in state.subscriptions.items() if key not in gone}
+            latest = [*state.ended, *gone][-MAX_ENDED:]
+            self._clients[client] = replace(state, subscriptions=left, ended=dict.fromkeys(latest))
         self._tell_all(ms.Unadvertise(command.channel_ids), letters)
 
     def _keep_last(self, command: ev.KeepLast, letters: list[Letter]) -> None:
@@ -264,10 +327,12 @@ class Switchboard:
             self.kept.pop(command.channel_id, None)
 
     def _add_services(self, command: ev.AddServices, letters: list[Letter]) -> None:
+        self._greeting = None
         self._services.update((service.id, service) for service in command.services)
         self._tell_all(ms.AdvertiseServices(command.services), letters)
 
     def _remove_services(self, command: ev.RemoveServices, letters: list[Letter]) -> None:
+        self._greeting = None
         for service_id in command.service_ids:
             self._services.pop(service_id, None)
         self._tell_all(ms.UnadvertiseServices(command.service_ids), letters)
@@ -284,13 +349,22 @@ class Switchboard:
                 letters.append(Letter((client,), ms.ParameterValues(wanted)))
 
     def _show_parameters(self, command: ev.ShowParameters, letters: list[Letter]) -> None:
-        if command.client in self._clients:
-            letters.append(Letter((command.client,), self._values(command.names, command.request_id)))
+        state = self._clients.get(command.client)
+        if state is not None:
+            self._clients[command.client] = replace(
+                state, wishes=max(0, state.wishes - 1), open_size=max(0, state.open_size - command.size)
+            )
+            names = self._parameters if command.names is None else command.names
+            letters.append(Letter((command.client,), self._values(names, command.request_id)))
 
     def _set_graph(self, command: ev.SetGraph, letters: list[Letter]) -> None:
         self._graph = command.graph
+        updates: dict[int, ms.ConnectionGraphUpdate | None] = {}
         for client, state in list(self._clients.items()):
-            update = None if state.graph is None else command.graph.since(state.graph)
+            if state.graph is None:
+                continue
+            known = id(state.graph)  # most clients know the same one
+            update = updates[known] = updates[known] if known in updates else command.graph.since(state.graph)
             if update is not None:
                 self._clients[client] = replace(state, graph=command.graph)
                 letters.append(Letter((client,), update))
@@ -316,6 +390,14 @@ class Switchboard:
                 for client, subscription_id in self.routes(channel_id)
                 for data in kept
             )
+
+    def _answer(self, command: ev.Answer, letters: list[Letter]) -> None:
+        state = self._clients.get(command.client)
+        if state is not None:
+            self._clients[command.client] = replace(
+                state, calls=max(0, state.calls - 1), open_size=max(0, state.open_size - command.size)
+            )
+            letters.append(Letter((command.client,), command.message))
 
     def _tell(self, command: ev.Tell, letters: list[Letter]) -> None:
         if command.client in self._clients:
@@ -351,6 +433,13 @@ class Switchboard:
             outcome.events.append(ev.GraphWanted(False))
 
 
+_TOO_MUCH = f"more than {MAX_OPEN_SIZE >> 20} MiB of this client's requests wait already"
+
+
+def _has_room(state: ClientState, size: int) -> bool:
+    return not state.open_size or state.open_size + size <= MAX_OPEN_SIZE
+
+
 _FROM_CLIENT: dict[type, tuple[Capability | None, Callable[[Switchboard, int, Any, Outcome], None]]] = {
     ms.Subscribe: (None, Switchboard._subscribe),
     ms.Unsubscribe: (None, Switchboard._unsubscribe),
@@ -379,5 +468,6 @@ _FROM_OWNER: dict[type, Callable[[Switchboard, Any, list[Letter]], None]] = {
     ev.SetTime: Switchboard._set_time,
     ev.NewSession: Switchboard._new_session,
     ev.RepeatKept: Switchboard._repeat_kept,
+    ev.Answer: Switchboard._answer,
     ev.Tell: Switchboard._tell,
 }

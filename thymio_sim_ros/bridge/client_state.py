@@ -15,8 +15,14 @@ class ClientState:
 
     subscriptions: Mapping[int, int] = field(default_factory=dict)
     """Subscription id → channel id."""
-    ended: tuple[int, ...] = ()
+    ended: Mapping[int, None] = field(default_factory=dict)
     """Subscription ids that ended because their channels vanished, the latest last."""
     channels: Mapping[int, ClientChannel] = field(default_factory=dict)
     parameters: frozenset[str] = frozenset()
     graph: ConnectionGraph | None = None
+    calls: int = 0
+    """Service calls without an answer."""
+    wishes: int = 0
+    """Requests to get or to set parameters without an answer."""
+    open_size: int = 0
+    """Bytes of all these."""

@@ -12,9 +12,12 @@ from thymio_sim_ros.bridge.messages import (
     Channel,
     ClientChannel,
     Parameter,
+    ParameterValue,
     ServerMessage,
     Service,
+    ServiceCallFailure,
     ServiceRequest,
+    ServiceResponse,
 )
 
 # --- events: the bridge tells --------------------------------------------------------------------------------------
@@ -61,7 +64,7 @@ class ClientSent:
 
 @dataclass(frozen=True, slots=True)
 class ServiceCalled:
-    """A client calls an existing service; answer with `Tell`."""
+    """A client calls an existing service; answer with one `Answer`."""
 
     client: int
     request: ServiceRequest
@@ -69,11 +72,28 @@ class ServiceCalled:
 
 @dataclass(frozen=True, slots=True)
 class ParametersSet:
-    """A client wants these values; answer with `ShowParameters`."""
+    """A client wants these values; answer with one `ShowParameters`."""
 
     client: int
     parameters: tuple[Parameter, ...]
     request_id: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class ParametersAsked:
+    """A client asks for the values of these names, or of all (none); answer with one `ShowParameters`."""
+
+    client: int
+    names: tuple[str, ...]
+    request_id: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class ParametersWatched:
+    """A client wants to be told of changes of these names."""
+
+    client: int
+    names: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +120,8 @@ Event = (
     | ClientSent
     | ServiceCalled
     | ParametersSet
+    | ParametersAsked
+    | ParametersWatched
     | AssetWanted
     | GraphWanted
 )
@@ -162,11 +184,12 @@ class ParametersChanged:
 
 @dataclass(frozen=True, slots=True)
 class ShowParameters:
-    """Send a client the values in force, as the answer to its request."""
+    """Send a client the values in force of these names (None: of all), as the answer to its request of `size` bytes."""
 
     client: int
-    names: tuple[str, ...]
+    names: tuple[str, ...] | None
     request_id: str | None
+    size: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,6 +219,15 @@ class RepeatKept:
 
 
 @dataclass(frozen=True, slots=True)
+class Answer:
+    """The answer to a client's service call, whose request had `size` bytes; forgotten when the client has left."""
+
+    client: int
+    message: ServiceResponse | ServiceCallFailure
+    size: int
+
+
+@dataclass(frozen=True, slots=True)
 class Tell:
     """A message for one client; forgotten when it has left."""
 
@@ -215,5 +247,27 @@ Command = (
     | SetTime
     | NewSession
     | RepeatKept
+    | Answer
     | Tell
 )
+
+
+_PARAMETER_SIZE = 2048
+"""What one parameter takes as a ROS message in Python, bytes."""
+
+
+def size_of(event: Event) -> int:
+    """Bytes of a client's content in an event: of a payload, of parameters."""
+    if isinstance(event, ClientSent):
+        return len(event.payload)
+    if isinstance(event, ServiceCalled):
+        return len(event.request.payload)
+    if isinstance(event, ParametersSet):
+        return sum(_PARAMETER_SIZE + _size(item.value) for item in event.parameters)
+    return 0
+
+
+def _size(value: ParameterValue) -> int:
+    if isinstance(value, tuple):
+        return sum(_size(item) for item in value)
+    return len(value) if isinstance(value, str) else 8

@@ -26,6 +26,8 @@ _LONGEST_EXCERPT = 40
 
 def describe(value: object) -> str:
     """A found value for an error message, cut to a readable length."""
+    if isinstance(value, (str, bytes)):
+        value = value[: _LONGEST_EXCERPT + 1]
     try:
         text = repr(value)
     except RecursionError:
@@ -141,7 +143,14 @@ def _read_enum(kind: type[IntEnum], value: Any, where: str) -> IntEnum:
 def _read_list(read_item: Reader, value: Any, where: str) -> tuple[Any, ...]:
     if not isinstance(value, list):
         raise FrameError(where, "a list", describe(value))
-    return tuple(read_item(item, f"{where}[{index}]") for index, item in enumerate(value))
+    return _each(read_item, value, where)
+
+
+def _each(read_item: Reader, items: list[Any], where: str) -> tuple[Any, ...]:
+    try:
+        return tuple(read_item(item, where) for item in items)
+    except FrameError:  # once more, to name the place: making all the names takes longer than reading
+        return tuple(read_item(item, f"{where}[{index}]") for index, item in enumerate(items))
 
 
 def _read_texts(value: Any, where: str) -> dict[str, str]:
@@ -152,7 +161,7 @@ def _read_texts(value: Any, where: str) -> dict[str, str]:
 
 def _read_parameter_value(value: Any, where: str) -> ParameterValue:
     if isinstance(value, list):
-        return tuple(_read_scalar(item, f"{where}[{index}]") for index, item in enumerate(value))
+        return _each(_read_scalar, value, where)
     return _read_scalar(value, where)
 
 

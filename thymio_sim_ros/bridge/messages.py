@@ -129,6 +129,11 @@ class Status:
     id: str | None = None
 
 
+def parameter_status(name: str) -> str:
+    """The id of the status that says why a parameter was not set."""
+    return f"parameter:{name}"
+
+
 @dataclass(frozen=True, slots=True)
 class RemoveStatus:
     """These remarks no longer hold."""

@@ -12,15 +12,17 @@ import asyncio
 import itertools
 import logging
 import ssl
+import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from http import HTTPStatus
 from socket import socket
-from typing import Protocol
+from typing import Any, Protocol, cast
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed, NegotiationError
+from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 from websockets.typing import Subprotocol
 
@@ -28,10 +30,10 @@ from thymio_sim_ros.bridge.channels import Letter, Routes, Switchboard
 from thymio_sim_ros.bridge.errors import FrameError
 from thymio_sim_ros.bridge.events import Command, Data, Event, RemoveChannels
 from thymio_sim_ros.bridge.framing import framed
-from thymio_sim_ros.bridge.messages import Status, Time, Unsubscribe
+from thymio_sim_ros.bridge.messages import ServerMessage, Status, Time, Unsubscribe
 from thymio_sim_ros.bridge.origins import is_allowed
 from thymio_sim_ros.bridge.outlet import Outlet, Way
-from thymio_sim_ros.bridge.transport import SharedConnection
+from thymio_sim_ros.bridge.transport import SLICE_S, SharedConnection
 from thymio_sim_ros.bridge.turn import Turn
 from thymio_sim_ros.bridge.vocabulary import SUBPROTOCOLS, StatusLevel
 from thymio_sim_ros.bridge.wire import decode_client, encode_server
@@ -41,6 +43,10 @@ __all__ = ["BridgeServer", "EventSink", "ServerSettings"]
 _FLUSH_PERIOD_S = 0.01
 _FULL_PAUSE_S = 0.005
 _CLOSE_S = 0.3
+BACKLOG = 128
+"""So many clients may wait to be let in."""
+_ACCEPTED_AT_ONCE = 4
+"""Connections that are accepted in one turn of the loop: a handshake takes it 3 ms."""
 _NO_WAYS: tuple[Routes, tuple[Way, ...]] = ((), ())
 _TIME_SLOT = -1
 """Where an outlet keeps the newest time; no subscription has this id."""
@@ -49,9 +55,8 @@ _TIME_SLOT = -1
 class EventSink(Protocol):
     """Where events go; called in the event loop, must not block."""
 
-    @property
-    def is_full(self) -> bool:
-        """Whether events pile up, so that clients should be read more slowly."""
+    def is_full(self, client: int) -> bool:
+        """Whether events of this client pile up, so that it should be read more slowly."""
 
     def post(self, event: Event) -> None:
         """Take an event."""
@@ -67,6 +72,8 @@ class ServerSettings:
     """Bytes that may wait for a client before data is thinned out."""
     max_message_size: int = 4 << 20
     """Longest frame accepted from a client, bytes."""
+    max_clients: int = 128
+    """Clients at a time; more are refused. As many connections again may be on their way to become clients."""
     ping_interval_s: float = 10.0
     ping_timeout_s: float = 20.0
     tls: ssl.SSLContext | None = None
@@ -94,10 +101,19 @@ class BridgeServer:
         self._servers: list[Server] = []
         self._turn = Turn()
         """Of the thread that works on board and outlets."""
+        self._frames: dict[type, tuple[ServerMessage, bytes]] = {}
+        """The frames of what every newcomer is told, as long as that is the same."""
+        self._rest_lock: asyncio.Lock
+        """Clients rest one after the other: see `_rest`."""
+        self._is_crowded = False
+        self._is_closing = False
+        self._connections: set[SharedConnection] = set()
+        """Those that are no clients yet, too."""
 
     async def start(self, listeners: Iterable[socket]) -> None:
         """Serve on bound sockets, which become the server's own."""
         self._loop = asyncio.get_running_loop()
+        self._rest_lock = asyncio.Lock()
         settings = self._settings
         # Refused handshakes are answered with their reason; websockets would log each with a traceback.
         log = logging.getLogger(f"{__name__}.websockets")
@@ -107,7 +123,7 @@ class BridgeServer:
                 self._serve_client,
                 sock=listener,
                 ssl=settings.tls,
-                create_connection=SharedConnection,
+                create_connection=cast("type[ServerConnection]", self._make_connection),
                 select_subprotocol=_select_subprotocol,
                 process_request=self._check_origin,
                 compression=None,
@@ -116,12 +132,15 @@ class BridgeServer:
                 ping_interval=settings.ping_interval_s,
                 ping_timeout=settings.ping_timeout_s,
                 close_timeout=_CLOSE_S,
+                backlog=_ACCEPTED_AT_ONCE,
                 logger=log,
             )
+            listener.listen(BACKLOG)  # more may wait than are accepted at once
             self._servers.append(server)
 
     async def close(self) -> None:
         """Say goodbye to all clients; those that do not listen are cut off after `_CLOSE_S`."""
+        self._is_closing = True
         for server in self._servers:
             server.close()
         closed = asyncio.gather(*(server.wait_closed() for server in self._servers))
@@ -192,19 +211,33 @@ class BridgeServer:
         if self._flush_is_due:
             self._flush_soon()
 
+    def _make_connection(self, *arguments: Any, **options: Any) -> SharedConnection:
+        connection = SharedConnection(*arguments, **options)
+        if len(self._connections) < 2 * self._settings.max_clients:
+            self._connections.add(connection)
+            connection.on_lost = lambda: self._connections.discard(connection)
+        else:
+            connection.is_refused = True
+            self._refuse_crowd()
+        return connection
+
     async def _serve_client(self, connection: ServerConnection) -> None:
         assert isinstance(connection, SharedConnection)
+        if len(self._outlets) >= self._settings.max_clients:
+            self._refuse_crowd()
+            await connection.close(CloseCode.TRY_AGAIN_LATER, "too many clients")
+            return
         client = next(self._client_ids)
         outlet = Outlet(connection, self._settings.buffer_limit)
+        began_s = time.thread_time()
         with self._turn:
             self._outlets[client] = outlet
             for message in self._board.join(client):
-                outlet.control(framed(encode_server(message)))
+                outlet.control(self._greeting_frame(message))
+        self._is_crowded = self._is_crowded and len(self._outlets) >= self._settings.max_clients
         try:
-            async for frame in connection:
-                self._receive(client, frame)
-                while self._sink.is_full:
-                    await asyncio.sleep(_FULL_PAUSE_S)
+            await self._rest(time.thread_time() - began_s)
+            await self._read(client, connection)
         except ConnectionClosed:
             pass  # a lost connection ends like a closed one
         finally:
@@ -213,6 +246,44 @@ class BridgeServer:
                 self._ways.clear()  # they would keep what is gone
                 events = self._board.leave(client)
             self._tell(events)
+
+    async def _read(self, client: int, connection: SharedConnection) -> None:
+        """Receive a client's messages until it leaves."""
+        spent_s = 0.0
+        async for frame in connection:
+            if self._is_closing:
+                return
+            began_s = time.thread_time()
+            self._receive(client, frame)
+            spent_s += time.thread_time() - began_s
+            while self._sink.is_full(client) and not self._is_closing:
+                await asyncio.sleep(_FULL_PAUSE_S)
+            if spent_s >= SLICE_S:
+                await self._rest(spent_s)
+                spent_s = 0.0
+
+    async def _rest(self, spent_s: float) -> None:
+        """Pause a client that took so much of the loop's time for as long, while no other client rests.
+
+        So all busy clients together take half of the loop's time, and between two of their turns others are served,
+        however many are busy.
+        """
+        async with self._rest_lock:
+            if not self._is_closing:
+                await asyncio.sleep(spent_s)
+
+    def _greeting_frame(self, message: ServerMessage) -> bytes:
+        """The frame of a message of the greeting; those of 1500 topics are 2 MB and the same for every newcomer."""
+        known = self._frames.get(type(message))
+        if known is None or known[0] is not message:
+            known = self._frames[type(message)] = message, framed(encode_server(message))
+        return known[1]
+
+    def _refuse_crowd(self) -> None:
+        """Log that there are too many clients, once until there are fewer."""
+        if not self._is_crowded:
+            self._is_crowded = True
+            self._log.warning("%d clients are connected: more are refused", self._settings.max_clients)
 
     def _receive(self, client: int, frame: str | bytes) -> None:
         try:

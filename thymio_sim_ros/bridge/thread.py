@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from thymio_sim_ros.bridge.channels import Switchboard
 from thymio_sim_ros.bridge.events import Command
 from thymio_sim_ros.bridge.messages import ServerInfo
-from thymio_sim_ros.bridge.server import BridgeServer, EventSink, ServerSettings
+from thymio_sim_ros.bridge.server import BACKLOG, BridgeServer, EventSink, ServerSettings
 
 __all__ = ["ServerThread", "check_free", "listen"]
 
@@ -23,9 +23,6 @@ _NOT_HERE = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
 
 _TRIES = 20
 """Free ports tried before giving up, where one must be free on two addresses."""
-
-_BACKLOG = 128
-"""So many clients may wait to be let in."""
 
 
 def listen(address: str, port: int) -> list[socket.socket]:
@@ -81,7 +78,7 @@ def _bound(address: str, port: int, *, do_listen: bool) -> socket.socket:
         bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         bound.bind(endpoint)
         if do_listen:
-            bound.listen(_BACKLOG)
+            bound.listen(BACKLOG)
     except OSError as error:
         bound.close()
         raise _named(error, address, port) from error

@@ -11,12 +11,19 @@ import asyncio
 import socket
 import sys
 import threading
-from collections.abc import Iterable
+import time
+from collections.abc import Callable, Iterable
 from typing import Any, cast
 
 from websockets.asyncio.server import ServerConnection
 
-__all__ = ["SharedConnection", "SharedTransport"]
+__all__ = ["SLICE_S", "SharedConnection", "SharedTransport"]
+
+SLICE_S = 0.002
+"""Time that one client may take of the event loop before others have their turn."""
+
+_PIECE = 1 << 13
+"""Bytes handed to the protocol at once: some thousand frames at most."""
 
 
 class SharedTransport(asyncio.Transport):
@@ -39,6 +46,11 @@ class SharedTransport(asyncio.Transport):
         is_plain = inner.get_extra_info("sslcontext") is None
         self._socket: socket.socket | None = inner.get_extra_info("socket").dup() if is_plain else None
         self._is_plain = is_plain
+        self.is_paused = False
+        """Whether its protocol wants to read nothing."""
+        self._is_held = False
+        self.on_resume: Callable[[], None] = lambda: None
+        """Called in the loop's thread when the protocol wants to read again."""
 
     def write(self, data: bytes | bytearray | memoryview) -> None:
         """Send; what cannot be sent at once waits. Does nothing when the connection is ending."""
@@ -157,11 +169,23 @@ class SharedTransport(asyncio.Transport):
 
     def pause_reading(self) -> None:
         """Read nothing until `resume_reading`."""
+        self.is_paused = True
         self._inner.pause_reading()
 
     def resume_reading(self) -> None:
         """Read again."""
-        self._inner.resume_reading()
+        self.is_paused = False
+        if not self._is_held:
+            self._inner.resume_reading()
+        self.on_resume()
+
+    def hold_reading(self, is_held: bool) -> None:
+        """The same for a second party: data is received while neither of them minds."""
+        self._is_held = is_held
+        if is_held:
+            self._inner.pause_reading()
+        elif not self.is_paused:
+            self._inner.resume_reading()
 
     def is_reading(self) -> bool:
         """Whether data is received."""
@@ -181,15 +205,69 @@ class SharedTransport(asyncio.Transport):
 
 
 class SharedConnection(ServerConnection):
-    """A connection of `websockets` on a transport that others may write to as well."""
+    """A connection of `websockets` on a transport that others may write to as well.
+
+    What arrives is handed to the protocol in small pieces, for `SLICE_S` at a time: a quarter of a megabyte may be
+    forty thousand pings, which take the loop half a second.
+    """
 
     transport: SharedTransport
+    is_refused = False
+    """Whether it is closed at once, unheard."""
+    on_lost: Callable[[], None] = staticmethod(lambda: None)
+    """Called when the connection is gone."""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """The client is there."""
+        self._unread = bytearray()
+        self._feeding: asyncio.TimerHandle | None = None
+        if self.is_refused:
+            cast(asyncio.Transport, transport).abort()
+            return
         super().connection_made(SharedTransport(cast(asyncio.Transport, transport), asyncio.get_running_loop()))
+        self.transport.on_resume = self._feed_later
 
     def connection_lost(self, exc: Exception | None) -> None:
         """The client is gone."""
+        self._unread.clear()
+        self._cancel_feeding()
+        self.on_lost()
+        if self.is_refused:
+            return
         super().connection_lost(exc)
         self.transport.release()
+
+    def data_received(self, data: bytes) -> None:
+        """Bytes of the client."""
+        if self.is_refused:
+            return
+        self._unread += data
+        if self._feeding is None:
+            self._feed()
+
+    def eof_received(self) -> None:
+        """The client sends nothing more."""
+        if not self.is_refused:
+            super().eof_received()
+
+    def _feed(self) -> None:
+        """Hand over what is unread, as long as the time lasts and the protocol takes it."""
+        self._cancel_feeding()
+        began_s, spent_s = time.thread_time(), 0.0
+        while self._unread and not self.transport.is_paused and spent_s < SLICE_S:
+            piece = bytes(self._unread[:_PIECE])
+            del self._unread[:_PIECE]
+            super().data_received(piece)
+            spent_s = time.thread_time() - began_s
+        self.transport.hold_reading(bool(self._unread))
+        if self._unread and not self.transport.is_paused:
+            self._feed_later(spent_s)
+
+    def _feed_later(self, pause_s: float = 0.0) -> None:
+        if self._unread and self._feeding is None:
+            self._feeding = asyncio.get_running_loop().call_later(pause_s, self._feed)
+
+    def _cancel_feeding(self) -> None:
+        if self._feeding is not None:
+            self._feeding.cancel()
+            self._feeding = None

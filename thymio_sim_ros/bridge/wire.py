@@ -11,6 +11,7 @@ import struct
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from thymio_sim_ros.bridge import bounded_json
 from thymio_sim_ros.bridge.errors import FrameError
 from thymio_sim_ros.bridge.json_form import describe, reader, writer
 from thymio_sim_ros.bridge.messages import (
@@ -93,7 +94,11 @@ def _decode(frame: Frame, by_op: Mapping[str, type[Any]], by_opcode: Mapping[int
 
 def _decode_json(text: str, by_op: Mapping[str, type[Any]]) -> Any:
     try:
-        value = json.loads(text, parse_constant=_refuse_constant)
+        value = bounded_json.loads(text, _refuse_constant)
+    except bounded_json.TooMuchStructureError as err:
+        raise FrameError(
+            "text frame", f"at most {bounded_json.MAX_STRUCTURE} characters outside of strings", "more"
+        ) from err
     except (ValueError, RecursionError) as err:
         raise FrameError("text frame", "JSON", describe(text)) from err
     if not isinstance(value, dict):

@@ -41,12 +41,14 @@ from thymio_sim_ros.nodes.foxglove_topics import Topics
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, greeted, run_main
 from thymio_sim_ros.nodes.mailbox import Mailbox
 from thymio_sim_ros.nodes.qos import LATCHED
+from thymio_sim_ros.nodes.time_share import TimeShare
 
 __all__ = ["FoxgloveBridge", "main"]
 
 _DISCOVER_S = 0.25
 _DISCOVER_SHARE = 0.02
-"""Of the time at most this part goes to asking for the graph: with twenty robots that takes 12 ms each time."""
+"""Of the time at most this part goes to asking for the graph: with twenty robots that takes 12 ms each time. As much
+goes to asking for the publishers of subscribed topics, and to who talks to whom."""
 _REFRESH_S = 1.0
 _REPEAT_S = 1.0
 """After time went back: what a client gets while it drops the past may go with it (measured with Lichtblick)."""
@@ -82,7 +84,9 @@ class FoxgloveBridge:
             check(self.params)
             params.warn_of_unknown(self.node, "foxglove.md")
             self._uses_sim_time = bool(self.node.get_parameter("use_sim_time").value)
-            self._mailbox: Mailbox[ev.Event] = Mailbox(self.node, self._on_event)
+            self._mailbox: Mailbox[ev.Event] = Mailbox(
+                self.node, self._on_event, sender=_sender, weight=lambda event: 1 + (ev.size_of(event) >> 14)
+            )
             self._server = self._open_server()
         except BaseException:
             self.node.destroy_node()
@@ -90,6 +94,7 @@ class FoxgloveBridge:
         self.address, self.port = self._server.address, self._server.port
         self._sim_now_ns = 0
         self._wants_graph = False
+        self._is_graph_old = True
         self._build()
 
     @property
@@ -155,9 +160,12 @@ class FoxgloveBridge:
             min_depth=values.min_qos_depth,
             max_depth=values.max_qos_depth,
             is_best_effort=allow_list(values.best_effort_qos_topic_whitelist),
+            wake=self._hurry.reset,
         )
         self._services = Services(self.node, self._calls, post)
-        self._parameters = Parameters(self.node, self._calls, post, is_allowed=allow_list(values.param_whitelist))
+        self._parameters = Parameters(
+            self.node, self._calls, post, is_allowed=allow_list(values.param_whitelist), wake=self._hurry.reset
+        )
         self._publishers = ClientPublishers(
             self.node, post, is_allowed=allow_list(values.client_topic_whitelist), wake=self._hurry.reset
         )
@@ -166,7 +174,8 @@ class FoxgloveBridge:
             self.node.create_publisher(UInt32, "~/client_count", LATCHED) if values.publish_client_count else None
         )
         self._seen: tuple[Any, Any] = ({}, {})
-        self._discover_next = 0.0
+        self._discovery, self._graph_share = TimeShare(_DISCOVER_SHARE), TimeShare(_DISCOVER_SHARE)
+        self._next_check_s = 0.0
         self._shown: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
         self._jump_handle = self.node.get_clock().create_jump_callback(
             JumpThreshold(
@@ -198,12 +207,14 @@ class FoxgloveBridge:
     def _discover(self) -> None:
         """Follow the graph."""
         self._mailbox.drain()
-        began = time.monotonic()
-        if began < self._discover_next:
+        self._check_publishers()
+        if self._wants_graph and self._is_graph_old:
+            self._tell_graph()
+        if not self._discovery.is_due:
             return
-        topics = dict(self.node.get_topic_names_and_types())
-        services = dict(self.node.get_service_names_and_types())
-        self._discover_next = began + (time.monotonic() - began) / _DISCOVER_SHARE
+        with self._discovery.work():
+            topics = dict(self.node.get_topic_names_and_types())
+            services = dict(self.node.get_service_names_and_types())
         if (topics, services) == self._seen:
             return
         self._seen = (topics, services)
@@ -217,20 +228,27 @@ class FoxgloveBridge:
         self._services.update(offered)
         self._parameters.update(services)
 
+    def _check_publishers(self) -> None:
+        """Go on with a round through all subscribed topics, or begin one once in `_REFRESH_S`."""
+        if time.monotonic() >= self._next_check_s and self._topics.refresh(_DISCOVER_S * _DISCOVER_SHARE):
+            self._next_check_s = time.monotonic() + _REFRESH_S
+
     def _refresh(self) -> None:
-        self._topics.refresh()
-        self._parameters.refresh()
+        self._parameters.refresh(is_watched=self._server.client_count > 0)
         if self._count is not None and self._told_count != self._server.client_count:
             self._told_count = self._server.client_count
             self._count.publish(UInt32(data=self._told_count))
-        if self._wants_graph:
-            self._tell_graph()
+        self._is_graph_old = True
 
     def _tell_graph(self) -> None:
-        self._server.post(ev.SetGraph(connection_graph(self.node, *self._shown)))
+        """Send who talks to whom, unless that takes more than its share of time."""
+        if self._graph_share.is_due:
+            self._is_graph_old = False
+            with self._graph_share.work():
+                self._server.post(ev.SetGraph(connection_graph(self.node, *self._shown)))
 
     def _poll_waiting(self) -> None:
-        waits = [self._calls.poll(), self._publishers.poll()]
+        waits = [self._calls.poll(), self._publishers.poll(), self._topics.poll(), self._parameters.poll()]
         if not any(waits):
             self._hurry.cancel()
 
@@ -240,9 +258,14 @@ class FoxgloveBridge:
         except Exception:
             # One client's wish must not end the bridge of the others: it is dropped, everything else goes on.
             self.node.get_logger().error(f"{type(event).__name__} failed:\n{traceback.format_exc()}")
+            if isinstance(event, ev.ServiceCalled):
+                self._services.fail(event.client, event.request, "internal error (please report), see the log")
+            elif isinstance(event, (ev.ParametersSet, ev.ParametersAsked)):
+                self._server.post(ev.ShowParameters(event.client, (), event.request_id, ev.size_of(event)))
 
     def _want_graph(self, event: ev.GraphWanted) -> None:
         self._wants_graph = event.wanted
+        self._is_graph_old = True
         if event.wanted:
             self._tell_graph()
 
@@ -262,9 +285,16 @@ _HANDLERS: dict[type, Callable[[FoxgloveBridge, Any], None]] = {
     ev.ClientSent: lambda self, event: self._publishers.publish(event.client, event.channel_id, event.payload),
     ev.ServiceCalled: lambda self, event: self._services.call(event.client, event.request),
     ev.ParametersSet: lambda self, event: self._parameters.set(event),
+    ev.ParametersAsked: lambda self, event: self._parameters.get(event),
+    ev.ParametersWatched: lambda self, event: self._parameters.watch(event),
     ev.GraphWanted: FoxgloveBridge._want_graph,
     ev.AssetWanted: FoxgloveBridge._give_asset,
 }
+
+
+def _sender(event: ev.Event) -> int:
+    """The client of an event; 0 where several may be behind it."""
+    return getattr(event, "client", 0)
 
 
 def _new_id() -> str:

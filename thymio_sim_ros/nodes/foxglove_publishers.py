@@ -20,6 +20,7 @@ from thymio_sim_ros.bridge.events import Command, Tell
 from thymio_sim_ros.bridge.messages import ClientChannel, Status
 from thymio_sim_ros.bridge.vocabulary import JSON, StatusLevel
 from thymio_sim_ros.nodes import json_messages, tf_messages
+from thymio_sim_ros.nodes.cdr_parts import TooManyPartsError, check_parts
 from thymio_sim_ros.nodes.foxglove_qos import publishing
 from thymio_sim_ros.nodes.foxglove_types import MissingTypeError, full_name, load_type
 
@@ -183,13 +184,15 @@ def _decode(payload: bytes, encoding: str, port: _Port) -> Any:
     """The message, or its checked bytes where there is no class for it."""
     try:
         if port.type_name == tf_messages.TF_TYPE_NAME and encoding != JSON:
+            check_parts(payload, port.message_type)
             tf_messages.decode(payload)
             return payload
         if encoding == JSON:
             message = json_messages.from_json(payload, port.message_type)
         else:
+            check_parts(payload, port.message_type)
             message = deserialize_message(payload, port.message_type)
-    except (RMWError, json_messages.JsonMessageError, tf_messages.TransformDataError) as error:
+    except (RMWError, json_messages.JsonMessageError, tf_messages.TransformDataError, TooManyPartsError) as error:
         first_line = str(error).partition("\n")[0]
         raise _RefusalError(f"expected a {port.type_name} in {encoding}: {first_line}") from error
     except TypeError as error:  # a type without a Python class

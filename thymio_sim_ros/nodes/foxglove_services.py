@@ -11,7 +11,7 @@ from rclpy._rclpy_pybind11 import RMWError
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message, serialize_message
 
-from thymio_sim_ros.bridge.events import AddServices, Command, RemoveServices, Tell
+from thymio_sim_ros.bridge.events import AddServices, Answer, Command, RemoveServices, Tell
 from thymio_sim_ros.bridge.messages import (
     Service,
     ServiceCallFailure,
@@ -22,6 +22,7 @@ from thymio_sim_ros.bridge.messages import (
 )
 from thymio_sim_ros.bridge.vocabulary import CDR, JSON, StatusLevel
 from thymio_sim_ros.nodes import json_messages
+from thymio_sim_ros.nodes.cdr_parts import TooManyPartsError, check_parts
 from thymio_sim_ros.nodes.foxglove_calls import Calls
 from thymio_sim_ros.nodes.foxglove_types import MissingTypeError, load_type
 from thymio_sim_ros.nodes.schemas import service_definitions
@@ -46,6 +47,8 @@ class Services:
         self._by_name: dict[str, _Offer] = {}
         self._by_id: dict[int, _Offer] = {}
         self._refused: set[str] = set()
+        self._definitions: dict[str, tuple[str, str]] = {}
+        """Texts of the types met so far."""
 
     def update(self, services: Mapping[str, Sequence[str]]) -> None:
         """Offer new services, take away vanished ones; service → types."""
@@ -68,33 +71,38 @@ class Services:
         """Carry out a client's call."""
         offer = self._by_id.get(request.service_id)
         if offer is None:
-            self._fail(client, request, f"service {request.service_id} is gone")
+            self.fail(client, request, f"service {request.service_id} is gone")
             return
         try:
             message = _decode(request, offer.service_type.Request)
-        except (RMWError, json_messages.JsonMessageError, ValueError) as error:
-            self._fail(client, request, f"{offer.service.name}: undecodable request: {_first_line(error)}")
+        except (RMWError, json_messages.JsonMessageError, TooManyPartsError, ValueError) as error:
+            self.fail(client, request, f"{offer.service.name}: undecodable request: {_first_line(error)}")
             return
 
         def done(response: Any, reason: str) -> None:
             if response is None:
-                self._fail(client, request, reason)
+                self.fail(client, request, reason)
                 return
-            payload = json_messages.to_json(response) if request.encoding == JSON else serialize_message(response)
+            try:
+                payload = json_messages.to_json(response) if request.encoding == JSON else serialize_message(response)
+            except Exception as error:  # of a response that neither can carry
+                self.fail(client, request, f"{offer.service.name}: unreadable response: {_first_line(error)}")
+                return
             answer = ServiceResponse(request.service_id, request.call_id, request.encoding, payload)
-            self._post(Tell(client, answer))
+            self._post(Answer(client, answer, len(request.payload)))
 
-        self._calls.call(offer.service_type, offer.service.name, message, done)
+        self._calls.call(offer.service_type, offer.service.name, message, done, sender=client)
 
     def _add(self, name: str, type_name: str) -> _Offer | None:
         try:
             service_type = load_type(type_name)
-            definitions = service_definitions(type_name)
+            definitions = self._definitions.get(type_name) or service_definitions(type_name)
         except MissingTypeError as error:
             if name not in self._refused:
                 self._refused.add(name)
                 self._node.get_logger().warning(f"service {name} is not bridged: {error}")
             return None
+        self._definitions[type_name] = definitions
         request, response = (
             ServiceSide(CDR, f"{type_name}_{side}", "ros2msg", text)
             for side, text in zip(("Request", "Response"), definitions, strict=True)
@@ -103,14 +111,17 @@ class Services:
         self._by_name[name] = self._by_id[offer.service.id] = offer
         return offer
 
-    def _fail(self, client: int, request: ServiceRequest, text: str) -> None:
+    def fail(self, client: int, request: ServiceRequest, text: str) -> None:
+        """Answer a call with the reason why it failed."""
         # Some clients handle one, some the other (foxglove.md section 2).
-        self._post(Tell(client, ServiceCallFailure(request.service_id, request.call_id, text)))
+        failure = ServiceCallFailure(request.service_id, request.call_id, text)
+        self._post(Answer(client, failure, len(request.payload)))
         self._post(Tell(client, Status(StatusLevel.ERROR, text)))
 
 
 def _decode(request: ServiceRequest, message_type: Any) -> Any:
     if request.encoding == CDR:
+        check_parts(request.payload, message_type)
         return deserialize_message(request.payload, message_type)
     if request.encoding == JSON:
         return json_messages.from_json(request.payload or b"{}", message_type)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import importlib.util
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,7 @@ def full_name(name: str, kind: str = "msg") -> str:
     return f"{words[0]}/{kind}/{words[1]}" if len(words) == 2 else name
 
 
+@functools.lru_cache(maxsize=4096)
 def load_type(name: str) -> Any:
     """The class of `pkg/msg/Type` or `pkg/srv/Type`, ready for publishers, subscriptions and clients.
 

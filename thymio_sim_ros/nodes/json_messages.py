@@ -13,6 +13,7 @@ import re
 import sys
 from typing import Any
 
+from thymio_sim_ros.bridge import bounded_json
 from thymio_sim_ros.nodes.foxglove_types import full_name, load_type
 
 __all__ = ["JsonMessageError", "from_json", "to_json"]
@@ -22,6 +23,10 @@ _INTEGER = re.compile(r"^(u?)int(8|16|32|64)$")
 _TEXT = re.compile(r"^w?string(?:<(\d+)>)?$")
 
 
+MAX_MESSAGES = 2000
+"""Messages in one message."""
+
+
 class JsonMessageError(ValueError):
     """JSON that does not fit the message type; the text says where."""
 
@@ -29,12 +34,21 @@ class JsonMessageError(ValueError):
 def from_json(data: bytes, message_type: Any) -> Any:
     """A message of the class from UTF-8 JSON; raises JsonMessageError."""
     try:
-        value = json.loads(data)
+        value = bounded_json.loads(data.decode())
     except (ValueError, RecursionError) as error:
         raise JsonMessageError(f"not JSON: {error}") from error
+    if _messages_in(value) > MAX_MESSAGES:
+        raise JsonMessageError(f"message: expected at most {MAX_MESSAGES} objects")
     message = message_type()
     _fill(message, value, "message")
     return message
+
+
+def _messages_in(value: Any) -> int:
+    """Objects in a JSON value: each becomes a message, which takes some 20 µs."""
+    if isinstance(value, dict):
+        return 1 + sum(_messages_in(item) for item in value.values() if isinstance(item, (dict, list)))
+    return sum(_messages_in(item) for item in value if isinstance(item, (dict, list))) if isinstance(value, list) else 0
 
 
 def to_json(message: Any) -> bytes:

@@ -1,0 +1,196 @@
+"""What one client costs the event loop: others have their turn in between, and there is an end to it."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+
+import pytest
+from websockets.exceptions import ConnectionClosedError
+
+from tests.bridge.peers import DEADLINE_S, Client, StalledClient, bridge, run
+from thymio_sim_ros.bridge import ServerSettings, wire
+from thymio_sim_ros.bridge import events as ev
+from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.bounded_json import MAX_STRUCTURE
+from thymio_sim_ros.bridge.channels import MAX_CALLS
+
+PING = bytes([0x89, 0x80, 0, 0, 0, 0])
+CLIENT_FRAME = ms.ServiceRequest(7, 1, "cdr", b"")
+"""Of a service that does not exist: refused at once."""
+
+
+def masked(message: ms.ClientMessage) -> bytes:
+    """A short binary frame of a client."""
+    body = wire.encode_client(message)
+    assert isinstance(body, bytes)
+    assert len(body) < 126
+    return bytes([0x82, 0x80 | len(body), 0, 0, 0, 0]) + body
+
+
+@asynccontextmanager
+async def flooder(port: int) -> AsyncIterator[StalledClient]:
+    """A client that sends bytes of its own making and reads nothing of the answers."""
+    client = StalledClient(port)
+    await client.connect()
+    try:
+        yield client
+    finally:
+        client.abort()
+
+
+class Turns:
+    """Counts turns of the event loop."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._task = asyncio.create_task(self._turn())
+
+    async def _turn(self) -> None:
+        while True:
+            await asyncio.sleep(0)
+            self.count += 1
+
+    def stop(self) -> None:
+        """Count no more."""
+        self._task.cancel()
+
+
+@pytest.mark.parametrize(("frame", "count"), [(PING, 40_000), (masked(CLIENT_FRAME), 3000)], ids=["pings", "calls"])
+def test_a_flood_in_one_packet_is_handled_in_many_turns(frame: bytes, count: int) -> None:
+    async def scenario() -> int:
+        async with bridge() as server, server.client() as other, flooder(server.port) as client:
+            await other.settle()
+            flood = frame * count
+            handled: list[int] = []
+            turns = Turns()
+
+            async def send() -> None:
+                await asyncio.get_running_loop().sock_sendall(client._socket, flood)
+                await client.say(ms.FetchAsset("end", 1))
+
+            async def watch() -> None:
+                await server.sink.until(lambda events: ev.AssetWanted(2, "end", 1) in events)
+                handled.append(turns.count)
+
+            async def read() -> None:
+                while not handled:  # the answers, so that it is not cut off
+                    await client._next()
+
+            reading = asyncio.create_task(read())
+            await asyncio.gather(send(), watch())
+            reading.cancel()
+            turns.stop()
+            return handled[0]
+
+    assert run(scenario()) > 20
+
+
+def test_calls_that_are_refused_leave_the_others_room() -> None:
+    async def scenario() -> None:
+        async with bridge() as server, server.client() as busy, server.client() as other:
+            side = ms.ServiceSide("cdr", "t", "ros2msg", "")
+            server.server.carry_out(ev.AddServices((ms.Service(5, "/s", "t", side, side),)))
+            for number in range(3000):
+                await busy.send(ms.ServiceRequest(5, number, "cdr", b""))
+            await other.send(ms.ServiceRequest(5, 1, "cdr", b""))
+            await server.sink.until(lambda events: any(getattr(event, "client", 0) == 2 for event in events))
+            await busy.settle()
+            calls = [event for event in server.sink.events if isinstance(event, ev.ServiceCalled)]
+            assert len([call for call in calls if call.client == 1]) == MAX_CALLS
+
+    run(scenario())
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        '{"op":"setParameters","parameters":[' + "[],{}," * 600_000 + "1]}",
+        '{"op":"unsubscribe","subscriptionIds":[' + "1," * 2_000_000 + "1]}",
+        '{"op":' + "[" * 4_000_000,
+        "é\x01" * 1_300_000,
+    ],
+    ids=["lists", "numbers", "brackets", "no JSON"],
+)
+def test_a_long_frame_of_nonsense_is_refused_unread(frame: str) -> None:
+    async def scenario() -> str:
+        async with bridge() as server, server.client() as client:
+            await client.connection.send(frame)
+            return (await client.next(ms.Status)).message
+
+    assert run(scenario()) == (
+        f"text frame: expected at most {MAX_STRUCTURE} characters outside of strings, found more"
+    )
+
+
+def test_a_playground_with_pictures_passes() -> None:
+    """What the page sends at most: a file of 3 MB in base64."""
+    wish = ms.Parameter("/simulator.playground", "data:application/octet-stream;base64," + "A" * 4_000_000)
+
+    async def scenario() -> None:
+        async with bridge() as server, server.client() as client:
+            await client.send(ms.SetParameters((wish,), "q"))
+            await server.sink.until(bool)
+            assert server.sink.events == [ev.ParametersSet(1, (wish,), "q")]
+
+    run(scenario())
+
+
+def test_more_clients_than_the_limit_are_refused_until_one_leaves() -> None:
+    async def scenario() -> None:
+        async with bridge(ServerSettings(max_clients=2)) as server:
+            async with server.client() as first, server.client() as second:
+                await first.settle()
+                await second.settle()
+                async with server.client() as third:
+                    with pytest.raises(ConnectionClosedError, match="too many clients"):
+                        await third.settle()
+            await server.until(lambda: server.server.client_count == 0)
+            async with server.client() as client:
+                await client.settle()
+
+    run(scenario())
+
+
+def test_silent_connections_are_limited_too_and_make_room_when_they_leave() -> None:
+    async def scenario() -> None:
+        async with bridge(ServerSettings(max_clients=2)) as server:
+            loop = asyncio.get_running_loop()
+            silent = [socket.create_connection(("127.0.0.1", server.port)) for _ in range(5)]
+            for one in silent:
+                one.setblocking(False)
+            async with asyncio.timeout(DEADLINE_S):
+                with suppress(ConnectionError):
+                    assert await loop.sock_recv(silent[-1], 1) == b""
+            for one in silent:
+                one.close()
+            await server.until(lambda: not server.server._connections)
+            async with server.client() as client:
+                await client.settle()
+
+    run(scenario())
+
+
+async def greeting(client: Client) -> ms.Advertise:
+    """The channels a newcomer is told of."""
+    return await client.next(ms.Advertise)
+
+
+def test_newcomers_are_told_of_what_there_is_now() -> None:
+    """The greeting is kept between newcomers."""
+
+    async def scenario() -> None:
+        async with bridge() as server:
+            for number in range(20, 23):
+                channel = ms.Channel(number, f"/t{number}", "cdr", "t", "")
+                server.server.carry_out(ev.AddChannels((channel,)))
+                for _ in range(2):
+                    async with server.client() as client:
+                        assert channel in (await greeting(client)).channels
+            server.server.carry_out(ev.RemoveChannels((21,)))
+            async with server.client() as client:
+                assert [channel.id for channel in (await greeting(client)).channels] == [10, 20, 22]
+
+    run(scenario())
