@@ -20,3 +20,5 @@ class ClientState:
     channels: Mapping[int, ClientChannel] = field(default_factory=dict)
     parameters: frozenset[str] = frozenset()
     graph: ConnectionGraph | None = None
+    is_read_only: bool = False
+    """Whether it may watch and nothing else."""

@@ -16,6 +16,8 @@ from typing import Any, cast
 
 from websockets.asyncio.server import ServerConnection
 
+from thymio_sim_ros.bridge.access import Role
+
 __all__ = ["SharedConnection", "SharedTransport"]
 
 
@@ -184,6 +186,8 @@ class SharedConnection(ServerConnection):
     """A connection of `websockets` on a transport that others may write to as well."""
 
     transport: SharedTransport
+    role: Role | None = None
+    """What its client may do; None: it has to go."""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """The client is there."""
