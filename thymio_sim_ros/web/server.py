@@ -40,7 +40,7 @@ _SWEEP_S = 0.5
 _RETRY_S = 0.02
 _TURNS = 6
 """Turns of the event loop from the arrival of a request to the beginning of its answer, and some more."""
-_CHUNK = 65_536
+_CHUNK = 32_768
 """Bytes that are written in one turn of the event loop: what a client does not read is not copied as a whole, and large
 answers do not hold up small ones."""
 _NEVER_S = 1e6

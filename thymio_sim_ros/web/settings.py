@@ -7,17 +7,18 @@ from dataclasses import dataclass
 
 __all__ = ["Settings", "max_connections"]
 
-_MOST_CONNECTIONS = 512
+_MOST_CONNECTIONS = 768
+"""Enough for 180 browsers that open the page at once."""
 
 
 def max_connections() -> int:
-    """Connections to have at once: half of the files that this process may open, since the rest of it needs some."""
+    """Connections to have at once: at most three quarters of the files that this process may open."""
     try:
         import resource
     except ImportError:  # not on this platform
         return _MOST_CONNECTIONS
     soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
-    return _MOST_CONNECTIONS if soft == resource.RLIM_INFINITY else max(8, min(_MOST_CONNECTIONS, soft // 2))
+    return _MOST_CONNECTIONS if soft == resource.RLIM_INFINITY else max(8, min(_MOST_CONNECTIONS, soft * 3 // 4))
 
 
 @dataclass(frozen=True, slots=True)
