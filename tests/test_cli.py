@@ -18,6 +18,7 @@ import pytest
 from tests import disk
 from tests.processes import free_port
 from thymio_sim_ros import cli, runlog
+from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
 from thymio_sim_ros.interruption import Interruption
 from thymio_sim_ros.replay import replay
 from thymio_sim_ros.sim.tones import SAMPLE_NS
@@ -357,3 +358,60 @@ def test_the_suite_takes_a_file_with_a_node_for_each_robot(capsys, tmp_path, mon
     monkeypatch.setattr(cli.importlib.util, "find_spec", lambda _name: None)
     line = refused(capsys, "--headless", "--playground", "two_robots", "--program", str(program))
     assert "ROS 2 is not installed" in line
+
+
+@pytest.mark.parametrize("token", ["abc", "has space", "a/b?c", "ä" * 8, ""])
+def test_a_text_that_cannot_be_a_token_is_refused(capsys, token):
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["--token", token])
+    assert ended.value.code == 2
+    assert "expected 4 to 200 letters" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (("--no-token", "--token", "abcd"), "--no-token"),
+        (("--token", "abcd", "--read-only-token", "abcd"), "two different ones"),
+    ],
+)
+def test_tokens_that_contradict_each_other_are_one_line(capsys, arguments, text):
+    assert text in refused(capsys, *arguments)
+
+
+def test_a_wrong_token_of_the_environment_is_one_line_that_does_not_show_it(capsys, monkeypatch):
+    monkeypatch.setenv(TOKEN_VARIABLE, "not a token")
+    line = refused(capsys)
+    assert TOKEN_VARIABLE in line
+    assert "not a token" not in line
+
+
+@pytest.mark.parametrize(
+    ("arguments", "environment", "full", "read_only"),
+    [
+        ((), {}, "", ""),
+        (("--token", "abcd"), {}, "abcd", None),
+        ((), {TOKEN_VARIABLE: "fromenv"}, "fromenv", None),
+        (("--token", "abcd"), {TOKEN_VARIABLE: "fromenv"}, "abcd", None),
+        (("--address", "0.0.0.0"), {}, None, None),
+        (("--address", "0.0.0.0", "--no-token"), {TOKEN_VARIABLE: "fromenv"}, "", ""),
+        (("--address", "0.0.0.0", "--read-only-token", "look"), {}, None, "look"),
+    ],
+)
+def test_where_tokens_come_from(monkeypatch, arguments, environment, full, read_only):
+    """None stands for a random one."""
+    monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
+    monkeypatch.delenv(READ_ONLY_VARIABLE, raising=False)
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    tokens = cli._tokens(cli._suite_parser().parse_args(arguments))
+    for found, expected in ((tokens.full, full), (tokens.read_only, read_only)):
+        assert found == expected if expected is not None else len(found) >= 20
+
+
+@pytest.mark.parametrize("content", ["root:x:0:0:hunter2", '{"auths": "hunter2"}', "<a pw='hunter2'/>", "hunter2"])
+@pytest.mark.parametrize("option", ["--playground", "--program"])
+def test_what_lies_on_this_computer_for_other_purposes_is_not_quoted(capsys, tmp_path, option, content):
+    (tmp_path / "hunter2_file").write_text(content)
+    line = refused(capsys, option, str(tmp_path / "hunter2_file"))
+    assert "hunter2" not in line.replace("hunter2_file", "")

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import io
 import ipaddress
+import re
 import socket
+import sys
 
 import pytest
+import segno
 
 from thymio_sim_ros import greeting
+from thymio_sim_ros.bridge import Tokens
 from thymio_sim_ros.suite import Suite
 
 
@@ -45,6 +50,60 @@ def test_other_addresses(monkeypatch, address, told):
 def test_without_page_and_bridge():
     told = greeting.greeting(Suite(web=False, foxglove=False), ["thymio"])
     assert told == "Page      none (started without it)\nFoxglove  none (started without it)\nStop      Ctrl-C"
+
+
+TOKENS = Tokens("fulltoken", "looktoken")
+
+
+def test_tokens_are_in_the_addresses_and_the_read_only_ones_apart(monkeypatch):
+    monkeypatch.setattr(greeting, "own_address", lambda: "10.1.2.3")
+    told = greeting.greeting(Suite(address="0.0.0.0", port=80, foxglove_port=81, tokens=TOKENS), ["thymio"])
+    lines = told.splitlines()
+    full = "http://localhost:80/#token=fulltoken, from other computers http://10.1.2.3:80/#token=fulltoken"
+    assert lines[0] == f"Page      {full}"
+    assert lines[1].endswith("from other computers ws://10.1.2.3:81/?token=fulltoken")
+    assert lines[2:4] == [
+        "Read only http://10.1.2.3:80/#token=looktoken",
+        "Read only ws://10.1.2.3:81/?token=looktoken",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("address", "tokens", "said"),
+    [
+        ("localhost", Tokens(), "this computer only"),
+        ("127.0.0.1", TOKENS, "this computer only, with the token"),
+        ("0.0.0.0", Tokens(), "everyone in your network, without a token: drive, program, load, add robots"),
+        (
+            "0.0.0.0",
+            TOKENS,
+            "everyone in your network with a full address: drive, program, load, add robots; "
+            "with a read-only address: watch",
+        ),
+    ],
+)
+def test_one_line_says_who_can_reach_what(address, tokens, said):
+    assert f"Access    {said}" in greeting.greeting(Suite(address=address, tokens=tokens), ["thymio"]).splitlines()
+
+
+def test_the_qr_code_holds_the_address_for_other_computers(monkeypatch):
+    monkeypatch.setattr(greeting, "own_address", lambda: "10.1.2.3")
+    suite = Suite(address="0.0.0.0", port=80, tokens=TOKENS)
+    expected = io.StringIO()
+    segno.make_qr("http://10.1.2.3:80/#token=fulltoken", error="l").terminal(expected, border=2, compact=True)
+    drawn = greeting.qr_code(suite)
+    assert drawn == expected.getvalue().rstrip("\n")
+    assert max(map(len, re.sub(r"\x1b\[[0-9;]*m", "", drawn).splitlines())) < 80
+
+
+@pytest.mark.parametrize("suite", [Suite(), Suite(address="0.0.0.0", web=False)])
+def test_there_is_no_qr_code_where_there_is_no_page_for_others(suite):
+    assert greeting.qr_code(suite) == ""
+
+
+def test_without_the_package_there_is_no_qr_code(monkeypatch):
+    monkeypatch.setitem(sys.modules, "segno", None)
+    assert greeting.qr_code(Suite(address="0.0.0.0")) == ""
 
 
 def test_this_computer_has_a_number_or_a_name(monkeypatch):

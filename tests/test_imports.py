@@ -56,6 +56,7 @@ RULES = {
     f"{OURS}.registry": Rule(frozenset(), never=NO_WALL_CLOCK),
     f"{OURS}.runner": Rule(_names("aseba_vm", "sim", "device", "registry", "runlog"), never=NO_WALL_CLOCK - {"time"}),
     f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"foxglove_websocket", "websockets"})),
+    f"{OURS}.web": Rule(_names("web", "bridge", "gallery", "resources", "sim"), frozenset({"aiohttp"})),
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
     f"{OURS}.nodes": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.launch": Rule(frozenset(), frozenset({"launch", "launch_ros"})),
@@ -63,6 +64,7 @@ RULES = {
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
     f"{OURS}.pytest_plugin": Rule(ALL_OF_OURS, frozenset({"pytest"})),
     f"{OURS}.cli": Rule(ALL_OF_OURS),
+    f"{OURS}.greeting": Rule(ALL_OF_OURS, frozenset({"segno"})),
     # resources, loading, suite, webbuild: helpers of the commands, without ROS
     OURS: Rule(ALL_OF_OURS),
 }

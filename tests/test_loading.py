@@ -5,13 +5,15 @@ from __future__ import annotations
 import base64
 import errno
 import json
+import zipfile
 from pathlib import Path
 
 import pytest
 
 from tests.sim.builders import FLOOR, ROBOT
 from thymio_sim_ros import resources
-from thymio_sim_ros.loading import load_playground, read_text
+from thymio_sim_ros.loading import is_playground_text, load_playground, read_text
+from thymio_sim_ros.resources import ResourceError
 from thymio_sim_ros.sim.playground import PlaygroundError
 
 OURS = json.dumps({"format": 1, "title": "Ours", "shapes": [FLOOR], "robots": [ROBOT]})
@@ -88,3 +90,61 @@ def test_a_program_that_cannot_be_read_is_refused(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(Path, "read_bytes", refuse)
     with pytest.raises(resources.ResourceError, match=r"secret\.aesl: Permission denied; expected a file that can be"):
         read_text(str(path))
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"root:x:0:0:hunter2:/root",
+        b'{"auths": {"registry": "hunter2"}}',
+        b'{"pw": hunter2}',
+        b"<hunter2/>",
+        b"<svg><text>hunter2</text>",
+        b"\xffhunter2",
+        b"hunter2",
+    ],
+)
+@pytest.mark.parametrize("zipped", [False, True])
+def test_an_error_quotes_nothing_of_a_file_that_is_no_playground(tmp_path: Path, content: bytes, zipped: bool) -> None:
+    path = tmp_path / "config.json"
+    path.write_bytes(content)
+    if zipped:
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("inside.json", content)
+    with pytest.raises(PlaygroundError) as caught:
+        load_playground(str(path))
+    assert "hunter2" not in str(caught.value)
+    assert caught.value.__suppress_context__
+    assert "aseba-playground" in caught.value.expected
+
+
+@pytest.mark.parametrize("content", ['{"format": 1, "titel": "x"}', '{"format": 2}', "<aseba-playground><wall/>"])
+def test_an_error_about_a_playground_says_what_is_wrong(tmp_path: Path, content: str) -> None:
+    path = tmp_path / "mine.json"
+    path.write_text(content)
+    with pytest.raises(PlaygroundError) as caught:
+        load_playground(str(path))
+    assert "not a playground" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["passwd", "key.pem", "settings.json", ".env"])
+def test_a_file_that_is_no_program_by_its_name_is_not_read(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("hunter2 = 1")
+    with pytest.raises(ResourceError, match=r"ends in \.aesl"):
+        read_text(str(tmp_path / name))
+
+
+@pytest.mark.parametrize(
+    ("value", "is_text"),
+    [
+        ("line", False),
+        ("/etc/passwd", False),
+        ("C:\\x.json", False),
+        ("data:text/plain,hello", False),
+        ('{"format": 1}', True),
+        ("\ufeff <aseba-playground/>", True),
+        ("data:;name=a;base64,e30=", True),
+    ],
+)
+def test_what_is_content_opens_no_file(value: str, is_text: bool) -> None:
+    assert is_playground_text(value) is is_text

@@ -6,6 +6,7 @@ Everything a user can get wrong is checked before anything starts: one line on s
 from __future__ import annotations
 
 import argparse
+import contextlib
 import importlib.util
 import ipaddress
 import json
@@ -20,6 +21,7 @@ from pathlib import Path
 import thymio_sim_ros
 from aseba_vm.output import STANDARD_OUTPUT, end_by, standard_output
 from thymio_sim_ros import convert, foxglove_layout, resources
+from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
 from thymio_sim_ros.bridge.thread import check_free
 from thymio_sim_ros.device.card import Card, CardError
 from thymio_sim_ros.device.events import FIRMWARE, POLICIES
@@ -28,7 +30,7 @@ from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.program import ProgramError
 from thymio_sim_ros.device.settings import Settings, SettingsError
-from thymio_sim_ros.greeting import greeting, patience
+from thymio_sim_ros.greeting import greeting, patience, qr_code
 from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_shares
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
@@ -101,6 +103,7 @@ def start_suite(argv: Sequence[str]) -> int:
         seed=options.seed,
         real_time_factor=options.real_time_factor,
         log="" if options.log is None else str(options.log),
+        tokens=_tokens(options),
     )
     if options.log is not None and (os.path.isdir(options.log) or not os.path.isdir(options.log.parent)):
         raise UsageError(f"{options.log}: expected a file in a folder that exists")
@@ -121,7 +124,7 @@ def start_suite(argv: Sequence[str]) -> int:
     from thymio_sim_ros.nodes import all_nodes  # loads rcl
 
     try:
-        return all_nodes.run(suite, [], on_ready=lambda: _tell(greeting(suite, robots)))
+        return all_nodes.run(suite, [], on_ready=lambda: _greet(suite, robots))
     finally:
         leftovers.remove_new(before)
 
@@ -218,6 +221,14 @@ def _tell(text: str) -> None:
         print(text)
 
 
+def _greet(suite: Suite, robots: Sequence[str]) -> None:
+    _tell(greeting(suite, robots))
+    if sys.stdout is not None and sys.stdout.isatty():
+        with contextlib.suppress(UnicodeEncodeError):  # a terminal without these characters
+            if drawn := qr_code(suite):
+                _tell(drawn)
+
+
 def _replay_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="thymio-sim replay",
@@ -242,8 +253,24 @@ def _suite_parser() -> argparse.ArgumentParser:
         type=_address,
         default=Suite.address,
         metavar="IPV4",
-        help="where page and bridge listen; 0.0.0.0 lets everybody on the network open the page and steer the robots "
-        "(default: %(default)s)",
+        help="where page and bridge listen; 0.0.0.0 is the whole network, which then needs the address with the token "
+        "that is printed (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--token",
+        type=_token,
+        metavar="TEXT",
+        help=f"token that clients need, in place of a random one; other users of this computer see it in its list of "
+        f"processes, but not in the variable {TOKEN_VARIABLE}",
+    )
+    parser.add_argument(
+        "--read-only-token",
+        type=_token,
+        metavar="TEXT",
+        help=f"token with which clients only watch, in place of a random one; or {READ_ONLY_VARIABLE}",
+    )
+    parser.add_argument(
+        "--no-token", action="store_true", help="let everyone whom the address reaches do everything, without a token"
     )
     parser.add_argument("--port", type=_port, default=Suite.port, help="port of the page (default: %(default)s)")
     parser.add_argument(
@@ -360,6 +387,33 @@ def _address(text: str) -> str:
         raise argparse.ArgumentTypeError(
             f"'{text}' found, expected {ADDRESS}, 0.0.0.0 for the whole network, or an IPv4 number of this computer"
         ) from error
+
+
+def _token(text: str) -> str:
+    if not TOKEN.fullmatch(text):
+        raise argparse.ArgumentTypeError("expected 4 to 200 letters, digits, '.', '_', '~' or '-'")
+    return text
+
+
+def _tokens(options: argparse.Namespace) -> Tokens:
+    """What clients need; UsageError for what cannot be."""
+    given = options.token, options.read_only_token
+    if options.no_token:
+        if any(given):
+            raise UsageError("--no-token: expected no other option for tokens")
+        return Tokens()
+    full, read_only = given[0] or _from_environment(TOKEN_VARIABLE), given[1] or _from_environment(READ_ONLY_VARIABLE)
+    if full and full == read_only:
+        raise UsageError("the token and the read-only token are the same; expected two different ones")
+    return Tokens.for_address(options.address, full, read_only)
+
+
+def _from_environment(variable: str) -> str:
+    text = os.environ.get(variable, "")
+    try:
+        return _token(text) if text else ""
+    except argparse.ArgumentTypeError as error:
+        raise UsageError(f"{variable}: {error}") from error
 
 
 def _port(text: str) -> int:

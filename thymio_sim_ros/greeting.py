@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import ipaddress
 import socket
 from collections.abc import Sequence
 
 from thymio_sim_ros import foxglove_layout
+from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.suite import Suite
 
-__all__ = ["greeting", "own_address", "patience", "places", "urls"]
+__all__ = ["access", "greeting", "own_address", "patience", "places", "qr_code", "urls"]
 
 _SOMEWHERE = ("192.0.2.1", 9)
 """Of a network that nobody has (RFC 5737); nothing is sent there."""
@@ -22,11 +24,50 @@ _LONG_S = 5.0
 
 
 def greeting(suite: Suite, robots: Sequence[str]) -> str:
-    """The lines a person needs."""
-    page = places("http", suite.address, suite.port, "/") if suite.web else _NONE
-    foxglove = places("ws", suite.address, suite.foxglove_port) if suite.foxglove else _NONE
-    layout = f"\nLayout    {foxglove_layout.hint(robots)}" if suite.foxglove else ""
-    return f"Page      {page}\nFoxglove  {foxglove}{layout}\nStop      Ctrl-C"
+    """The lines a person needs. They contain the tokens: for standard output, never for a log."""
+    tokens = suite.tokens or Tokens()
+    page = places("http", suite.address, suite.port, "/", tokens.full) if suite.web else _NONE
+    path = "/" if tokens.full else ""
+    foxglove = places("ws", suite.address, suite.foxglove_port, path, tokens.full) if suite.foxglove else _NONE
+    lines = [f"Page      {page}", f"Foxglove  {foxglove}"]
+    if suite.foxglove:
+        lines += [f"Read only {place}" for place in _read_only_places(suite, tokens)]
+        lines.append(f"Layout    {foxglove_layout.hint(robots)}")
+        lines.append(f"Access    {access(suite.address, tokens)}")
+    return "\n".join([*lines, "Stop      Ctrl-C"])
+
+
+def access(address: str, tokens: Tokens) -> str:
+    """Who can reach what, in one line."""
+    if is_loopback(address):
+        return f"this computer only{', with the token' if tokens.is_required else ''}"
+    if not tokens.is_required:
+        return "everyone in your network, without a token: drive, program, load, add robots"
+    everything = "everyone in your network with a full address: drive, program, load, add robots"
+    return f"{everything}; with a read-only address: watch"
+
+
+def qr_code(suite: Suite) -> str:
+    """The page's address for other computers as a QR code in terminal characters; empty where there is none."""
+    tokens = suite.tokens or Tokens()
+    if not suite.web or is_loopback(suite.address):
+        return ""
+    try:
+        import segno
+    except ImportError:  # not among the packages of every ROS installation
+        return ""
+    drawn = io.StringIO()
+    url = urls("http", suite.address, suite.port, "/", tokens.full)[-1]
+    segno.make_qr(url, error="l").terminal(drawn, border=2, compact=True)
+    return drawn.getvalue().rstrip("\n")
+
+
+def _read_only_places(suite: Suite, tokens: Tokens) -> list[str]:
+    """For the class: the page and the bridge for other computers, with the token that only lets watch."""
+    if not tokens.read_only:
+        return []
+    page = urls("http", suite.address, suite.port, "/", tokens.read_only)[-1:] if suite.web else []
+    return [*page, urls("ws", suite.address, suite.foxglove_port, "/", tokens.read_only)[-1]]
 
 
 def patience(robots: int) -> str | None:
@@ -45,16 +86,18 @@ def own_address() -> str:
         return str(probe.getsockname()[0])
 
 
-def places(scheme: str, address: str, port: int, path: str = "") -> str:
+def places(scheme: str, address: str, port: int, path: str = "", token: str = "") -> str:
     """Where something is that listens on an address, for a person."""
-    return ", from other computers ".join(urls(scheme, address, port, path))
+    return ", from other computers ".join(urls(scheme, address, port, path, token))
 
 
-def urls(scheme: str, address: str, port: int, path: str = "") -> list[str]:
+def urls(scheme: str, address: str, port: int, path: str = "", token: str = "") -> list[str]:
     """The same for programs; `address` is a name or a number.
 
-    Of the whole network (`0.0.0.0`, `::`) that for this computer comes first, then that for others.
+    Of the whole network (`0.0.0.0`, `::`) that for this computer comes first, then that for others. A token is in the
+    query of a WebSocket's address; in that of a page it is the fragment, which browsers send to no server.
     """
+    suffix = "" if not token else f"?token={token}" if scheme.startswith("ws") else f"#token={token}"
     hosts = [address]
     try:
         number = ipaddress.ip_address(address)
@@ -67,4 +110,4 @@ def urls(scheme: str, address: str, port: int, path: str = "") -> list[str]:
             hosts = ["localhost", own_address()]
         elif number.version == 6:
             hosts = [f"[{address}]"]
-    return [f"{scheme}://{host}:{port}{path}" for host in hosts]
+    return [f"{scheme}://{host}:{port}{path}{suffix}" for host in hosts]

@@ -9,6 +9,7 @@ import logging
 import re
 import urllib.parse
 from collections.abc import Sequence
+from pathlib import Path
 
 from aseba_vm import AeslError
 from aseba_vm.errors import TextError
@@ -19,6 +20,7 @@ from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.program import ThymioProgram, load_file, load_program, parse
 from thymio_sim_ros.sim import playground as playgrounds
 from thymio_sim_ros.sim.playground import Playground, PlaygroundError
+from thymio_sim_ros.sim.source import MAX_BYTES, is_recognized
 
 NO_PROGRAM = "none"
 """In place of a program's name: the robot does nothing by itself."""
@@ -26,6 +28,15 @@ NO_PROGRAM = "none"
 
 _UPLOAD = re.compile(r"data:[^;,]*(?:;name=(?P<name>[^;,]*))?;base64,(?P<content>.*)", re.DOTALL)
 _UNNAMED = "uploaded playground"
+_PLAYGROUNDS = 'JSON with "format": 1, XML with <aseba-playground>, or a zip that holds one'
+_PROGRAMS = (".aesl", ".aseba", ".txt")
+"""Endings of files that are read as programs: errors quote from them, so others are not opened."""
+_BEFORE_TEXT = "\ufeff \t\r\n"
+
+
+def is_playground_text(value: str) -> bool:
+    """Whether `load_playground` takes a value as content, and opens no file for it."""
+    return _UPLOAD.fullmatch(value) is not None or value.lstrip(_BEFORE_TEXT).startswith(("{", "<"))
 
 
 def load_playground(value: str) -> tuple[str, Playground]:
@@ -37,11 +48,25 @@ def load_playground(value: str) -> tuple[str, Playground]:
     upload = _UPLOAD.fullmatch(value)
     if upload is not None:
         return _load_upload(urllib.parse.unquote(upload["name"] or _UNNAMED), upload["content"])
-    if value.lstrip("\ufeff \t\r\n").startswith(("{", "<")):
+    if is_playground_text(value):
         loaded = playgrounds.loads(value, _UNNAMED)
         return loaded.title, loaded
     path = resources.find_playground(value)
-    return path.stem, playgrounds.load(path)
+    try:
+        return path.stem, playgrounds.load(path)
+    except PlaygroundError:
+        if _may_be_quoted(path):
+            raise
+        raise PlaygroundError(str(path), "", "a file that is not a playground", _PLAYGROUNDS) from None
+
+
+def _may_be_quoted(path: Path) -> bool:
+    """Whether an error may say what a file contains: not what lies on this computer for other purposes."""
+    try:
+        with path.open("rb") as file:
+            return is_recognized(file.read(MAX_BYTES))
+    except OSError:
+        return True  # which is all that the error says
 
 
 def _load_upload(name: str, content: str) -> tuple[str, Playground]:
@@ -75,6 +100,8 @@ def read_text(path: str) -> tuple[str, str]:
     if path == NO_PROGRAM:
         return "", NO_PROGRAM
     found = resources.find_program(path)
+    if found.suffix.lower() not in _PROGRAMS:
+        raise resources.ResourceError(f"{found}: expected a file whose name ends in {', '.join(_PROGRAMS)}")
     try:
         return decoded(found.read_bytes()).text, found.name
     except TextError as error:

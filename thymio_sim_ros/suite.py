@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
@@ -21,6 +22,7 @@ class Suite:
     `playground`: shipped name, path or JSON text; `program`: behaviour or path; `behaviour`: what the robot is
     switched on with instead, the program then waiting in its menu; `log`: file of a run log, empty for none.
     `address`: where page and bridge listen, `ADDRESS` or an IPv4 number.
+    `tokens`: what clients of page and bridge need; None leaves it to the bridge.
     `cmd_vel_timeout_s`: browser teleop sends nothing on release, hence half a second (ros-interface.md section 13).
     """
 
@@ -39,3 +41,4 @@ class Suite:
     log: str = ""
     real_time_factor: float = 1.0
     cmd_vel_timeout_s: float = 0.5
+    tokens: Tokens | None = None

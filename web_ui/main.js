@@ -7,7 +7,7 @@ import { EditorHost } from "./editor_host.js";
 import { Shelf } from "./gallery/shelf.js";
 import { chooseLanguage, translator } from "./i18n/index.js";
 import { watchKeyboard } from "./keyboard.js";
-import { memory, note } from "./memory.js";
+import { memory, note, tabMemory } from "./memory.js";
 import { PANELS } from "./panels/index.js";
 import { Mover } from "./move/mover.js";
 import { MUTED_KEY } from "./panels/sound.js";
@@ -17,6 +17,7 @@ import { Speaker } from "./sound/speaker.js";
 import { snapshot } from "./state/index.js";
 import { isWatched, PARAMETERS, watchedFor } from "./state/names.js";
 import { Store } from "./state/store.js";
+import { takeToken, tokenIn } from "./token.js";
 
 const DEFAULT_PORT = 8765;
 const LANGUAGE_KEY = "language";
@@ -36,6 +37,11 @@ async function bridgeAddress() {
 }
 
 async function main() {
+  const token = takeToken(tabMemory, location.href, (shown) => history.replaceState(null, "", shown));
+  // An address that differs in its token only does not make the browser load the page again.
+  window.addEventListener("hashchange", () => {
+    if (tokenIn(location.href) !== null) location.reload();
+  });
   const address = await bridgeAddress();
   const store = new Store();
   let language = chooseLanguage([memory.getItem(LANGUAGE_KEY) ?? "", ...navigator.languages]);
@@ -56,6 +62,7 @@ async function main() {
   });
   const client = new Client({
     address,
+    token,
     emit: (event) => {
       store.dispatch(event.type === "message" ? { ...event, nowMs: performance.now() } : event);
       editor.receive(event, store.state.selected);
@@ -99,6 +106,9 @@ async function main() {
     beforeDraw: () => {
       creator.render();
       panels.forEach((panel) => panel.render?.(store.state));
+      for (const driving of document.querySelectorAll("[data-drives]")) {
+        driving.toggleAttribute("inert", store.state.readOnly);
+      }
     },
     press: ({ robot, button }, pressed) => {
       store.dispatch({ type: "select", robot });

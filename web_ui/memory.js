@@ -18,6 +18,9 @@ export function memoryOf(browsers) {
 
 export const memory = memoryOf(() => localStorage);
 
+/** As long as the tab is open. */
+export const tabMemory = memoryOf(() => sessionStorage);
+
 /** Keep a choice; without room for it, it holds for this visit. @param {Memory} shelf @param {string} key @param {string} value */
 export function note(shelf, key, value) {
   try {

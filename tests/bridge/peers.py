@@ -109,11 +109,20 @@ class Bridge:
 
     @asynccontextmanager
     async def client(
-        self, *, subprotocols: Sequence[Subprotocol] = SUBPROTOCOLS, origin: str | None = None
+        self,
+        *,
+        subprotocols: Sequence[Subprotocol] = SUBPROTOCOLS,
+        origin: str | None = None,
+        query: str = "",
+        headers: dict[str, str] | None = None,
     ) -> AsyncIterator[Client]:
         """A connected client."""
         async with connect(
-            self.url, subprotocols=subprotocols, origin=None if origin is None else Origin(origin), max_size=None
+            self.url + query,
+            subprotocols=subprotocols,
+            origin=None if origin is None else Origin(origin),
+            additional_headers=headers,
+            max_size=None,
         ) as connection:
             yield Client(connection)
 

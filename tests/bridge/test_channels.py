@@ -9,6 +9,7 @@ import pytest
 from thymio_sim_ros.bridge import Capability, ServerInfo
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.access import Role
 from thymio_sim_ros.bridge.channels import (
     MAX_ALL_CLIENT_CHANNELS,
     MAX_CALLS,
@@ -17,6 +18,7 @@ from thymio_sim_ros.bridge.channels import (
     MAX_REFUSALS,
     MAX_WATCHED,
     MAX_WISHES,
+    READ_ONLY,
     Letter,
     Switchboard,
 )
@@ -531,3 +533,77 @@ def test_what_is_not_offered_is_refused(message: ms.ClientMessage, capability: C
     outcome = switchboard(A, capabilities=[]).receive(A, message)
     assert refusals(outcome.letters) == [(A, f"this server does not offer {capability}")]
     assert outcome.events == []
+
+
+def viewer_of(board: Switchboard, client: int = B) -> Switchboard:
+    """The board with a read-only client."""
+    board.join(client, Role.READ_ONLY)
+    return board
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        ms.ClientAdvertise((client_channel(1),)),
+        ms.ClientMessageData(1, b""),
+        ms.SetParameters((ms.Parameter("/n.p", 2),), "mine"),
+        ms.ServiceRequest(SERVICE.id, 1, "cdr", b""),
+    ],
+    ids=lambda message: message.op if hasattr(message, "op") else type(message).__name__,
+)
+def test_a_read_only_client_changes_nothing_and_is_told_so(message: ms.ClientMessage) -> None:
+    board = viewer_of(switchboard(A))
+    outcome = board.receive(B, message)
+    assert outcome.events == []
+    statuses = [letter.message for letter in outcome.letters if isinstance(letter.message, ms.Status)]
+    assert all("read-only" in status.message for status in statuses)
+    assert statuses
+    assert {letter.clients for letter in outcome.letters} == {(B,)}
+
+
+def test_a_read_only_client_that_sets_a_parameter_gets_the_value_in_force() -> None:
+    board = viewer_of(switchboard())
+    board.apply(ev.ParametersChanged((ms.Parameter("/n.p", 1),)))
+    status, answer = (
+        letter.message for letter in board.receive(B, ms.SetParameters((ms.Parameter("/n.p", 2),), "mine")).letters
+    )
+    assert status.id == "parameter:/n.p"
+    assert answer == ms.ParameterValues((ms.Parameter("/n.p", 1),), "mine")
+
+
+def test_a_read_only_client_that_calls_a_service_gets_a_failure() -> None:
+    board = viewer_of(switchboard())
+    outcome = board.receive(B, ms.ServiceRequest(SERVICE.id, 3, "cdr", b""))
+    assert outcome.letters[0].message == ms.ServiceCallFailure(SERVICE.id, 3, READ_ONLY)
+
+
+def test_a_read_only_client_calls_services_that_change_nothing() -> None:
+    board = Switchboard(ServerInfo("test", tuple(Capability), ("cdr",)), changes_nothing=lambda name: name == "/s")
+    board.apply(ev.AddServices((SERVICE,)))
+    request = ms.ServiceRequest(SERVICE.id, 1, "cdr", b"")
+    assert viewer_of(board).receive(B, request).events == [ev.ServiceCalled(B, request)]
+
+
+def test_a_read_only_client_watches_parameters_graph_and_assets() -> None:
+    board = viewer_of(switchboard())
+    for message in (
+        ms.GetParameters((), "x"),
+        ms.SubscribeParameterUpdates(("/n.p",)),
+        ms.SubscribeConnectionGraph(),
+        ms.FetchAsset("package://a/b.stl", 1),
+    ):
+        outcome = board.receive(B, message)
+        assert not any(isinstance(letter.message, ms.Status) for letter in outcome.letters)
+
+
+def test_a_new_session_tells_each_client_what_it_may() -> None:
+    board = viewer_of(switchboard(A))
+    infos = {
+        letter.clients: letter.message
+        for letter in board.apply(ev.NewSession("second"))
+        if isinstance(letter.message, ms.ServerInfo)
+    }
+    assert infos[A,].metadata == {}
+    assert infos[B,].metadata == {"access": "read_only"}
+    assert Capability.CLIENT_PUBLISH not in infos[B,].capabilities
+    assert {info.session_id for info in infos.values()} == {"second"}

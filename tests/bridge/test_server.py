@@ -13,9 +13,10 @@ from websockets.typing import Subprotocol
 
 from tests.bridge.certificates import make_certificate
 from tests.bridge.peers import CHANNEL, DEADLINE_S, Client, StalledClient, bridge, run
-from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerSettings
+from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerSettings, Tokens
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.server import WRONG_TOKEN
 from thymio_sim_ros.bridge.vocabulary import StatusLevel
 
 LIMIT = 1 << 16
@@ -322,3 +323,113 @@ def test_a_stalled_client_does_not_hold_up_the_end() -> None:
             stalled.abort()
 
     run(scenario())
+
+
+TOKENS = Tokens("fulltoken", "looktoken")
+FOREIGN = "https://evil.example"
+
+
+@pytest.mark.parametrize(
+    ("query", "headers", "origin", "metadata"),
+    [
+        ("/?token=fulltoken", None, None, {}),
+        ("/?token=fulltoken", None, FOREIGN, {}),
+        ("", {"Authorization": "Bearer fulltoken"}, None, {}),
+        ("/?token=looktoken", None, None, {"access": "read_only"}),
+    ],
+)
+def test_a_client_with_a_token_is_welcome(
+    query: str, headers: dict[str, str] | None, origin: str | None, metadata: dict[str, str]
+) -> None:
+    async def scenario() -> ms.ServerInfo:
+        async with (
+            bridge(ServerSettings(tokens=TOKENS)) as server,
+            server.client(query=query, headers=headers, origin=origin) as client,
+        ):
+            return await client.next(ms.ServerInfo)
+
+    info = run(scenario())
+    assert info.metadata == metadata
+    assert (Capability.CLIENT_PUBLISH in info.capabilities) is (not metadata)
+
+
+@pytest.mark.parametrize("query", ["", "/?token=wrongtoken", "/?token="])
+def test_a_program_without_a_valid_token_is_refused_in_the_handshake(query: str) -> None:
+    async def scenario() -> InvalidStatus:
+        async with bridge(ServerSettings(tokens=TOKENS)) as server:
+            with pytest.raises(InvalidStatus) as caught:
+                async with server.client(query=query):
+                    pass
+            return caught.value
+
+    response = run(scenario()).response
+    assert (response.status_code, response.headers["WWW-Authenticate"]) == (401, "Bearer")
+    assert b"terminal" in response.body
+
+
+@pytest.mark.parametrize("query", ["", "/?token=wrongtoken"])
+def test_a_page_without_a_valid_token_is_told_so_and_gets_nothing_else(query: str) -> None:
+    async def scenario() -> tuple[list[ms.Status], int]:
+        async with (
+            bridge(ServerSettings(tokens=TOKENS)) as server,
+            server.client(query=query, origin="http://127.0.0.1:8080") as client,
+        ):
+            heard = [await client.next(ms.Status)]
+            with pytest.raises(ConnectionClosed) as caught:
+                await client.next(object)
+            assert server.server.client_count == 0
+            assert caught.value.rcvd is not None
+            return heard, caught.value.rcvd.code
+
+    heard, code = run(scenario())
+    assert code == WRONG_TOKEN
+    (status,) = heard
+    assert (status.level, status.id) == (StatusLevel.ERROR, "access")
+
+
+def test_wrong_tokens_are_tried_so_often_only_and_logged_once(caplog: pytest.LogCaptureFixture) -> None:
+    async def scenario() -> list[int]:
+        statuses = []
+        async with bridge(ServerSettings(tokens=TOKENS)) as server:
+            for _ in range(40):
+                with pytest.raises(InvalidStatus) as caught:
+                    async with server.client(query="/?token=guess"):
+                        pass
+                statuses.append(caught.value.response.status_code)
+        return statuses
+
+    statuses = run(scenario())
+    assert statuses[:30] == [401] * 30
+    assert statuses[-1] == 429
+    assert len(caplog.records) == 2
+    assert "guess" not in caplog.text
+
+
+def test_foreign_pages_are_logged_once(caplog: pytest.LogCaptureFixture) -> None:
+    async def scenario() -> None:
+        async with bridge() as server:
+            for number in range(5):
+                with pytest.raises(InvalidStatus):
+                    async with server.client(origin=f"{FOREIGN}:{number}"):
+                        pass
+
+    run(scenario())
+    assert len(caplog.records) == 1
+
+
+def test_a_read_only_client_watches_and_does_not_disturb_the_others() -> None:
+    async def scenario() -> tuple[bytes, list[ev.Event]]:
+        async with (
+            bridge(ServerSettings(tokens=TOKENS)) as server,
+            server.client(query="/?token=looktoken") as viewer,
+        ):
+            await viewer.send(ms.ClientAdvertise((ms.ClientChannel(1, "/cmd_vel", "cdr", "geometry_msgs/Twist"),)))
+            assert "read-only" in (await viewer.next(ms.Status)).message
+            await viewer.subscribe(7)
+            server.publish(b"seen")
+            data = await viewer.next(ms.MessageData)
+            return data.payload, server.sink.events
+
+    payload, events = run(scenario())
+    assert payload == b"seen"
+    assert not any(isinstance(event, ev.ClientChannelOpened | ev.ClientSent) for event in events)

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 from thymio_sim_ros.nodes.foxglove_assets import ASSETS
-from thymio_sim_ros.nodes.foxglove_options import FoxgloveParams
+from thymio_sim_ros.nodes.foxglove_options import READ_ONLY_SERVICES, FoxgloveParams
 
 PAGE = (Path(__file__).parents[2] / "docs" / "foxglove.md").read_text(encoding="utf-8")
 
@@ -16,6 +16,8 @@ def default_of(value):
     """A default value as the page shows it."""
     if value == (ASSETS,):
         return "files of 3D models and pictures"
+    if value == READ_ONLY_SERVICES:
+        return "those of ours that only read"
     if isinstance(value, tuple):
         value = ", ".join(filter(None, value))
     text = str(value).lower() if isinstance(value, bool) else str(value)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+import rclpy
 from rclpy.context import Context
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -11,8 +12,10 @@ from websockets.exceptions import ConnectionClosed
 
 from tests.bridge.certificates import make_certificate, trusting
 from tests.bridge.studio import Studio
-from thymio_sim_ros.bridge import Capability
+from thymio_sim_ros.bridge import Capability, Tokens
 from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
+from thymio_sim_ros.nodes.foxglove_graph import allow_list
 from thymio_sim_ros.nodes.foxglove_node import FoxgloveBridge
 from thymio_sim_ros.nodes.foxglove_options import FoxgloveParams, announced
 from thymio_sim_ros.nodes.life import StartError
@@ -107,3 +110,60 @@ def test_parameters_that_the_bridge_does_not_have_are_told(monkeypatch):
     FoxgloveBridge(context=context).close()
     context.shutdown()
     assert told == ["parameter num_threads is none of foxglove_bridge and does nothing; see docs/foxglove.md"]
+
+
+def test_in_the_network_the_bridge_makes_tokens_of_its_own(ros, bridge, monkeypatch):
+    monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
+    life = bridge(address="0.0.0.0")
+    assert life.tokens.is_required
+    assert f"?token={life.tokens.full}" in life.invitation
+    assert f"?token={life.tokens.read_only}" in life.invitation
+    for secret in (life.tokens.full, life.tokens.read_only):
+        assert secret not in life.greeting
+
+
+def test_no_token_is_needed_where_the_user_says_so(bridge, monkeypatch):
+    monkeypatch.setenv(TOKEN_VARIABLE, "fromenv")
+    life = bridge(address="0.0.0.0", require_token=False)
+    assert not life.tokens.is_required
+    assert life.invitation == ""
+    assert "without a token" in life.greeting
+
+
+def test_tokens_come_from_the_environment(bridge, monkeypatch):
+    monkeypatch.setenv(TOKEN_VARIABLE, "fromenv")
+    monkeypatch.setenv(READ_ONLY_VARIABLE, "lookenv")
+    assert bridge().tokens == Tokens("fromenv", "lookenv")
+
+
+@pytest.mark.parametrize(("full", "read_only"), [("a b", ""), ("abc", ""), ("same", "same")])
+def test_what_cannot_be_a_token_is_refused(ros, monkeypatch, full, read_only):
+    monkeypatch.setenv(TOKEN_VARIABLE, full)
+    monkeypatch.setenv(READ_ONLY_VARIABLE, read_only)
+    with pytest.raises(StartError, match="token"):
+        FoxgloveBridge(context=ros.context, defaults=FoxgloveParams(port=0))
+
+
+def test_a_token_given_as_a_parameter_is_no_parameter_that_can_be_read(ros, monkeypatch):
+    monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
+    warned = []
+    monkeypatch.setattr(RcutilsLogger, "warning", lambda self, text, **options: warned.append(text))
+    context = Context()
+    rclpy.init(args=["--ros-args", "-p", "token:=secret1234"], context=context, domain_id=ros.domain)
+    life = FoxgloveBridge(context=context, defaults=FoxgloveParams(port=0))
+    try:
+        assert life.tokens.full == "secret1234"
+        assert not life.node.has_parameter("token")
+        assert not any("secret1234" in str(item.value) for item in life.node.get_parameters_by_prefix("").values())
+        assert warned == []
+    finally:
+        life.close()
+        context.try_shutdown()
+
+
+def test_services_that_change_nothing_are_those_of_ours_that_only_read():
+    changes_nothing = allow_list(FoxgloveParams().read_only_services)
+    reading = ("/aseba/get_variables", "/a/aseba/list_variables", "/aseba_runtime/check", "/simulator/get_playground")
+    changing = ("/aseba/set_variables", "/aseba/stop", "/simulator/reset", "/simulator/set_poses", "/x/get_coffee")
+    assert all(map(changes_nothing, reading))
+    assert not any(map(changes_nothing, changing))

@@ -14,6 +14,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
+from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE
 from thymio_sim_ros.device.events import POLICIES
 from thymio_sim_ros.device.layout import LAYOUTS
 from thymio_sim_ros.nodes import params, simulator_params
@@ -30,7 +31,7 @@ MODULES = {
 }
 NAMES = {
     "launch": ["LaunchContext", "LaunchDescription"],
-    "launch.actions": ["DeclareLaunchArgument", "Shutdown"],
+    "launch.actions": ["DeclareLaunchArgument", "OpaqueFunction", "SetEnvironmentVariable", "Shutdown"],
     "launch.conditions": ["IfCondition"],
     "launch.events": [],
     "launch.events.process": ["ProcessExited"],
@@ -142,6 +143,28 @@ def test_rviz_is_started_with_the_shipped_configuration_if_wanted(description: C
 def test_a_node_that_refuses_what_it_was_given_ends_all_others(description: Call, code: int, is_end: bool) -> None:
     for node in _ours(description):
         assert bool(node["on_exit"](SimpleNamespace(returncode=code, process_name="simulator-1"), None)) == is_end
+
+
+def _tokens(description: Call, address: str, require_token: str, environment: dict[str, str]) -> dict[str, str]:
+    (function,) = _actions(description, "OpaqueFunction")
+    configurations = {"address": address, "require_token": require_token}
+    context = SimpleNamespace(launch_configurations=configurations, environment=environment)
+    return dict(variable.args for variable in function.kwargs["function"](context))
+
+
+def test_bridge_and_page_get_the_same_tokens_by_their_environment(description: Call) -> None:
+    made = _tokens(description, "0.0.0.0", "true", {})
+    assert made.keys() == {TOKEN_VARIABLE, READ_ONLY_VARIABLE}
+    assert all(map(TOKEN.fullmatch, made.values()))
+    assert _tokens(description, "0.0.0.0", "true", {TOKEN_VARIABLE: "mine"}).keys() == {READ_ONLY_VARIABLE}
+
+
+@pytest.mark.parametrize(
+    ("address", "require_token"),
+    [("localhost", "true"), ("127.0.0.1", "true"), ("::1", "true"), ("0.0.0.0", "false")],
+)
+def test_no_tokens_are_made_where_none_is_needed(description: Call, address: str, require_token: str) -> None:
+    assert _tokens(description, address, require_token, {}) == {}
 
 
 def test_a_node_that_died_is_started_again_if_wanted(description: Call) -> None:

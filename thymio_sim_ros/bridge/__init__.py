@@ -4,6 +4,7 @@
     channels            who wants what: all state and decisions, without sockets
     server, thread      sockets and the event loop around them
     transport, outlet   the way out to a client, from either thread
+    access              tokens, and what they allow
     turn                whose turn it is to work on all that
     events              what the source of data is told (events) and tells (commands)
 
@@ -12,6 +13,7 @@ Why our own server on `websockets` and not one of the vendor's packages: foxglov
 
 from __future__ import annotations
 
+from thymio_sim_ros.bridge.access import Role, Tokens
 from thymio_sim_ros.bridge.errors import BridgeError, FrameError
 from thymio_sim_ros.bridge.messages import ServerInfo
 from thymio_sim_ros.bridge.server import EventSink, ServerSettings
@@ -24,7 +26,9 @@ __all__ = [
     "Capability",
     "EventSink",
     "FrameError",
+    "Role",
     "ServerInfo",
     "ServerSettings",
     "ServerThread",
+    "Tokens",
 ]

@@ -13,6 +13,7 @@ from typing import Any
 
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.access import Role
 from thymio_sim_ros.bridge.client_state import ClientState
 from thymio_sim_ros.bridge.graph import ConnectionGraph
 from thymio_sim_ros.bridge.vocabulary import Capability, StatusLevel
@@ -41,6 +42,8 @@ MAX_ENDED = 1000
 MAX_REFUSALS = 8
 """Refusals told for one frame: a frame full of nonsense must not cost the others their time."""
 
+
+READ_ONLY = "this connection is read-only: it may watch, but change nothing"
 
 Routes = tuple[tuple[int, int], ...]
 """Clients, and their numbers for what they get."""
@@ -76,8 +79,10 @@ class Outcome:
 class Switchboard:
     """State of one server. Invariant: `routes` lists exactly the subscriptions found in the clients' states."""
 
-    def __init__(self, info: ms.ServerInfo) -> None:
+    def __init__(self, info: ms.ServerInfo, *, changes_nothing: Callable[[str], bool] = lambda service: False) -> None:
+        """`changes_nothing` says which services a read-only client may call, by name."""
         self._info = info
+        self._changes_nothing = changes_nothing
         self._clients: dict[int, ClientState] = {}
         self._channels: dict[int, ms.Channel] = {}
         self._services: dict[int, ms.Service] = {}
@@ -110,10 +115,10 @@ class Switchboard:
             kept.remove(repeated)
         kept.append(data)
 
-    def join(self, client: int) -> list[ms.ServerMessage]:
+    def join(self, client: int, role: Role = Role.FULL) -> list[ms.ServerMessage]:
         """A new client; returns its greeting."""
-        self._clients[client] = ClientState()
-        greeting: list[ms.ServerMessage] = [self._info]
+        self._clients[client] = ClientState(is_read_only=role is Role.READ_ONLY)
+        greeting: list[ms.ServerMessage] = [self._info_for(client)]
         if Capability.TIME in self._info.capabilities:
             greeting.append(ms.Time(self._time_ns))
         if self._greeting is None:
@@ -142,6 +147,8 @@ class Switchboard:
         capability, handle = _FROM_CLIENT[type(message)]
         if capability is not None and capability not in self._info.capabilities:
             outcome.refuse(client, f"this server does not offer {capability}")
+        elif self._clients[client].is_read_only and self._is_change(message):
+            self._refuse_change(client, message, outcome)
         else:
             handle(self, client, message, outcome)
         return outcome
@@ -375,7 +382,10 @@ class Switchboard:
 
     def _new_session(self, command: ev.NewSession, letters: list[Letter]) -> None:
         self._info = replace(self._info, session_id=command.session_id)
-        self._tell_all(self._info, letters)
+        for is_read_only in (False, True):
+            clients = tuple(key for key, state in self._clients.items() if state.is_read_only is is_read_only)
+            if clients:
+                letters.append(Letter(clients, self._info_for(clients[0])))
         # Nothing new, but a reason to look at the types again, which Lichtblick forgets and needs to publish.
         self._tell_all(ms.Advertise(()), letters)
         for client, state in list(self._clients.items()):
@@ -402,6 +412,34 @@ class Switchboard:
     def _tell(self, command: ev.Tell, letters: list[Letter]) -> None:
         if command.client in self._clients:
             letters.append(Letter((command.client,), command.message))
+
+    # --- read-only clients ---
+
+    def _info_for(self, client: int) -> ms.ServerInfo:
+        """What the server says of itself to a client: to a read-only one not that it may publish."""
+        if not self._clients[client].is_read_only:
+            return self._info
+        offered = tuple(item for item in self._info.capabilities if item != Capability.CLIENT_PUBLISH)
+        metadata = {**self._info.metadata, "access": Role.READ_ONLY.value}
+        return replace(self._info, capabilities=offered, metadata=metadata)
+
+    def _is_change(self, message: ms.ClientMessage) -> bool:
+        if isinstance(message, ms.ServiceRequest):
+            service = self._services.get(message.service_id)
+            return service is not None and not self._changes_nothing(service.name)
+        return isinstance(message, ms.ClientAdvertise | ms.ClientMessageData | ms.SetParameters)
+
+    def _refuse_change(self, client: int, message: ms.ClientMessage, outcome: Outcome) -> None:
+        """Say so, and answer what waits for an answer."""
+        if isinstance(message, ms.ServiceRequest):
+            outcome.tell(client, ms.ServiceCallFailure(message.service_id, message.call_id, READ_ONLY))
+        if isinstance(message, ms.SetParameters):
+            names = [item.name for item in message.parameters]
+            for name in names[:MAX_REFUSALS]:
+                outcome.tell(client, ms.Status(StatusLevel.ERROR, f"{name}: {READ_ONLY}", f"parameter:{name}"))
+            outcome.tell(client, self._values(names, message.id))
+        else:
+            outcome.refuse(client, READ_ONLY)
 
     # --- helpers ---
 

@@ -26,3 +26,5 @@ class ClientState:
     """Requests to get or to set parameters without an answer."""
     open_size: int = 0
     """Bytes of all these."""
+    is_read_only: bool = False
+    """Whether it may watch and nothing else."""

@@ -9,12 +9,13 @@ which slows that client only.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import itertools
 import logging
 import ssl
 import time
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
 from http import HTTPStatus
 from socket import socket
 from typing import Any, Protocol, cast
@@ -26,6 +27,7 @@ from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 from websockets.typing import Subprotocol
 
+from thymio_sim_ros.bridge.access import Attempts, Tokens, given_token
 from thymio_sim_ros.bridge.channels import Letter, Routes, Switchboard
 from thymio_sim_ros.bridge.errors import FrameError
 from thymio_sim_ros.bridge.events import Command, Data, Event, RemoveChannels
@@ -38,10 +40,17 @@ from thymio_sim_ros.bridge.turn import Turn
 from thymio_sim_ros.bridge.vocabulary import SUBPROTOCOLS, StatusLevel
 from thymio_sim_ros.bridge.wire import decode_client, encode_server
 
-__all__ = ["BridgeServer", "EventSink", "ServerSettings"]
+__all__ = ["WRONG_TOKEN", "BridgeServer", "EventSink", "ServerSettings"]
 
 _FLUSH_PERIOD_S = 0.01
 _FULL_PAUSE_S = 0.005
+WRONG_TOKEN = 4401
+"""Close code for a page without a valid token: a browser tells its pages nothing of a refused handshake."""
+_NO_TOKEN_TEXT = "a token is needed: open the whole address in the simulator's terminal, or append ?token=… to this one"
+_WRONG_TOKEN_TEXT = (
+    "the token is wrong or of an earlier start: open the address that is in the simulator's terminal now"
+)
+_WARN_EVERY_S = 60.0
 _CLOSE_S = 0.3
 BACKLOG = 128
 """So many clients may wait to be let in."""
@@ -77,6 +86,9 @@ class ServerSettings:
     ping_interval_s: float = 10.0
     ping_timeout_s: float = 20.0
     tls: ssl.SSLContext | None = None
+    tokens: Tokens = field(default_factory=Tokens)
+    changes_nothing: Callable[[str], bool] = lambda service: False
+    """Which services a read-only client may call, by name."""
 
 
 class BridgeServer:
@@ -96,6 +108,8 @@ class BridgeServer:
         self._log = logging.getLogger(__name__)
         self._outlets: dict[int, Outlet] = {}
         self._client_ids = itertools.count(1)
+        self._attempts = Attempts(time.monotonic)
+        self._warned_s: dict[str, float] = {}
         self._flush_is_due = False
         self._loop: asyncio.AbstractEventLoop
         self._servers: list[Server] = []
@@ -125,7 +139,7 @@ class BridgeServer:
                 ssl=settings.tls,
                 create_connection=cast("type[ServerConnection]", self._make_connection),
                 select_subprotocol=_select_subprotocol,
-                process_request=self._check_origin,
+                process_request=self._check_access,
                 compression=None,
                 server_header=None,
                 max_size=settings.max_message_size,
@@ -227,12 +241,15 @@ class BridgeServer:
             self._refuse_crowd()
             await connection.close(CloseCode.TRY_AGAIN_LATER, "too many clients")
             return
+        if connection.role is None:
+            await self._turn_away(connection)
+            return
         client = next(self._client_ids)
         outlet = Outlet(connection, self._settings.buffer_limit)
         began_s = time.thread_time()
         with self._turn:
             self._outlets[client] = outlet
-            for message in self._board.join(client):
+            for message in self._board.join(client, connection.role):
                 outlet.control(self._greeting_frame(message))
         self._is_crowded = self._is_crowded and len(self._outlets) >= self._settings.max_clients
         try:
@@ -304,12 +321,53 @@ class BridgeServer:
         for event in events:
             self._sink.post(event)
 
-    def _check_origin(self, connection: ServerConnection, request: Request) -> Response | None:
+    def _check_access(self, connection: ServerConnection, request: Request) -> Response | None:
+        """Refuse a handshake without a valid token or from a foreign page; a valid token vouches for its page."""
+        assert isinstance(connection, SharedConnection)
+        tokens, address = self._settings.tokens, _address(connection)
+        token = given_token(request.path, request.headers.get_all("Authorization"))
+        if tokens.is_required and not self._attempts.may_try(address):
+            self._warn("attempts", f"too many connections from {address} with a wrong token; its others have to wait")
+            return connection.respond(HTTPStatus.TOO_MANY_REQUESTS, "Too many wrong tokens; wait some seconds.\n")
+        connection.role = tokens.role(token)
         origin, host = _header(request.headers, "Origin"), _header(request.headers, "Host")
-        if is_allowed(origin, host, self._settings.allowed_origins):
+        if connection.role is None:
+            self._attempts.failed(address)
+            self._warn("token", f"refused a connection from {address}: its token is wrong or missing")
+            if origin is not None:
+                return None  # it is told once it is connected
+            response = connection.respond(HTTPStatus.UNAUTHORIZED, f"{_token_text(request)}\n")
+            response.headers["WWW-Authenticate"] = "Bearer"
+            return response
+        if tokens.is_required or is_allowed(origin, host, self._settings.allowed_origins):
             return None
-        self._log.warning("refused a web page from %s: add it to allowed_origins if it is yours", origin)
+        self._warn("origin", f"refused a web page from {origin:.100}: add it to allowed_origins if it is yours")
         return connection.respond(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.\n")
+
+    async def _turn_away(self, connection: SharedConnection) -> None:
+        """Say why in the words of the protocol, and close."""
+        assert connection.request is not None
+        text = _token_text(connection.request)
+        with contextlib.suppress(ConnectionClosed):
+            await connection.send(encode_server(Status(StatusLevel.ERROR, text, "access")))
+            await connection.close(WRONG_TOKEN, "wrong or missing token")
+
+    def _warn(self, about: str, text: str) -> None:
+        """Log a warning, about each thing at most once in `_WARN_EVERY_S`: strangers can cause it at will."""
+        now_s = time.monotonic()
+        if now_s - self._warned_s.get(about, -_WARN_EVERY_S) >= _WARN_EVERY_S:
+            self._warned_s[about] = now_s
+            self._log.warning("%s", text)
+
+
+def _address(connection: ServerConnection) -> str:
+    peer = connection.remote_address
+    return str(peer[0]) if peer else ""
+
+
+def _token_text(request: Request) -> str:
+    given = given_token(request.path, request.headers.get_all("Authorization"))
+    return _NO_TOKEN_TEXT if given is None else _WRONG_TOKEN_TEXT
 
 
 def _header(headers: Headers, name: str) -> str | None:

@@ -103,7 +103,9 @@ class ServerThread:
         settings: ServerSettings | None = None,
     ) -> None:
         self._listeners = listen(address, port)
-        self._server = BridgeServer(Switchboard(info), sink, settings)
+        settings = settings or ServerSettings()
+        board = Switchboard(info, changes_nothing=settings.changes_nothing)
+        self._server = BridgeServer(board, sink, settings)
         self.publish: Callable[[int, int, bytes], None] = self._server.publish
         """Send a message of a channel: its id, time in ns and payload; from any thread."""
         self._loop = asyncio.new_event_loop()

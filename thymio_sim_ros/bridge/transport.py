@@ -17,6 +17,8 @@ from typing import Any, cast
 
 from websockets.asyncio.server import ServerConnection
 
+from thymio_sim_ros.bridge.access import Role
+
 __all__ = ["SLICE_S", "SharedConnection", "SharedTransport"]
 
 SLICE_S = 0.002
@@ -216,6 +218,8 @@ class SharedConnection(ServerConnection):
     """Whether it is closed at once, unheard."""
     on_lost: Callable[[], None] = staticmethod(lambda: None)
     """Called when the connection is gone."""
+    role: Role | None = None
+    """What its client may do; None: it has to go."""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """The client is there."""

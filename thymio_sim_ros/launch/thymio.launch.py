@@ -5,8 +5,10 @@ ros2 launch thymio_sim_ros thymio.launch.py playground:=line program:=line_follo
 
 from __future__ import annotations
 
+import secrets
+
 from launch import LaunchContext, LaunchDescription
-from launch.actions import DeclareLaunchArgument, Shutdown
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable, Shutdown
 from launch.conditions import IfCondition
 from launch.events.process import ProcessExited
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution, PythonExpression
@@ -18,6 +20,9 @@ REFUSED = 2
 """Exit code of a node that was given something wrong; it has said what."""
 
 RESPAWN_DELAY_S = 1.0
+
+LOOPBACK = ("localhost", "127.0.0.1", "::1")
+TOKENS = ("THYMIO_SIM_TOKEN", "THYMIO_SIM_READ_ONLY_TOKEN")
 
 ARGUMENTS = {
     "playground": ("line", "playground: a shipped name or a file"),
@@ -35,6 +40,7 @@ ARGUMENTS = {
     "cmd_vel_timeout": ("0.0", "seconds after which a velocity command ends; 0: never"),
     "driver_compat": ("false", "report ranges as the existing Thymio driver does (-1 for nothing)"),
     "address": ("localhost", "where page and bridge listen; 0.0.0.0: the whole network"),
+    "require_token": ("true", "whether clients need a token where the network reaches the address"),
     "port": ("8080", "TCP port of the page"),
     "foxglove_port": ("8765", "TCP port of the Foxglove bridge"),
     "web": ("true", "serve the page"),
@@ -78,6 +84,7 @@ def generate_launch_description() -> LaunchDescription:
     bridge = {
         "address": address,
         "port": ParameterValue(value["foxglove_port"], value_type=int),
+        "require_token": ParameterValue(value["require_token"], value_type=bool),
         "use_sim_time": True,
     }
     page = {
@@ -92,6 +99,7 @@ def generate_launch_description() -> LaunchDescription:
                 DeclareLaunchArgument(name, default_value=default, description=text, choices=CHOICES.get(name))
                 for name, (default, text) in ARGUMENTS.items()
             ),
+            OpaqueFunction(function=_give_tokens),
             # First: without rviz2 launch gives up at once, and would leave behind what runs by then.
             Node(
                 package="rviz2",
@@ -106,6 +114,16 @@ def generate_launch_description() -> LaunchDescription:
             _node("web_ui", page, value["respawn"], condition=IfCondition(value["web"])),
         ]
     )
+
+
+def _give_tokens(context: LaunchContext) -> list[SetEnvironmentVariable]:
+    """Bridge and page get the same tokens, by their environment: parameters can be read by everyone in the domain."""
+    address, is_required = (context.launch_configurations[name] for name in ("address", "require_token"))
+    if address in LOOPBACK or is_required.lower() not in ("true", "1"):
+        return []
+    return [
+        SetEnvironmentVariable(name, secrets.token_urlsafe(16)) for name in TOKENS if not context.environment.get(name)
+    ]
 
 
 def _node(name: str, parameters: dict[str, object], respawn: LaunchConfiguration, **options: object) -> Node:

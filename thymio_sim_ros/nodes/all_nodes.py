@@ -42,14 +42,20 @@ def lives(context: Context, suite: Suite) -> Iterator[Host]:
         settings=str(device.settings or ""),
     )
     yield AsebaRuntime(context, runtime, use_sim_time=True)
+    tokens = suite.tokens
     if suite.foxglove:
         from thymio_sim_ros.nodes.foxglove_node import FoxgloveBridge
 
-        yield FoxgloveBridge(context=context, address=suite.address, port=suite.foxglove_port, use_sim_time=True)
+        bridge = FoxgloveBridge(
+            context=context, address=suite.address, port=suite.foxglove_port, use_sim_time=True, tokens=tokens
+        )
+        tokens = bridge.tokens
+        yield bridge
     if suite.web:
         from thymio_sim_ros.nodes.web_node import WebPage, WebParams
 
-        yield WebPage(context, WebParams(address=suite.address, port=suite.port, foxglove_port=suite.foxglove_port))
+        web = WebParams(address=suite.address, port=suite.port, foxglove_port=suite.foxglove_port)
+        yield WebPage(context, web, tokens)
 
 
 def run(suite: Suite, args: Sequence[str] | None = None, *, on_ready: Callable[[], None] = lambda: None) -> int:

@@ -24,12 +24,13 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_msgs.msg import UInt32
 
-from thymio_sim_ros.bridge import ServerInfo, ServerSettings, ServerThread
+from thymio_sim_ros.bridge import ServerInfo, ServerSettings, ServerThread, Tokens
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge.messages import AssetResponse
 from thymio_sim_ros.bridge.vocabulary import CDR, JSON
-from thymio_sim_ros.greeting import places, urls
+from thymio_sim_ros.greeting import access, places, urls
 from thymio_sim_ros.nodes import params
+from thymio_sim_ros.nodes import tokens as node_tokens
 from thymio_sim_ros.nodes.foxglove_assets import AssetError, load_asset
 from thymio_sim_ros.nodes.foxglove_calls import Calls
 from thymio_sim_ros.nodes.foxglove_graph import allow_list, connection_graph, is_parameter_service, visible
@@ -70,7 +71,9 @@ class FoxgloveBridge:
         address: str | None = None,
         use_sim_time: bool | None = None,
         defaults: FoxgloveParams | None = None,
+        tokens: Tokens | None = None,
     ) -> None:
+        """`tokens`: those of the command line; None: the node's own, made where the network reaches the address."""
         overrides = [] if use_sim_time is None else [Parameter("use_sim_time", value=use_sim_time)]
         self.node = Node("foxglove_bridge", context=context, parameter_overrides=overrides)
         try:
@@ -82,7 +85,10 @@ class FoxgloveBridge:
             )
             self.params = params.declare(self.node, values)
             check(self.params)
-            params.warn_of_unknown(self.node, "foxglove.md")
+            params.warn_of_unknown(
+                self.node, "foxglove.md", lambda name: self.node.has_parameter(name) or name in node_tokens.PARAMETERS
+            )
+            self.tokens = self._own_tokens() if tokens is None else tokens
             self._uses_sim_time = bool(self.node.get_parameter("use_sim_time").value)
             self._mailbox: Mailbox[ev.Event] = Mailbox(
                 self.node, self._on_event, sender=_sender, weight=lambda event: 1 + (ev.size_of(event) >> 14)
@@ -100,10 +106,30 @@ class FoxgloveBridge:
     @property
     def greeting(self) -> str:
         """Where to connect, for a person."""
-        scheme = "wss" if self.params.tls else "ws"
-        place = scheme, self.address, self.port
-        link = f"https://app.foxglove.dev/?ds=foxglove-websocket&ds.url={quote(urls(*place)[0], safe='')}"
-        return f"Foxglove: {places(*place)} or {link}"
+        place = self._scheme, self.address, self.port
+        is_open = not self.tokens.is_required
+        how = f"or {_app_link(urls(*place)[0])}" if is_open else "with the token on standard output"
+        return f"Foxglove: {places(*place)} {how}; access: {access(self.address, self.tokens)}"
+
+    @property
+    def invitation(self) -> str:
+        """Where to connect with which token, for standard output; never for the log, which clients may read."""
+        if not self.tokens.is_required:
+            return ""
+        place = self._scheme, self.address, self.port
+        full = urls(*place, "/", self.tokens.full)
+        read_only = places(*place, "/", self.tokens.read_only)
+        return f"Foxglove  {', from other computers '.join(full)} or {_app_link(full[0])}\nRead only {read_only}"
+
+    @property
+    def _scheme(self) -> str:
+        return "wss" if self.params.tls else "ws"
+
+    def _own_tokens(self) -> Tokens:
+        given = node_tokens.given_tokens(self.node)
+        if not self.params.require_token:
+            return Tokens()
+        return Tokens.for_address(self.params.address, given.full, given.read_only)
 
     def turn(self, executor: Executor) -> None:
         """Handle what is due; returns after `SPIN_SLICE_S` at the latest."""
@@ -136,6 +162,8 @@ class FoxgloveBridge:
                     buffer_limit=values.send_buffer_limit,
                     max_message_size=values.max_message_size,
                     tls=tls_context(values),
+                    tokens=self.tokens,
+                    changes_nothing=allow_list(values.read_only_services),
                 ),
             )
         except OSError as error:
@@ -295,6 +323,10 @@ _HANDLERS: dict[type, Callable[[FoxgloveBridge, Any], None]] = {
 def _sender(event: ev.Event) -> int:
     """The client of an event; 0 where several may be behind it."""
     return getattr(event, "client", 0)
+
+
+def _app_link(url: str) -> str:
+    return f"https://app.foxglove.dev/?ds=foxglove-websocket&ds.url={quote(url, safe='')}"
 
 
 def _new_id() -> str:

@@ -11,7 +11,15 @@ from thymio_sim_ros.nodes.foxglove_assets import ASSETS
 from thymio_sim_ros.nodes.life import StartError
 from thymio_sim_ros.nodes.params import param
 
-__all__ = ["FoxgloveParams", "announced", "check", "tls_context"]
+__all__ = ["READ_ONLY_SERVICES", "FoxgloveParams", "announced", "check", "tls_context"]
+
+READ_ONLY_SERVICES = (
+    r"/(.+/)?aseba/(get|list|describe)_variables",
+    r"/(.+/)?aseba_runtime/check",
+    r"/(.+/)?simulator/get_\w+",
+    r"/(.+/)?is_ready",
+)
+"""Services of ours that change nothing."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +39,12 @@ class FoxgloveParams:
         ("",),
         "Web pages that may connect beside this machine's and the Foxglove app's, as https://host:port; *: all",
         fixed=True,
+    )
+    require_token: bool = param(
+        True, "Whether clients need a token where the network reaches the address (SECURITY.md)", fixed=True
+    )
+    read_only_services: tuple[str, ...] = param(
+        READ_ONLY_SERVICES, "Regular expressions of services that clients with the read-only token may call", fixed=True
     )
     topic_whitelist: tuple[str, ...] = param((".*",), "Regular expressions of topics to offer", fixed=True)
     service_whitelist: tuple[str, ...] = param((".*",), "Regular expressions of services to offer", fixed=True)
@@ -98,7 +112,7 @@ def announced(values: FoxgloveParams, *, uses_sim_time: bool) -> tuple[Capabilit
 def check(values: FoxgloveParams) -> None:
     """StartError for what is no regular expression."""
     for item in fields(values):
-        if item.name.endswith(("_whitelist", "_allowlist")):
+        if item.name.endswith(("_whitelist", "_allowlist", "_services")):
             for pattern in getattr(values, item.name):
                 try:
                     re.compile(pattern)

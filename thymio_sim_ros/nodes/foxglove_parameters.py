@@ -34,6 +34,7 @@ from thymio_sim_ros.bridge.events import (
 from thymio_sim_ros.bridge.messages import Parameter, RemoveStatus, Status, parameter_status
 from thymio_sim_ros.bridge.vocabulary import StatusLevel
 from thymio_sim_ros.nodes.foxglove_calls import Calls
+from thymio_sim_ros.nodes.foxglove_files import parameter_refusal
 from thymio_sim_ros.nodes.foxglove_values import UnfitValueError, from_ros, to_ros
 
 __all__ = ["Parameters"]
@@ -206,6 +207,8 @@ class Parameters:
             raise UnfitValueError(f"no node {node} with parameters")
         if not name or not self._is_allowed(parameter.name) or not _is_text(name):
             raise UnfitValueError("not offered by this bridge")
+        if refusal := parameter_refusal(name, parameter.value):
+            raise UnfitValueError(refusal)
         return to_ros(parameter, self._types[node].get(name, ParameterType.PARAMETER_NOT_SET))
 
     def _set_on(self, node: str, parameters: list[RosParameter], change: _Change) -> None:

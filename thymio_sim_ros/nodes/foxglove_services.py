@@ -24,6 +24,7 @@ from thymio_sim_ros.bridge.vocabulary import CDR, JSON, StatusLevel
 from thymio_sim_ros.nodes import json_messages
 from thymio_sim_ros.nodes.cdr_parts import TooManyPartsError, check_parts
 from thymio_sim_ros.nodes.foxglove_calls import Calls
+from thymio_sim_ros.nodes.foxglove_files import call_refusal
 from thymio_sim_ros.nodes.foxglove_types import MissingTypeError, load_type
 from thymio_sim_ros.nodes.schemas import service_definitions
 
@@ -77,6 +78,9 @@ class Services:
             message = _decode(request, offer.service_type.Request)
         except (RMWError, json_messages.JsonMessageError, TooManyPartsError, ValueError) as error:
             self.fail(client, request, f"{offer.service.name}: undecodable request: {_first_line(error)}")
+            return
+        if refusal := call_refusal(offer.service.type, message):
+            self._fail(client, request, f"{offer.service.name}: {refusal}")
             return
 
         def done(response: Any, reason: str) -> None:

@@ -14,10 +14,10 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import rclpy
 from rclpy.context import Context
@@ -76,10 +76,22 @@ class Host(Life, Protocol):
         """One line for a person: what there is, and where."""
 
 
+@runtime_checkable
+class Inviting(Protocol):
+    """A life with addresses that contain a token."""
+
+    @property
+    def invitation(self) -> str:
+        """The addresses, for standard output only: clients may read the log (/rosout). Empty: there is no token."""
+
+
 def greeted(hosts: Iterable[Host]) -> Iterator[Life]:
-    """The same lives, each with its greeting in the log."""
+    """The same lives, each with its greeting in the log, and its addresses with tokens on standard output."""
     for host in hosts:
         host.node.get_logger().info(host.greeting)
+        if isinstance(host, Inviting) and host.invitation:
+            with suppress(OSError):  # nobody reads it
+                print(host.invitation, flush=True)
         yield host
 
 

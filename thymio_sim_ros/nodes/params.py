@@ -167,6 +167,12 @@ def declare(node: Node, defaults: T) -> T:
     return values
 
 
+def undeclared(node: Node, name: str) -> str:
+    """The text that a node was started with for a parameter that it never declares, so that nobody can read it; or ""."""
+    given = node._parameter_overrides.get(name)  # rclpy has no public way to see them
+    return "" if given is None or given.value is None else str(given.value)
+
+
 def warn_of_unknown(node: Node, page: str, is_known: Callable[[str], bool] | None = None) -> None:
     """Tell which parameters a node was started with that it does not have: ROS ignores them without a word.
 

@@ -25,7 +25,7 @@ from thymio_sim_ros.sim.html_entities import without_html_entities
 from thymio_sim_ros.sim.pictures import MAX_PICTURE_BYTES
 from thymio_sim_ros.sim.xml_tree import XmlError
 
-__all__ = ["MAX_BYTES", "Beside", "Source", "folder", "nothing_beside", "read_source", "unpacked_svg"]
+__all__ = ["MAX_BYTES", "Beside", "Source", "folder", "is_recognized", "nothing_beside", "read_source", "unpacked_svg"]
 
 MAX_BYTES = 32_000_000
 """Largest file; pictures inside it count."""
@@ -55,6 +55,10 @@ _PARTS = re.compile(r'"(?:[^"\\]++|\\.)*+"|[{}]')
 _STRINGS = re.compile(rb'"(?:[^"\\]++|\\.)*+"?', re.DOTALL)
 _COLON = re.compile(r"\s*:")
 """What makes a string a key."""
+_MARKS = re.compile(
+    rb'"format"\s*:\s*\d|"(?:%s)"\s*:|<aseba-playground' % "|".join(("playground", *thesis.KEYS)).encode()
+)
+"""What tells a playground from any other JSON or XML."""
 _HALVES = re.compile(r"[\ud800-\udfff]")
 """Halves of characters: escapes may hold them, UTF-8 may not, and keys are told in errors and notes."""
 _SHOWN = 12
@@ -95,6 +99,16 @@ def read_source(data: bytes, name: str, beside: Beside) -> Source:
         converted = thesis.convert(parsed, name)
         return Source(converted.data(), beside, tuple(converted.notes), converted.places)
     return Source(parsed, beside)
+
+
+def is_recognized(data: bytes) -> bool:
+    """Whether a file that cannot be read looks like a playground nevertheless, so that an error may quote from it."""
+    if data.startswith(_ZIP):
+        try:
+            data, _ = _unzip(data)
+        except FieldError:
+            return False
+    return _MARKS.search(data) is not None
 
 
 def nothing_beside(name: str) -> bytes:

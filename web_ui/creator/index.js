@@ -152,7 +152,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
       { class: "row" },
       h(
         "button",
-        { type: "button", class: "primary", id: "creator-try", title: t("file.tryHelp"), onclick: tryIt },
+        { type: "button", class: "primary", id: "creator-try", "data-drives": "", title: t("file.tryHelp"), onclick: tryIt },
         t("file.try"),
       ),
       h(

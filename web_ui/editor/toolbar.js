@@ -91,7 +91,7 @@ export function toolbar(t, deeds, draftWords) {
     ),
     h(
       "div",
-      { class: "group" },
+      { class: "group", "data-drives": "" },
       button("load", LOAD, "Ctrl+Enter", deeds.load, true),
       run,
       ...verbs.map(({ element }) => element),

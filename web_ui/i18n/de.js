@@ -16,6 +16,14 @@ export const de = {
     "Keine Verbindung zum Simulator unter {address}. Jede Sekunde ein neuer Versuch; hier ist nichts zu tun.",
   "connection.connectingLong": "Verbinde mit dem Simulator unter {address} …",
   "connection.back": "Mit dem Simulator verbunden",
+  "connection.noToken": "Token nötig",
+  "connection.noTokenLong":
+    "Dieser Simulator verlangt ein Token. Öffne die ganze Adresse, die in seinem Terminal steht, oder scanne dort den QR-Code.",
+  "connection.wrongToken": "Falsches Token",
+  "connection.wrongTokenLong":
+    "Das Token dieser Adresse gilt nicht, oder es gehört zu einem früheren Start. Öffne die Adresse, die jetzt im Terminal des Simulators steht.",
+  "access.readOnly": "Nur ansehen",
+  "access.readOnlyHelp": "Nur ansehen: Du kannst zuschauen, aber nichts steuern oder ändern.",
   editor: "Aseba-Editor",
   "editor.help": "Aseba-Programme schreiben, prüfen und beobachten",
   stop: "Halt",

@@ -18,6 +18,14 @@ export const en = {
     "No connection to the simulator at {address}. Trying again every second; nothing needs to be done here.",
   "connection.connectingLong": "Connecting to the simulator at {address} …",
   "connection.back": "Connected to the simulator",
+  "connection.noToken": "Token needed",
+  "connection.noTokenLong":
+    "This simulator asks for a token. Open the whole address that its terminal shows, or scan the QR code there.",
+  "connection.wrongToken": "Wrong token",
+  "connection.wrongTokenLong":
+    "The token of this address is not valid, or of an earlier start. Open the address that the simulator's terminal shows now.",
+  "access.readOnly": "Read only",
+  "access.readOnlyHelp": "Read only: you can watch, but not drive or change anything.",
   editor: "Aseba editor",
   "editor.help": "Write, debug and watch Aseba programs",
   stop: "Stop",

@@ -15,6 +15,14 @@ export const fr = {
   "connection.lostLong": "Pas de connexion au simulateur à {address}. Nouvel essai chaque seconde ; rien à faire ici.",
   "connection.connectingLong": "Connexion au simulateur à {address} …",
   "connection.back": "Connecté au simulateur",
+  "connection.noToken": "Jeton requis",
+  "connection.noTokenLong":
+    "Ce simulateur demande un jeton. Ouvre l'adresse complète affichée dans son terminal, ou scanne le code QR qui s'y trouve.",
+  "connection.wrongToken": "Jeton refusé",
+  "connection.wrongTokenLong":
+    "Le jeton de cette adresse n'est pas valable, ou date d'un démarrage précédent. Ouvre l'adresse affichée maintenant dans le terminal du simulateur.",
+  "access.readOnly": "Lecture seule",
+  "access.readOnlyHelp": "Lecture seule : tu peux regarder, mais ni piloter ni rien changer.",
   editor: "Éditeur Aseba",
   "editor.help": "Écrire, déboguer et suivre des programmes Aseba",
   stop: "Arrêt",

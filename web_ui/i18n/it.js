@@ -16,6 +16,14 @@ export const it = {
     "Nessuna connessione al simulatore su {address}. Nuovo tentativo ogni secondo; qui non c’è nulla da fare.",
   "connection.connectingLong": "Connessione al simulatore su {address} …",
   "connection.back": "Connesso al simulatore",
+  "connection.noToken": "Token richiesto",
+  "connection.noTokenLong":
+    "Questo simulatore chiede un token. Apri l'indirizzo completo mostrato nel suo terminale, o scansiona il codice QR.",
+  "connection.wrongToken": "Token rifiutato",
+  "connection.wrongTokenLong":
+    "Il token di questo indirizzo non è valido, o è di un avvio precedente. Apri l'indirizzo mostrato ora nel terminale del simulatore.",
+  "access.readOnly": "Sola lettura",
+  "access.readOnlyHelp": "Sola lettura: puoi guardare, ma non guidare né cambiare nulla.",
   editor: "Editor Aseba",
   "editor.help": "Scrivere, correggere e osservare programmi Aseba",
   stop: "Alt",

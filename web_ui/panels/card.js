@@ -20,6 +20,13 @@ export function card(name, title, ...content) {
   return details;
 }
 
+/** A card whose content acts on the simulator: nothing in it works where the page may only watch. @type {typeof card} */
+export function drivingCard(name, title, ...content) {
+  const details = card(name, title, ...content);
+  details.querySelector(".content")?.setAttribute("data-drives", "");
+  return details;
+}
+
 /**
  * Let a refusal be seen: its card opens, and where editor or creator have the card's place, a notice says it.
  *

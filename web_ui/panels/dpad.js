@@ -17,7 +17,7 @@ export function dpadPanel({ t, actions, store }) {
   });
   const element = h(
     "div",
-    { class: "dpad", role: "group", "aria-label": t("dpad") },
+    { class: "dpad", role: "group", "aria-label": t("dpad"), "data-drives": "" },
     ...buttons.map(({ button }) => button),
   );
   return {

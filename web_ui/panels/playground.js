@@ -1,7 +1,7 @@
 // The playground: choose one of the shipped ones or open a file; a refused one leaves the old world.
 
 import { galleryDialog } from "../gallery/index.js";
-import { card, showRefusal } from "./card.js";
+import { drivingCard, showRefusal } from "./card.js";
 import { fileButton, h, icon, setText } from "./dom.js";
 import { faultView } from "./fault.js";
 
@@ -29,7 +29,7 @@ export function playgroundPanel(context) {
   const notes = h("ul");
   const remarks = h("details", { class: "remarks", hidden: true }, summary, notes);
   const fault = h("div", { class: "fault", hidden: true });
-  const element = card(
+  const element = drivingCard(
     "playground",
     t("playground"),
     h("div", { class: "row" }, select),

@@ -4,7 +4,7 @@
 import { programOf } from "../state/index.js";
 import { faultWords, placeWords, stateWord } from "../state/standing.js";
 import { behaviourChoice } from "./behaviours.js";
-import { card, showRefusal } from "./card.js";
+import { drivingCard, showRefusal } from "./card.js";
 import { fileButton, h, icon, ICONS, setAttribute, setText } from "./dom.js";
 import { sourceView } from "./source.js";
 
@@ -31,7 +31,7 @@ export function programPanel(context) {
     ),
   }));
   const upload = h("div", { class: "upload", hidden: true });
-  const element = card(
+  const element = drivingCard(
     "program",
     t("program"),
     h("div", { class: "current" }, name, lamp),

@@ -6,7 +6,7 @@ import { h, icon, ICONS } from "./dom.js";
 export function stopPanel({ t, actions }) {
   const element = h(
     "button",
-    { type: "button", class: "stop", title: t("stop.help"), onclick: () => actions.stop() },
+    { type: "button", class: "stop", title: t("stop.help"), "data-drives": "", onclick: () => actions.stop() },
     icon(ICONS.stop),
     t("stop"),
   );

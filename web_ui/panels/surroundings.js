@@ -1,6 +1,6 @@
 // What an operator does to the selected robot: tap it, clap, tilt it, warm it, point a remote control, give it a pen.
 
-import { card } from "./card.js";
+import { drivingCard } from "./card.js";
 import { h } from "./dom.js";
 
 /** @typedef {import("./index.js").Context} Context */
@@ -154,7 +154,7 @@ export function surroundingsPanel({ t, actions, store }) {
     ),
   );
 
-  const element = card(
+  const element = drivingCard(
     "surroundings",
     t("surroundings"),
     knocks,

@@ -33,7 +33,7 @@ export function timePanel({ t, actions, store, announce }) {
   const clock = h("output", { class: "clock", "aria-label": t("time.simulated"), title: t("time.simulated") });
   const element = h(
     "div",
-    { class: "time", role: "group", "aria-label": t("time") },
+    { class: "time", role: "group", "aria-label": t("time"), "data-drives": "" },
     pause,
     step,
     reset,

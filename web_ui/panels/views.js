@@ -29,6 +29,7 @@ export function viewsPanel({ t, scene, store, mover, announce }) {
       type: "button",
       title: t("move"),
       "aria-label": t("move"),
+      "data-drives": "",
       onclick: () => {
         mover.setMode(!mover.mode);
         if (!mover.mode) return;

@@ -1,4 +1,5 @@
-// The socket around a `Session`: connects, tries again every second, and says so.
+// The socket around a `Session`: connects, tries again every second, and says so. A server that wants another token is
+// not asked again.
 
 import { Session, SUBPROTOCOLS } from "./session.js";
 
@@ -7,21 +8,26 @@ import { Session, SUBPROTOCOLS } from "./session.js";
 /** @typedef {import("./session.js").ParameterAnswer} ParameterAnswer */
 /**
  * @typedef {SessionEvent | { type: "connecting", address: string } | { type: "connected" }
- *   | { type: "disconnected" }} ClientEvent
+ *   | { type: "disconnected" } | { type: "refused", withToken: boolean }} ClientEvent
  */
 
 const RETRY_MS = 1000;
+
+/** Close code of a server that wants a token, or another one. */
+export const WRONG_TOKEN = 4401;
 
 export class Client {
   /**
    * @param {object} options
    * @param {string} options.address                 ws://host:port
+   * @param {string} [options.token]                 for the server; "" is none
    * @param {(event: ClientEvent) => void} options.emit
    * @param {(topic: string) => boolean} options.wants
    * @param {string[]} options.parameters
    */
-  constructor({ address, emit, wants, parameters }) {
+  constructor({ address, token = "", emit, wants, parameters }) {
     this.address = address;
+    this.token = token;
     this.emit = emit;
     this.wants = wants;
     this.parameters = parameters;
@@ -31,7 +37,8 @@ export class Client {
   /** Connect, and stay connected for as long as the page lives. */
   start() {
     this.emit({ type: "connecting", address: this.address });
-    const socket = new WebSocket(this.address, SUBPROTOCOLS);
+    const query = this.token === "" ? "" : `/?token=${encodeURIComponent(this.token)}`;
+    const socket = new WebSocket(this.address + query, SUBPROTOCOLS);
     socket.binaryType = "arraybuffer";
     socket.addEventListener("open", () => {
       this.session = new Session({
@@ -43,10 +50,11 @@ export class Client {
       this.emit({ type: "connected" });
     });
     socket.addEventListener("message", ({ data }) => this.session?.receive(data));
-    socket.addEventListener("close", () => {
+    socket.addEventListener("close", ({ code }) => {
       this.session?.close();
       this.session = null;
       this.emit({ type: "disconnected" });
+      if (code === WRONG_TOKEN) return this.emit({ type: "refused", withToken: this.token !== "" });
       setTimeout(() => this.start(), RETRY_MS);
     });
   }

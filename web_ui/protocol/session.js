@@ -13,7 +13,7 @@ import { parseSchema } from "./ros2msg.js";
 /** @typedef {{ level: number, message: string, id?: string }} Status */
 
 /**
- * @typedef {{ type: "serverInfo", name: string, sessionId: string, capabilities: string[] }
+ * @typedef {{ type: "serverInfo", name: string, sessionId: string, capabilities: string[], readOnly: boolean }
  *   | { type: "channels", topics: string[] }
  *   | { type: "services", names: string[] }
  *   | { type: "message", topic: string, value: any, timeNs: bigint }
@@ -96,6 +96,8 @@ export class Session {
      */
     this.requests = new Map();
     this.nextId = 1;
+    /** Whether the server lets this client watch only. */
+    this.readOnly = false;
   }
 
   /** Take one frame from the server: a string or a buffer. @param {string | ArrayBuffer} data */
@@ -109,13 +111,14 @@ export class Session {
   }
 
   /**
-   * Publish a message; the channel is advertised on first use.
+   * Publish a message; the channel is advertised on first use. Does nothing where the client may only watch.
    *
    * @param {string} topic
    * @param {string} schemaName
    * @param {Record<string, any>} value
    */
   publish(topic, schemaName, value) {
+    if (this.readOnly) return;
     let channel = this.published.get(topic);
     if (channel === undefined) {
       const schema = OWN_SCHEMAS[schemaName];
@@ -275,8 +278,9 @@ export class Session {
 
 /** What to do with each JSON message of the server; unknown ones are passed over. */
 const TEXT_HANDLERS = /** @type {Record<string, (session: Session, message: any) => void>} */ ({
-  serverInfo(session, { name, sessionId = "", capabilities = [] }) {
-    session.emit({ type: "serverInfo", name, sessionId, capabilities });
+  serverInfo(session, { name, sessionId = "", capabilities = [], metadata = {} }) {
+    session.readOnly = metadata.access === "read_only";
+    session.emit({ type: "serverInfo", name, sessionId, capabilities, readOnly: session.readOnly });
     if (capabilities.includes("parameters")) session.watchParameters();
   },
   advertise: (session, { channels }) => session.advertise(channels),

@@ -36,7 +36,8 @@ import { placedBy } from "./transforms.js";
 /** @typedef {{ id: number, level: "info" | "warning" | "error", text: string }} Notice */
 /**
  * @typedef {object} State
- * @property {"connecting" | "connected" | "lost"} connection
+ * @property {"connecting" | "connected" | "lost" | "noToken" | "wrongToken"} connection
+ * @property {boolean} readOnly   whether the server lets this page watch only
  * @property {boolean} greeted    whether the server of this connection has said who it is
  * @property {string} server
  * @property {string} sessionId
@@ -58,7 +59,8 @@ import { placedBy } from "./transforms.js";
 
 /**
  * @typedef {{ type: "connecting", address: string } | { type: "connected" } | { type: "disconnected" }
- *   | { type: "serverInfo", name: string, sessionId: string, capabilities: string[] }
+ *   | { type: "refused", withToken: boolean }
+ *   | { type: "serverInfo", name: string, sessionId: string, capabilities: string[], readOnly?: boolean }
  *   | { type: "channels", topics: string[] }
  *   | { type: "services", names: string[] }
  *   | { type: "message", topic: string, value: any, timeNs: bigint, nowMs?: number }
@@ -80,6 +82,7 @@ const KEPT_NOTICES = 4;
 /** @type {State} */
 export const INITIAL = {
   connection: "connecting",
+  readOnly: false,
   greeted: false,
   server: "",
   sessionId: "",
@@ -114,14 +117,15 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   connecting: (state) => ({ ...state, connection: state.connection === "lost" ? "lost" : "connecting" }),
   connected: (state) => ({ ...state, connection: "connected", greeted: false, services: [], topics: [] }),
   disconnected: (state) => ({ ...state, connection: "lost" }),
-  serverInfo(state, { name, sessionId }) {
-    const known = { ...state, greeted: true, server: name, sessionId };
+  refused: (state, { withToken }) => ({ ...state, connection: withToken ? "wrongToken" : "noToken" }),
+  serverInfo(state, { name, sessionId, readOnly = false }) {
+    const known = { ...state, greeted: true, server: name, sessionId, readOnly };
     if (sessionId === state.sessionId && sessionId !== "") return known;
     // On a connection that goes on, the simulation began anew: its topics stay, its time does not.
     if (state.greeted) return { ...known, timeNs: 0 };
     // Another simulator: what was known belongs to one that is no more.
     const { connection, notices, selected } = state;
-    return { ...INITIAL, connection, notices, selected, greeted: true, server: name, sessionId };
+    return { ...INITIAL, connection, notices, selected, readOnly, greeted: true, server: name, sessionId };
   },
   channels: withChannels,
   services: (state, { names }) => ({ ...state, services: names }),
@@ -136,6 +140,7 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   }),
   status(state, { status }) {
     if (typeof status.id === "string" && status.id.startsWith("parameter:")) return state; // told where it was asked
+    if (status.id === "access") return state; // the connection panel says so in the page's language
     return withNotice(
       state,
       /** @type {const} */ (["info", "warning", "error"])[status.level] ?? "error",

@@ -1,0 +1,103 @@
+"""Tokens: what they allow, where they are found, and how often a wrong one may be tried."""
+
+from __future__ import annotations
+
+import pytest
+
+from thymio_sim_ros.bridge.access import TOKEN, Attempts, Role, Tokens, given_token, is_loopback, new_token
+
+TOKENS = Tokens("fulltoken", "looktoken")
+
+
+@pytest.mark.parametrize(
+    ("given", "role"),
+    [
+        ("fulltoken", Role.FULL),
+        ("looktoken", Role.READ_ONLY),
+        ("fulltoke", None),
+        ("FULLTOKEN", None),
+        ("tökén", None),
+        ("\ud800", None),
+        ("", None),
+        (None, None),
+    ],
+)
+def test_a_token_gives_its_role_and_no_other(given: str | None, role: Role | None) -> None:
+    assert TOKENS.role(given) is role
+
+
+@pytest.mark.parametrize(
+    ("given", "role"), [(None, Role.FULL), ("", Role.FULL), ("any", Role.FULL), ("looktoken", Role.READ_ONLY)]
+)
+def test_without_a_token_everyone_may_everything(given: str | None, role: Role) -> None:
+    assert Tokens("", "looktoken").role(given) is role
+
+
+def test_tokens_are_not_in_what_is_printed_of_them() -> None:
+    assert "token" not in repr(TOKENS)
+
+
+@pytest.mark.parametrize("address", ["localhost", "127.0.0.1", "127.9.9.9", "::1"])
+def test_on_this_computer_none_is_made(address: str) -> None:
+    assert is_loopback(address)
+    assert Tokens.for_address(address) == Tokens()
+    assert Tokens.for_address(address, "fulltoken").is_required
+
+
+@pytest.mark.parametrize("address", ["0.0.0.0", "::", "192.168.1.2", "class-pc", ""])
+def test_for_the_network_two_are_made(address: str) -> None:
+    assert not is_loopback(address)
+    made = Tokens.for_address(address)
+    assert TOKEN.fullmatch(made.full)
+    assert TOKEN.fullmatch(made.read_only)
+    assert len({made.full, made.read_only, new_token()}) == 3
+    assert Tokens.for_address(address, "fulltoken", "looktoken") == TOKENS
+
+
+@pytest.mark.parametrize(
+    ("target", "authorizations", "token"),
+    [
+        ("/?token=abcd", [], "abcd"),
+        ("/?x=1&token=abcd", ["Bearer other"], "abcd"),
+        ("/", ["Bearer abcd"], "abcd"),
+        ("/", ["Basic xyz", "bearer  abcd "], "abcd"),
+        ("/?token=", [], None),
+        ("/token=abcd", ["Basic abcd"], None),
+        ("/?token=%ff", [], "\ufffd"),
+    ],
+)
+def test_a_token_is_found_in_the_address_or_in_a_header(
+    target: str, authorizations: list[str], token: str | None
+) -> None:
+    assert given_token(target, authorizations) == token
+
+
+def test_wrong_tokens_may_be_tried_some_times_and_then_slowly() -> None:
+    now_s = 0.0
+    attempts = Attempts(lambda: now_s)
+    tried = 0
+    while attempts.may_try("10.0.0.1"):
+        attempts.failed("10.0.0.1")
+        tried += 1
+    assert tried == 30
+    assert attempts.may_try("10.0.0.2")
+    now_s = 2.5
+    for _ in range(2):
+        assert attempts.may_try("10.0.0.1")
+        attempts.failed("10.0.0.1")
+    assert not attempts.may_try("10.0.0.1")
+
+
+def test_one_computer_does_not_get_more_attempts_by_more_numbers_of_ipv6() -> None:
+    attempts = Attempts(lambda: 0.0)
+    for number in range(30):
+        attempts.failed(f"fd00::{number:x}")
+    assert not attempts.may_try("fd00::ffff")
+    assert attempts.may_try("fd01::1")
+
+
+def test_so_many_addresses_are_remembered_and_no_more() -> None:
+    attempts = Attempts(lambda: 0.0)
+    for number in range(2000):
+        attempts.failed(f"10.0.{number // 250}.{number % 250}")
+    assert len(attempts._left) == 1000

@@ -1,0 +1,97 @@
+"""Paths of requests → documents; nothing but the page's files."""
+
+from __future__ import annotations
+
+import gzip
+from pathlib import Path
+
+import pytest
+
+from thymio_sim_ros.web import Content
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    page = tmp_path / "dist"
+    (page / "assets").mkdir(parents=True)
+    (page / "index.html").write_text("<!doctype html><title>Thymio</title>")
+    (page / "assets" / "index-DGs6OHeF.js").write_text("export {};" * 100)
+    (tmp_path / "secret.txt").write_text("not for you")
+    return page
+
+
+@pytest.fixture
+def content(folder: Path) -> Content:
+    return Content(folder, b"{}")
+
+
+def test_a_document_has_its_type_its_gzip_and_a_tag_of_its_content(content, folder):
+    found = content.find("/assets/index-DGs6OHeF.js")
+    assert found.media_type == "text/javascript; charset=utf-8"
+    assert gzip.decompress(found.compressed) == found.body == b"export {};" * 100
+    assert found.is_immutable
+    assert not content.find("/").is_immutable
+    assert content.find("/index.html") == content.find("/")
+    assert found.tag != content.find("/").tag
+
+
+def test_a_file_that_is_built_again_is_read_again(content, folder):
+    old = content.find("/")
+    (folder / "index.html").write_text("<!doctype html><title>Another</title>")
+    new = content.find("/")
+    assert b"Another" in new.body
+    assert new.tag != old.tag
+
+
+def test_small_files_are_not_made_larger(content, folder):
+    (folder / "one.js").write_text("1")
+    assert content.find("/one.js").compressed is None
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/../secret.txt",
+        "/%2e%2e/secret.txt",
+        "/assets/..%2f..%2fsecret.txt",
+        "/assets/..%5c..%5csecret.txt",
+        "/..%c0%afsecret.txt",
+        "//etc/passwd",
+        "/%2fetc/passwd",
+        "/assets",
+        "/assets/",
+        "/.",
+        "/%00",
+        "/index.html%00.js",
+        "/index.html/",
+        "/" + "a" * 5000,
+        "http://elsewhere/index.html",
+        "*",
+        "",
+        "/playgrounds/..%2fpyproject.json",
+        "/playgrounds/nothing.json",
+        "/playgrounds/playground.schema.json",
+    ],
+)
+def test_nothing_else_is_found(content, path):
+    assert content.find(path) is None
+
+
+def test_links_lead_out_of_the_folder_only_as_colcon_makes_them(tmp_path, folder):
+    installed = tmp_path / "install" / "web_ui"
+    (installed / "assets").mkdir(parents=True)
+    (installed / "index.html").symlink_to(folder / "index.html")
+    (installed / "assets" / "index-DGs6OHeF.js").symlink_to(folder / "assets" / "index-DGs6OHeF.js")
+    (installed / "leak.js").symlink_to(tmp_path / "secret.txt")
+    (installed / "out").symlink_to(tmp_path)
+    content = Content(installed, b"{}")
+    assert content.find("/") is not None
+    assert content.find("/assets/index-DGs6OHeF.js") is not None
+    assert content.find("/leak.js") is None
+    assert content.find("/out/secret.txt") is None
+
+
+def test_shipped_playgrounds_are_found(content):
+    found = content.find("/playgrounds/line.json")
+    assert found.media_type == "application/json"
+    assert content.find("/playgrounds/line.json") is found

@@ -1,0 +1,90 @@
+"""The page in a network: with the token, without it, with a wrong one, with the read-only one; and its policy."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.processes import wait_for_port
+from tests.web_ui.page_support import MARKS, open_page
+from thymio_sim_ros import resources
+from thymio_sim_ros.web import Content, PageThread, Settings
+
+pytestmark = MARKS
+
+TOKENS = ("--address", "0.0.0.0", "--token", "fulltoken", "--read-only-token", "looktoken")
+
+
+def connection(page, address, state):
+    """Open the page at an address and wait for what it says of its connection."""
+    page.goto(address)
+    page.wait_for_function("(state) => window.thymio?.state().connection === state", arg=state)
+
+
+def test_the_token_of_the_address_lets_the_page_drive_and_survives_a_reload(suite, page):
+    address = suite(*TOKENS)
+    wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
+    page.goto(f"{address}#token=fulltoken")
+    page.wait_for_function("window.thymio?.connected")
+    assert page.evaluate("location.href") == address
+    open_page(page, address)
+    page.locator("button", has_text="Pause").click()
+    page.wait_for_function("window.thymio.state().simulator.paused")
+    assert page.evaluate("window.thymio.state().notices") == []
+
+
+@pytest.mark.parametrize(("rest", "state"), [("", "noToken"), ("#token=wrongtoken", "wrongToken")])
+def test_without_a_valid_token_the_page_says_what_to_do(suite, page, rest, state):
+    address = suite(*TOKENS)
+    wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
+    connection(page, address + rest, state)
+    page.locator(".banner", has_text="terminal").wait_for()
+    # A token that is put into the bar later does not need a reload by hand.
+    page.evaluate("location.hash = '#token=fulltoken'")
+    page.wait_for_function("window.thymio?.connected")
+
+
+def test_with_the_read_only_token_the_page_watches(suite, page):
+    address = suite(*TOKENS)
+    wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
+    page.goto(f"{address}#token=looktoken")
+    page.wait_for_function("window.thymio?.state().readOnly && window.thymio.state().simulator !== null")
+    page.locator("#read-only").wait_for()
+    page.wait_for_function("document.querySelector('.time').inert && document.querySelector('.dpad').inert")
+    before = page.evaluate("window.thymio.state().timeNs")
+    page.keyboard.press("Escape")  # would stop everything
+    page.wait_for_function("window.thymio.state().notices.some(({text}) => text.includes('read-only'))")
+    page.wait_for_function("(before) => window.thymio.state().timeNs > before", arg=before)
+    assert page.evaluate("window.thymio.state().program.state") == "running"
+
+
+@pytest.fixture
+def page_server():
+    """The built page's server alone, without a simulator."""
+    folder = resources.page()
+    server = PageThread(Content(folder, b'{"foxglove_port": 1}'), Settings(1), address="localhost", port=0, warn=print)
+    yield server
+    server.close()
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "[::1]"])
+def test_nothing_on_the_page_breaks_its_policy(browser, page_server, host):
+    page = browser.new_page()
+    page.add_init_script(
+        "window.broken = []; addEventListener('securitypolicyviolation', (e) => broken.push(e.blockedURI))"
+    )
+    page.goto(f"http://{host}:{page_server.port}/")
+    page.wait_for_function("window.thymio?.state().connection === 'lost'")  # the socket was tried
+    page.locator("button", has_text="Aseba editor").click()
+    page.locator(".cm-editor").wait_for()
+    page.locator("button", has_text="Build").click()
+    page.locator("#creator-try").wait_for()
+    assert page.evaluate("broken") == []
+    page.close()
+
+
+def test_the_page_is_not_shown_in_a_page_of_others(browser, page_server):
+    page = browser.new_page()
+    page.goto(f"data:text/html,<iframe src='http://127.0.0.1:{page_server.port}/'></iframe>")
+    (frame,) = page.main_frame.child_frames
+    assert frame.url.startswith("chrome-error:")
+    page.close()

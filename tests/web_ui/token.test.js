@@ -1,0 +1,75 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { memoryOf } from "../../web_ui/memory.js";
+import { Session } from "../../web_ui/protocol/session.js";
+import { INITIAL, reduce } from "../../web_ui/state/index.js";
+import { takeToken, tokenIn, withoutToken } from "../../web_ui/token.js";
+
+const ADDRESS = "http://10.1.2.3:8080/";
+
+/** A tab's memory that keeps everything for itself. */
+function shelf() {
+  return memoryOf(() => {
+    throw new Error("forbidden");
+  });
+}
+
+for (const [rest, token, clean] of /** @type {[string, string | null, string][]} */ ([
+  ["", null, ""],
+  ["#token=abcd", "abcd", ""],
+  ["?token=abcd", "abcd", ""],
+  ["?x=1&token=abcd#y=2", "abcd", "?x=1#y=2"],
+  ["?token=query#token=hash", "hash", ""],
+  ["#y=2&token=abcd", "abcd", "#y=2"],
+  ["#token=", "", ""],
+])) {
+  test(`the token of …/${rest} is ${token}`, () => {
+    assert.equal(tokenIn(ADDRESS + rest), token);
+    assert.equal(withoutToken(ADDRESS + rest), ADDRESS + clean);
+  });
+}
+
+test("the token leaves the address and is there after a reload", () => {
+  const tab = shelf();
+  /** @type {string[]} */ const shown = [];
+  assert.equal(takeToken(tab, `${ADDRESS}#token=abcd`, (address) => shown.push(address)), "abcd");
+  assert.deepEqual(shown, [ADDRESS]);
+  assert.equal(takeToken(tab, ADDRESS, () => assert.fail("nothing to take away")), "abcd");
+  assert.equal(takeToken(shelf(), ADDRESS, () => assert.fail("nothing to take away")), "");
+});
+
+test("a token that cannot be kept stays in the address", () => {
+  const full = {
+    ...shelf(),
+    setItem() {
+      throw new Error("no room");
+    },
+  };
+  assert.equal(takeToken(full, `${ADDRESS}#token=abcd`, () => assert.fail("it would be lost")), "abcd");
+});
+
+test("a connection that is refused says whether a token was given", () => {
+  const lost = reduce(INITIAL, { type: "disconnected" });
+  assert.equal(reduce(lost, { type: "refused", withToken: false }).connection, "noToken");
+  assert.equal(reduce(lost, { type: "refused", withToken: true }).connection, "wrongToken");
+});
+
+test("what the server says about the token is left to the page's own words", () => {
+  const status = { level: 2, message: "a token is needed", id: "access" };
+  assert.deepEqual(reduce(INITIAL, { type: "status", status }).notices, []);
+});
+
+test("a read-only session publishes nothing, and the page knows", () => {
+  /** @type {any[]} */ const sent = [];
+  /** @type {any[]} */ const events = [];
+  const session = new Session({ send: (data) => sent.push(data), emit: (event) => events.push(event), wants: () => true });
+  session.receive(JSON.stringify({ op: "serverInfo", name: "bridge", metadata: { access: "read_only" } }));
+  session.publish("/press/center", "std_msgs/msg/Bool", { data: true });
+  assert.deepEqual(sent, []);
+  assert.equal(reduce(INITIAL, events[0]).readOnly, true);
+  session.receive(JSON.stringify({ op: "serverInfo", name: "bridge" }));
+  session.publish("/press/center", "std_msgs/msg/Bool", { data: true });
+  assert.equal(sent.length, 2);
+  assert.equal(reduce(INITIAL, events[1]).readOnly, false);
+});

@@ -1,0 +1,131 @@
+"""What the page's server has to give: a request's path → a document, or nothing.
+
+Each document is read and compressed once for each version of its file. Several threads may ask.
+"""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import re
+import urllib.parse
+from dataclasses import dataclass
+from pathlib import Path
+
+from thymio_sim_ros.gallery import Gallery
+
+__all__ = ["TYPES", "Content", "Document"]
+
+# The platform's own table may be wrong (web-ui-features.md section 5.4).
+TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".mjs": "text/javascript; charset=utf-8",
+    ".json": "application/json",
+    ".svg": "image/svg+xml",
+    ".png": "image/png",
+    ".ico": "image/x-icon",
+    ".wasm": "application/wasm",
+    ".woff2": "font/woff2",
+    ".mp3": "audio/mpeg",
+}
+_UNKNOWN_TYPE = "application/octet-stream"
+_COMPRESSED = frozenset({".html", ".css", ".js", ".mjs", ".json", ".svg", ".wasm"})
+_HASHED = re.compile(r".+-[\w-]{8}\.\w+")
+"""How the build names files whose content never changes under their name."""
+_PLAYGROUNDS, _PLAYGROUND_ENDING = "playgrounds", ".json"
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """One answer: `compressed` is the body in gzip, None where that is not worthwhile; `tag` changes with the body."""
+
+    body: bytes
+    media_type: str
+    compressed: bytes | None
+    tag: str
+    is_immutable: bool = False
+
+
+class Content:
+    """The built page in a folder, the shipped playgrounds as `/playgrounds/NAME.json`, and `/config.json`."""
+
+    def __init__(self, folder: Path | None, config: bytes) -> None:
+        """`folder` is None where the page has not been built."""
+        self._folder = None if folder is None else folder.resolve()
+        self._config = _document(config, ".json")
+        self._gallery = Gallery()
+        self._files: dict[Path, tuple[tuple[int, int], Document]] = {}
+        self._playgrounds: dict[str, tuple[bytes, Document]] = {}
+
+    @property
+    def is_built(self) -> bool:
+        """Whether there is a page."""
+        return self._folder is not None
+
+    def find(self, path: str) -> Document | None:
+        """The document of a request's path as it came, still with its escapes; None: there is none.
+
+        Raises PlaygroundError for a shipped playground that cannot be read.
+        """
+        names = _names(path)
+        if names is None:
+            return None
+        if names == ("config.json",):
+            return self._config
+        if len(names) == 2 and names[0] == _PLAYGROUNDS and names[1].endswith(_PLAYGROUND_ENDING):
+            return self._playground(names[1].removesuffix(_PLAYGROUND_ENDING))
+        return self._file(names or ("index.html",))
+
+    def _playground(self, name: str) -> Document | None:
+        text = self._gallery.text(name)
+        if text is None:
+            return None
+        known = self._playgrounds.get(name)
+        if known is None or known[0] is not text:
+            known = self._playgrounds[name] = (text, _document(text, _PLAYGROUND_ENDING))
+        return known[1]
+
+    def _file(self, names: tuple[str, ...]) -> Document | None:
+        if self._folder is None:
+            return None
+        path = self._folder.joinpath(*names)
+        try:
+            real = path.resolve(strict=True)
+            # A link leads out of the folder only to a file of the same name and folders, as colcon's --symlink-install
+            # makes them.
+            if not real.is_relative_to(self._folder) and real.parts[-len(names) :] != names:
+                return None
+            status = real.stat()
+            if not real.is_file():
+                return None
+            version = (status.st_mtime_ns, status.st_size)
+            known = self._files.get(path)
+            if known is None or known[0] != version:
+                is_hashed = len(names) > 1 and _HASHED.fullmatch(names[-1]) is not None
+                document = _document(real.read_bytes(), path.suffix, is_immutable=is_hashed)
+                known = self._files[path] = (version, document)
+        except (OSError, ValueError):  # a name that no file can have; a file that cannot be read
+            return None
+        return known[1]
+
+
+def _names(path: str) -> tuple[str, ...] | None:
+    """Folders and file of a path, without escapes; None for what cannot be a path in the page's folder."""
+    if not path.startswith("/"):
+        return None
+    if path == "/":
+        return ()
+    names = tuple(urllib.parse.unquote(name) for name in path[1:].split("/"))
+    if any(name in ("", ".", "..") or not {"/", "\\", "\0"}.isdisjoint(name) for name in names):
+        return None
+    return names
+
+
+def _document(body: bytes, ending: str, *, is_immutable: bool = False) -> Document:
+    compressed = gzip.compress(body, mtime=0) if ending in _COMPRESSED else None
+    if compressed is not None and len(compressed) >= len(body):
+        compressed = None
+    tag = hashlib.sha256(body).hexdigest()[:24]
+    return Document(body, TYPES.get(ending, _UNKNOWN_TYPE), compressed, tag, is_immutable)

@@ -1,0 +1,326 @@
+"""HTTP for the page, on aiohttp: GET and HEAD of documents, with limits, time-outs and headers that protect the page.
+
+Everything here runs in one event loop; documents are found by two helper threads, since a playground takes a while.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import re
+import select
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from socket import SO_SNDBUF, SOL_SOCKET, socket
+from typing import Any, cast
+
+from aiohttp import web
+
+from thymio_sim_ros.resources import PAGE_BUILD_HINT
+from thymio_sim_ros.sim.playground import PlaygroundError
+from thymio_sim_ros.web.connections import Connections, Phase, Place
+from thymio_sim_ros.web.content import TYPES, Content, Document
+from thymio_sim_ros.web.settings import Settings
+
+__all__ = ["Report", "serve"]
+
+Report = Callable[[str, str], None]
+"""Called with a kind of problem and a sentence."""
+
+BACKLOG = 1024
+"""Connections that the kernel accepts while the event loop is busy."""
+SEND_BUFFER = 131_072
+"""Bytes that the kernel keeps for a client that does not read; by default these are megabytes."""
+MAX_AHEAD = 65_536
+"""Bytes that a client may send while its request is answered: more requests, or a body nobody reads."""
+_CLOSE_S = 0.3
+_SWEEP_S = 0.5
+_RETRY_S = 0.02
+_TURNS = 6
+"""Turns of the event loop from the arrival of a request to the beginning of its answer, and some more."""
+_CHUNK = 32_768
+"""Bytes that are written in one turn of the event loop: what a client does not read is not copied as a whole, and large
+answers do not hold up small ones."""
+_NEVER_S = 1e6
+_TEXT = "text/plain; charset=utf-8"
+_HASH_LIFETIME_S = 365 * 24 * 3600
+_METHODS = "GET, HEAD"
+_GZIP = re.compile(r"(?:^|,)\s*gzip\s*(?:;\s*q=(?!0(?:\.0*)?\s*(?:,|$))[\d.]+\s*)?(?:,|$)")
+"""In `Accept-Encoding`, unless it says `q=0`."""
+_HOST = re.compile(r"(?P<name>[a-z0-9_.-]+|\[[0-9a-f:.]+\])(?::\d{1,5})?", re.IGNORECASE)
+_COMMON = {
+    "Server": "thymio-sim",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+}
+
+
+class _Connection(web.RequestHandler):
+    """A connection that knows its place among the others; aiohttp has no limit for a first or a slow request."""
+
+    def __init__(
+        self, server: web.Server, connections: Connections, place: Place, report: Report, **options: Any
+    ) -> None:
+        super().__init__(server, **options)
+        self._connections = connections
+        self._place = place
+        self._report = report
+        self._ahead = 0
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """The connection is there."""
+        plain = cast(asyncio.Transport, transport)
+        descriptor = plain.get_extra_info("socket").fileno()
+        self._place.close = plain.abort
+        self._place.has_news = lambda: _is_ready(
+            descriptor, select.POLLOUT if self._place.phase is Phase.STALLED else select.POLLIN
+        )
+        super().connection_made(transport)
+
+    def connection_lost(self, exc: BaseException | None) -> None:
+        """Give the place back."""
+        self._connections.leave(self._place)
+        super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        """Pass bytes on, unless there are too many before the answer."""
+        place = self._place
+        if place.phase in (Phase.SILENT, Phase.IDLE):
+            self._connections.enter(place, Phase.READING)
+        elif place.phase is not Phase.READING:
+            self._ahead += len(data)
+            if self._ahead > MAX_AHEAD:
+                place.close()
+                return
+        super().data_received(data)
+
+    def eof_received(self) -> None:
+        """The client sends nothing more: end what waits for it."""
+        if self._place.phase < Phase.STALLED:
+            self.force_close()
+
+    def pause_writing(self) -> None:
+        """The client reads more slowly than it is answered."""
+        super().pause_writing()
+        self._connections.enter(self._place, Phase.STALLED)
+
+    def resume_writing(self) -> None:
+        """The client has read."""
+        super().resume_writing()
+        self._connections.enter(self._place, Phase.ANSWERING)
+
+    def begin_answer(self) -> None:
+        """A request is complete."""
+        self._connections.enter(self._place, Phase.ANSWERING)
+
+    async def finish_response(self, *arguments: Any, **options: Any) -> Any:
+        """Send an answer; afterwards the client may ask again."""
+        try:
+            return await super().finish_response(*arguments, **options)
+        finally:
+            self._ahead = 0
+            self._connections.enter(self._place, Phase.IDLE)
+
+    def handle_error(
+        self,
+        request: web.BaseRequest,
+        status: int = 500,
+        exc: BaseException | None = None,
+        message: str | None = None,
+    ) -> web.StreamResponse:
+        """The answer to what is no request, or to a fault of ours; it repeats nothing of what came."""
+        if status >= 500:
+            self._report("fault", f"internal error (please report): {exc!r}")
+        response = _text(status, "This is not a request that can be answered.")
+        response.force_close()
+        return response
+
+
+class _Page:
+    """Requests → responses."""
+
+    def __init__(self, content: Content, settings: Settings, report: Report, pool: ThreadPoolExecutor) -> None:
+        self._content = content
+        self._settings = settings
+        self._report = report
+        self._pool = pool
+
+    async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
+        """The response to a request."""
+        cast(_Connection, request.protocol).begin_answer()
+        host = request.headers.get("Host")
+        if host is not None and not self._settings.is_allowed_host(_host_name(host)):
+            self._report("host", "refused a page under another name of this computer; see allowed_hosts of web_ui")
+            return _text(403, "This address is not one of this server's. Open it by localhost.")
+        if request.method not in ("GET", "HEAD"):
+            response = _text(405, "Only GET and HEAD are answered.", {"Allow": _METHODS})
+            response.force_close()
+            return response
+        path = request.raw_path.partition("?")[0]
+        try:
+            found = await asyncio.get_running_loop().run_in_executor(self._pool, self._content.find, path)
+        except PlaygroundError as error:
+            return _text(422, str(error))
+        if found is None and not self._content.is_built:
+            page = f"<!doctype html><meta charset=utf-8><title>Thymio</title><p>{PAGE_BUILD_HINT}</p>"
+            return _response(503, page.encode(), TYPES[".html"], {"Cache-Control": "no-store"})
+        if found is None:
+            return _text(404, "There is no such file.")
+        return await self._document(request, found)
+
+    async def _document(self, request: web.BaseRequest, document: Document) -> web.StreamResponse:
+        headers = {
+            "Cache-Control": f"public, max-age={_HASH_LIFETIME_S}, immutable" if document.is_immutable else "no-cache",
+            "Content-Security-Policy": _policy(request.headers.get("Host", ""), self._settings.foxglove_port),
+        }
+        body, tag = document.body, document.tag
+        if document.compressed is not None:
+            headers["Vary"] = "Accept-Encoding"
+            if _GZIP.search(request.headers.get("Accept-Encoding", "")):
+                headers["Content-Encoding"] = "gzip"
+                body, tag = document.compressed, f"{document.tag}-gzip"
+        headers["ETag"] = f'"{tag}"'
+        if _has_tag(request.headers.get("If-None-Match", ""), tag):
+            headers.pop("Content-Encoding", None)
+            return _response(304, b"", document.media_type, headers)
+        if len(body) <= _CHUNK or request.method == "HEAD":
+            return _response(200, body, document.media_type, headers)
+        headers["Content-Type"] = document.media_type
+        response = web.StreamResponse(headers={**_COMMON, **headers})
+        response.content_length = len(body)
+        await response.prepare(request)
+        for begin in range(0, len(body), _CHUNK):
+            await response.write(body[begin : begin + _CHUNK])
+            await asyncio.sleep(0)
+        return response
+
+
+class _Door:
+    """Lets connections in, as long as there are places."""
+
+    def __init__(self, server: web.Server, connections: Connections, report: Report, log: logging.Logger) -> None:
+        self._server = server
+        self._connections = connections
+        self._report = report
+        self._log = log
+
+    async def keep_open(self, listener: socket) -> None:
+        """Accept the connections of a listening socket, until it is cancelled."""
+        loop = asyncio.get_running_loop()
+        listener.setblocking(False)
+        listener.setsockopt(SOL_SOCKET, SO_SNDBUF, SEND_BUFFER)  # accepted ones get it from here
+        listener.listen(BACKLOG)
+        while True:
+            try:
+                accepted, peer = await loop.sock_accept(listener)
+            except OSError as error:  # no more files; or a client that has left already
+                self._report("accept", f"connections cannot be accepted: {error.strerror}")
+                await asyncio.sleep(_SWEEP_S)
+                continue
+            while self._connections.is_full:
+                self._report("full", "there are as many connections as there may be; more have to wait")
+                await self._make_room()
+            place = self._connections.admit(str(peer[0]))
+            try:
+                await loop.connect_accepted_socket(partial(self._connection, place), accepted)
+            except OSError:  # it has left
+                self._connections.leave(place)
+                accepted.close()
+
+    async def _make_room(self) -> None:
+        """End the connection that waits for the longest time, unless the event loop has only not got round to it."""
+        place = self._connections.longest_waiting()
+        if place is None:
+            await asyncio.sleep(_RETRY_S)
+            return
+        since_s = place.since_s
+        for _ in range(_TURNS):
+            await asyncio.sleep(0)
+        self._connections.end(place, since_s)
+
+    def _connection(self, place: Place) -> _Connection:
+        return _Connection(
+            self._server,
+            self._connections,
+            place,
+            self._report,
+            loop=asyncio.get_running_loop(),
+            keepalive_timeout=_NEVER_S,  # `connections` closes what is idle
+            access_log=None,
+            logger=self._log,
+            lingering_time=0,
+        )
+
+
+async def serve(
+    listeners: Iterable[socket], content: Content, settings: Settings, report: Report, stop: asyncio.Event
+) -> None:
+    """Serve on listening sockets, which become the server's own, until `stop` is set."""
+    loop = asyncio.get_running_loop()
+    loop.set_exception_handler(lambda _loop, context: report(_kind(context), _sentence(context)))
+    connections = Connections(settings.max_connections, loop.time)
+    log = logging.getLogger(__name__)
+    log.setLevel(logging.CRITICAL)  # what strangers send is no news; faults of ours come by `report`
+    with ThreadPoolExecutor(2, "page") as pool:
+        page = _Page(content, settings, report, pool)
+        server = web.Server(page.answer)
+
+        door = _Door(server, connections, report, log)
+        doors = [loop.create_task(door.keep_open(listener)) for listener in listeners]
+        while not stop.is_set():
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(stop.wait(), _SWEEP_S)
+            connections.close_overdue()
+        for one in doors:
+            one.cancel()
+        await asyncio.gather(*doors, return_exceptions=True)
+        await server.shutdown(_CLOSE_S)
+
+
+def _is_ready(descriptor: int, events: int) -> bool:
+    """Whether the kernel has one of these events for an open socket."""
+    poll = select.poll()
+    poll.register(descriptor, events)
+    return bool(poll.poll(0))
+
+
+def _response(status: int, body: bytes, media_type: str, headers: Mapping[str, str]) -> web.Response:
+    return web.Response(status=status, body=body, headers={**_COMMON, "Content-Type": media_type, **headers})
+
+
+def _text(status: int, text: str, headers: Mapping[str, str] | None = None) -> web.Response:
+    return _response(status, f"{text}\n".encode(), _TEXT, {"Cache-Control": "no-store", **(headers or {})})
+
+
+def _host_name(host: str) -> str | None:
+    """The name or number in a Host header, without brackets and port; None for what is none."""
+    match = _HOST.fullmatch(host)
+    return None if match is None else match["name"].strip("[]").lower()
+
+
+def _policy(host: str, foxglove_port: int) -> str:
+    """What the page may load and connect to: this server, and the bridge on the same host."""
+    name = _host_name(host)
+    # A policy cannot name an IPv6 number.
+    bridge = f"ws://{name}:{foxglove_port} wss://{name}:{foxglove_port}" if name and ":" not in name else "ws: wss:"
+    return (
+        f"default-src 'self'; script-src 'self'; connect-src 'self' {bridge}; img-src 'self' data: blob:; "
+        "style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'none'; form-action 'none'; "
+        "frame-ancestors 'self'"
+    )
+
+
+def _has_tag(wanted: str, tag: str) -> bool:
+    """Whether an If-None-Match header names the tag, weakly compared (RFC 9110 section 13.1.2)."""
+    tags = {item.strip().removeprefix("W/") for item in wanted.split(",")}
+    return "*" in tags or f'"{tag}"' in tags
+
+
+def _kind(context: Mapping[str, Any]) -> str:
+    return type(context.get("exception")).__name__
+
+
+def _sentence(context: Mapping[str, Any]) -> str:
+    return f"{context.get('message', 'a connection failed')}: {context.get('exception')}"
