@@ -33,7 +33,10 @@ ARGUMENTS = {
     "log": ("", "file of a run log for thymio-sim replay; '' is none"),
     "real_time_factor": ("1.0", "simulated seconds per second; 0: as fast as possible"),
     "cmd_vel_timeout": ("0.0", "seconds after which a velocity command ends; 0: never"),
-    "driver_compat": ("false", "report ranges as the existing Thymio driver does (-1 for nothing)"),
+    "driver_compat": (
+        "false",
+        "ranges as the existing Thymio driver reports them (-1 for nothing), and all its topics",
+    ),
     "address": ("localhost", "where page and bridge listen; 0.0.0.0: the whole network"),
     "port": ("8080", "TCP port of the page"),
     "foxglove_port": ("8765", "TCP port of the Foxglove bridge"),
@@ -52,9 +55,8 @@ CHOICES = {
 def generate_launch_description() -> LaunchDescription:
     """Four nodes on one clock, and RViz if wanted; all but the simulator follow simulated time."""
     value = {name: LaunchConfiguration(name) for name in ARGUMENTS}
-    range_convention = PythonExpression(
-        ["'driver' if '", value["driver_compat"], "'.lower() in ('true', '1') else 'rep117'"]
-    )
+    has_driver = ["'", value["driver_compat"], "'.lower() in ('true', '1')"]
+    range_convention = PythonExpression(["'driver' if ", *has_driver, " else 'rep117'"])
     simulator = {
         "playground": ParameterValue(value["playground"], value_type=str),
         "seed": ParameterValue(value["seed"], value_type=int),
@@ -64,6 +66,7 @@ def generate_launch_description() -> LaunchDescription:
         "motor_model": ParameterValue(value["motor_model"], value_type=str),
         "proximity_model": ParameterValue(value["proximity_model"], value_type=str),
         "out_of_range": ParameterValue(range_convention, value_type=str),
+        "driver_topics": ParameterValue(PythonExpression(has_driver), value_type=bool),
     }
     runtime = {
         "script.path": ParameterValue(value["program"], value_type=str),

@@ -14,7 +14,7 @@ from thymio_sim_ros.nodes.warner import Warner
 
 __all__ = ["TOPIC", "AsebaNetwork", "Telegram"]
 
-TOPIC = "/aseba/network"
+TOPIC = "/_aseba/network"
 HEAD = 3
 
 

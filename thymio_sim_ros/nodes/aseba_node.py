@@ -46,7 +46,7 @@ from thymio_sim_ros.nodes.warner import Warner
 
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
-SIMULATOR_STATE, SIMULATOR_RAW = "/simulator/state", "/simulator/raw"
+SIMULATOR_STATE, SIMULATOR_RAW = "/simulator/_state", "/simulator/_raw"
 DIAGNOSTICS_S = 1.0
 LISTENERS_S = 0.25
 """How often robots look whether somebody has come to listen to them."""
@@ -139,7 +139,7 @@ class AsebaRuntime:
         self._bus = Bus(node, lambda: self.robots, self._on_told)
         self._bus.reaches_all = self.params.emit_reaches == "network"
         self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
-        self._behaviours = node.create_publisher(String, "~/behaviours", qos.LATCHED)
+        self._behaviours = node.create_publisher(String, "~/_behaviours", qos.LATCHED)
         listed = [{"name": name, "description": text} for name, text in shipped_behaviours().items()]
         self._behaviours.publish(String(data=json.dumps(listed)))
         self._check = CheckService(

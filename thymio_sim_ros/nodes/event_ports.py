@@ -31,9 +31,9 @@ class EventPorts:
         self._names = names
         self._emit = emit
         self._warn = warn
-        self._any = node.create_publisher(Int16MultiArray, names.topic("aseba/events"), qos.EVENTS)
+        self._any = node.create_publisher(Int16MultiArray, names.topic("_aseba/events"), qos.EVENTS)
         self._any_emit = node.create_subscription(
-            Int16MultiArray, names.topic("aseba/emit"), self._on_any_emit, qos.EVENTS
+            Int16MultiArray, names.topic("_aseba/emit"), self._on_any_emit, qos.EVENTS
         )
         self._publishers: dict[str, Any] = {}
         self._subscriptions: list[Any] = []
@@ -44,7 +44,7 @@ class EventPorts:
         events = [event for event, _ in program.events if not is_internal(event)]
         self.words, unfit = unlike([*events, *local_events], self._topic)
         for event, why in unfit.items():
-            self._warn(f"event {event}", f"{why}: use aseba/events and aseba/emit")
+            self._warn(f"event {event}", f"{why}: use _aseba/events and _aseba/emit")
         for event, word in self.words.items():
             self._publishers[event] = self._node.create_publisher(Int16MultiArray, self._topic(word), qos.EVENTS)
             if event in events:
@@ -82,7 +82,7 @@ class EventPorts:
 
     def _on_any_emit(self, message: Int16MultiArray) -> None:
         if len(message.layout.dim) != 1:
-            self._warn("aseba/emit", "refused: layout.dim[0].label must be the name of the event")
+            self._warn("_aseba/emit", "refused: layout.dim[0].label must be the name of the event")
             return
         self._emit(message.layout.dim[0].label, list(message.data))
 

@@ -15,6 +15,9 @@ PROXIMITY = ("left", "center_left", "center", "center_right", "right", "rear_lef
 
 SIDES = ("left", "right")
 
+HIDDEN = "_"
+"""What a hidden topic's name begins with: `ros2 topic list` leaves out names with such a word (docs/ros.md)."""
+
 MAP_FRAME = "map"
 
 
@@ -83,6 +86,16 @@ class Naming:
 def ros_names(robots: tuple[str, ...]) -> dict[str, RobotNames]:
     """World name → names in ROS, for the robots of one playground, where nobody chose otherwise."""
     return Naming().all(robots)
+
+
+def is_hidden(topic: str) -> bool:
+    """Whether `ros2 topic list` leaves this topic out: one of the words of its name begins with `_`."""
+    return any(word.startswith(HIDDEN) for word in topic.split("/"))
+
+
+def raw_topic(sensor: str) -> str:
+    """The topic with the integers of a sensor, relative to the robot's namespace."""
+    return f"_raw/{sensor}"
 
 
 def topic_word(event: str) -> str:

@@ -26,9 +26,9 @@ from thymio_sim_ros.nodes import (
 from thymio_sim_ros.nodes.aseba_node import RuntimeParams
 from thymio_sim_ros.nodes.description import fixed_frames, wheel_position
 from thymio_sim_ros.nodes.migration import migration
-from thymio_sim_ros.nodes.names import SIDES
-from thymio_sim_ros.nodes.reference_text import AFTER, BEFORE, DRIVER, INTERFACES, QUALITY, RVIZ
-from thymio_sim_ros.nodes.robot_inputs import RobotInput, robot_inputs
+from thymio_sim_ros.nodes.names import SIDES, is_hidden
+from thymio_sim_ros.nodes.reference_text import AFTER, BEFORE, DRIVER, HIDDEN, INTERFACES, QUALITY, RVIZ
+from thymio_sim_ros.nodes.robot_inputs import robot_inputs
 from thymio_sim_ros.nodes.sim_interfaces import OFFERS, PACKAGE, STEPS
 from thymio_sim_ros.nodes.simulator_params import SimulatorParams
 from thymio_sim_ros.sim import sensors
@@ -68,9 +68,14 @@ def text() -> str:
     parts = [
         BEFORE,
         "## What a robot publishes\n",
-        _topics(_published()),
+        _topics(line for line in _published() if not is_hidden(line.topic)),
         "## What a robot listens to\n",
-        _topics(_line_of_input(one) for one in robot_inputs()),
+        _topics(line for line in _listened() if not is_hidden(line.topic)),
+        HIDDEN,
+        "### What a robot publishes besides\n",
+        _topics(line for line in _published() if is_hidden(line.topic)),
+        "### What a robot listens to besides\n",
+        _topics(line for line in _listened() if is_hidden(line.topic)),
         DRIVER,
         table(("topic", "", "type", ""), _of_driver()),
         "## Topics of the world\n",
@@ -123,8 +128,9 @@ def _published() -> Iterator[_Line]:
     yield _Line(robot_ports.DESCRIPTION, type_name(kind), "once", "", "latched", about)
 
 
-def _line_of_input(one: RobotInput) -> _Line:
-    return _Line(one.topic, type_name(one.type), "", "", qos.kind_of(one.profile), one.about)
+def _listened() -> Iterator[_Line]:
+    for one in robot_inputs():
+        yield _Line(one.topic, type_name(one.type), "", "", qos.kind_of(one.profile), one.about)
 
 
 def _of_driver() -> Iterator[tuple[str, str, str, str]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["AFTER", "BEFORE", "DRIVER", "INTERFACES", "QUALITY", "RVIZ"]
+__all__ = ["AFTER", "BEFORE", "DRIVER", "HIDDEN", "INTERFACES", "QUALITY", "RVIZ"]
 
 BEFORE = """\
 # The ROS 2 interface
@@ -29,16 +29,21 @@ teleop in a browser says nothing when its key is let go: `ros2 param set /simula
 ros2 launch thymio_sim_ros thymio.launch.py driver_compat:=true program:=none
 ```
 
-`driver_compat` sets `out_of_range` to `driver`: a range is -1 where nothing is seen, as the driver has it, instead of
-+inf. Code that adds or averages ranges needs this, code that compares them (`r < 0.08`) needs the default. Topics whose
-types only the driver's own package `thymio_msgs` has are there [where it is](#topics-with-types-of-thymio_msgs); their
-twins of standard types are there everywhere. Left out are:
+`driver_compat` sets two parameters of the simulator:
+
+- `out_of_range` to `driver`: a range is -1 where nothing is seen, as the driver has it, instead of +inf. Code that
+  adds or averages ranges needs this, code that compares them (`r < 0.08`) needs the default;
+- `driver_topics` to true: the rarer topics of the driver, which have [hidden names](#hidden-topics) here, are there
+  under the driver's names as well, and so are the topics whose types only its package `thymio_msgs` has ([where it
+  is installed](#topics-with-types-of-thymio_msgs)). All other topics of the driver are there without it.
+
+Left out are:
 
 - the parameters that calibrate a real robot's motors (`axis_length`, `motor.…`);
 - what `asebaros` does with types of `asebaros_msgs`. Its `aseba/events/<event>` carries both directions, told apart by
   a field that no standard type has; here `aseba/events/<event>` is what robots say, `aseba/emit/<event>` what they
   hear. In place of its services: `script.path` and `script.source`, `aseba/get_variables`, `aseba/set_variables`,
-  `aseba/list_variables`, and the latched `aseba/target` and `aseba/status`.
+  `aseba/list_variables`, and the latched `_aseba/target` and `_aseba/status`.
 
 ## Control of time and world
 
@@ -67,25 +72,49 @@ ros2 service call /simulator/get_poses rcl_interfaces/srv/GetParameters "{names:
 ros2 service call /simulator/remove rcl_interfaces/srv/SetParameters "{parameters: [{name: anna}]}"
 ```
 
-Names are those of the playground (`robot` in `/simulator/state`), also of movable things. A viewer that drags publishes
-`/simulator/place`, with the name, or a robot's frame, in `child_frame_id`; or a robot's `initialpose`, as the tools of
-RViz and Foxglove do. All of it works through the Foxglove bridge too. What is moved while time stands still is there
-after the next step.
+Names are those of the playground (`robot` in `/simulator/_state`), also of movable things. A viewer that drags
+publishes `/simulator/_place`, with the name, or a robot's frame, in `child_frame_id`; or a robot's `initialpose`,
+as the tools of RViz and Foxglove do. All of it works through the Foxglove bridge too. What is moved while time
+stands still is there after the next step.
 """
 
 DRIVER = """\
 ## Topics with types of `thymio_msgs`
 
-Of a robot, where the driver's package is installed; their twins are `comm/received` with `raw/comm`, `led/…`,
-`led/gesture/…`, `sound/tone` and `sound/system`.
+Of a robot, with the parameter `driver_topics` where the driver's package is installed; their twins of standard types,
+which are there everywhere, are `_comm/received` with `_raw/comm`, `led/circle` and `_led/…`, `_led/gesture/…`,
+`sound/tone` and `_sound/system`.
+"""
+
+HIDDEN = """\
+## Hidden topics
+
+`ros2 topic list` shows what a first node needs: wheels and odometry, distance, ground, acceleration, buttons, the
+lights of the body and the circle, a tone, the pen, the events of the program; and the names that the tools of ROS
+expect (`/tf`, `/clock`, `/diagnostics`, `joint_states`, `robot_description`, `initialpose`). With one robot these
+are at most 40 topics.
+
+All other topics have hidden names: a word of the name begins with `_`. Hidden are
+
+- what only a simulation has: `_ground_truth/odom`, `_collision`, the operator's hand (`_press/…`), what lights,
+  loudspeaker and pen show (`_led/state`, `_sound/state`, `_pen/trail`), the playground (`_markers`);
+- other forms of what is shown: Aseba's integers (`_raw/…`, `_motor/target`), `_wheels/command`, `_cmd_vel_stamped`,
+  `_proximity/laser`, `_proximity/rays`, `_buttons`;
+- what few programs need: the other lights, gestures, sounds, microphone, remote control, taps, infrared
+  communication, temperature, battery;
+- what our nodes, the page and editors tell each other: `_aseba/…`, `/simulator/_state` and the like.
+
+They work as any other topic: name them in full (`ros2 topic echo /_raw/ground`), and list them with
+`ros2 topic list --include-hidden-topics`. Foxglove, Lichtblick and the page see them; `ros2 bag record --all` needs
+`--include-hidden-topics`. The topics are always there, whether somebody listens or not.
 """
 
 INTERFACES = """\
 ## Services of `simulation_interfaces`
 
-Where that package is installed (`apt install ros-jazzy-simulation-interfaces`; no wheel has it), the simulator has its
-services, too, so that tools for other simulators of ROS work here. They answer with a code and a reason; tags, bounds
-and named poses, which the package knows besides, are refused as unsupported.
+Where that package is installed (`apt install ros-jazzy-simulation-interfaces`; no wheel has it), the simulator has
+its services, too, so that tools for other simulators of ROS work here. They answer with a code and a reason; tags,
+bounds and named poses, which the package knows besides, are refused as unsupported.
 """
 
 RVIZ = """\
@@ -105,13 +134,13 @@ lines they need where: [ros2-tools.md](ros2-tools.md).
 """
 
 QUALITY = """\
-All are reliable and keep the last messages. With `qos_overrides.<topic>.publisher.reliability:=best_effort` a sensor's
-topic is best effort, as wireless class rooms want it; `history`, `depth` and `durability` likewise.
+All are reliable and keep the last messages. With `qos_overrides.<topic>.publisher.reliability:=best_effort` a
+sensor's topic is best effort, as wireless class rooms want it; `history`, `depth` and `durability` likewise.
 """
 
 AFTER = """\
 ## From Aseba to ROS
 
-Where a program's variables, events and functions are on topics; `raw/…` carries the integers that the program sees.
+Where a program's variables, events and functions are on topics; `_raw/…` carries the integers that the program sees.
 The topics of events between programs and nodes: [aseba_ros.md](aseba_ros.md).
 """

@@ -21,7 +21,7 @@ from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.description import urdf
 from thymio_sim_ros.nodes.driver_topics import DriverTopics
-from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.names import HIDDEN, RobotNames
 from thymio_sim_ros.nodes.robot_inputs import Moment, RobotInput, robot_inputs
 from thymio_sim_ros.nodes.sensor_topics import Row
 from thymio_sim_ros.nodes.templates import Template
@@ -48,10 +48,14 @@ SERVICES: Mapping[str, tuple[type, str]] = {
 
 
 def first_words() -> frozenset[str]:
-    """First words of a robot's topics, where there is more than one, and of what a program adds."""
+    """First words of a robot's topics, where there is more than one, and of what a program adds.
+
+    Of hidden ones also without the `_`: the driver's names.
+    """
     rows = (row.topic for sensor in all_sensors() for row in sensor_topics.rows_of(sensor))
     topics = (*rows, *(one.topic for one in robot_inputs()), "aseba/")
-    return frozenset(topic.partition("/")[0] for topic in topics if "/" in topic)
+    words = {topic.partition("/")[0] for topic in topics if "/" in topic}
+    return frozenset(words | {word.removeprefix(HIDDEN) for word in words})
 
 
 @dataclass(frozen=True, slots=True)

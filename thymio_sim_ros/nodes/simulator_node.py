@@ -24,6 +24,7 @@ from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import dds_profile, driver_topics, params, qos, robot_ports, sim_interfaces
 from thymio_sim_ros.nodes.audience import Audience
+from thymio_sim_ros.nodes.driver_topics import DriverTopics
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
@@ -96,7 +97,7 @@ class Simulator:
         self._audience = Audience(self.params.periods_ns)
         self._raw = RawTopic(self._world_ports.raw, self._audience)
         self._transforms = Transforms(self.node, self._audience, self.params.transform_options)
-        self._port_options = replace(self.params.port_options, extra=driver_topics.found(self.node))
+        self._port_options = replace(self.params.port_options, extra=self._driver_topics())
         self._roster = Roster(self._ports, self.params.naming)
         self._set_world(self._new_world(playground, self.params))
         self._services = WorldServices(self.node, self)
@@ -304,6 +305,9 @@ class Simulator:
 
     def _on_full_disk(self, error: OSError) -> None:
         self.node.get_logger().error(f"the log ends here: {self.params.log}: {error.strerror}")
+
+    def _driver_topics(self) -> DriverTopics:
+        return driver_topics.found(self.node) if self.params.driver_topics else DriverTopics()
 
     def _ports(self, robot: str, names: RobotNames) -> RobotPorts:
         return RobotPorts(

@@ -32,7 +32,7 @@ class Loaded:
 
 
 class StatusPorts:
-    """The latched topics `aseba/status` and `aseba/target`."""
+    """The latched topics `_aseba/status` and `_aseba/target`."""
 
     def __init__(self, node: Node, names: RobotNames, *, number: int) -> None:
         self._node = node
@@ -42,8 +42,8 @@ class StatusPorts:
         self._constant: list[KeyValue] = []
         self._program = ""
         self.message = DiagnosticStatus(name=self._name)
-        self._status = node.create_publisher(DiagnosticStatus, names.topic("aseba/status"), qos.LATCHED)
-        self._target = node.create_publisher(String, names.topic("aseba/target"), qos.LATCHED)
+        self._status = node.create_publisher(DiagnosticStatus, names.topic("_aseba/status"), qos.LATCHED)
+        self._target = node.create_publisher(String, names.topic("_aseba/target"), qos.LATCHED)
 
     def begin(self, loaded: Loaded, spoken: str) -> None:
         """Something about the program is new: tell the target, in a language, and the status at the next `tell`."""

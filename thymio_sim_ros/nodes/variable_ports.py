@@ -50,7 +50,7 @@ class VariablePorts:
         self._last_table: list[int] = []
         self._last_table_s = 0.0
         topic = names.topic
-        self._table = node.create_publisher(Int16MultiArray, topic("aseba/variables"), qos.SENSOR)
+        self._table = node.create_publisher(Int16MultiArray, topic("_aseba/variables"), qos.SENSOR)
         self._services = [
             node.create_service(GetParameters, topic("aseba/get_variables"), self._on_get),
             node.create_service(SetParameters, topic("aseba/set_variables"), self._on_set),

@@ -68,7 +68,7 @@ def describe(robot: str = "") -> Node:
 
 
 def _scene(names: Names) -> Panel:
-    shown = ("/markers", "/markers/objects", names.topic("pen/trail"), names.topic("proximity/rays"))
+    shown = ("/_markers", "/_markers/objects", names.topic("_pen/trail"), names.topic("_proximity/rays"))
     return Panel(
         "3D",
         "scene",
@@ -147,7 +147,7 @@ def _sensors(names: Names) -> Node:
         "ground",
         "Ground (reflected light)",
         # Words 4 and 5 of the ground sensors are what Aseba calls prox.ground.delta.
-        ((side, f"{names.topic('raw/ground')}.data[{4 + index}]") for index, side in enumerate(("left", "right"))),
+        ((side, f"{names.topic('_raw/ground')}.data[{4 + index}]") for index, side in enumerate(("left", "right"))),
         low=0.0,
         high=1100.0,
     )
@@ -175,11 +175,11 @@ def _lights(names: Names) -> Node:
         _row(
             (
                 _publish("circle", names.topic("led/circle"), "std_msgs/msg/Float32MultiArray", "Circle", circle),
-                _publish("lights-off", names.topic("led/off"), "std_msgs/msg/Empty", "All lights off", {}),
+                _publish("lights-off", names.topic("_led/off"), "std_msgs/msg/Empty", "All lights off", {}),
             )
         )
     )
-    state = _raw("lights", "Lights (levels)", f"{names.topic('led/state')}.data")
+    state = _raw("lights", "Lights (levels)", f"{names.topic('_led/state')}.data")
     return Split("column", (*((14.0, line) for line in lines), (44.0, state)))
 
 
@@ -191,9 +191,9 @@ def _program(names: Names) -> Node:
             for word in ("run", "pause", "step", "stop", "reset")
         ),
     )
-    status = _raw("status", "Program", names.topic("aseba/status"))
-    variables = _raw("variables", "Variables", names.topic("aseba/variables"))
-    events = _raw("events", "Events", names.topic("aseba/events"))
+    status = _raw("status", "Program", names.topic("_aseba/status"))
+    variables = _raw("variables", "Variables", names.topic("_aseba/variables"))
+    events = _raw("events", "Events", names.topic("_aseba/events"))
     looks = Tabs("looks", (("State", status), ("Variables", variables), ("Events", events)))
     return Split("column", ((55, looks), (45, control)))
 
