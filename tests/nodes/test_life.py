@@ -180,20 +180,20 @@ def test_an_executable_says_what_there_is_and_where(ros, logged, simulation, run
 
 
 @pytest.mark.parametrize(
-    ("node", "name", "page"),
+    ("node", "name", "near", "page"),
     [
-        (Simulator, "simulator", "ros.md"),
-        (AsebaRuntime, "aseba_runtime", "ros.md"),
-        (WebPage, "web_ui", "ros2-tools.md"),
+        (Simulator, "simulator", " (did you mean playground?)", "ros.md"),
+        (AsebaRuntime, "aseba_runtime", "", "ros.md"),
+        (WebPage, "web_ui", "", "ros2-tools.md"),
     ],
 )
-def test_a_misspelt_parameter_is_told(ros_domain, logged, node, name, page):
+def test_a_misspelt_parameter_is_told_with_the_nearest(ros_domain, logged, node, name, near, page):
     context = Context()
     context.init(args=["--ros-args", "-p", "playgroud:=maze", "-p", "use_sim_time:=false"])
     node(context, *([WebParams(port=0)] if node is WebPage else [])).close()
     context.shutdown()
     assert [text for text in logged if text.startswith("parameter")] == [
-        f"parameter playgroud is none of {name} and does nothing; see docs/{page}"
+        f"parameter playgroud is none of {name} and does nothing{near}; see docs/{page}"
     ]
 
 
@@ -203,6 +203,18 @@ def test_an_argument_that_is_not_of_ros_is_answered_and_nothing_starts(capfd, ar
     out, err = capfd.readouterr()
     assert "--ros-args -p PARAMETER:=VALUE" in (out if code == 0 else err)
     assert (f"argument '{argument}' found" in err) == bool(code)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["-p", "seed=3"], "ROS does not begin: Couldn't parse parameter override rule: '-p seed=3'"),
+        (["--foo"], "no arguments of ROS: ['--foo']"),
+    ],
+)
+def test_an_argument_that_ros_does_not_understand_is_told_in_one_line(capfd, words, told):
+    assert run_main(lambda context: pytest.fail("started"), ["--ros-args", *words]) == 2
+    assert f"thymio-sim: {told}" in capfd.readouterr().err.splitlines()
 
 
 SLOW_TO_CLOSE = """
