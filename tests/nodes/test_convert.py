@@ -131,9 +131,9 @@ def test_yaw_survives_as_quaternion(yaw):
 
 
 def test_one_robot_has_no_name_and_several_have_theirs():
-    assert ros_names(("thymio",))["thymio"].topic("odom") == "/odom"
+    assert ros_names(("thymio",))["thymio"].topic("odom") == "odom"
     names = ros_names(("anna", "bert"))
-    assert names["bert"].topic("odom") == "/bert/odom"
+    assert names["bert"].topic("odom") == "bert/odom"
     assert names["bert"].frame("base_link") == "bert/base_link"
 
 

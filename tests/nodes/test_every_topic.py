@@ -203,7 +203,7 @@ def test_velocities_end_after_their_timeout_on_all_topics(ros, simulation, topic
 def test_what_is_published_of_the_world(ros, simulation, topic):
     one = world_ports.TOPICS[topic]
     sim = simulation(playground=PAIR, publish_map=True)
-    name = topic.replace("~", "/simulator")
+    name = topic if topic.startswith("/") else f"/{topic.replace('~', 'simulator')}"
     (info,) = ros.node.get_publishers_info_by_topic(name)
     assert info.topic_type == reference.type_name(one.type)
     assert is_as_declared(info, one.profile)

@@ -60,7 +60,7 @@ class RuntimeParams:
         [""], "Namespaces of the robots that run the program at first; '' is the only robot", fixed=True
     )
     follow_simulator: bool = param(
-        True, "Whether the robots are those of /simulator/_state, once there is one", fixed=True
+        True, "Whether the robots are those of simulator/_state, once there is one", fixed=True
     )
     path: str = param("", "Program: a built-in behaviour's name or an .aesl file", name="script.path")
     source: str = param("", "Program: text of an .aesl file or of one Aseba program", name="script.source")
@@ -112,7 +112,7 @@ def adopt_overrides(node: Node) -> dict[str, Any]:
     """
     found = {}
     ours = params.by_name(RuntimeParams())
-    params.warn_of_unknown(node, "ros.md", lambda name: name in ours or is_free(name))
+    params.warn_of_unknown(node, "ros.md", lambda name: name in ours or is_free(name), ours)
     for name in list(node.get_parameters_by_prefix("")):
         match = _FREE.fullmatch(name)
         if match is not None and (match["robot"] or match["constant"]):

@@ -24,7 +24,7 @@ from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.device.status import OFF
 from thymio_sim_ros.nodes import direct, driver_senses, qos
 from thymio_sim_ros.nodes.event_ports import EventPorts
-from thymio_sim_ros.nodes.names import RobotNames, raw_topic
+from thymio_sim_ros.nodes.names import RobotNames, full_name, raw_topic
 from thymio_sim_ros.nodes.output_ports import OutputPorts
 from thymio_sim_ros.nodes.status_ports import Loaded, StatusPorts, place
 from thymio_sim_ros.nodes.variable_ports import VariablePorts
@@ -177,7 +177,7 @@ class DevicePorts:
         try:
             self.device.feed(sensor, words)
         except ValueError as error:
-            self.warn(self.names.topic(raw_topic(sensor)), f"refused: {error}")
+            self.warn(full_name(self._node, self.names.topic(raw_topic(sensor))), f"refused: {error}")
 
     def is_due(self, now_ns: int) -> bool:
         """Whether there is anything to do now for a robot that has been fed."""

@@ -11,7 +11,7 @@ from std_msgs.msg import Int16MultiArray
 from thymio_sim_ros.device.behaviour_host import is_internal
 from thymio_sim_ros.device.program import ThymioProgram
 from thymio_sim_ros.nodes import convert, qos
-from thymio_sim_ros.nodes.names import RobotNames, topic_word
+from thymio_sim_ros.nodes.names import RobotNames, full_name, topic_word
 
 __all__ = ["Emit", "EventPorts", "unlike"]
 
@@ -75,7 +75,7 @@ class EventPorts:
         self._subscriptions.clear()
 
     def _topic(self, word: str) -> str:
-        return self._names.topic(f"aseba/events/{word}")
+        return full_name(self._node, self._names.topic(f"aseba/events/{word}"))
 
     def _emitter(self, event: str) -> Callable[[Int16MultiArray], None]:
         return lambda message: self._emit(event, list(message.data))

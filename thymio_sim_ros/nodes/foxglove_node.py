@@ -128,7 +128,13 @@ class FoxgloveBridge:
         capabilities = announced(values, uses_sim_time=self._uses_sim_time)
         try:
             return ServerThread(
-                ServerInfo("thymio_sim_ros", capabilities, (CDR, JSON), session_id=_new_id()),
+                ServerInfo(
+                    "thymio_sim_ros",
+                    capabilities,
+                    (CDR, JSON),
+                    {"namespace": self.node.get_namespace()},
+                    session_id=_new_id(),
+                ),
                 self._mailbox,
                 address=values.address,
                 port=values.port,

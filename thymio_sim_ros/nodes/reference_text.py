@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["AFTER", "BEFORE", "DRIVER", "HIDDEN", "INTERFACES", "QUALITY", "RVIZ"]
+__all__ = ["AFTER", "ALL_IN_ONE", "BEFORE", "DRIVER", "HIDDEN", "INTERFACES", "QUALITY", "RVIZ"]
 
 BEFORE = """\
 # The ROS 2 interface
@@ -11,7 +11,8 @@ This page is written from the declarations that the nodes use: `python -m thymio
 
 Only standard message types. Units are SI, frames follow REP 103 and 105, ranges REP 117. Names of a robot's topics and
 services are relative to its namespace: a robot alone has none (`/odom`, frame `base_link`), of several each has its
-name (`/anna/odom`, frame `anna/base_link`). One node, `/simulator`, serves all robots. Topics cost nothing until
+name (`/anna/odom`, frame `anna/base_link`). One node, `/simulator`, serves all robots; all names move with it into a
+[namespace](#namespaces). Topics cost nothing until
 somebody subscribes, but for what is sent on a change. While nobody hears what is regular, a change may be told up to
 0.1 s late; its stamp is right, if it has one.
 
@@ -44,6 +45,34 @@ Left out are:
   a field that no standard type has; here `aseba/events/<event>` is what robots say, `aseba/emit/<event>` what they
   hear. In place of its services: `script.path` and `script.source`, `aseba/get_variables`, `aseba/set_variables`,
   `aseba/list_variables`, and the latched `_aseba/target` and `_aseba/status`.
+
+## Namespaces
+
+All names of the suite are relative. In the namespace `/lab1` (`-r __ns:=/lab1`, `PushRosNamespace`, or `namespace`
+of the launch file) there are `/lab1/cmd_vel`, `/lab1/anna/odom` of several robots, `/lab1/simulator/pause` and
+`/lab1/aseba_runtime`. Simulator, runtime, bridge and page find each other within one namespace; the page also finds a
+simulator below the namespace of its bridge.
+
+```sh
+ros2 run thymio_sim_ros thymio --ros-args -r __ns:=/lab1 -p port:=8081 -p foxglove_port:=8766
+ros2 run thymio_sim_ros simulator --ros-args -r __ns:=/robot1
+thymio-sim --port 8081 --foxglove-port 8766 --ros-args -r __ns:=/lab1
+ros2 topic pub /lab1/cmd_vel geometry_msgs/msg/Twist "{linear: {x: 0.1}}"
+thymio-sim foxglove-layout --namespace lab1 -o lab1.json
+```
+
+Two suites in two namespaces of one domain share what is global in ROS, and nothing else:
+
+- `/clock`: two simulators must not both publish it. Start all nodes of the second suite, those of students too, with
+  `-r /clock:=/lab2/clock`.
+- `/tf` and `/tf_static`: frames of the same name would be mixed up, and frames do not follow the namespace. With
+  `namespaced_tf:=true` they are on `tf` and `tf_static` in the robot's namespace; or give them other names by
+  `tf_prefix:=lab2` and `map_frame:=lab2/map`.
+- `/diagnostics`, `/rosout` and `/parameter_events` are meant to be shared: entries name their node
+  (`lab1/simulator: pace`).
+
+Aseba programs of two namespaces do not hear each other, unless both runtimes have the remapping
+`-r _aseba/network:=/_aseba/network`.
 
 ## Control of time and world
 
@@ -136,6 +165,21 @@ lines they need where: [ros2-tools.md](ros2-tools.md).
 QUALITY = """\
 All are reliable and keep the last messages. With `qos_overrides.<topic>.publisher.reliability:=best_effort` a
 sensor's topic is best effort, as wireless class rooms want it; `history`, `depth` and `durability` likewise.
+"""
+
+ALL_IN_ONE = """\
+## Parameters of the combined process
+
+`ros2 run thymio_sim_ros thymio` runs all nodes in one process. A parameter goes to the nodes that it belongs to; to
+choose one node, put its name in front (`-p foxglove_bridge:port:=8766`). A parameter that no node has is named in a
+warning, with the nearest that there is.
+
+```sh
+ros2 run thymio_sim_ros thymio --ros-args -p playground:=maze -p port:=8081 -p foxglove_port:=8766 -p script.path:=none
+```
+
+Besides, `use_sim_time` is that of all but the simulator, `qos_overrides.…` of the simulator, and
+`script.constants.<NAME>` and `robots.<name>.…` of the runtime. `thymio-sim --ros-args …` takes the same.
 """
 
 AFTER = """\

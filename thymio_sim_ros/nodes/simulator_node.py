@@ -27,7 +27,7 @@ from thymio_sim_ros.nodes.audience import Audience
 from thymio_sim_ros.nodes.driver_topics import DriverTopics
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
-from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.names import RobotNames, full_name
 from thymio_sim_ros.nodes.raw_topic import RawTopic
 from thymio_sim_ros.nodes.robot_inputs import Moment
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
@@ -124,7 +124,7 @@ class Simulator:
     @property
     def greeting(self) -> str:
         """What there is now, for a person."""
-        robots = ", ".join(f"/{names.name}" for names in self.names.values())
+        robots = ", ".join(full_name(self.node, names.name).rstrip("/") or "/" for names in self.names.values())
         return f"Playground {self.playground_name}, robots in {robots or 'none'}"
 
     def turn(self, executor: Executor) -> None:

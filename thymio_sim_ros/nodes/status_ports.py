@@ -36,7 +36,7 @@ class StatusPorts:
 
     def __init__(self, node: Node, names: RobotNames, *, number: int) -> None:
         self._node = node
-        self._name = f"aseba: {names.name or 'robot'}"
+        self._name = f"{node.get_namespace().strip('/')}/aseba: {names.name or 'robot'}".removeprefix("/")
         self._number = number
         self._last: tuple[DeviceStatus, int | None] | None = None
         self._constant: list[KeyValue] = []

@@ -65,11 +65,11 @@ TOPICS: Mapping[str, WorldTopic] = {
         qos.EVENTS,
     ),
     "~/_playgrounds": WorldTopic(String, "once", "JSON: shipped playgrounds with titles and descriptions", qos.LATCHED),
-    "/_markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.LATCHED, "map"),
-    "/_markers/objects": WorldTopic(
+    "_markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.LATCHED, "map"),
+    "_markers/objects": WorldTopic(
         MarkerArray, "≤ 20, change", "movable things and doors as they stand", qos.LATCHED, "map"
     ),
-    "/map": WorldTopic(OccupancyGrid, "change", "only with `publish_map`: walls, 1 cm cells", qos.LATCHED, "map"),
+    "map": WorldTopic(OccupancyGrid, "change", "only with `publish_map`: walls, 1 cm cells", qos.LATCHED, "map"),
     "/diagnostics": WorldTopic(
         DiagnosticArray,
         "1",
@@ -133,7 +133,8 @@ class WorldPorts:
         map_frame: str = MAP_FRAME,
     ) -> None:
         """`clock_rate_hz`: of wall time, at most."""
-        left_out = {"/clock": not publish_clock, "/map": not publish_map}
+        self._name = node.get_fully_qualified_name().removeprefix("/")
+        left_out = {"/clock": not publish_clock, "map": not publish_map}
         self._publishers = {
             name: node.create_publisher(topic.type, name, topic.profile)
             for name, topic in TOPICS.items()
@@ -181,9 +182,9 @@ class WorldPorts:
         """Latched markers of all in the playground that stays where it is."""
         fixed = [solid for solid in playground.solids if solid.is_fixed]
         markers = playground_markers((*playground.floors, *playground.paints, *fixed), self._map_frame)
-        self._publishers["/_markers"].publish(markers)
-        if "/map" in self._publishers:
-            self._publishers["/map"].publish(occupancy(playground.floors, fixed, self._map_frame))
+        self._publishers["_markers"].publish(markers)
+        if "map" in self._publishers:
+            self._publishers["map"].publish(occupancy(playground.floors, fixed, self._map_frame))
 
     def publish_objects(self, world: World, *, last: bool) -> None:
         """Latched markers of movable things and doors, when they have moved.
@@ -200,14 +201,14 @@ class WorldPorts:
         self._shown = shown
         solids = {solid.name: solid for solid in world.playground.solids if not solid.is_fixed}
         placed = [solids[thing.name].at(thing.pose) for thing in world.objects if not thing.is_fallen]
-        self._publishers["/_markers/objects"].publish(playground_markers(placed, self._map_frame))
+        self._publishers["_markers/objects"].publish(playground_markers(placed, self._map_frame))
 
     def publish_diagnostics(self, state: WorldState, pace: Pace) -> None:
         """Pace of the simulation (ros-interface.md section 5)."""
         slow = not state.paused and 0 < state.achieved < SLOW * state.real_time_factor
         status = DiagnosticStatus(
             level=DiagnosticStatus.WARN if slow else DiagnosticStatus.OK,
-            name="simulator: pace",
+            name=f"{self._name}: pace",
             hardware_id="thymio_sim_ros",
             message="paused" if state.paused else "slower than wanted" if slow else "running",
             values=[

@@ -35,23 +35,28 @@ _FRAMES = (
 
 
 class Names:
-    """Names of one robot: a namespace and a prefix of frames, both empty where it is the only one."""
+    """Names of one robot in a suite; `robot` is empty where it is the only one, `namespace` that of the suite."""
 
-    def __init__(self, robot: str = "") -> None:
+    def __init__(self, robot: str = "", namespace: str = "") -> None:
         self._prefix = f"{robot}/" if robot else ""
+        self._namespace = f"/{namespace}" if namespace else ""
+
+    def of_world(self, name: str) -> str:
+        """Absolute name of a topic or service of the suite as a whole."""
+        return f"{self._namespace}/{name}"
 
     def topic(self, name: str) -> str:
-        """Absolute topic or service name."""
-        return f"/{self._prefix}{name}"
+        """Absolute name of a topic or service of the robot."""
+        return self.of_world(f"{self._prefix}{name}")
 
     def frame(self, name: str) -> str:
         """Frame name."""
         return f"{self._prefix}{name}"
 
 
-def describe(robot: str = "") -> Node:
-    """The whole layout; `robot` is its namespace, empty for the only robot of a playground."""
-    names = Names(robot)
+def describe(robot: str = "", namespace: str = "") -> Node:
+    """The whole layout; `robot`: its name, empty for the only robot of a playground; `namespace`: of the suite."""
+    names = Names(robot, namespace)
     left = Split("column", ((62, _scene(names)), (38, _drive(names))))
     tabs = Tabs(
         "details",
@@ -68,7 +73,12 @@ def describe(robot: str = "") -> Node:
 
 
 def _scene(names: Names) -> Panel:
-    shown = ("/_markers", "/_markers/objects", names.topic("_pen/trail"), names.topic("_proximity/rays"))
+    shown = (
+        names.of_world("_markers"),
+        names.of_world("_markers/objects"),
+        names.topic("_pen/trail"),
+        names.topic("_proximity/rays"),
+    )
     return Panel(
         "3D",
         "scene",
@@ -126,10 +136,10 @@ def _drive(names: Names) -> Node:
     world = Tabs(
         "world",
         (
-            ("Reset", _call("world-reset", "/simulator/reset", "Begin again")),
-            ("Pause", _call("world-pause", "/simulator/pause", "Stop the clock", {"data": True})),
-            ("Go on", _call("world-go", "/simulator/pause", "Start the clock", {"data": False})),
-            ("Step", _call("world-step", "/simulator/step", "One step")),
+            ("Reset", _call("world-reset", names.of_world("simulator/reset"), "Begin again")),
+            ("Pause", _call("world-pause", names.of_world("simulator/pause"), "Stop the clock", {"data": True})),
+            ("Go on", _call("world-go", names.of_world("simulator/pause"), "Start the clock", {"data": False})),
+            ("Step", _call("world-step", names.of_world("simulator/step"), "One step")),
         ),
     )
     return Split("row", ((50, teleop), (50, world)))
