@@ -88,7 +88,7 @@ def test_every_display_shows_a_topic_of_its_type_with_the_durability_it_has(conf
 def test_robot_playground_movable_things_ranges_and_odometry_are_shown_at_once(config):
     enabled = {(_topic(display) or {}).get("Value") for display in _all(config) if display["Enabled"]}
     sides = ("left", "center_left", "center", "center_right", "right", "rear_left", "rear_right")
-    wanted = {"robot_description", "/markers", "/markers/objects", "odom", *(f"proximity/{side}" for side in sides)}
+    wanted = {"robot_description", "/_markers", "/_markers/objects", "odom", *(f"proximity/{side}" for side in sides)}
     assert wanted <= enabled
     assert config["Visualization Manager"]["Global Options"]["Fixed Frame"] == "map"
 
@@ -100,4 +100,4 @@ def test_the_pose_tool_moves_the_robot(config):
 
 def test_names_are_relative_but_those_of_the_whole_world(config):
     names = {topic["Value"] for display in _all(config) if (topic := _topic(display))}
-    assert {name for name in names if name.startswith("/")} == {"/markers", "/markers/objects", "/map"}
+    assert {name for name in names if name.startswith("/")} == {"/_markers", "/_markers/objects", "/map"}

@@ -45,6 +45,7 @@ example:
   thymio-sim runner --log run.jsonl; thymio-sim replay run.jsonl   (the same again, bit for bit)
   thymio-sim convert maze.playground -o maze.json            (from Aseba and others; no ROS)
   thymio-sim foxglove-layout -o thymio.json                  (panels for Foxglove and Lichtblick)
+  thymio-sim --ros-args -r __ns:=/lab1                       (arguments of ROS come last; here a namespace)
 """
 
 RUNNER_CODES = """\
@@ -52,6 +53,8 @@ exit code: 0 done; 1 a program stopped with a fault, which is told on stderr and
 """
 
 USAGE_ERROR, DIFFERENT, FAULTY = 2, 1, 1
+
+ROS_ARGS = "--ros-args"
 
 
 class UsageError(Exception):
@@ -87,7 +90,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def start_suite(argv: Sequence[str]) -> int:
     """Simulator, Aseba runtime, Foxglove bridge and page, until Ctrl-C."""
-    options = _suite_parser().parse_args(argv)
+    own, of_ros = _split_ros_args(argv)
+    options = _suite_parser().parse_args(own)
     suite = Suite(
         playground=options.playground,
         program=_program(options),
@@ -124,9 +128,16 @@ def start_suite(argv: Sequence[str]) -> int:
     from thymio_sim_ros.nodes import all_nodes  # loads rcl
 
     try:
-        return all_nodes.run(suite, [], on_ready=lambda: _greet(suite, robots))
+        return all_nodes.run(suite, of_ros, on_ready=lambda: _greet(suite, robots))
     finally:
         leftovers.remove_new(before)
+
+
+def _split_ros_args(argv: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Our own arguments, and those of ROS: from `--ros-args` on."""
+    words = list(argv)
+    place = words.index(ROS_ARGS) if ROS_ARGS in words else len(words)
+    return words[:place], words[place:]
 
 
 def run_without_ros(argv: Sequence[str]) -> int:

@@ -23,13 +23,14 @@ In the application: Layouts, Import from file. For a robot without a namespace t
 example:
   thymio-sim foxglove-layout --app lichtblick -o thymio.json
   thymio-sim foxglove-layout --robot thymio_1 -o thymio_1.json     (one of several robots)
+  thymio-sim foxglove-layout --namespace lab1 -o lab1.json         (of a suite in a namespace)
 """
 
 
 def run(argv: Sequence[str]) -> int:
     """Write one layout; the exit code."""
     options = _parser().parse_args(argv)
-    text = render(options.app, options.robot)
+    text = render(options.app, options.robot, options.namespace)
     if options.output is None:
         with standard_output():
             sys.stdout.write(text)
@@ -50,7 +51,7 @@ def hint(robots: Sequence[str]) -> str:
     return f"thymio-sim foxglove-layout --robot {robots[0]} -o {robots[0]}.json (or of another robot)"
 
 
-def _robot(text: str) -> str:
+def _namespace(text: str) -> str:
     name = text.strip("/")
     if name and _NAME.fullmatch(name) is None:
         raise argparse.ArgumentTypeError(f"'{text}' is no namespace; expected letters, digits and _, such as thymio_1")
@@ -66,7 +67,10 @@ def _parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     parser.add_argument(
-        "--robot", type=_robot, default="", metavar="NAME", help="namespace of the robot, where there are several"
+        "--robot", type=_namespace, default="", metavar="NAME", help="name of the robot, where there are several"
+    )
+    parser.add_argument(
+        "--namespace", type=_namespace, default="", metavar="NAME", help="namespace of the whole suite, if it has one"
     )
     parser.add_argument("--app", choices=APPS, default="foxglove", help="which application (default: %(default)s)")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="file to write (default: standard output)")

@@ -54,7 +54,7 @@ export class Actions {
    * @param {boolean} pressed
    */
   press(robot, button, pressed) {
-    const topic = robotTopic(robot, `press/${button}`);
+    const topic = robotTopic(robot, `_press/${button}`);
     const since = this.held.get(topic);
     const tell = () => this.client.publish(topic, "std_msgs/msg/Bool", { data: pressed });
     if (pressed) {

@@ -6,7 +6,7 @@ import { memory } from "./memory.js";
 /** @typedef {import("./editor/desk.js").Desk} Desk */
 /** @typedef {import("./panels/index.js").Context} Context */
 
-const TOPIC = /^\/(?:[^/]+\/)?aseba\/(?:target|variables|events)$|^\/aseba_runtime\/behaviours$/;
+const TOPIC = /^\/(?:[^/]+\/)?_aseba\/(?:target|variables|events)$|^\/aseba_runtime\/_behaviours$/;
 
 export class EditorHost {
   /**

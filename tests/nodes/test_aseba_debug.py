@@ -25,7 +25,7 @@ def prox(ros):
 
     def send():
         publisher = send.publisher = getattr(send, "publisher", None) or ros.publisher(
-            Int16MultiArray, "/raw/proximity"
+            Int16MultiArray, "/_raw/proximity"
         )
         publisher.publish(Int16MultiArray(data=[0] * 7))
 
@@ -188,5 +188,5 @@ def test_a_button_of_the_simulator_meets_a_breakpoint(ros, simulation, runtime):
     sim = simulation()
     runtime("onevent button.center\ncall leds.top(32, 0, 0)", breakpoints=[2])
     status = Status(ros)
-    ros.publisher(Bool, "/press/center").publish(Bool(data=True))
+    ros.publisher(Bool, "/_press/center").publish(Bool(data=True))
     sim.until(lambda: status.place == ("paused", "button.center", "2"))

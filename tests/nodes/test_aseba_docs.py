@@ -55,17 +55,17 @@ def maze(tmp_path, monkeypatch):
 
 def test_topics_of_the_tables_are_there(ros, runtime):
     runtime(MAZE, watch=["counter"])
-    wanted = [f"/{name}" for name in names(where=r"Int16MultiArray") if name.startswith("aseba/")]
+    wanted = [f"/{name}" for name in names(where=r"Int16MultiArray") if name.startswith(("aseba/", "_aseba/"))]
     assert len(wanted) >= 6
     ros.until(lambda: set(wanted) <= {name for name, _ in ros.node.get_topic_names_and_types()})
-    headings = re.findall(r"^### `(aseba/\w+)` \(`([\w/]+)`", DOC, re.MULTILINE)
+    headings = re.findall(r"^### `(_aseba/\w+)` \(`([\w/]+)`", DOC, re.MULTILINE)
     found = dict(ros.node.get_topic_names_and_types())
     assert {f"/{name}": [kind] for name, kind in headings} == {f"/{name}": found[f"/{name}"] for name, _ in headings}
 
 
 def test_services_of_the_tables_are_there(ros, runtime):
     runtime(MAZE)
-    wanted = [f"/{name}" for name in names(where=r"Trigger|srv/") if name.startswith("aseba/")]
+    wanted = [f"/{name}" for name in names(where=r"Trigger|srv/") if name.startswith(("aseba/", "_aseba/"))]
     assert len(wanted) == 10
     ros.until(lambda: {*wanted, "/aseba_runtime/check"} <= {name for name, _ in ros.node.get_service_names_and_types()})
 

@@ -28,7 +28,7 @@ HEAR = program(
 
 
 def press_left(ros, robot):
-    ros.publisher(Int16MultiArray, f"/{robot}/raw/buttons").publish(Int16MultiArray(data=[0, 1, 0, 0, 0]))
+    ros.publisher(Int16MultiArray, f"/{robot}/_raw/buttons").publish(Int16MultiArray(data=[0, 1, 0, 0, 0]))
 
 
 def logged(ros, logs, text):
@@ -44,18 +44,18 @@ def test_an_event_from_ros_reaches_every_robot_that_declares_it(ros, runtime):
 
 def test_or_one_robot_only(ros, runtime):
     runtime(HEAR, **TWO, emit_reaches="robot")
-    ros.publisher(Int16MultiArray, "/bert/aseba/emit").publish(event("ping", 3, 4))
+    ros.publisher(Int16MultiArray, "/bert/_aseba/emit").publish(event("ping", 3, 4))
     ros.until(lambda: get_variables(ros, "heard", robot="/bert") == [[3, 4]])
     assert get_variables(ros, "times", robot="/anna") == [[0]]
     assert set_parameters(ros, {"emit_reaches": "network"}).successful
-    ros.publisher(Int16MultiArray, "/bert/aseba/emit").publish(event("ping", 5))
+    ros.publisher(Int16MultiArray, "/bert/_aseba/emit").publish(event("ping", 5))
     ros.until(lambda: get_variables(ros, "heard", robot="/anna") == [[5, 0]])
 
 
 def test_an_event_that_only_another_robot_declares_reaches_it(ros, runtime):
     runtime(HEAR, **TWO)
     assert set_parameters(ros, {"robots.anna.script.source": "var a"}).successful
-    ros.publisher(Int16MultiArray, "/anna/aseba/emit").publish(event("ping", 9))
+    ros.publisher(Int16MultiArray, "/anna/_aseba/emit").publish(event("ping", 9))
     ros.until(lambda: get_variables(ros, "heard", robot="/bert") == [[9, 0]])
 
 
@@ -71,7 +71,7 @@ def test_an_event_that_only_another_robot_declares_reaches_it(ros, runtime):
 def test_an_event_that_cannot_be_is_refused_with_a_warning(ros, runtime, message, found):
     runtime(HEAR)
     logs = ros.collect(Log, "/rosout")
-    ros.publisher(Int16MultiArray, "/aseba/emit").publish(message)
+    ros.publisher(Int16MultiArray, "/_aseba/emit").publish(message)
     logged(ros, logs, found)
     assert get_variables(ros, "times") == [[0]]
 
@@ -79,7 +79,7 @@ def test_an_event_that_cannot_be_is_refused_with_a_warning(ros, runtime, message
 def test_one_warning_does_not_hide_another(ros, runtime):
     runtime(HEAR)
     logs = ros.collect(Log, "/rosout")
-    emit = ros.publisher(Int16MultiArray, "/aseba/emit")
+    emit = ros.publisher(Int16MultiArray, "/_aseba/emit")
     for number in range(20):
         emit.publish(event("pong", number))
     emit.publish(event("ping", 1, 2, 3))
@@ -94,7 +94,7 @@ def test_an_event_whose_name_is_too_long_for_a_topic_has_none(ros, runtime):
     assert set_parameters(
         ros, {"script.source": program(f"var {'v' * 245} = 7", (name, 0)), "watch": ["v" * 245]}
     ).successful
-    logged(ros, logs, f"event {name} has a name that is too long for a topic: use aseba/events and aseba/emit")
+    logged(ros, logs, f"event {name} has a name that is too long for a topic: use _aseba/events and _aseba/emit")
     assert node.robots[0].program.events
 
 
@@ -127,8 +127,8 @@ def test_robots_that_answer_each_other_for_ever_let_others_have_their_turn(ros, 
 def test_names_are_made_fit_for_topics_and_the_label_keeps_them(ros, runtime):
     runtime(program("onevent button.left\nemit a.b 1\nemit _ü 2", ("a.b", 1), ("_ü", 1)))
     plain = ros.collect(Int16MultiArray, "/aseba/events/a_b")
-    anything = ros.collect(Int16MultiArray, "/aseba/events")
-    ros.publisher(Int16MultiArray, "/raw/buttons").publish(Int16MultiArray(data=[0, 1, 0, 0, 0]))
+    anything = ros.collect(Int16MultiArray, "/_aseba/events")
+    ros.publisher(Int16MultiArray, "/_raw/buttons").publish(Int16MultiArray(data=[0, 1, 0, 0, 0]))
     ros.until(lambda: plain and len(anything) == 2)
     assert [message.layout.dim[0].label for message in anything] == ["a.b", "_ü"]
 
@@ -138,10 +138,10 @@ def test_events_that_share_a_name_have_the_generic_pair_alone(ros, runtime):
     logs = ros.collect(Log, "/rosout")
     source = program("onevent button.left\nemit a.b 1", ("a.b", 1), ("a_b", 1))
     assert set_parameters(ros, {"script.source": source}).successful
-    logged(ros, logs, "event a.b shares the topic name a_b with another: use aseba/events and aseba/emit")
-    anything = ros.collect(Int16MultiArray, "/aseba/events")
+    logged(ros, logs, "event a.b shares the topic name a_b with another: use _aseba/events and _aseba/emit")
+    anything = ros.collect(Int16MultiArray, "/_aseba/events")
     assert ros.node.count_publishers("/aseba/events/a_b") == 0
-    ros.publisher(Int16MultiArray, "/raw/buttons").publish(Int16MultiArray(data=[0, 1, 0, 0, 0]))
+    ros.publisher(Int16MultiArray, "/_raw/buttons").publish(Int16MultiArray(data=[0, 1, 0, 0, 0]))
     ros.until(lambda: anything)
 
 
@@ -157,15 +157,15 @@ def test_topics_of_events_come_and_go_with_the_program(ros, runtime):
 def test_local_events_are_published_where_they_are_wanted(ros, runtime):
     runtime("var a", local_events=["prox", "button.left", "no.such"])
     prox = ros.collect(Int16MultiArray, "/aseba/events/prox")
-    anything = ros.collect(Int16MultiArray, "/aseba/events")
-    ros.publisher(Int16MultiArray, "/raw/proximity").publish(Int16MultiArray(data=[0] * 7))
+    anything = ros.collect(Int16MultiArray, "/_aseba/events")
+    ros.publisher(Int16MultiArray, "/_raw/proximity").publish(Int16MultiArray(data=[0] * 7))
     ros.until(lambda: prox and anything)
     assert list(prox[0].data) == []
     assert anything[0].layout.dim[0].label == "prox"
     assert ros.node.count_publishers("/aseba/events/motor") == 0
     assert set_parameters(ros, {"local_events": ["*"]}).successful
     motor = ros.collect(Int16MultiArray, "/aseba/events/motor")
-    ros.publisher(Int16MultiArray, "/raw/motor").publish(Int16MultiArray(data=[0] * 4))
+    ros.publisher(Int16MultiArray, "/_raw/motor").publish(Int16MultiArray(data=[0] * 4))
     ros.until(lambda: motor)
     assert set_parameters(ros, {"local_events": []}).successful
     ros.until(lambda: ros.node.count_publishers("/aseba/events/motor") == 0)
@@ -199,7 +199,7 @@ def test_an_event_from_ros_reaches_robots_of_other_runtimes(ros, runtime):
     runtime("var a", **TWO)
     other = second(ros, "carl")
     ros.until(lambda: ros.node.count_subscribers(TOPIC) == 2)
-    publisher = ros.publisher(Int16MultiArray, "/anna/aseba/emit")
+    publisher = ros.publisher(Int16MultiArray, "/anna/_aseba/emit")
     device = other.robots[0].device
 
     def heard():

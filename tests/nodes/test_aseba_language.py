@@ -120,7 +120,7 @@ def test_an_editor_behind_the_bridge_checks_loads_and_steps(ros, studio, runtime
 
 def test_the_target_comes_with_the_program_and_changes_with_it(ros, runtime):
     runtime("var me = 1\nsub turn\nreturn")
-    targets = ros.collect(String, "/aseba/target", latched=True)
+    targets = ros.collect(String, "/_aseba/target", latched=True)
     ros.until(lambda: targets)
     told = json.loads(targets[-1].data)
     assert told["name"] == "thymio-II"
@@ -136,6 +136,6 @@ def test_the_target_comes_with_the_program_and_changes_with_it(ros, runtime):
 
 def test_the_language_of_the_target_is_a_parameter(ros, runtime):
     runtime("var me = 1")
-    targets = ros.collect(String, "/aseba/target", latched=True)
+    targets = ros.collect(String, "/_aseba/target", latched=True)
     assert set_parameters(ros, {"language": "fr"}).successful
     ros.until(lambda: targets and json.loads(targets[-1].data)["language"] == "fr")

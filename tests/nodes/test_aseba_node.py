@@ -36,8 +36,8 @@ def values(status):
 def test_a_pressed_button_raises_its_event(ros, simulation, runtime):
     sim = simulation()
     runtime("onevent button.center\nif button.center == 1 then\n call leds.top(32, 0, 16)\nend")
-    state = ros.collect(Float32MultiArray, "/led/state", latched=True)
-    press = ros.publisher(Bool, "/press/center")
+    state = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    press = ros.publisher(Bool, "/_press/center")
     press.publish(Bool(data=True))
     sim.until(lambda: state and list(state[-1].data[:3]) == [1.0, 0.0, 0.5])
 
@@ -60,7 +60,7 @@ def test_emit_reaches_a_topic_and_back(ros, simulation, runtime):
     simulation()
     runtime(AESL)
     pongs = ros.collect(Int16MultiArray, "/aseba/events/pong")
-    anything = ros.collect(Int16MultiArray, "/aseba/events")
+    anything = ros.collect(Int16MultiArray, "/_aseba/events")
     ros.publisher(Int16MultiArray, "/aseba/emit/ping").publish(Int16MultiArray(data=[5]))
     ros.until(lambda: pongs and anything)
     assert list(pongs[0].data) == [15, 7]
@@ -74,7 +74,7 @@ def test_the_generic_pair_carries_any_event(ros, simulation, runtime):
     message = Int16MultiArray(
         layout=MultiArrayLayout(dim=[MultiArrayDimension(label="ping", size=1, stride=1)]), data=[-2]
     )
-    ros.publisher(Int16MultiArray, "/aseba/emit").publish(message)
+    ros.publisher(Int16MultiArray, "/_aseba/emit").publish(message)
     ros.until(lambda: pongs)
     assert list(pongs[0].data) == [-6, 7]
 
@@ -93,7 +93,7 @@ def test_events_of_the_wrong_size_are_refused(ros, simulation, runtime):
 def test_a_program_that_does_not_compile_is_refused_with_its_place(ros, simulation, runtime):
     simulation()
     runtime("var a = 1")
-    status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
+    status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
     bad = set_parameters(ros, {"script.source": "var a\n  motor.left.targt = 5", "script.name": "bad.aesl"})
     assert not bad.successful
     assert "line 2, column 3" in bad.reason
@@ -117,9 +117,9 @@ def set_parameters(ros, wanted):
 def test_a_fault_is_told_with_its_line_and_stops_the_wheels(ros, simulation, runtime):
     sim = simulation()
     runtime("var i = 9\nvar t[3]\nmotor.left.target = 100\nmotor.right.target = 100\nonevent button.center\n t[i] = 1")
-    status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
+    status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.01)
-    ros.publisher(Bool, "/press/center").publish(Bool(data=True))
+    ros.publisher(Bool, "/_press/center").publish(Bool(data=True))
     sim.until(lambda: status and values(status[-1])["state"] == "fault")
     assert values(status[-1])["line"] == "6"
     assert status[-1].level == DiagnosticStatus.ERROR
@@ -172,7 +172,7 @@ def test_a_reset_of_the_simulator_restarts_the_program(ros, simulation, runtime)
         "onevent button.forward\nif button.forward == 1 then\nn = n + 1\nemit count n\nend</node></network>"
     )
     counts = ros.collect(Int16MultiArray, "/aseba/events/count")
-    press = ros.publisher(Bool, "/press/forward")
+    press = ros.publisher(Bool, "/_press/forward")
     for expected in (1, 2):
         press.publish(Bool(data=True))
         sim.until(lambda n=expected: counts and list(counts[-1].data) == [n])
@@ -224,12 +224,12 @@ def test_a_playground_with_other_robots_gives_each_its_program(ros, simulation, 
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.01)
     request = SetParameters.Request(parameters=[Parameter("playground", value=TWO_ROBOTS).to_parameter_msg()])
     assert ros.call(SetParameters, "/simulator/set_parameters", request).results[0].successful
-    press = ros.publisher(Bool, "/anna/press/center")
-    heard = ros.collect(Float32MultiArray, "/bert/led/state", latched=True)
+    press = ros.publisher(Bool, "/anna/_press/center")
+    heard = ros.collect(Float32MultiArray, "/bert/_led/state", latched=True)
     sim.until(lambda: all(robot.pose.x_m > 0.01 for robot in sim.world.robots.values()))
     press.publish(Bool(data=True))
     sim.until(lambda: heard and heard[-1].data[0] > 0.5)
-    assert ros.node.count_publishers("/motor/target") == 0
+    assert ros.node.count_publishers("/_motor/target") == 0
 
 
 def test_parameters_describe_themselves(ros, simulation, runtime):
@@ -253,11 +253,11 @@ def too_fast():
 def test_a_robot_without_a_program_is_switched_on_with_its_menu(ros, simulation, runtime):
     sim = simulation()
     runtime()
-    status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
-    shown = ros.collect(Float32MultiArray, "/led/state", latched=True)
-    events = ros.collect(Int16MultiArray, "/aseba/events")
-    center = ros.publisher(Bool, "/press/center")
-    right = ros.publisher(Bool, "/press/right")
+    status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
+    shown = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    events = ros.collect(Int16MultiArray, "/_aseba/events")
+    center = ros.publisher(Bool, "/_press/center")
+    right = ros.publisher(Bool, "/_press/right")
     sim.until(lambda: shown and list(shown[-1].data[:3]) == [0.0, 1.0, 0.0], what="the colour of friendly")
     sim.until(lambda: status and values(status[-1])["program"] == "menu.aesl")
     right.publish(Bool(data=True))
@@ -275,8 +275,8 @@ def test_a_robot_without_a_program_is_switched_on_with_its_menu(ros, simulation,
 def test_a_program_ends_a_behaviour_and_waits_in_the_menu(ros, simulation, runtime):
     sim = simulation()
     runtime(behaviour="obedient")
-    status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
-    ros.publisher(Bool, "/press/forward").publish(Bool(data=True))
+    status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
+    ros.publisher(Bool, "/_press/forward").publish(Bool(data=True))
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.01)
     assert set_parameters(ros, {"script.source": "var a = 1", "script.name": "mine"}).successful
     sim.step(0.3)
@@ -284,7 +284,7 @@ def test_a_program_ends_a_behaviour_and_waits_in_the_menu(ros, simulation, runti
     sim.step(0.3)
     assert sim.world.robots["thymio"].pose == stopped
     sim.until(lambda: values(status[-1])["program"] == "mine")
-    shown = ros.collect(Float32MultiArray, "/led/state", latched=True)
+    shown = ros.collect(Float32MultiArray, "/_led/state", latched=True)
     assert set_parameters(ros, {"behaviour": "menu"}).successful
     sim.until(lambda: values(status[-1])["program"] == "menu.aesl")
     sim.until(lambda: shown and list(shown[-1].data[:3]) == [0.0, 0.0, 0.0], what="the black of one's own program")
@@ -293,7 +293,7 @@ def test_a_program_ends_a_behaviour_and_waits_in_the_menu(ros, simulation, runti
 def test_built_in_behaviours_are_listed_for_whoever_offers_a_choice(ros, simulation, runtime):
     simulation()
     runtime("var a = 1")
-    lists = ros.collect(String, "/aseba_runtime/behaviours", latched=True)
+    lists = ros.collect(String, "/aseba_runtime/_behaviours", latched=True)
     ros.until(lambda: lists)
     listed = {entry["name"]: entry["description"] for entry in json.loads(lists[-1].data)}
     assert listed["explorer"].startswith("Explorer, yellow: drives about")
@@ -311,7 +311,7 @@ def test_a_behaviour_that_does_not_exist_is_refused(ros, simulation, runtime):
 def test_what_a_program_tells_its_robot_is_no_topic(ros, simulation, runtime):
     simulation()
     runtime(path="menu")
-    ros.until(lambda: ros.node.count_publishers("/aseba/events"))
+    ros.until(lambda: ros.node.count_publishers("/_aseba/events"))
     topics = {name for name, _ in ros.node.get_topic_names_and_types()}
     assert not [name for name in topics if "menu" in name]
 
@@ -325,7 +325,7 @@ onevent sound.finished
 
 def test_a_program_s_sound_is_told_and_its_end_comes_back(ros, simulation, runtime):
     sim = simulation()
-    told = ros.collect(Float32MultiArray, "/sound/state")
+    told = ros.collect(Float32MultiArray, "/_sound/state")
     runtime(SOUND)
     done = ros.collect(Int16MultiArray, "/aseba/events/done")
     sim.until(lambda: done, what="the end of the sound")
@@ -338,23 +338,23 @@ def test_a_program_s_sound_is_told_and_its_end_comes_back(ros, simulation, runti
 def test_a_touched_button_lights_up_until_a_program_takes_its_lights(ros, simulation, runtime):
     sim = simulation()
     runtime("onevent button.left\ncall leds.buttons(0, 0, 0, 16)")
-    shown = ros.collect(Float32MultiArray, "/led/state", latched=True)
+    shown = ros.collect(Float32MultiArray, "/_led/state", latched=True)
 
     def lights():
         labels = [dimension.label for dimension in shown[-1].layout.dim]
         begin = sum(dimension.size for dimension in shown[-1].layout.dim[: labels.index("buttons")])
         return list(shown[-1].data[begin : begin + 4])
 
-    ros.publisher(Bool, "/press/forward").publish(Bool(data=True))
+    ros.publisher(Bool, "/_press/forward").publish(Bool(data=True))
     sim.until(lambda: shown and lights() == [1.0, 0.0, 0.0, 0.0], what="the light of the button")
-    ros.publisher(Bool, "/press/left").publish(Bool(data=True))
+    ros.publisher(Bool, "/_press/left").publish(Bool(data=True))
     sim.until(lambda: lights() == [0.0, 0.0, 0.0, 0.5], what="the program's lights")
 
 
 def test_a_robot_is_switched_off_and_on_again(ros, simulation, runtime):
     sim = simulation()
     runtime("motor.left.target = 200\nmotor.right.target = 200")
-    status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
+    status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.02)
     ros.publisher(Empty, "/shutdown").publish(Empty())
     sim.until(lambda: status and values(status[-1])["state"] == "off")
@@ -369,8 +369,8 @@ def test_a_robot_is_switched_off_and_on_again(ros, simulation, runtime):
 def test_a_robot_that_was_switched_on_with_the_menu_is_so_again(ros, simulation, runtime):
     sim = simulation()
     runtime(behaviour="menu")
-    status = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
-    center = ros.publisher(Bool, "/press/center")
+    status = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
+    center = ros.publisher(Bool, "/_press/center")
     sim.step(2.2)
     center.publish(Bool(data=True))
     sim.until(lambda: status and values(status[-1])["program"] == "friendly.aesl")

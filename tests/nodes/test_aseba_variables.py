@@ -50,7 +50,7 @@ def test_variables_are_written_each_with_its_result(ros, runtime):
 
 def test_a_written_target_moves_the_robot(ros, runtime):
     runtime(SOURCE)
-    targets = ros.collect(Int16MultiArray, "/motor/target")
+    targets = ros.collect(Int16MultiArray, "/_motor/target")
     set_variables(ros, {"motor.left.target": integer(120)})
     ros.until(lambda: targets and list(targets[-1].data) == [120, 0])
 
@@ -89,7 +89,7 @@ def test_a_watched_variable_has_a_latched_topic_that_changes_with_it(ros, runtim
     counts = ros.collect(Int16MultiArray, "/aseba/variables/count", latched=True)
     ranges = ros.collect(Int16MultiArray, "/aseba/variables/prox_horizontal", latched=True)
     ros.until(lambda: counts and ranges)
-    ros.publisher(Int16MultiArray, "/raw/proximity").publish(Int16MultiArray(data=[7, 0, 0, 0, 0, 0, 0]))
+    ros.publisher(Int16MultiArray, "/_raw/proximity").publish(Int16MultiArray(data=[7, 0, 0, 0, 0, 0, 0]))
     ros.until(lambda: list(counts[-1].data) == [4] and ranges[-1].data[0] == 7)
     assert [list(message.data) for message in counts] == [[3], [4]]
     ros.until(lambda: ros.node.count_publishers("/aseba/variables/list") == 0)
@@ -114,7 +114,7 @@ def test_a_watched_variable_comes_with_the_program_that_has_it(ros, runtime):
 
 def test_all_variables_come_in_one_table_while_somebody_listens(ros, runtime):
     node = runtime(SOURCE, watch_rate=50.0)
-    tables = ros.collect(Int16MultiArray, "/aseba/variables")
+    tables = ros.collect(Int16MultiArray, "/_aseba/variables")
     ros.until(lambda: tables)
 
     def table():

@@ -94,8 +94,8 @@ def test_every_row_gives_commands_that_an_actuator_takes():
     accepted = {kind for actuator in all_actuators() for kind in actuator.accepts}
     messages = {
         "pen/down": Bool(data=True),
-        "pen/color": ColorRGBA(r=1.0, a=1.0),
-        "pen/width": Float32(data=0.01),
+        "_pen/color": ColorRGBA(r=1.0, a=1.0),
+        "_pen/width": Float32(data=0.01),
     }
     for topic, message in messages.items():
         assert type(decode(topic, message)) in accepted
@@ -103,30 +103,30 @@ def test_every_row_gives_commands_that_an_actuator_takes():
 
 def test_the_pen_is_moved_colored_and_turned_round():
     assert decode("pen/down", Bool(data=True)) == SetPen(down=True)
-    assert decode("pen/color", ColorRGBA(r=1.0, g=0.5, b=2.0, a=1.0)) == SetPen(color=(1.0, 0.5, 1.0), erase=False)
-    assert decode("pen/color", ColorRGBA(a=0.0)).erase
-    assert decode("pen/width", Float32(data=0.03125)) == SetPen(width_m=0.03125)
+    assert decode("_pen/color", ColorRGBA(r=1.0, g=0.5, b=2.0, a=1.0)) == SetPen(color=(1.0, 0.5, 1.0), erase=False)
+    assert decode("_pen/color", ColorRGBA(a=0.0)).erase
+    assert decode("_pen/width", Float32(data=0.03125)) == SetPen(width_m=0.03125)
 
 
 def test_gestures_have_a_period_whose_sign_is_the_direction():
-    assert decode("led/gesture/kit", Float32(data=-0.5)) == PlayGesture("kit", -0.5)
-    assert decode("led/gesture/alive", Empty()) == PlayGesture("alive", 4.0)
-    assert decode("led/gesture/off", Empty()) == StopGesture()
+    assert decode("_led/gesture/kit", Float32(data=-0.5)) == PlayGesture("kit", -0.5)
+    assert decode("_led/gesture/alive", Empty()) == PlayGesture("alive", 4.0)
+    assert decode("_led/gesture/off", Empty()) == StopGesture()
 
 
 def test_an_alarm_is_switched():
-    assert decode("alarm", Bool(data=True)) == SetAlarm(True)
+    assert decode("_alarm", Bool(data=True)) == SetAlarm(True)
 
 
 @pytest.mark.parametrize(("number", "told"), [(-129, -128), (127, 127), (128, 127), (32767, 127)])
 def test_a_number_that_is_no_sound_of_the_robot_is_one_that_a_message_can_hold(number, told):
-    message = BY_TOPIC["sound/system"].encode(PlaySystemSound(number))
-    assert decode("sound/system", message) == PlaySystemSound(told)
+    message = BY_TOPIC["_sound/system"].encode(PlaySystemSound(number))
+    assert decode("_sound/system", message) == PlaySystemSound(told)
 
 
 def test_a_sound_is_stopped_by_a_negative_number():
     assert decode("sound/tone", Float32MultiArray(data=[0.0, -1.0])) == StopSound()
-    assert decode("sound/system", Int8(data=-1)) == StopSound()
+    assert decode("_sound/system", Int8(data=-1)) == StopSound()
 
 
 @pytest.mark.parametrize(
@@ -135,16 +135,16 @@ def test_a_sound_is_stopped_by_a_negative_number():
         ("sound/tone", Float32MultiArray(data=[440.0]), r"1 values found, expected \[Hz, s\]"),
         ("sound/tone", Float32MultiArray(data=[float("nan"), 1.0]), "frequency is nan"),
         ("sound/tone", Float32MultiArray(data=[440.0, float("inf")]), "duration is inf"),
-        ("sound/volume", Int8(data=9), "9 found, expected 0"),
-        ("sound/wave", Int8MultiArray(data=[1, 2]), "2 values found, expected 142 samples"),
-        ("sound/samples", UInt8MultiArray(data=bytes(5_000_000)), "5000000 samples found"),
-        ("led/single", Int16MultiArray(data=[1]), "1 values found"),
-        ("led/gesture/blink", Float32(data=0.0), "period 0 s found, expected 0.1 to 60"),
-        ("led/own", Float32MultiArray(data=[1.0]), "group '' found"),
+        ("_sound/volume", Int8(data=9), "9 found, expected 0"),
+        ("_sound/wave", Int8MultiArray(data=[1, 2]), "2 values found, expected 142 samples"),
+        ("_sound/samples", UInt8MultiArray(data=bytes(5_000_000)), "5000000 samples found"),
+        ("_led/single", Int16MultiArray(data=[1]), "1 values found"),
+        ("_led/gesture/blink", Float32(data=0.0), "period 0 s found, expected 0.1 to 60"),
+        ("_led/own", Float32MultiArray(data=[1.0]), "group '' found"),
         ("led/circle", Float32MultiArray(data=[1.0]), "1 values found, expected 8 intensities"),
-        ("sound_threshold", Float32(data=float("nan")), "threshold is nan"),
-        ("pen/width", Float32(data=0.5), "0.5 m found, expected 0.001 to 0.1"),
-        ("pen/color", ColorRGBA(r=float("inf")), "color is inf"),
+        ("_sound_threshold", Float32(data=float("nan")), "threshold is nan"),
+        ("_pen/width", Float32(data=0.5), "0.5 m found, expected 0.001 to 0.1"),
+        ("_pen/color", ColorRGBA(r=float("inf")), "color is inf"),
     ],
 )
 def test_what_cannot_be_is_refused(topic, message, found):

@@ -55,7 +55,7 @@ def test_frames_have_the_robot_s_prefix():
 
 
 def test_the_laser_goes_from_right_to_left_and_nothing_is_inf():
-    scan = encode("proximity/laser", PROXIMITY)
+    scan = encode("_proximity/laser", PROXIMITY)
     assert isinstance(scan, LaserScan)
     assert list(scan.ranges) == pytest.approx([math.inf, math.inf, 0.1015, 0.2, math.inf])
     assert list(scan.intensities) == [0.0, 0.0, 4505.0, 1000.0, 0.0]
@@ -81,7 +81,7 @@ def test_odometry_and_truth_have_their_frames_and_covariances():
     reading = readings.PoseReading(
         0, (), Pose(1.0, 2.0, math.pi / 2), BodyMotion(0.1, 0.2), Pose(3.0, 4.0, 0.0), BodyMotion(0.3, 0.4)
     )
-    odometry, truth = encode("odom", reading), encode("ground_truth/odom", reading)
+    odometry, truth = encode("odom", reading), encode("_ground_truth/odom", reading)
     assert (odometry.header.frame_id, truth.header.frame_id) == ("odom", "map")
     assert convert.yaw_of(odometry.pose.pose.orientation) == pytest.approx(math.pi / 2)
     assert (odometry.twist.twist.linear.x, truth.twist.twist.angular.z) == (0.1, 0.4)
@@ -95,7 +95,7 @@ def test_odometry_and_truth_have_their_frames_and_covariances():
 def test_the_truth_tells_how_a_robot_leans(tilt):
     rest = BodyMotion(0.0, 0.0)
     reading = readings.PoseReading(0, (), Pose(0, 0, 0), rest, Pose(0, 0, math.pi / 2), rest, tilt)
-    q = encode("ground_truth/odom", reading).pose.pose.orientation
+    q = encode("_ground_truth/odom", reading).pose.pose.orientation
     forward_up, left_up = 2 * (q.x * q.z - q.w * q.y), 2 * (q.y * q.z + q.w * q.x)
     assert (forward_up, left_up) == pytest.approx(
         (-math.sin(tilt.pitch_rad), math.sin(tilt.roll_rad) * math.cos(tilt.pitch_rad))
@@ -105,7 +105,7 @@ def test_the_truth_tells_how_a_robot_leans(tilt):
 
 
 def test_leds_are_labelled_parts_of_one_array():
-    message = encode("led/state", readings.LedReading(0, (), (("top", (32, 16, 0)), ("ground", (0, 32)))))
+    message = encode("_led/state", readings.LedReading(0, (), (("top", (32, 16, 0)), ("ground", (0, 32)))))
     assert [(dim.label, dim.size) for dim in message.layout.dim] == [("top", 3), ("ground", 2)]
     assert list(message.data) == [1.0, 0.5, 0.0, 0.0, 1.0]
 
@@ -113,13 +113,13 @@ def test_leds_are_labelled_parts_of_one_array():
 @pytest.mark.parametrize(("shift", "volume"), [(0, 1.0), (1, 0.5), (7, 2.0**-7), (8, 0.0)])
 def test_the_volume_is_halved_by_each_bit_and_the_last_one_is_silence(shift, volume):
     reading = readings.LoudspeakerReading(0, (), 0, 440.0, None, (), b"", shift)
-    assert list(encode("sound/state", reading).data) == [440.0, math.inf, volume]
+    assert list(encode("_sound/state", reading).data) == [440.0, math.inf, volume]
 
 
 def test_a_trail_takes_the_place_of_the_one_before():
     stroke = Stroke((1.0, 0.0, 0.0), 0.01, ((0.0, 0.0), (0.1, 0.0)))
     reading = readings.PenReading(0, (), True, (1.0, 0.0, 0.0), 0.01, False, (stroke, stroke))
-    markers = encode("pen/trail", reading).markers
+    markers = encode("_pen/trail", reading).markers
     assert [(marker.action, marker.id) for marker in markers[1:]] == [(Marker.ADD, 0), (Marker.ADD, 1)]
     assert markers[0].action == Marker.DELETEALL
 
@@ -131,9 +131,9 @@ def test_yaw_survives_as_quaternion(yaw):
 
 
 def test_one_robot_has_no_name_and_several_have_theirs():
-    assert ros_names(("thymio",))["thymio"].topic("odom") == "/odom"
+    assert ros_names(("thymio",))["thymio"].topic("odom") == "odom"
     names = ros_names(("anna", "bert"))
-    assert names["bert"].topic("odom") == "/bert/odom"
+    assert names["bert"].topic("odom") == "bert/odom"
     assert names["bert"].frame("base_link") == "bert/base_link"
 
 
@@ -145,7 +145,7 @@ def test_events_become_words_of_a_topic(event, word):
 
 
 def test_rays_are_as_long_as_what_they_measure_and_tell_a_hit_by_color():
-    marker = encode("proximity/rays", PROXIMITY, SECOND)
+    marker = encode("_proximity/rays", PROXIMITY, SECOND)
     assert marker.header.frame_id == "thymio_2/base_link"
     pairs = list(zip(marker.points[::2], marker.points[1::2], strict=True))
     lengths = [math.hypot(end.x - start.x, end.y - start.y) for start, end in pairs]

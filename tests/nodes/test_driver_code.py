@@ -32,8 +32,8 @@ BOTH_WAYS = pytest.mark.parametrize("out_of_range", ["rep117", "driver"])
 @BOTH_WAYS
 def test_a_square_is_driven_by_odometry(ros, simulation, out_of_range):
     sim = simulation(playground="borderless", out_of_range=out_of_range)
-    lights = ros.collect(Float32MultiArray, "/led/state")
-    truth = ros.collect(Odometry, "/ground_truth/odom")
+    lights = ros.collect(Float32MultiArray, "/_led/state")
+    truth = ros.collect(Odometry, "/_ground_truth/odom")
     square = ros.start(Square)
     sim.until(lambda: square.is_done, seconds=60.0)
     places = [(message.pose.pose.position.x, message.pose.pose.position.y) for message in truth]
@@ -57,7 +57,7 @@ def test_ranges_are_added_up_as_the_driver_has_them(ros, simulation):
 def test_a_button_is_one_message_for_each_change(ros, simulation):
     sim = simulation(out_of_range="driver")
     shy = ros.start(Shy)
-    finger = ros.publisher(Bool, "/press/center")
+    finger = ros.publisher(Bool, "/_press/center")
     for is_pressed in (True, False):
         finger.publish(Bool(data=is_pressed))
         sim.until(lambda wanted=is_pressed: shy.pressed and shy.pressed[-1].data == wanted)

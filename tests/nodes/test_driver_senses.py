@@ -106,7 +106,7 @@ def test_there_are_no_topics_of_the_simulator(ros, robot):
     status = Status(ros)
     ros.until(lambda: status["state"] == "running")
     topics = {name for name, _ in ros.node.get_topic_names_and_types()}
-    assert not [name for name in topics if name.startswith("/raw/") or name == "/motor/target"]
+    assert not [name for name in topics if name.startswith("/raw/") or name == "/_motor/target"]
 
 
 def test_a_range_that_is_no_number_is_nothing():

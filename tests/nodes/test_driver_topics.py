@@ -1,4 +1,4 @@
-"""Topics whose types only thymio_msgs has; with plain types of the same fields where it is not installed."""
+"""Topics of the driver: those hidden here, and those of thymio_msgs (types of the same fields where it is missing)."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ from typing import Any
 
 import pytest
 from builtin_interfaces.msg import Duration
+from sensor_msgs.msg import Temperature
+from std_msgs.msg import ColorRGBA, Empty
 
 from thymio_sim_ros.nodes import reference
 from thymio_sim_ros.nodes.command_values import CommandError
-from thymio_sim_ros.nodes.driver_topics import TOPICS, DriverTopics
+from thymio_sim_ros.nodes.driver_topics import PLAIN, TOPICS, DriverTopics
 from thymio_sim_ros.nodes.robot_inputs import Moment
 from thymio_sim_ros.sim.commands import (
     LED_GROUPS,
@@ -127,16 +129,43 @@ def test_an_infrared_frame_is_told_with_all_that_was_heard():
     assert list(message.intensities) == [100, 101, 102, 103, 104, 105, 106]
 
 
-def test_without_the_package_there_are_none_and_nothing_is_said(ros, simulation):
-    simulation()
+def test_without_the_package_there_are_no_topics_of_its_types(ros, simulation):
+    simulation(driver_topics=True)
     installed = hasattr(TYPES.Led, "get_fields_and_field_types")
     there = {topic for topic, _ in ros.node.get_topic_names_and_types()}
     assert {f"/{topic}" in there for topic in TOPICS} == {installed}
 
 
+def test_without_the_parameter_the_driver_s_rare_names_are_not_there(ros, simulation):
+    simulation()
+    there = {topic for topic, _ in ros.node.get_topic_names_and_types()}
+    assert there & {f"/{topic}" for topic in (*PLAIN, *TOPICS)} == set()
+    assert {f"/_{topic}" for topic in PLAIN} <= there
+
+
+def test_with_the_parameter_each_hidden_topic_has_the_driver_s_name_too(ros, simulation):
+    simulation(playground="two_robots", driver_topics=True)
+    there = dict(ros.node.get_topic_names_and_types())
+    for robot in ("red", "blue"):
+        assert {topic: there.get(f"/{robot}/{topic}") for topic in PLAIN} == {
+            topic: there[f"/{robot}/_{topic}"] for topic in PLAIN
+        }
+
+
+def test_messages_on_the_driver_s_names_act_and_are_sent(ros, simulation):
+    sim = simulation(driver_topics=True)
+    warm, taps = ros.collect(Temperature, "/temperature"), ros.collect(Empty, "/tap")
+    ros.publisher(ColorRGBA, "/led/body/top").publish(ColorRGBA(r=1.0))
+    sim.until(lambda: dict(sim.world.snapshot().robots[0].leds)["top"] == (32, 0, 0), seconds=1)
+    ros.publisher(Empty, "/led/off").publish(Empty())
+    sim.until(lambda: dict(sim.world.snapshot().robots[0].leds)["top"] == (0, 0, 0), seconds=1)
+    ros.publisher(Empty, "/_press/tap").publish(Empty())
+    sim.until(lambda: warm and taps, seconds=2)
+
+
 def test_with_the_package_a_message_acts_over_ros(ros, simulation):
     messages = pytest.importorskip("thymio_msgs.msg", reason="no wheel has thymio_msgs")
-    sim = simulation()
+    sim = simulation(driver_topics=True)
     assert reference.type_name(messages.Led) == "thymio_msgs/msg/Led"
     ros.publisher(messages.Led, "/led").publish(messages.Led(id=0, values=[1.0] * 8))
     sim.until(lambda: sim.world.snapshot().robots[0].leds[3] == ("circle", (32,) * 8), seconds=1)

@@ -32,7 +32,7 @@ from std_msgs.msg import (
     UInt8MultiArray,
 )
 
-from thymio_sim_ros.nodes import qos, reference, robot_ports, sensor_topics, world_ports, world_services
+from thymio_sim_ros.nodes import command_topics, qos, reference, robot_ports, sensor_topics, world_ports, world_services
 from thymio_sim_ros.nodes.robot_inputs import robot_inputs
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import LED_GROUPS
@@ -64,13 +64,13 @@ def pose(x, y):
 
 
 MAKES_EVENT = {
-    "collision": ("wheels/command", Float64MultiArray(data=[-7.0, -7.0])),
-    "loudspeaker": ("sound/samples", UInt8MultiArray(data=bytes([128, 200, 50] * 100))),
+    "collision": ("_wheels/command", Float64MultiArray(data=[-7.0, -7.0])),
+    "loudspeaker": ("_sound/samples", UInt8MultiArray(data=bytes([128, 200, 50] * 100))),
     "pen": ("pen/down", Bool(data=True)),
-    "remote": ("press/remote", Int8(data=80)),
-    "sound": ("press/sound", Float32(data=1.0)),
+    "remote": ("_press/remote", Int8(data=80)),
+    "sound": ("_press/sound", Float32(data=1.0)),
     "sound_finished": ("sound/tone", Float32MultiArray(data=[440.0, 0.05])),
-    "tap": ("press/tap", Empty()),
+    "tap": ("_press/tap", Empty()),
 }
 """What makes a sensor of rare things measure."""
 
@@ -90,14 +90,14 @@ def test_what_a_robot_publishes(ros, simulation, sensor, row):
     messages = ros.collect(row.type, topic)
     if sensor.name in MAKES_EVENT:
         if sensor.name == "sound":
-            ros.publisher(Float32, "/anna/sound_threshold").publish(Float32(data=0.1))
+            ros.publisher(Float32, "/anna/_sound_threshold").publish(Float32(data=0.1))
             sim.step(0.05)
         word, message = MAKES_EVENT[sensor.name]
         ros.publisher(type(message), f"/anna/{word}").publish(message)
     elif sensor.name == "comm":
         for name in ("anna", "bert"):
-            ros.publisher(Bool, f"/{name}/comm/enable").publish(Bool(data=True))
-            ros.publisher(Int16, f"/{name}/comm/tx").publish(Int16(data=7))
+            ros.publisher(Bool, f"/{name}/_comm/enable").publish(Bool(data=True))
+            ros.publisher(Int16, f"/{name}/_comm/tx").publish(Int16(data=7))
     sim.until(lambda: messages, seconds=3.0)
     message = messages[-1]
     if row.frame:
@@ -114,57 +114,57 @@ def test_what_a_robot_publishes(ros, simulation, sensor, row):
 
 SENT = {
     "cmd_vel": (Twist(linear=Vector3(x=0.1)), commands.BodyTwist(0.1, 0.0)),
-    "cmd_vel_stamped": (TwistStamped(twist=Twist(linear=Vector3(x=0.1))), commands.BodyTwist(0.1, 0.0)),
-    "wheels/command": (Float64MultiArray(data=[1.0, 2.0]), commands.WheelVelocities(1.0, 2.0)),
-    "motor/target": (Int16MultiArray(data=[100, -100]), commands.MotorTargets(100, -100)),
+    "_cmd_vel_stamped": (TwistStamped(twist=Twist(linear=Vector3(x=0.1))), commands.BodyTwist(0.1, 0.0)),
+    "_wheels/command": (Float64MultiArray(data=[1.0, 2.0]), commands.WheelVelocities(1.0, 2.0)),
+    "_motor/target": (Int16MultiArray(data=[100, -100]), commands.MotorTargets(100, -100)),
     **{
         f"led/body/{group}": (ColorRGBA(r=1.0, g=0.5), commands.SetLeds(group, (32, 16, 0)))
         for group in ("top", "bottom_left", "bottom_right")
     },
     **{
-        f"led/{group}": (Float32MultiArray(data=[1.0] * size), commands.SetLeds(group, (32,) * size))
+        command_topics.led_topic(group): (Float32MultiArray(data=[1.0] * size), commands.SetLeds(group, (32,) * size))
         for group, size in LED_GROUPS.items()
-        if f"led/{group}" in INPUTS
+        if command_topics.led_topic(group) in INPUTS and group not in command_topics.BODY_LEDS
     },
-    "led/single": (Int16MultiArray(data=[3, 8]), commands.SetLed(3, 8)),
-    "led/own": (
+    "_led/single": (Int16MultiArray(data=[3, 8]), commands.SetLed(3, 8)),
+    "_led/own": (
         Float32MultiArray(layout=MultiArrayLayout(dim=[MultiArrayDimension(label="sd", size=1)]), data=[0.5]),
         commands.ShowOnLeds("sd", (16,)),
     ),
-    "led/off": (Empty(), commands.SetLeds("top", (0, 0, 0))),
+    "_led/off": (Empty(), commands.SetLeds("top", (0, 0, 0))),
     **{
-        f"led/gesture/{name}": (Float32(data=2.0), commands.PlayGesture(name, 2.0))
+        f"_led/gesture/{name}": (Float32(data=2.0), commands.PlayGesture(name, 2.0))
         for name in ("circle", "blink", "kit")
     },
-    "led/gesture/alive": (Empty(), commands.PlayGesture),
-    "led/gesture/off": (Empty(), commands.StopGesture()),
+    "_led/gesture/alive": (Empty(), commands.PlayGesture),
+    "_led/gesture/off": (Empty(), commands.StopGesture()),
     "sound/tone": (Float32MultiArray(data=[440.0, 0.5]), commands.PlayTone(440.0, 500_000_000)),
-    "sound/system": (Int8(data=3), commands.PlaySystemSound(3)),
-    "sound/samples": (UInt8MultiArray(data=b"\x80\x90"), commands.PlaySamples(b"\x80\x90")),
-    "sound/wave": (Int8MultiArray(data=list(TRIANGLE)), commands.SetWave(TRIANGLE)),
-    "sound/volume": (Int8(data=2), commands.SetVolume(2)),
-    "sound_threshold": (Float32(data=1.0), commands.SetSoundThreshold(255)),
-    "comm/enable": (Bool(data=True), commands.EnableComm(True)),
-    "comm/tx": (Int16(data=9), commands.SetCommPayload(9)),
-    "alarm": (Bool(data=True), commands.SetAlarm(True)),
+    "_sound/system": (Int8(data=3), commands.PlaySystemSound(3)),
+    "_sound/samples": (UInt8MultiArray(data=b"\x80\x90"), commands.PlaySamples(b"\x80\x90")),
+    "_sound/wave": (Int8MultiArray(data=list(TRIANGLE)), commands.SetWave(TRIANGLE)),
+    "_sound/volume": (Int8(data=2), commands.SetVolume(2)),
+    "_sound_threshold": (Float32(data=1.0), commands.SetSoundThreshold(255)),
+    "_comm/enable": (Bool(data=True), commands.EnableComm(True)),
+    "_comm/tx": (Int16(data=9), commands.SetCommPayload(9)),
+    "_alarm": (Bool(data=True), commands.SetAlarm(True)),
     "shutdown": (Empty(), commands.MotorTargets(0, 0)),
     "pen/down": (Bool(data=True), commands.SetPen(down=True)),
-    "pen/color": (ColorRGBA(r=1.0, a=1.0), commands.SetPen(color=(1.0, 0.0, 0.0), erase=False)),
-    "pen/width": (Float32(data=0.03125), commands.SetPen(width_m=0.03125)),
+    "_pen/color": (ColorRGBA(r=1.0, a=1.0), commands.SetPen(color=(1.0, 0.0, 0.0), erase=False)),
+    "_pen/width": (Float32(data=0.03125), commands.SetPen(width_m=0.03125)),
     "initialpose": (pose(0.0, 0.5), commands.MoveRobot(0.0, 0.5, 0.0)),
-    **{f"press/{name}": (Bool(data=True), commands.PressButton(name, True)) for name in commands.BUTTONS},
-    "press/tap": (Empty(), commands.Tap()),
-    "press/clap": (Float32(data=1.0), commands.Clap(255)),
-    "press/sound": (Float32(data=1.0), commands.SetNoiseLevel(255)),
-    "press/remote": (Int8(data=5), commands.RemoteKey(0, 5)),
-    "press/rc5": (Int16MultiArray(data=[1, 5]), commands.RemoteKey(1, 5)),
-    "press/tilt": (Float32MultiArray(data=[0.5, 0.0]), commands.Tilt(0.5, 0.0)),
-    "press/light": (Float32(data=1.0), commands.SetAmbientLight(1023)),
-    "press/proximity": (Int16MultiArray(data=[9, -1] + [0] * 5), commands.SetProximity((9, -1, 0, 0, 0, 0, 0))),
-    "press/ground": (Int16MultiArray(data=[-1, 1023]), commands.SetGround((-1, 1023))),
-    "press/temperature": (Float32(data=30.5), commands.SetTemperature(30.5)),
-    "press/battery": (Float32(data=3.5), commands.SetBattery(3.5)),
-    "press/charger": (Bool(data=True), commands.ConnectCharger(True)),
+    **{f"_press/{name}": (Bool(data=True), commands.PressButton(name, True)) for name in commands.BUTTONS},
+    "_press/tap": (Empty(), commands.Tap()),
+    "_press/clap": (Float32(data=1.0), commands.Clap(255)),
+    "_press/sound": (Float32(data=1.0), commands.SetNoiseLevel(255)),
+    "_press/remote": (Int8(data=5), commands.RemoteKey(0, 5)),
+    "_press/rc5": (Int16MultiArray(data=[1, 5]), commands.RemoteKey(1, 5)),
+    "_press/tilt": (Float32MultiArray(data=[0.5, 0.0]), commands.Tilt(0.5, 0.0)),
+    "_press/light": (Float32(data=1.0), commands.SetAmbientLight(1023)),
+    "_press/proximity": (Int16MultiArray(data=[9, -1] + [0] * 5), commands.SetProximity((9, -1, 0, 0, 0, 0, 0))),
+    "_press/ground": (Int16MultiArray(data=[-1, 1023]), commands.SetGround((-1, 1023))),
+    "_press/temperature": (Float32(data=30.5), commands.SetTemperature(30.5)),
+    "_press/battery": (Float32(data=3.5), commands.SetBattery(3.5)),
+    "_press/charger": (Bool(data=True), commands.ConnectCharger(True)),
 }  # fmt: skip
 """A message for every topic, and the command, or its type, that comes first of it."""
 
@@ -190,7 +190,7 @@ def test_what_a_robot_listens_to(ros, simulation, monkeypatch, topic):
     sim.world.robots["anna"].accepts(command)
 
 
-@pytest.mark.parametrize("topic", ["cmd_vel", "cmd_vel_stamped", "wheels/command"])
+@pytest.mark.parametrize("topic", ["cmd_vel", "_cmd_vel_stamped", "_wheels/command"])
 def test_velocities_end_after_their_timeout_on_all_topics(ros, simulation, topic):
     sim = simulation(cmd_vel_timeout=0.25)
     ros.publisher(INPUTS[topic].type, f"/{topic}").publish(SENT[topic][0])
@@ -203,7 +203,7 @@ def test_velocities_end_after_their_timeout_on_all_topics(ros, simulation, topic
 def test_what_is_published_of_the_world(ros, simulation, topic):
     one = world_ports.TOPICS[topic]
     sim = simulation(playground=PAIR, publish_map=True)
-    name = topic.replace("~", "/simulator")
+    name = topic if topic.startswith("/") else f"/{topic.replace('~', 'simulator')}"
     (info,) = ros.node.get_publishers_info_by_topic(name)
     assert info.topic_type == reference.type_name(one.type)
     assert is_as_declared(info, one.profile)
@@ -222,7 +222,7 @@ def test_transforms_and_places_have_their_types(ros, simulation):
         (info,) = ros.node.get_publishers_info_by_topic(topic)
         assert info.topic_type == "tf2_msgs/msg/TFMessage"
         assert is_as_declared(info, profile)
-    (info,) = ros.node.get_subscriptions_info_by_topic("/simulator/place")
+    (info,) = ros.node.get_subscriptions_info_by_topic("/simulator/_place")
     assert info.topic_type == "geometry_msgs/msg/TransformStamped"
 
 
@@ -243,7 +243,7 @@ def test_two_robots_share_no_topic_but_those_of_the_world(ros, simulation):
     ours = [name for name, _ in sim.simulator.node.get_topic_names_and_types()]
     common = [name for name in ours if not name.startswith(("/anna/", "/bert/", "/simulator/"))]
     assert sorted(common) == sorted([
-        "/tf", "/tf_static", "/clock", "/markers", "/markers/objects", "/diagnostics", "/rosout", "/parameter_events",
+        "/tf", "/tf_static", "/clock", "/_markers", "/_markers/objects", "/diagnostics", "/rosout", "/parameter_events",
     ])  # fmt: skip
 
 

@@ -27,8 +27,8 @@ def test_a_clients_twist_reaches_a_subscriber(ros, studio):
 
 def test_a_client_may_publish_json(ros, studio):
     arrays = []
-    ros.node.create_subscription(Int16MultiArray, "/motor/target", arrays.append, 10)
-    studio.advertise(1, "motor/target", "std_msgs/msg/Int16MultiArray", JSON)
+    ros.node.create_subscription(Int16MultiArray, "/_motor/target", arrays.append, 10)
+    studio.advertise(1, "_motor/target", "std_msgs/msg/Int16MultiArray", JSON)
     studio.send(ms.ClientMessageData(1, b'{"data": [100, -100]}'))
     ros.until(lambda: arrays)
     assert list(arrays[0].data) == [100, -100]
@@ -142,7 +142,7 @@ class Meeting:
 def test_what_waited_for_a_subscriber_leaves_as_far_apart_as_it_came():
     node = Meeting()
     publishers = ClientPublishers(node, lambda _command: None, now_s=lambda: node.now_s)
-    publishers.open(1, ms.ClientChannel(7, "/press/forward", JSON, "std_msgs/Bool"))
+    publishers.open(1, ms.ClientChannel(7, "/_press/forward", JSON, "std_msgs/Bool"))
     for ms_later in range(0, 700, 10):
         node.now_s, node.has_met = ms_later / 1000, ms_later >= 300
         if ms_later in (0, 120, 400):

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
-from thymio_sim_ros.nodes.foxglove_graph import allow_list, is_parameter_service, visible
+from thymio_sim_ros.nodes.foxglove_graph import allow_list, is_parameter_service, visible, visible_topics
 from thymio_sim_ros.nodes.foxglove_qos import Reception, publishing, reception
 
 
@@ -67,6 +67,13 @@ def test_hidden_names_are_shown_on_demand():
     names = {"/a": ["x"], "/_b": ["x"], "/c/_action/status": ["x"], "/d_": ["x"]}
     assert list(visible(names, allow_list([".*"]), hidden=False)) == ["/a", "/d_"]
     assert list(visible(names, allow_list([".*"]), hidden=True)) == list(names)
+
+
+def test_all_topics_but_those_of_actions_are_shown():
+    names = {"/a": ["x"], "/_b": ["x"], "/c/_action/status": ["x"], "/d_": ["x"]}
+    assert list(visible_topics(names, allow_list([".*"]), hidden=False)) == ["/a", "/_b", "/d_"]
+    assert list(visible_topics(names, allow_list([".*"]), hidden=True)) == list(names)
+    assert list(visible_topics(names, allow_list(["/a", "/c.*"]), hidden=True)) == ["/a", "/c/_action/status"]
 
 
 def test_only_the_services_that_every_node_has_are_parameter_services():

@@ -190,18 +190,19 @@ def test_a_vanished_topic_is_taken_away(ros, studio):
     ros.until(lambda: "/chat" not in studio.read().channels)
 
 
-def test_hidden_and_unlisted_topics_are_not_offered(ros, bridge):
+def test_unlisted_topics_and_those_of_actions_are_not_offered(ros, bridge):
     with Studio(bridge(topic_whitelist=("/list.*",)).port, ros.until) as studio:
-        for topic in ("/other", "/_hidden/list", "/list/_hidden", "/list/shown"):
+        for topic in ("/other", "/_hidden/list", "/list/_action/status", "/list/_hidden", "/list/shown"):
             ros.node.create_publisher(Bool, topic, 1)
         studio.channel("/list/shown")
-        assert set(studio.channels) == {"/list/shown"}
+        studio.channel("/list/_hidden")
+        assert set(studio.channels) == {"/list/shown", "/list/_hidden"}
 
 
-def test_hidden_topics_are_offered_on_demand(ros, bridge):
-    ros.node.create_publisher(Bool, "/_hidden", 1)
+def test_topics_of_actions_are_offered_on_demand(ros, bridge):
+    ros.node.create_publisher(Bool, "/arm/_action/status", 1)
     with Studio(bridge(include_hidden=True).port, ros.until) as studio:
-        assert studio.channel("/_hidden").schema_name == "std_msgs/msg/Bool"
+        assert studio.channel("/arm/_action/status").schema_name == "std_msgs/msg/Bool"
 
 
 @pytest.mark.skipif(not tf_messages.available(), reason="no transforms here")

@@ -44,7 +44,7 @@ def test_a_simulator_that_is_started_again_finds_the_program_running(ros, simula
 
 def test_a_program_starts_again_with_its_node(ros, simulation, runtime):
     sim = simulation(playground="borderless")
-    state = ros.collect(Float32MultiArray, "/led/state")
+    state = ros.collect(Float32MultiArray, "/_led/state")
     node = runtime(COUNTS)
     sim.until(lambda: top(state) > 5)
     ros.end(node)
@@ -57,11 +57,11 @@ def test_a_program_starts_again_with_its_node(ros, simulation, runtime):
     ("kind", "topic"),
     [
         (String, "/robot_description"),
-        (String, "/simulator/state"),
-        (String, "/simulator/playgrounds"),
-        (MarkerArray, "/markers"),
-        (MarkerArray, "/markers/objects"),
-        (Float32MultiArray, "/led/state"),
+        (String, "/simulator/_state"),
+        (String, "/simulator/_playgrounds"),
+        (MarkerArray, "/_markers"),
+        (MarkerArray, "/_markers/objects"),
+        (Float32MultiArray, "/_led/state"),
     ],
 )
 def test_who_comes_late_sees_what_is_latched(ros, simulation, kind, topic):
@@ -95,24 +95,24 @@ def test_after_a_reset_latched_topics_come_before_the_clock_and_the_clock_before
     sim.step(0.5)
     order = []
     for kind, topic in (
-        (String, "/simulator/state"),
-        (MarkerArray, "/markers"),
+        (String, "/simulator/_state"),
+        (MarkerArray, "/_markers"),
         (Clock, "/clock"),
-        (Int16MultiArray, "/raw/motor"),
+        (Int16MultiArray, "/_raw/motor"),
         (Odometry, "/odom"),
     ):
         ros.node.create_subscription(kind, topic, lambda _message, topic=topic: order.append(topic), 10)
     ros.settle()
     assert ros.call(Trigger, "/simulator/reset").success
-    ros.until(lambda: {"/simulator/state", "/markers", "/clock"} <= set(order))
-    assert not {"/raw/motor", "/odom"} & set(order)
-    sim.until(lambda: {"/raw/motor", "/odom"} <= set(order))
+    ros.until(lambda: {"/simulator/_state", "/_markers", "/clock"} <= set(order))
+    assert not {"/_raw/motor", "/odom"} & set(order)
+    sim.until(lambda: {"/_raw/motor", "/odom"} <= set(order))
 
 
 def test_a_new_playground_goes_back_in_time_and_keeps_the_program(ros, simulation, runtime):
     sim = simulation(playground="borderless")
-    state = ros.collect(Float32MultiArray, "/led/state")
-    states = ros.collect(String, "/simulator/state")
+    state = ros.collect(Float32MultiArray, "/_led/state")
+    states = ros.collect(String, "/simulator/_state")
     runtime(COUNTS)
     sim.until(lambda: top(state) > 5)
     request = SetParameters.Request(parameters=[Parameter("playground", value="base").to_parameter_msg()])
@@ -180,20 +180,20 @@ def test_an_executable_says_what_there_is_and_where(ros, logged, simulation, run
 
 
 @pytest.mark.parametrize(
-    ("node", "name", "page"),
+    ("node", "name", "near", "page"),
     [
-        (Simulator, "simulator", "ros.md"),
-        (AsebaRuntime, "aseba_runtime", "ros.md"),
-        (WebPage, "web_ui", "ros2-tools.md"),
+        (Simulator, "simulator", " (did you mean playground?)", "ros.md"),
+        (AsebaRuntime, "aseba_runtime", "", "ros.md"),
+        (WebPage, "web_ui", "", "ros2-tools.md"),
     ],
 )
-def test_a_misspelt_parameter_is_told(ros_domain, logged, node, name, page):
+def test_a_misspelt_parameter_is_told_with_the_nearest(ros_domain, logged, node, name, near, page):
     context = Context()
     context.init(args=["--ros-args", "-p", "playgroud:=maze", "-p", "use_sim_time:=false"])
     node(context, *([WebParams(port=0)] if node is WebPage else [])).close()
     context.shutdown()
     assert [text for text in logged if text.startswith("parameter")] == [
-        f"parameter playgroud is none of {name} and does nothing; see docs/{page}"
+        f"parameter playgroud is none of {name} and does nothing{near}; see docs/{page}"
     ]
 
 
@@ -203,6 +203,18 @@ def test_an_argument_that_is_not_of_ros_is_answered_and_nothing_starts(capfd, ar
     out, err = capfd.readouterr()
     assert "--ros-args -p PARAMETER:=VALUE" in (out if code == 0 else err)
     assert (f"argument '{argument}' found" in err) == bool(code)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["-p", "seed=3"], "ROS does not begin: Couldn't parse parameter override rule: '-p seed=3'"),
+        (["--foo"], "no arguments of ROS: ['--foo']"),
+    ],
+)
+def test_an_argument_that_ros_does_not_understand_is_told_in_one_line(capfd, words, told):
+    assert run_main(lambda context: pytest.fail("started"), ["--ros-args", *words]) == 2
+    assert f"thymio-sim: {told}" in capfd.readouterr().err.splitlines()
 
 
 SLOW_TO_CLOSE = """

@@ -27,13 +27,13 @@ BEYOND = {
         twist(MAX_SPEED_M_S),
         "a wheel would need 0.5 m/s, expected at most 0.166; both wheels are slowed down together",
     ),
-    "cmd_vel_stamped": (TwistStamped(twist=twist(0.0, 10.0)), TwistStamped(twist=twist(0.1, -1.0)), "a wheel would"),
-    "wheels/command": (
+    "_cmd_vel_stamped": (TwistStamped(twist=twist(0.0, 10.0)), TwistStamped(twist=twist(0.1, -1.0)), "a wheel would"),
+    "_wheels/command": (
         Float64MultiArray(data=[0.0, -20.0]),
         Float64MultiArray(data=[FULL_RAD_S, -FULL_RAD_S]),
         "a wheel would need 0.44 m/s",
     ),
-    "motor/target": (
+    "_motor/target": (
         Int16MultiArray(data=[0, -501]),
         Int16MultiArray(data=[500, -500]),
         "target -501 found, expected -500 to 500",
@@ -51,17 +51,17 @@ BEYOND = {
         for group, size in LED_GROUPS.items()
         if f"led/{group}" in INPUTS
     },
-    "led/single": (Int16MultiArray(data=[3, 33]), Int16MultiArray(data=[38, 32]), "brightness 33 found"),
+    "_led/single": (Int16MultiArray(data=[3, 33]), Int16MultiArray(data=[38, 32]), "brightness 33 found"),
     "sound/tone": (
         Float32MultiArray(data=[9000.0, 1.0]),
         Float32MultiArray(data=[0.0, -1.0]),
         "frequency 9000 found, expected 55.0",
     ),
-    "comm/tx": (Int16(data=2048), Int16(data=-1), "value 2048 found, expected -32768 to 2047"),
-    "pen/color": (ColorRGBA(g=-1.0, a=1.0), ColorRGBA(), "color -1 found"),
-    "press/clap": (Float32(data=1.5), Float32(data=1.0), "loudness 1.5 found, expected 0 to 1"),
-    "press/sound": (Float32(data=-0.5), Float32(data=0.0), "loudness -0.5 found"),
-    "press/light": (Float32(data=2.0), Float32(data=1.0), "light 2 found"),
+    "_comm/tx": (Int16(data=2048), Int16(data=-1), "value 2048 found, expected -32768 to 2047"),
+    "_pen/color": (ColorRGBA(g=-1.0, a=1.0), ColorRGBA(), "color -1 found"),
+    "_press/clap": (Float32(data=1.5), Float32(data=1.0), "loudness 1.5 found, expected 0 to 1"),
+    "_press/sound": (Float32(data=-0.5), Float32(data=0.0), "loudness -0.5 found"),
+    "_press/light": (Float32(data=2.0), Float32(data=1.0), "light 2 found"),
 }
 """A message beyond, one just within, and what is said of the first."""
 

@@ -15,7 +15,7 @@ from std_msgs.msg import Int16MultiArray
 
 rclpy.init()
 node = rclpy.create_node("storm")
-topics = [(Odometry, "odom"), (Int16MultiArray, "raw/proximity"), (Range, "proximity/left")]
+topics = [(Odometry, "odom"), (Int16MultiArray, "_raw/proximity"), (Range, "proximity/left")]
 end = time.monotonic() + {STORM_S}
 while time.monotonic() < end:
     heard = [

@@ -41,8 +41,8 @@ def shown(message):
 
 def test_things_that_move_have_markers_of_their_own(ros, simulation):
     sim = simulation(playground=PUSHING, noise=False)
-    fixed = ros.collect(MarkerArray, "/markers", latched=True)
-    objects = ros.collect(MarkerArray, "/markers/objects", latched=True)
+    fixed = ros.collect(MarkerArray, "/_markers", latched=True)
+    objects = ros.collect(MarkerArray, "/_markers/objects", latched=True)
     ros.until(lambda: fixed and objects)
     assert "solid/can" not in shown(fixed[-1])
     assert shown(objects[-1]) == {"solid/can": 0.15}
@@ -56,7 +56,7 @@ def test_things_that_move_have_markers_of_their_own(ros, simulation):
 
 def test_things_that_rest_are_not_told_again(ros, simulation):
     sim = simulation(playground=PUSHING)
-    objects = ros.collect(MarkerArray, "/markers/objects", latched=True)
+    objects = ros.collect(MarkerArray, "/_markers/objects", latched=True)
     ros.until(lambda: objects)
     sim.step(1.0)
     assert len(objects) == 1
@@ -64,12 +64,12 @@ def test_things_that_rest_are_not_told_again(ros, simulation):
 
 def test_a_robot_that_comes_has_topics_until_it_goes(ros, simulation):
     sim = simulation(playground=PUSHING)
-    states = ros.collect(String, "/simulator/state", latched=True)
-    old = ros.collect(Odometry, "/ground_truth/odom")
+    states = ros.collect(String, "/simulator/_state", latched=True)
+    old = ros.collect(Odometry, "/_ground_truth/odom")
     sim.until(lambda: old)
     sim.world.spawn(RobotStart("late", -0.5, 0.0, 1.0))
     sim.tick()
-    new = ros.collect(Odometry, "/late/ground_truth/odom")
+    new = ros.collect(Odometry, "/late/_ground_truth/odom")
     sim.until(lambda: new)
     assert new[-1].child_frame_id == "late/base_link"
     ros.until(lambda: [robot["name"] for robot in json.loads(states[-1].data)["robots"]] == ["", "late"])
@@ -82,8 +82,8 @@ def test_a_robot_that_comes_has_topics_until_it_goes(ros, simulation):
     count = len(old)
     sim.until(lambda: len(old) > count + 3)
     names = {name for name, _ in sim.simulator.node.get_topic_names_and_types()}
-    assert not sim.simulator.node.get_publishers_info_by_topic("/late/ground_truth/odom")
-    assert "/ground_truth/odom" in names
+    assert not sim.simulator.node.get_publishers_info_by_topic("/late/_ground_truth/odom")
+    assert "/_ground_truth/odom" in names
 
 
 def test_the_frames_of_a_robot_that_comes_are_latched(simulation, monkeypatch):
@@ -97,7 +97,7 @@ def test_the_frames_of_a_robot_that_comes_are_latched(simulation, monkeypatch):
 
 def test_reset_brings_back_the_robots_of_the_playground(ros, simulation):
     sim = simulation(playground=PUSHING)
-    odometry = ros.collect(Odometry, "/ground_truth/odom")
+    odometry = ros.collect(Odometry, "/_ground_truth/odom")
     sim.world.remove("thymio")
     sim.world.spawn(RobotStart("late", -0.5, 0.0))
     sim.step(0.1)

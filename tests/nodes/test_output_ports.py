@@ -13,7 +13,7 @@ from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.output_ports import FRESH_S, OutputPorts
 from thymio_sim_ros.sim.commands import MotorTargets, PlayTone, SetLed
 
-KINDS = {"motor/target": Int16MultiArray, "led/single": Int16MultiArray, "sound/tone": Float32MultiArray}
+KINDS = {"_motor/target": Int16MultiArray, "_led/single": Int16MultiArray, "sound/tone": Float32MultiArray}
 
 
 class Robot:
@@ -61,7 +61,7 @@ def test_who_comes_later_is_told_once_what_nobody_heard(ros, ports):
 def test_lights_that_were_set_one_by_one_are_all_told_in_order(ros, ports):
     for command in (SetLed(1, 10), SetLed(2, 20), SetLed(1, 30)):
         ports.send(command)
-    robot = Robot(ros, ["led/single"])
+    robot = Robot(ros, ["_led/single"])
     look(ros, ports)
     assert robot.heard == [[2, 20], [1, 30]]
 

@@ -56,7 +56,7 @@ def test_a_robot_that_is_tilted_leans_in_its_odometry_s_frame(ros, simulation):
 
 def test_a_robot_can_be_put_somewhere(ros, simulation):
     sim = simulation()
-    truth = ros.collect(Odometry, "/ground_truth/odom")
+    truth = ros.collect(Odometry, "/_ground_truth/odom")
     odometry = ros.collect(Odometry, "/odom")
     pose = PoseWithCovarianceStamped()
     pose.pose.pose.position.x, pose.pose.pose.position.y = 0.2, -0.1

@@ -100,7 +100,7 @@ def test_nodes_in_processes_of_their_own_talk(ros, process):
     )
     targets: list[Int16MultiArray] = []
     odometry: list[Odometry] = []
-    ros.node.create_subscription(Int16MultiArray, "/motor/target", targets.append, 10)
+    ros.node.create_subscription(Int16MultiArray, "/_motor/target", targets.append, 10)
     ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
     ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, START_S, what="a moving robot")
     ros.until(lambda: targets, START_S, what="wheel targets of the program")
@@ -116,8 +116,8 @@ def test_robots_of_runtimes_in_different_processes_hear_each_other(ros, process,
     anna = runtime(PING.replace("onevent ping emit pong", "var got = 0\nonevent pong got ="), robots=["anna"]).robots[0]
     arguments = ["-p", "robots:=[bert]", "-p", "first_id:=2", "-p", f"script.source:={PING}"]
     process("thymio_sim_ros.nodes.aseba_node", "--ros-args", "-p", "use_sim_time:=false", *arguments)
-    ros.until(lambda: ros.node.count_subscribers("/aseba/network") == 2, START_S, what="the other runtime")
-    publisher = ros.publisher(Int16MultiArray, "/anna/aseba/emit")
+    ros.until(lambda: ros.node.count_subscribers("/_aseba/network") == 2, START_S, what="the other runtime")
+    publisher = ros.publisher(Int16MultiArray, "/anna/_aseba/emit")
 
     def is_answered():
         publisher.publish(Int16MultiArray(layout=convert.layout([("ping", 1)]), data=[41]))

@@ -179,7 +179,7 @@ def test_a_robot_that_takes_time_to_come_comes_once(simulator_with, sleeper, mon
 
 def test_without_a_driving_thread_nothing_is_done_behind_a_tests_back(ros, simulation):
     sim = simulation(playground="base")
-    pressed = ros.publisher(Bool, "/press/center")
+    pressed = ros.publisher(Bool, "/_press/center")
     pressed.publish(Bool(data=True))
     ros.deliver()
     assert sim.world.now_ns == 0

@@ -81,10 +81,10 @@ def test_a_runtime_hears_all_robots_of_a_simulator_at_once(ros, simulation, runt
     sim = simulation(playground="two_robots")
     runtime(COUNTER)
     robots = list(sim.world.robots)
-    ros.until(lambda: ros.node.count_subscribers("/simulator/raw"), what="the runtime's ears")
-    assert not any(ros.node.count_subscribers(f"/{robot}/raw/motor") for robot in robots)
+    ros.until(lambda: ros.node.count_subscribers("/simulator/_raw"), what="the runtime's ears")
+    assert not any(ros.node.count_subscribers(f"/{robot}/_raw/motor") for robot in robots)
     before = sim.world.now_ns
-    heard = ros.collect(Int16MultiArray, "/simulator/raw")
+    heard = ros.collect(Int16MultiArray, "/simulator/_raw")
     sim.until(lambda: sim.world.now_ns - before > 500_000_000 and heard)
     labels = {dim.label for one in heard for dim in one.layout.dim}
     assert {f"{robot}/{sensor}" for robot in robots for sensor in ("motor", "proximity", "ground")} <= labels
@@ -97,8 +97,8 @@ def test_each_reading_is_one_event(ros, simulation, runtime):
     def count():
         return [value[0] for value in get_variables(ros, "motors", "looks")]
 
-    ros.until(lambda: ros.node.count_subscribers("/simulator/raw"), what="the runtime's ears")
-    heard = ros.collect(Int16MultiArray, "/simulator/raw")
+    ros.until(lambda: ros.node.count_subscribers("/simulator/_raw"), what="the runtime's ears")
+    heard = ros.collect(Int16MultiArray, "/simulator/_raw")
     sim.until(lambda: heard)
     sim.simulator.pause(True)
     ros.settle()
@@ -119,23 +119,23 @@ def test_each_reading_is_one_event(ros, simulation, runtime):
 @pytest.fixture
 def simulator(ros):
     """Says which robots there are, as a simulator."""
-    state = ros.node.create_publisher(String, "/simulator/state", qos.LATCHED)
+    state = ros.node.create_publisher(String, "/simulator/_state", qos.LATCHED)
     return lambda **fields: state.publish(String(data=json.dumps({"robots": [{"name": "anna"}], **fields})))
 
 
 def told_by_single_topics(ros, *, speed):
-    motor = ros.publisher(Int16MultiArray, "/anna/raw/motor")
+    motor = ros.publisher(Int16MultiArray, "/anna/_raw/motor")
     motor.publish(Int16MultiArray(data=[speed, 0, 0, 0]))
     ros.until(lambda: get_variables(ros, "motor.left.speed", robot="/anna")[0] == [speed], what="a single reading")
 
 
 def test_where_the_simulator_has_gone_a_robot_has_topics_of_its_own(ros, runtime, simulator):
     runtime(COUNTER)
-    simulator(raw="/simulator/raw")
-    common = ros.publisher(Int16MultiArray, "/simulator/raw")
+    simulator(raw="/simulator/_raw")
+    common = ros.publisher(Int16MultiArray, "/simulator/_raw")
     common.publish(message(("anna/motor", 4), data=[5, 0, 0, 0]))
     ros.until(lambda: get_variables(ros, "motor.left.speed", robot="/anna")[0] == [5], what="the common reading")
-    assert ros.node.count_subscribers("/anna/raw/motor") == 0
+    assert ros.node.count_subscribers("/anna/_raw/motor") == 0
     ros.node.destroy_publisher(common)
     told_by_single_topics(ros, speed=6)
 
@@ -144,7 +144,7 @@ def test_a_simulator_without_the_common_topic_is_heard_by_single_ones(ros, runti
     runtime(COUNTER)
     simulator()
     told_by_single_topics(ros, speed=7)
-    assert ros.node.count_subscribers("/simulator/raw") == 0
+    assert ros.node.count_subscribers("/simulator/_raw") == 0
 
 
 def test_a_message_that_is_none_ends_nothing(ros, simulation, runtime):

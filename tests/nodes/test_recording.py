@@ -15,8 +15,8 @@ from thymio_sim_ros.nodes import tf_messages
 PROGRAM = "var n = 0\ntimer.period[0] = 100\nonevent timer0\nn = n + 1"
 # One of each kind: latched, of sensors, of the clock, of transforms, of the runtime; nobody commands anything.
 SPEAKS = {
-    "/aseba/status", "/clock", "/diagnostics", "/imu", "/markers", "/markers/objects", "/odom", "/proximity/center",
-    "/proximity/laser", "/raw/proximity", "/robot_description", "/simulator/state", "/tf", "/tf_static",
+    "/_aseba/status", "/clock", "/diagnostics", "/imu", "/_markers", "/_markers/objects", "/odom", "/proximity/center",
+    "/_proximity/laser", "/_raw/proximity", "/robot_description", "/simulator/_state", "/tf", "/tf_static",
 }  # fmt: skip
 
 
@@ -42,7 +42,7 @@ def test_everything_can_be_recorded_and_read_back(ros, simulation, runtime):
     sim.step(0.2)
     recorded, kinds = {}, {}
     for topic, (kind, *others) in ros.node.get_topic_names_and_types():
-        if not ros.node.count_publishers(topic) or "/_" in topic:  # those of actions are hidden
+        if not ros.node.count_publishers(topic) or "/_action/" in topic:
             continue
         assert others == []
         kinds[topic] = message_class(kind)
@@ -76,7 +76,7 @@ def test_a_robot_that_is_driven_by_a_recording_drives_the_same_way(ros, simulati
 def test_a_program_runs_on_recorded_readings(ros, simulation, runtime):
     sim = simulation(playground="obstacle")
     recorded = []
-    ros.node.create_subscription(Int16MultiArray, "/raw/proximity", recorded.append, 10, raw=True)
+    ros.node.create_subscription(Int16MultiArray, "/_raw/proximity", recorded.append, 10, raw=True)
     ros.settle()
     sim.step(0.5)
     seen = list(deserialize_message(recorded[-1], Int16MultiArray).data)
@@ -84,5 +84,5 @@ def test_a_program_runs_on_recorded_readings(ros, simulation, runtime):
     ros.simulation = None
     runtime("var kept[7]\nonevent prox\nkept = prox.horizontal", watch=["kept"])
     told = ros.collect(Int16MultiArray, "/aseba/variables/kept", latched=True)
-    ros.publisher(Int16MultiArray, "/raw/proximity").publish(bytes(recorded[-1]))
+    ros.publisher(Int16MultiArray, "/_raw/proximity").publish(bytes(recorded[-1]))
     ros.until(lambda: told and list(told[-1].data) == seen)

@@ -41,9 +41,9 @@ def test_the_migration_names_all_that_a_program_knows(kind):
 @pytest.mark.parametrize(
     "line",
     [
-        "| `button.center` | out | `buttons/center`, `raw/buttons` |",
-        "| `prox.horizontal[7]` | out | `proximity/…`, `raw/proximity` |",
-        "| `motor.left.target` | in | `motor/target` |",
+        "| `button.center` | out | `buttons/center`, `_raw/buttons` |",
+        "| `prox.horizontal[7]` | out | `proximity/…`, `_raw/proximity` |",
+        "| `motor.left.target` | in | `_motor/target` |",
         "| `leds.top(red, green, blue)` | in | `led/body/top` |",
         "| `timer0` | | timers of a node of one’s own |",
     ],

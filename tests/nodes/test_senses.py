@@ -47,42 +47,42 @@ def test_the_imu_is_the_driver_s():
 
 
 def test_temperature_has_tenths_and_a_variance():
-    message = encode("temperature", readings.TemperatureReading(0, (184,), 18.44))
+    message = encode("_temperature", readings.TemperatureReading(0, (184,), 18.44))
     assert (message.temperature, message.variance) == (18.4, 0.01)
 
 
 @pytest.mark.parametrize("is_charging", [False, True])
 def test_the_battery_tells_what_it_knows(is_charging):
-    message = encode("battery", readings.BatteryReading(0, (796, 796, 0), 4.0, 0.75, is_charging))
+    message = encode("_battery", readings.BatteryReading(0, (796, 796, 0), 4.0, 0.75, is_charging))
     assert (message.voltage, message.percentage, message.present) == (4.0, 0.75, True)
     assert (message.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING) == is_charging
     assert math.isnan(message.current)
 
 
 def test_events_carry_their_values():
-    assert encode("tap", readings.TapReading(0, (1,))) == Empty()
-    assert encode("remote", readings.RemoteReading(0, (5, 127))) == Int8(data=127)
-    assert encode("comm/received", readings.CommReading(0, (2047, *[0] * 14))) == Int16(data=2047)
-    assert encode("collision", readings.CollisionReading(0, (), True)) == Bool(data=True)
+    assert encode("_tap", readings.TapReading(0, (1,))) == Empty()
+    assert encode("_remote", readings.RemoteReading(0, (5, 127))) == Int8(data=127)
+    assert encode("_comm/received", readings.CommReading(0, (2047, *[0] * 14))) == Int16(data=2047)
+    assert encode("_collision", readings.CollisionReading(0, (), True)) == Bool(data=True)
 
 
 def test_only_loud_sounds_are_told():
-    assert encode("sound", readings.SoundReading(0, (51, 256), True)) == Float32(data=0.2)
-    assert encode("sound", readings.SoundReading(0, (51, 256), False)) is None
+    assert encode("_sound", readings.SoundReading(0, (51, 256), True)) == Float32(data=0.2)
+    assert encode("_sound", readings.SoundReading(0, (51, 256), False)) is None
 
 
 def test_an_operator_is_felt_on_topics(ros, simulation):
     sim = simulation()
-    imu, taps, keys = ros.collect(Imu, "/imu"), ros.collect(Empty, "/tap"), ros.collect(Int8, "/remote")
-    sounds, warm = ros.collect(Float32, "/sound"), ros.collect(Temperature, "/temperature")
-    power, sent = ros.collect(BatteryState, "/battery"), ros.publisher
-    sent(Float32, "/sound_threshold").publish(Float32(data=0.5))
-    sent(Float32MultiArray, "/press/tilt").publish(Float32MultiArray(data=[0.0, -math.pi / 2]))
-    sent(Empty, "/press/tap").publish(Empty())
-    sent(Int8, "/press/remote").publish(Int8(data=80))
-    sent(Float32, "/press/temperature").publish(Float32(data=30.5))
-    sent(Float32, "/press/battery").publish(Float32(data=3.5))
-    sent(Float32, "/press/sound").publish(Float32(data=0.75))
+    imu, taps, keys = ros.collect(Imu, "/imu"), ros.collect(Empty, "/_tap"), ros.collect(Int8, "/_remote")
+    sounds, warm = ros.collect(Float32, "/_sound"), ros.collect(Temperature, "/_temperature")
+    power, sent = ros.collect(BatteryState, "/_battery"), ros.publisher
+    sent(Float32, "/_sound_threshold").publish(Float32(data=0.5))
+    sent(Float32MultiArray, "/_press/tilt").publish(Float32MultiArray(data=[0.0, -math.pi / 2]))
+    sent(Empty, "/_press/tap").publish(Empty())
+    sent(Int8, "/_press/remote").publish(Int8(data=80))
+    sent(Float32, "/_press/temperature").publish(Float32(data=30.5))
+    sent(Float32, "/_press/battery").publish(Float32(data=3.5))
+    sent(Float32, "/_press/sound").publish(Float32(data=0.75))
     sim.until(lambda: imu and imu[-1].linear_acceleration.x == pytest.approx(9.81))
     sim.until(lambda: taps and keys and sounds and warm and power)
     sim.until(lambda: (round(warm[-1].temperature, 1), round(power[-1].voltage, 1)) == (30.5, 3.5))
@@ -98,12 +98,12 @@ def test_a_program_gets_the_words_of_the_senses(ros, simulation, runtime):
         "onevent acc\nif acc[1] > 20 then\ncall leds.prox.v(5, 6)\nend\n"
         "onevent mic\ncall leds.temperature(mic.intensity / 10, 1)"
     )
-    state = ros.collect(Float32MultiArray, "/led/state", latched=True)
-    ros.publisher(Int16MultiArray, "/press/rc5").publish(Int16MultiArray(data=[3, 11]))
-    ros.publisher(Empty, "/press/tap").publish(Empty())
-    ros.publisher(Float32MultiArray, "/press/tilt").publish(Float32MultiArray(data=[0.0, -1.5]))
+    state = ros.collect(Float32MultiArray, "/_led/state", latched=True)
+    ros.publisher(Int16MultiArray, "/_press/rc5").publish(Int16MultiArray(data=[3, 11]))
+    ros.publisher(Empty, "/_press/tap").publish(Empty())
+    ros.publisher(Float32MultiArray, "/_press/tilt").publish(Float32MultiArray(data=[0.0, -1.5]))
     sim.step(0.2)
-    ros.publisher(Float32, "/press/clap").publish(Float32(data=1.0))
+    ros.publisher(Float32, "/_press/clap").publish(Float32(data=1.0))
 
     def shown(group):
         begin = 0
@@ -127,13 +127,13 @@ def test_programs_of_two_robots_talk_by_infrared(ros, simulation, runtime):
         "onevent prox.comm\ncall leds.top(prox.comm.rx - 100, 0, 0)",
         robots=["anna", "bert"],
     )
-    states = [ros.collect(Float32MultiArray, f"/{name}/led/state", latched=True) for name in ("anna", "bert")]
+    states = [ros.collect(Float32MultiArray, f"/{name}/_led/state", latched=True) for name in ("anna", "bert")]
     sim.until(lambda: all(states) and [round(32 * state[-1].data[0]) for state in states] == [2, 1])
 
 
 def test_a_wall_is_a_collision(ros, simulation):
     sim = simulation(playground="obstacle")
-    touching = ros.collect(Bool, "/collision")
+    touching = ros.collect(Bool, "/_collision")
     sim.step(0.1)
-    ros.publisher(Int16MultiArray, "/motor/target").publish(Int16MultiArray(data=[500, 500]))
+    ros.publisher(Int16MultiArray, "/_motor/target").publish(Int16MultiArray(data=[500, 500]))
     sim.until(lambda: touching and touching[-1].data)

@@ -205,7 +205,7 @@ def test_a_robot_is_spawned_and_deleted(room):
     (only,) = room("get_spawnables").spawnables
     answer = room("spawn_entity", name="anna", uri=only.uri, entity_namespace="/anna", initial_pose=place(-0.5, 0.2))
     assert (answer.result.result, answer.entity_name) == (OK, "anna")
-    assert room.simulator.names["anna"].topic("odom") == "/anna/odom"
+    assert room.simulator.names["anna"].topic("odom") == "anna/odom"
     assert room.simulator.world.robots["anna"].pose.x_m == -0.5
     assert room.told("delete_entity", entity="anna") == (OK, "")
     assert named(room) == ["thymio", "crate"]

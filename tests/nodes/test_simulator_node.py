@@ -73,7 +73,7 @@ def test_cmd_vel_moves_the_robot(ros, simulation):
 
 def test_a_fault_of_ours_stops_the_world_and_says_so_and_the_node_lives(ros, simulation, monkeypatch):
     sim = simulation()
-    logs, states = ros.collect(Log, "/rosout"), ros.collect(String, "/simulator/state")
+    logs, states = ros.collect(Log, "/rosout"), ros.collect(String, "/simulator/_state")
 
     def fail():
         raise ZeroDivisionError("nobody thought of it")
@@ -94,13 +94,13 @@ def test_what_is_latched_is_told_anew_after_a_reset(ros, simulation):
     ros.publisher(Float32MultiArray, "/sound/tone").publish(Float32MultiArray(data=[440.0, 1000.0]))
     ros.publisher(Twist, "/cmd_vel").publish(forward(0.1))
     sounds, trails = (
-        ros.collect(Float32MultiArray, "/sound/state"),
-        ros.collect(MarkerArray, "/pen/trail", latched=True),
+        ros.collect(Float32MultiArray, "/_sound/state"),
+        ros.collect(MarkerArray, "/_pen/trail", latched=True),
     )
     sim.until(lambda: sounds and sounds[-1].data[0] > 0 and trails and len(trails[-1].markers) > 1)
     assert ros.call(Trigger, "/simulator/reset", Trigger.Request()).success
-    late_sounds = ros.collect(Float32MultiArray, "/sound/state", latched=True)
-    late_trails = ros.collect(MarkerArray, "/pen/trail", latched=True)
+    late_sounds = ros.collect(Float32MultiArray, "/_sound/state", latched=True)
+    late_trails = ros.collect(MarkerArray, "/_pen/trail", latched=True)
     ros.until(lambda: late_sounds and late_trails)
     assert list(late_sounds[-1].data) == [0.0, 0.0, 1.0]
     assert [marker.action for marker in late_trails[-1].markers] == [Marker.DELETEALL]
@@ -109,8 +109,8 @@ def test_what_is_latched_is_told_anew_after_a_reset(ros, simulation):
 
 def test_a_robot_that_is_shut_down_is_silent(ros, simulation):
     sim = simulation()
-    sounds = ros.collect(Float32MultiArray, "/sound/state")
-    ros.publisher(Bool, "/alarm").publish(Bool(data=True))
+    sounds = ros.collect(Float32MultiArray, "/_sound/state")
+    ros.publisher(Bool, "/_alarm").publish(Bool(data=True))
     sim.until(lambda: sounds and sounds[-1].data[0] > 0)
     ros.publisher(Empty, "/shutdown").publish(Empty())
     sim.until(lambda: sounds[-1].data[0] == 0)
@@ -121,8 +121,8 @@ def test_a_robot_that_is_shut_down_is_silent(ros, simulation):
 
 def test_a_stamped_command_turns_the_robot(ros, simulation):
     sim = simulation()
-    truth = ros.collect(Odometry, "/ground_truth/odom")
-    ros.publisher(TwistStamped, "/cmd_vel_stamped").publish(TwistStamped(twist=forward(0.0, 1.0)))
+    truth = ros.collect(Odometry, "/_ground_truth/odom")
+    ros.publisher(TwistStamped, "/_cmd_vel_stamped").publish(TwistStamped(twist=forward(0.0, 1.0)))
     sim.until(lambda: truth and yaw_of(truth[-1].pose.pose.orientation) > 0.5)
     assert truth[-1].header.frame_id == "map"
 
@@ -130,7 +130,7 @@ def test_a_stamped_command_turns_the_robot(ros, simulation):
 def test_wheel_commands_turn_the_wheels(ros, simulation):
     sim = simulation(noise=False)
     joints = ros.collect(JointState, "/joint_states")
-    ros.publisher(Float64MultiArray, "/wheels/command").publish(Float64MultiArray(data=[2.0, 4.0]))
+    ros.publisher(Float64MultiArray, "/_wheels/command").publish(Float64MultiArray(data=[2.0, 4.0]))
     sim.until(lambda: joints and joints[-1].position[1] > 1.0)
     assert joints[-1].name == ["left_wheel_joint", "right_wheel_joint"]
     assert list(joints[-1].velocity) == pytest.approx([2.0, 4.0], rel=0.01)
@@ -167,8 +167,8 @@ def test_nan_in_a_command_is_refused(ros, simulation):
 def test_a_wall_ahead_lowers_the_range(ros, simulation):
     sim = simulation(playground=WALL_AHEAD)
     ranges = ros.collect(Range, "/proximity/center")
-    counts = ros.collect(Int16MultiArray, "/raw/proximity")
-    scans = ros.collect(LaserScan, "/proximity/laser")
+    counts = ros.collect(Int16MultiArray, "/_raw/proximity")
+    scans = ros.collect(LaserScan, "/_proximity/laser")
     sim.until(lambda: ranges and counts and scans)
     assert ranges[-1].range == math.inf
     assert (ranges[-1].min_range, ranges[-1].max_range) == pytest.approx((0.0215, 0.14))
@@ -190,7 +190,7 @@ def test_the_driver_s_ranges_are_a_parameter(ros, simulation):
 def test_a_pressed_button_is_seen_once(ros, simulation):
     sim = simulation()
     pressed = ros.collect(Bool, "/buttons/center")
-    ros.publisher(Bool, "/press/center").publish(Bool(data=True))
+    ros.publisher(Bool, "/_press/center").publish(Bool(data=True))
     sim.until(lambda: pressed and pressed[-1].data)
     sim.step(0.5)
     assert [message.data for message in pressed] in ([False, True], [True])
@@ -198,7 +198,7 @@ def test_a_pressed_button_is_seen_once(ros, simulation):
 
 def test_leds_shine_as_told(ros, simulation):
     sim = simulation()
-    state = ros.collect(Float32MultiArray, "/led/state", latched=True)
+    state = ros.collect(Float32MultiArray, "/_led/state", latched=True)
     ros.publisher(ColorRGBA, "/led/body/top").publish(ColorRGBA(r=1.0, g=0.5, b=0.0, a=1.0))
     sim.until(lambda: state and list(state[-1].data[:3]) == [1.0, 0.5, 0.0])
     labels = {dimension.label: dimension.size for dimension in state[-1].layout.dim}
@@ -207,7 +207,7 @@ def test_leds_shine_as_told(ros, simulation):
 
 def test_a_short_led_array_is_refused(ros, simulation):
     sim = simulation()
-    state = ros.collect(Float32MultiArray, "/led/state", latched=True)
+    state = ros.collect(Float32MultiArray, "/_led/state", latched=True)
     publisher = ros.publisher(Float32MultiArray, "/led/circle")
     publisher.publish(Float32MultiArray(data=[1.0]))
     publisher.publish(Float32MultiArray(data=[1.0] * 8))
@@ -254,14 +254,14 @@ def test_pause_step_and_run(ros, simulation):
     refused = ros.call(Trigger, "/simulator/step")
     assert not refused.success
     assert "pause" in refused.message
-    states = ros.collect(String, "/simulator/state", latched=True)
+    states = ros.collect(String, "/simulator/_state", latched=True)
     ros.until(lambda: states and json.loads(states[-1].data)["paused"] is False)
 
 
 def test_where_a_robot_stands_is_repeated_while_time_stands_still(ros, simulation):
     sim = simulation(playground="base")
     sim.simulator.pause(True)
-    odometry = ros.collect(Odometry, "/ground_truth/odom")
+    odometry = ros.collect(Odometry, "/_ground_truth/odom")
     nobody = make_executor(ros.context)
 
     def arrived() -> bool:
@@ -276,7 +276,7 @@ def test_where_a_robot_stands_is_repeated_while_time_stands_still(ros, simulatio
 
 def test_the_playground_can_be_changed_and_a_bad_one_is_refused(ros, simulation):
     sim = simulation(playground="base")
-    markers = ros.collect(MarkerArray, "/markers", latched=True)
+    markers = ros.collect(MarkerArray, "/_markers", latched=True)
     ros.until(lambda: markers)
     world = sim.world
     bad = set_parameter(ros, "playground", '{"format": 1, "title": "x", "shapes": [{"kind": "bx"}]}')
@@ -333,7 +333,7 @@ def test_the_state_tells_what_a_file_could_not_express(ros, simulation):
     simulation(
         playground='<aseba-playground><color name="w"/><world w="90" h="90" color="w"/><feeder/></aseba-playground>'
     )
-    states = ros.collect(String, "/simulator/state", latched=True)
+    states = ros.collect(String, "/simulator/_state", latched=True)
     ros.until(lambda: states)
     (note,) = json.loads(states[-1].data)["notes"]
     assert note.startswith("line 1: <feeder> left out")
@@ -358,9 +358,9 @@ def test_the_graph_has_the_driver_s_names(ros, simulation):
         "/cmd_vel": "geometry_msgs/msg/Twist",
         "/ground/left": "sensor_msgs/msg/Range",
         "/ground/right": "sensor_msgs/msg/Range",
-        "/proximity/laser": "sensor_msgs/msg/LaserScan",
-        "/buttons": "sensor_msgs/msg/Joy",
-        "/led/state": "std_msgs/msg/Float32MultiArray",
+        "/_proximity/laser": "sensor_msgs/msg/LaserScan",
+        "/_buttons": "sensor_msgs/msg/Joy",
+        "/_led/state": "std_msgs/msg/Float32MultiArray",
         **{f"/buttons/{button}": "std_msgs/msg/Bool" for button in BUTTONS},
     }
     assert {name: topics.get(name) for name in expected} == {name: [kind] for name, kind in expected.items()}
@@ -376,9 +376,9 @@ def test_a_refused_start_parameter_says_why(ros):
 
 def test_a_pen_draws_a_trail(ros, simulation):
     sim = simulation()
-    trails = ros.collect(MarkerArray, "/pen/trail", latched=True)
-    ros.publisher(ColorRGBA, "/pen/color").publish(ColorRGBA(r=1.0, a=1.0))
-    ros.publisher(Float32, "/pen/width").publish(Float32(data=0.03125))
+    trails = ros.collect(MarkerArray, "/_pen/trail", latched=True)
+    ros.publisher(ColorRGBA, "/_pen/color").publish(ColorRGBA(r=1.0, a=1.0))
+    ros.publisher(Float32, "/_pen/width").publish(Float32(data=0.03125))
     ros.publisher(Bool, "/pen/down").publish(Bool(data=True))
     ros.publisher(Twist, "/cmd_vel").publish(forward(0.1))
     sim.until(lambda: trails and len(trails[-1].markers) > 1 and trails[-1].markers[-1].points[-1].x > 0.1)
@@ -389,7 +389,7 @@ def test_a_pen_draws_a_trail(ros, simulation):
 
 def test_a_sound_from_ros_is_played_and_told(ros, simulation):
     sim = simulation()
-    told = ros.collect(Float32MultiArray, "/sound/state")
+    told = ros.collect(Float32MultiArray, "/_sound/state")
     ros.publisher(Float32MultiArray, "/sound/tone").publish(Float32MultiArray(data=[440.0, 0.5]))
     sim.until(lambda: len(told) >= 2)
     assert [list(message.data[:2]) for message in told] == [[440.0, 0.5], [0.0, 0.0]]

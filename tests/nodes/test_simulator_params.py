@@ -121,7 +121,7 @@ def test_covariances_follow_their_parameters(ros, simulation):
 
 def test_a_new_seed_begins_anew_with_another_noise(ros, simulation):
     sim = simulation(seed=1)
-    counts = ros.collect(Int16MultiArray, "/raw/ground")
+    counts = ros.collect(Int16MultiArray, "/_raw/ground")
     sim.until(lambda: len(counts) == 5)
     first = [list(message.data) for message in counts]
     for seed in (2, 1):
@@ -147,9 +147,9 @@ def test_frames_and_joints_are_called_as_wanted(ros, simulation):
         tf_prefix="lab",
     )  # fmt: skip
     odometry = ros.collect(Odometry, "/odom")
-    truth = ros.collect(Odometry, "/ground_truth/odom")
+    truth = ros.collect(Odometry, "/_ground_truth/odom")
     joints = ros.collect(JointState, "/joint_states")
-    markers = ros.collect(MarkerArray, "/markers")
+    markers = ros.collect(MarkerArray, "/_markers")
     description = ros.collect(String, "/robot_description")
     sim.until(lambda: odometry and joints and markers and truth and description)
     assert (odometry[-1].header.frame_id, odometry[-1].child_frame_id) == ("lab/wheels", "lab/body")
@@ -191,7 +191,7 @@ def test_what_is_not_wanted_is_not_published(ros, simulation):
     frames = frames_on(ros, "/tf")
     sim.until(lambda: frames())
     assert frames() == {("odom", "base_link")}
-    for topic in ("/tf_static", "/robot_description", "/ground_truth/odom", "/clock", "/map"):
+    for topic in ("/tf_static", "/robot_description", "/_ground_truth/odom", "/clock", "/map"):
         assert not ros.node.count_publishers(topic), topic
 
 
@@ -205,7 +205,7 @@ def test_odometry_and_joints_have_their_rate(ros, simulation, rate, count):
 
 def test_all_sensors_have_one_rate_on_request(ros, simulation):
     sim = simulation(sensor_rate=50.0)
-    counts = [ros.collect(Int16MultiArray, f"/raw/{sensor}") for sensor in ("proximity", "ground", "motor")]
+    counts = [ros.collect(Int16MultiArray, f"/_raw/{sensor}") for sensor in ("proximity", "ground", "motor")]
     sim.step(1.0)
     ros.until(lambda: [len(each) for each in counts] == [50, 50, 50])
 
@@ -214,7 +214,7 @@ def test_velocities_swap_their_names_on_request(ros, simulation):
     sim = simulation(stamped_cmd_vel=True)
     ros.publisher(TwistStamped, "/cmd_vel").publish(TwistStamped(twist=Twist(linear=Vector3(x=0.1))))
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.05)
-    ros.publisher(Twist, "/cmd_vel_unstamped").publish(Twist(linear=Vector3(x=-0.1)))
+    ros.publisher(Twist, "/_cmd_vel_unstamped").publish(Twist(linear=Vector3(x=-0.1)))
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m < 0.0)
 
 

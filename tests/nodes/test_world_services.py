@@ -59,9 +59,9 @@ def test_the_playground_is_told_as_a_file_of_ours(ros, simulation):
 
 def test_a_robot_is_spawned_and_removed_while_the_world_is_paused(ros, simulation):
     simulation(playground=ROOM)
-    states = ros.collect(String, "/simulator/state")
+    states = ros.collect(String, "/simulator/_state")
     assert ask(ros, "spawn", anna=numbers(-0.5, 0.25, 1.5)) == {"anna": ""}
-    ros.collect(Odometry, "/anna/ground_truth/odom")
+    ros.collect(Odometry, "/anna/_ground_truth/odom")
     ros.until(lambda: [robot["robot"] for robot in json.loads(states[-1].data)["robots"]] == ["thymio", "anna"])
     assert json.loads(states[-1].data)["robots"][1]["frame"] == "anna/base_link"
     assert poses(ros, "anna") == [[-0.5, 0.25, 1.5]]
@@ -72,7 +72,7 @@ def test_a_robot_is_spawned_and_removed_while_the_world_is_paused(ros, simulatio
 def test_a_robot_that_was_spawned_measures_and_obeys(ros, simulation):
     sim = simulation(playground=ROOM)
     ask(ros, "spawn", anna=numbers(-0.5, 0.25))
-    truth = ros.collect(Odometry, "/anna/ground_truth/odom")
+    truth = ros.collect(Odometry, "/anna/_ground_truth/odom")
     sim.until(lambda: truth)
     assert truth[-1].pose.pose.position.x == -0.5
 
@@ -143,7 +143,7 @@ def transform(child, x, y, yaw=0.0, frame="map"):
 @pytest.mark.parametrize(("name", "child"), [("thymio", "thymio"), ("thymio", "base_link"), ("crate", "crate")])
 def test_what_a_viewer_drags_goes_there(ros, simulation, name, child):
     sim = simulation(playground=ROOM)
-    ros.publisher(TransformStamped, "/simulator/place").publish(transform(child, -0.5, 0.25, 0.5))
+    ros.publisher(TransformStamped, "/simulator/_place").publish(transform(child, -0.5, 0.25, 0.5))
     sim.until(lambda: poses(ros, name) == [pytest.approx([-0.5, 0.25, 0.5])], seconds=0.1)
 
 
@@ -153,6 +153,6 @@ def test_what_a_viewer_drags_goes_there(ros, simulation, name, child):
 )
 def test_a_drag_to_nowhere_is_refused_and_counted(ros, simulation, refused):
     sim = simulation(playground=ROOM)
-    ros.publisher(TransformStamped, "/simulator/place").publish(refused)
+    ros.publisher(TransformStamped, "/simulator/_place").publish(refused)
     ros.until(lambda: sim.simulator._refused == 1)
     assert poses(ros, "thymio") == [[0.0, 0.0, 0.0]]

@@ -36,22 +36,22 @@ test("a finger on a button is published to its robot", () => {
   actions.press("", "left", true);
   actions.press("thymio_1", "left", false);
   assert.deepEqual(asked, [
-    ["publish", "/press/left", "std_msgs/msg/Bool", { data: true }],
-    ["publish", "/thymio_1/press/left", "std_msgs/msg/Bool", { data: false }],
+    ["publish", "/_press/left", "std_msgs/msg/Bool", { data: true }],
+    ["publish", "/thymio_1/_press/left", "std_msgs/msg/Bool", { data: false }],
   ]);
 });
 
 test("what an operator does is published to the selected robot", () => {
   const { actions, asked, store } = prepared();
-  connect(store, ["/a/ground_truth/odom", "/b/ground_truth/odom"], []);
+  connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], []);
   store.dispatch({ type: "select", robot: "b" });
-  actions.operate("press/clap", "std_msgs/msg/Float32", { data: 1 });
-  assert.deepEqual(asked, [["publish", "/b/press/clap", "std_msgs/msg/Float32", { data: 1 }]]);
+  actions.operate("_press/clap", "std_msgs/msg/Float32", { data: 1 });
+  assert.deepEqual(asked, [["publish", "/b/_press/clap", "std_msgs/msg/Float32", { data: 1 }]]);
 });
 
 test("stop ends every program first, and then tells every wheel zero", async () => {
   const { actions, asked, store } = prepared();
-  connect(store, ["/a/ground_truth/odom", "/b/ground_truth/odom"], ["/a/aseba/stop", "/b/aseba/stop", "/a/aseba/run"]);
+  connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], ["/a/aseba/stop", "/b/aseba/stop", "/a/aseba/run"]);
   await actions.stop();
   assert.deepEqual(
     asked.map(([kind, name]) => `${kind} ${name}`),
@@ -61,7 +61,7 @@ test("stop ends every program first, and then tells every wheel zero", async () 
 
 test("a robot's own runtime is asked, else the one that all share", async () => {
   const { actions, asked, store } = prepared();
-  connect(store, ["/a/ground_truth/odom"], ["/aseba/run", "/aseba/stop", "/a/aseba/run"]);
+  connect(store, ["/a/_ground_truth/odom"], ["/aseba/run", "/aseba/stop", "/a/aseba/run"]);
   await actions.program("run");
   await actions.program("stop");
   assert.deepEqual(

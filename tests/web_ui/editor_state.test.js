@@ -44,8 +44,8 @@ const labelled = (named) => ({
 });
 
 test("the editor's topics are those of robots with and without a name", () => {
-  assert.deepEqual(splitEditorTopic("/aseba/target"), { robot: "", name: "target" });
-  assert.deepEqual(splitEditorTopic("/anna/aseba/events"), { robot: "anna", name: "events" });
+  assert.deepEqual(splitEditorTopic("/_aseba/target"), { robot: "", name: "target" });
+  assert.deepEqual(splitEditorTopic("/anna/_aseba/events"), { robot: "anna", name: "events" });
   assert.equal(splitEditorTopic("/aseba/events/ping"), null);
 });
 
@@ -53,7 +53,7 @@ test("variables are cut by their labels", () => {
   const state = reduce(
     INITIAL,
     message(
-      "/aseba/variables",
+      "/_aseba/variables",
       labelled([
         ["a", [1]],
         ["b", [2, -3]],
@@ -72,7 +72,7 @@ test("variables are cut by their labels", () => {
 test("the log keeps the newest events, each with its robot, and can be emptied", () => {
   let state = INITIAL;
   for (let index = 0; index < KEPT_EVENTS + 3; index++) {
-    state = reduce(state, message("/anna/aseba/events", labelled([["ping", [index]]])));
+    state = reduce(state, message("/anna/_aseba/events", labelled([["ping", [index]]])));
   }
   assert.equal(state.log.length, KEPT_EVENTS);
   const last = state.log.at(-1);
@@ -86,7 +86,7 @@ test("what is watched is plotted, of the selected robot only", () => {
   desk.toggleWatch(eventKey("ping"));
   desk.receive(
     message(
-      "/anna/aseba/variables",
+      "/anna/_aseba/variables",
       labelled([
         ["a", [1]],
         ["b", [2, 3]],
@@ -94,8 +94,8 @@ test("what is watched is plotted, of the selected robot only", () => {
     ),
     "anna",
   );
-  desk.receive(message("/anna/aseba/events", labelled([["ping", [9]]])), "anna");
-  desk.receive(message("/paul/aseba/events", labelled([["ping", [8]]])), "anna");
+  desk.receive(message("/anna/_aseba/events", labelled([["ping", [9]]])), "anna");
+  desk.receive(message("/paul/_aseba/events", labelled([["ping", [8]]])), "anna");
   assert.deepEqual([...desk.history.series.keys()], ["b[0]", "b[1]", "ping(0)"]);
   assert.deepEqual(desk.history.series.get("ping(0)")?.values, [9]);
   desk.toggleWatch("b");

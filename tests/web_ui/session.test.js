@@ -94,11 +94,11 @@ test("parameters are asked for once the server says that it has them", () => {
 
 test("publishing advertises the topic once", () => {
   const { session, json, sent } = opened();
-  session.publish("/press/left", "std_msgs/msg/Bool", { data: true });
-  session.publish("/press/left", "std_msgs/msg/Bool", { data: false });
+  session.publish("/_press/left", "std_msgs/msg/Bool", { data: true });
+  session.publish("/_press/left", "std_msgs/msg/Bool", { data: false });
   assert.deepEqual(
     json().map(({ op, channels }) => [op, channels[0].topic, channels[0].encoding]),
-    [["advertise", "/press/left", "cdr"]],
+    [["advertise", "/_press/left", "cdr"]],
   );
   const id = json()[0].channels[0].id;
   assert.deepEqual(

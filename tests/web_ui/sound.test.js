@@ -60,21 +60,21 @@ test("a sound goes on when only its loudness changes, and begins anew when it is
 
 test("a tone sounds until the simulator says that it ends", () => {
   const { audio, speaker } = prepared();
-  const tone = heard(START, "/sound/state", [880, 0.2, 0.5]);
+  const tone = heard(START, "/_sound/state", [880, 0.2, 0.5]);
   speaker.update(tone);
   const [source] = audio.sounding;
   assert.equal(source.loop, true);
   assert.equal(source.gain.value, 0.5);
   assert.ok(Math.abs((source.playbackRate.value * source.buffer.sampleRate) / source.buffer.length - 880) < 1e-9);
-  speaker.update(heard(tone, "/sound/state", [0, 0, 0.5]));
+  speaker.update(heard(tone, "/_sound/state", [0, 0, 0.5]));
   assert.equal(audio.sounding.length, 0);
 });
 
 test("another loudness does not begin the tone anew", () => {
   const { audio, speaker } = prepared();
-  const tone = heard(START, "/sound/state", [880, 0.2, 1]);
+  const tone = heard(START, "/_sound/state", [880, 0.2, 1]);
   speaker.update(tone);
-  speaker.update(heard(tone, "/sound/state", [880, 0.2, 0.125]));
+  speaker.update(heard(tone, "/_sound/state", [880, 0.2, 0.125]));
   assert.equal(audio.sources.length, 1);
   assert.equal(audio.sources[0].gain.value, 0.125);
 });
@@ -87,9 +87,9 @@ test("samples sound at their own rate, faster when time is faster", () => {
   ]) {
     const { audio, speaker } = prepared();
     const told = JSON.stringify({ real_time_factor: factor });
-    let state = reduce(START, { type: "message", topic: "/simulator/state", value: { data: told }, timeNs: 0n });
+    let state = reduce(START, { type: "message", topic: "/simulator/_state", value: { data: told }, timeNs: 0n });
     const samples = Array.from({ length: 78 }, (_, at) => at);
-    state = heard(heard(state, "/sound/state/samples", samples), "/sound/state", [0, 0.01, 1]);
+    state = heard(heard(state, "/_sound/state/samples", samples), "/_sound/state", [0, 0.01, 1]);
     speaker.update(state);
     const [source] = audio.sounding;
     assert.equal(source.loop, false);
@@ -108,7 +108,7 @@ test("two robots are heard together; one that is gone falls silent", () => {
 
 test("nothing sounds after the connection is lost", () => {
   const { audio, speaker } = prepared();
-  const tone = heard(START, "/sound/state", [440, Infinity, 1]);
+  const tone = heard(START, "/_sound/state", [440, Infinity, 1]);
   speaker.update(tone);
   speaker.update(reduce(tone, { type: "disconnected" }));
   assert.equal(audio.sounding.length, 0);
@@ -116,12 +116,12 @@ test("nothing sounds after the connection is lost", () => {
 
 test("a pause holds sounds where they are", () => {
   const { audio, speaker } = prepared();
-  const tone = heard(START, "/sound/state", [440, 1, 1]);
+  const tone = heard(START, "/_sound/state", [440, 1, 1]);
   /** @param {boolean} paused */
   const with_ = (paused) =>
     reduce(tone, {
       type: "message",
-      topic: "/simulator/state",
+      topic: "/simulator/_state",
       value: { data: JSON.stringify({ paused }) },
       timeNs: 0n,
     });
@@ -140,7 +140,7 @@ test("before a person's first touch no loudspeaker is opened; muted, none at all
     return /** @type {any} */ (new FakeAudio());
   };
   const waiting = new Speaker({ createContext, muted: false, changed: () => {} });
-  waiting.update(heard(START, "/sound/state", [440, 1, 1]));
+  waiting.update(heard(START, "/_sound/state", [440, 1, 1]));
   assert.deepEqual([opened, waiting.phase], [0, "waiting"]);
   waiting.unlock();
   assert.deepEqual([opened, waiting.phase, waiting.playing.size], [1, "on", 1]);
@@ -152,7 +152,7 @@ test("before a person's first touch no loudspeaker is opened; muted, none at all
 
 test("muting ends what sounds, and unmuting lets it sound again", () => {
   const { audio, speaker } = prepared();
-  speaker.update(heard(START, "/sound/state", [440, Infinity, 1]));
+  speaker.update(heard(START, "/_sound/state", [440, Infinity, 1]));
   speaker.setMuted(true);
   assert.equal(audio.sounding.length, 0);
   speaker.setMuted(false);

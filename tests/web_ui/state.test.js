@@ -26,16 +26,16 @@ function json(data) {
 }
 
 test("topics are split into robot and name", () => {
-  assert.deepEqual(splitTopic("/led/state"), { robot: "", name: "led/state" });
-  assert.deepEqual(splitTopic("/thymio_1/led/state"), { robot: "thymio_1", name: "led/state" });
-  assert.deepEqual(splitTopic("/markers"), { robot: null, name: "/markers" });
+  assert.deepEqual(splitTopic("/_led/state"), { robot: "", name: "_led/state" });
+  assert.deepEqual(splitTopic("/thymio_1/_led/state"), { robot: "thymio_1", name: "_led/state" });
+  assert.deepEqual(splitTopic("/_markers"), { robot: null, name: "/_markers" });
   assert.equal(splitTopic("/odom"), null);
-  assert.equal(splitTopic("/a/b/led/state"), null);
+  assert.equal(splitTopic("/a/b/_led/state"), null);
 });
 
 test("robots are those whose true pose is told", () => {
   const state = after([
-    { type: "channels", topics: ["/thymio_0/ground_truth/odom", "/thymio_1/ground_truth/odom", "/clock"] },
+    { type: "channels", topics: ["/thymio_0/_ground_truth/odom", "/thymio_1/_ground_truth/odom", "/clock"] },
   ]);
   assert.deepEqual(Object.keys(state.robots), ["thymio_0", "thymio_1"]);
   assert.equal(state.selected, "thymio_0");
@@ -43,10 +43,10 @@ test("robots are those whose true pose is told", () => {
 
 test("a robot that stays keeps what is known, and stays selected", () => {
   const state = after([
-    { type: "channels", topics: ["/a/ground_truth/odom", "/b/ground_truth/odom"] },
+    { type: "channels", topics: ["/a/_ground_truth/odom", "/b/_ground_truth/odom"] },
     { type: "select", robot: "b" },
     message("/b/buttons/left", { data: true }),
-    { type: "channels", topics: ["/b/ground_truth/odom"] },
+    { type: "channels", topics: ["/b/_ground_truth/odom"] },
   ]);
   assert.equal(state.selected, "b");
   assert.equal(state.robots.b.buttons.left, true);
@@ -55,15 +55,15 @@ test("a robot that stays keeps what is known, and stays selected", () => {
 test("the last two poses are kept, with their heading", () => {
   const { value } = captured("nav_msgs/msg/Odometry");
   const { latest, previous } = after([
-    message("/ground_truth/odom", value, 10),
-    message("/ground_truth/odom", value, 60),
+    message("/_ground_truth/odom", value, 10),
+    message("/_ground_truth/odom", value, 60),
   ]).robots[""];
   assert.deepEqual([previous?.arrivedMs, latest?.arrivedMs, latest?.stampNs], [10, 60, 12_340_000_000]);
   assert.ok(Math.abs((latest?.pose.yaw ?? 0) - 2 * Math.atan2(0.6, 0.8)) < 1e-12);
 });
 
 test("lights are cut into their groups", () => {
-  const { leds } = after([message("/led/state", captured("std_msgs/msg/Float32MultiArray").value)]).robots[""];
+  const { leds } = after([message("/_led/state", captured("std_msgs/msg/Float32MultiArray").value)]).robots[""];
   assert.deepEqual(leds, { top: [0, 0.5, 1], remote: [0.25] });
 });
 
@@ -83,7 +83,7 @@ test("sensors are kept by name", () => {
   const robot = after([
     message("/proximity/rear_left", { range: Infinity }),
     message("/ground/left", { range: -Infinity }),
-    message("/raw/proximity", { data: [0, 0, 4505, 0, 0, 0, 0] }),
+    message("/_raw/proximity", { data: [0, 0, 4505, 0, 0, 0, 0] }),
   ]).robots[""];
   assert.deepEqual(
     [robot.proximity, robot.ground, robot.raw.proximity[2]],
@@ -93,33 +93,33 @@ test("sensors are kept by name", () => {
 
 test("a runtime of its own goes before the one that all share", () => {
   const status = captured("diagnostic_msgs/msg/DiagnosticStatus").value;
-  const shared = after([{ type: "channels", topics: ["/a/ground_truth/odom"] }, message("/aseba/status", status)]);
+  const shared = after([{ type: "channels", topics: ["/a/_ground_truth/odom"] }, message("/_aseba/status", status)]);
   const { values, ...program } = programOf(shared) ?? { values: {} };
   assert.deepEqual(program, { state: "running", name: "line.aesl", message: "paused", level: 1, line: "" });
   assert.equal(values.state, "running");
   assert.deepEqual(Object.keys(shared.robots), ["a"]);
-  const own = reduce(shared, message("/a/aseba/status", { ...status, values: [{ key: "state", value: "fault" }] }));
+  const own = reduce(shared, message("/a/_aseba/status", { ...status, values: [{ key: "state", value: "fault" }] }));
   assert.equal(programOf(own)?.state, "fault");
 });
 
 test("robots have names in the world, and things that can be moved are told", () => {
   const robots = [{ name: "", frame: "base_link", robot: "thymio" }];
-  const { simulator } = after([message("/simulator/state", json({ robots, movables: ["can"] }))]);
+  const { simulator } = after([message("/simulator/_state", json({ robots, movables: ["can"] }))]);
   assert.deepEqual([simulator?.worldNames, simulator?.movables], [{ "": "thymio" }, ["can"]]);
 });
 
 test("built-in behaviours are told as JSON", () => {
-  const { behaviours } = after([message("/aseba_runtime/behaviours", json([{ name: "menu", description: "d" }]))]);
+  const { behaviours } = after([message("/aseba_runtime/_behaviours", json([{ name: "menu", description: "d" }]))]);
   assert.deepEqual(behaviours, [{ name: "menu", description: "d" }]);
 });
 
 test("the simulator and its playgrounds are told as JSON", () => {
   const { simulator, playgrounds } = after([
     message(
-      "/simulator/state",
+      "/simulator/_state",
       json({ playground: "line", title: "Line", paused: true, real_time_factor: 2, achieved: 1.5 }),
     ),
-    message("/simulator/playgrounds", json([{ name: "line", title: "Line", description: "d" }, { name: "base" }])),
+    message("/simulator/_playgrounds", json([{ name: "line", title: "Line", description: "d" }, { name: "base" }])),
   ]);
   assert.deepEqual(simulator, { playground: "line", title: "Line", notes: [], paused: true, factor: 2, achieved: 1.5, robots: null, worldNames: {}, movables: [] });
   assert.deepEqual(playgrounds[1], { name: "base", title: "base", description: "", translations: {} });
@@ -129,20 +129,20 @@ test("things that move are kept apart from what stays", () => {
   const marker = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const can = { ...marker, ns: "solid/can" };
   let state = after([
-    message("/markers/objects", { markers: [{ action: 3 }, can] }),
-    message("/markers", { markers: [{ action: 3 }, marker] }),
+    message("/_markers/objects", { markers: [{ action: 3 }, can] }),
+    message("/_markers", { markers: [{ action: 3 }, marker] }),
   ]);
   assert.deepEqual([state.markers.size, state.objects.size], [1, 1]);
   assert.deepEqual(snapshot(state).objects, [{ name: "can", pose: marker.pose }]);
-  state = reduce(state, message("/markers/objects", { markers: [{ action: 3 }] }));
+  state = reduce(state, message("/_markers/objects", { markers: [{ action: 3 }] }));
   assert.deepEqual([state.markers.size, state.objects.size], [1, 0]);
 });
 
 test("what a pen drew belongs to its robot", () => {
   const marker = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const state = after([
-    { type: "channels", topics: ["/a/ground_truth/odom", "/b/ground_truth/odom"] },
-    message("/a/pen/trail", { markers: [{ action: 3 }, { ...marker, ns: "a/pen" }] }),
+    { type: "channels", topics: ["/a/_ground_truth/odom", "/b/_ground_truth/odom"] },
+    message("/a/_pen/trail", { markers: [{ action: 3 }, { ...marker, ns: "a/pen" }] }),
   ]);
   assert.deepEqual([state.robots.a.trail.size, state.robots.b.trail.size, state.markers.size], [1, 0, 0]);
 });
@@ -257,11 +257,11 @@ test("a simulation that begins anew keeps its topics, and its time starts at zer
   const state = after([
     { type: "connected" },
     greeting("1"),
-    { type: "channels", topics: ["/ground_truth/odom"] },
+    { type: "channels", topics: ["/_ground_truth/odom"] },
     { type: "time", timeNs: 5n },
     greeting("2"),
   ]);
-  assert.deepEqual([state.topics, Object.keys(state.robots), state.timeNs], [["/ground_truth/odom"], [""], 0]);
+  assert.deepEqual([state.topics, Object.keys(state.robots), state.timeNs], [["/_ground_truth/odom"], [""], 0]);
 });
 
 test("unknown topics and messages change nothing", () => {
@@ -271,7 +271,7 @@ test("unknown topics and messages change nothing", () => {
 
 test("a snapshot is plain data with the selected robot at hand", () => {
   const state = after([
-    { type: "channels", topics: ["/a/ground_truth/odom", "/b/ground_truth/odom"] },
+    { type: "channels", topics: ["/a/_ground_truth/odom", "/b/_ground_truth/odom"] },
     { type: "select", robot: "b" },
   ]);
   const { robot, program, markers } = JSON.parse(JSON.stringify(snapshot(state)));
@@ -280,9 +280,9 @@ test("a snapshot is plain data with the selected robot at hand", () => {
 
 test("a robot that has gone with its playground is gone, even while its topics live on", () => {
   const told = (/** @type {string[]} */ ...names) =>
-    message("/simulator/state", json({ playground: "p", robots: names.map((name) => ({ name })) }));
-  const channels = { type: "channels", topics: ["/a/ground_truth/odom", "/ground_truth/odom"] };
-  const odometry = message("/a/raw/ground", { data: [] });
+    message("/simulator/_state", json({ playground: "p", robots: names.map((name) => ({ name })) }));
+  const channels = { type: "channels", topics: ["/a/_ground_truth/odom", "/_ground_truth/odom"] };
+  const odometry = message("/a/_raw/ground", { data: [] });
   const { robots, selected } = after(/** @type {any} */ ([channels, told("a"), told(""), odometry, channels]));
   assert.deepEqual([Object.keys(robots), selected], [[""], ""]);
   assert.deepEqual(Object.keys(after(/** @type {any} */ ([told(""), channels, told("a")])).robots), ["a"]);
@@ -295,21 +295,21 @@ test("of a crowd, beams and values are asked of the selected robot only", () => 
     simulator: null,
     robots: Object.fromEntries(Array.from({ length: count }, (_, number) => [`r${number}`, NEW_ROBOT])),
   });
-  const topics = ["/r0/ground_truth/odom", "/r0/led/state", "/r0/raw/proximity", "/r1/raw/proximity", "/markers"];
+  const topics = ["/r0/_ground_truth/odom", "/r0/_led/state", "/r0/_raw/proximity", "/r1/_raw/proximity", "/_markers"];
   /** @param {number} count */
   const watched = (count) => topics.filter((topic) => isWatched(state(count), topic));
   assert.deepEqual(watched(2), topics);
-  assert.deepEqual(watched(20), topics.filter((topic) => topic !== "/r0/raw/proximity"));
+  assert.deepEqual(watched(20), topics.filter((topic) => topic !== "/r0/_raw/proximity"));
   assert.equal(isWatched(state(20), "/r1/no/such"), false);
 });
 
 test("of a crowd, what a robot measured is forgotten when another is selected", () => {
   const names = ["a", "b", "c", "d", "e"];
-  const topics = (/** @type {number} */ count) => names.slice(0, count).map((name) => `/${name}/ground_truth/odom`);
+  const topics = (/** @type {number} */ count) => names.slice(0, count).map((name) => `/${name}/_ground_truth/odom`);
   const story = (/** @type {number} */ count) =>
     after([
       { type: "channels", topics: topics(count) },
-      message("/a/raw/ground", { data: [1, 2] }),
+      message("/a/_raw/ground", { data: [1, 2] }),
       { type: "select", robot: "b" },
       { type: "select", robot: "a" },
     ]).robots.a.raw;
@@ -318,6 +318,6 @@ test("of a crowd, what a robot measured is forgotten when another is selected", 
 });
 
 test("robots stand in the order of their numbers", () => {
-  const topics = ["/thymio_10/ground_truth/odom", "/thymio_2/ground_truth/odom", "/anna/ground_truth/odom"];
+  const topics = ["/thymio_10/_ground_truth/odom", "/thymio_2/_ground_truth/odom", "/anna/_ground_truth/odom"];
   assert.deepEqual(Object.keys(after([{ type: "channels", topics }]).robots), ["anna", "thymio_2", "thymio_10"]);
 });

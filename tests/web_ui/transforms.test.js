@@ -12,7 +12,7 @@ const NAMES = ["a", "b", "c", "d", "e"];
 
 /** @param {string[]} names @returns {State} */
 function standing(names) {
-  const topics = names.flatMap((name) => [`/${name}/ground_truth/odom`, `/${name}/joint_states`, `/${name}/led/state`]);
+  const topics = names.flatMap((name) => [`/${name}/_ground_truth/odom`, `/${name}/joint_states`, `/${name}/_led/state`]);
   return reduce(INITIAL, { type: "channels", topics: [...topics, "/tf"] });
 }
 
@@ -45,7 +45,7 @@ function told(state, transforms, nowMs = 0) {
 /** @param {State} state @param {boolean} paused */
 function paused(state, paused) {
   const value = { data: JSON.stringify({ playground: "p", paused, robots: NAMES.map((name) => ({ name })) }) };
-  return reduce(state, { type: "message", topic: "/simulator/state", value, timeNs: 0n });
+  return reduce(state, { type: "message", topic: "/simulator/_state", value, timeNs: 0n });
 }
 
 test("a robot of a crowd stands where its two transforms put it", () => {
@@ -89,12 +89,12 @@ test("frames of other names place nobody", () => {
 });
 
 test("own topics are asked for until the transforms have told, and again while time stands still", () => {
-  const topics = ["/tf", "/a/joint_states", "/b/ground_truth/odom", "/b/joint_states", "/b/led/state"];
+  const topics = ["/tf", "/a/joint_states", "/b/_ground_truth/odom", "/b/joint_states", "/b/_led/state"];
   const watched = (/** @type {State} */ state) => topics.filter((topic) => isWatched(state, topic));
   const crowd = standing(NAMES);
   const placed = told(crowd, frames("b"));
   assert.deepEqual(watched(crowd), topics);
-  assert.deepEqual(watched(placed), ["/tf", "/a/joint_states", "/b/led/state"]);
+  assert.deepEqual(watched(placed), ["/tf", "/a/joint_states", "/b/_led/state"]);
   assert.deepEqual(watched(paused(placed, true)), topics);
   assert.deepEqual(watched(paused(placed, false)), watched(placed));
   assert.deepEqual(watched(standing(["a", "b"])), topics.slice(1));

@@ -6,6 +6,7 @@ ros2 launch thymio_sim_ros thymio.launch.py playground:=line program:=line_follo
 from __future__ import annotations
 
 import secrets
+from pathlib import Path
 
 from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable, Shutdown
@@ -38,7 +39,14 @@ ARGUMENTS = {
     "log": ("", "file of a run log for thymio-sim replay; '' is none"),
     "real_time_factor": ("1.0", "simulated seconds per second; 0: as fast as possible"),
     "cmd_vel_timeout": ("0.0", "seconds after which a velocity command ends; 0: never"),
-    "driver_compat": ("false", "report ranges as the existing Thymio driver does (-1 for nothing)"),
+    "driver_compat": (
+        "false",
+        "ranges as the existing Thymio driver reports them (-1 for nothing), and all its topics",
+    ),
+    "namespace": ("", "namespace of all nodes and robots, such as lab1"),
+    "robot_names": ("['']", "names of the playground's robots, such as [anna, bert]; '' keeps the playground's"),
+    "namespaced_tf": ("false", "frames have bare names, on tf and tf_static in each robot's namespace"),
+    "params_file": ("", "YAML file of ROS parameters for all nodes; what it says wins over these arguments"),
     "address": ("localhost", "where page and bridge listen; 0.0.0.0: the whole network"),
     "require_token": ("true", "whether clients need a token where the network reaches the address"),
     "port": ("8080", "TCP port of the page"),
@@ -55,21 +63,56 @@ CHOICES = {
 }
 
 
+OF_WORLD = ("_markers", "_markers/objects", "map")
+"""What our RViz configuration calls `/_markers` and so on, since it may be started in a robot's namespace."""
+
+
 def generate_launch_description() -> LaunchDescription:
     """Four nodes on one clock, and RViz if wanted; all but the simulator follow simulated time."""
     value = {name: LaunchConfiguration(name) for name in ARGUMENTS}
-    range_convention = PythonExpression(
-        ["'driver' if '", value["driver_compat"], "'.lower() in ('true', '1') else 'rep117'"]
+    return LaunchDescription(
+        [
+            *(
+                DeclareLaunchArgument(name, default_value=default, description=text, choices=CHOICES.get(name))
+                for name, (default, text) in ARGUMENTS.items()
+            ),
+            # First: without rviz2 launch gives up at once, and would leave behind what runs by then.
+            Node(
+                package="rviz2",
+                executable="rviz2",
+                namespace=value["namespace"],
+                arguments=["-d", PathJoinSubstitution([FindPackageShare("thymio_sim_ros"), "rviz", "thymio.rviz"])],
+                parameters=[{"use_sim_time": True}],
+                remappings=[(f"/{name}", name) for name in OF_WORLD],
+                condition=IfCondition(value["rviz"]),
+            ),
+            OpaqueFunction(function=_give_tokens),
+            OpaqueFunction(function=_nodes),
+        ]
     )
+
+
+def _nodes(context: LaunchContext) -> list[Node]:
+    """Our nodes, each with its parameters and the file of all; RuntimeError where there is no such file."""
+    value = {name: LaunchConfiguration(name) for name in ARGUMENTS}
+    file = value["params_file"].perform(context)
+    if file and not Path(file).expanduser().is_file():
+        raise RuntimeError(f"params_file: '{file}' found, expected a YAML file of ROS parameters")
+    shared = [str(Path(file).expanduser())] if file else []
+    has_driver = ["'", value["driver_compat"], "'.lower() in ('true', '1')"]
+    range_convention = PythonExpression(["'driver' if ", *has_driver, " else 'rep117'"])
     simulator = {
         "playground": ParameterValue(value["playground"], value_type=str),
         "seed": ParameterValue(value["seed"], value_type=int),
         "log": ParameterValue(value["log"], value_type=str),
         "real_time_factor": ParameterValue(value["real_time_factor"], value_type=float),
         "cmd_vel_timeout": ParameterValue(value["cmd_vel_timeout"], value_type=float),
+        "robot_names": ParameterValue(value["robot_names"], value_type=list[str]),
+        "namespaced_tf": ParameterValue(value["namespaced_tf"], value_type=bool),
         "motor_model": ParameterValue(value["motor_model"], value_type=str),
         "proximity_model": ParameterValue(value["proximity_model"], value_type=str),
         "out_of_range": ParameterValue(range_convention, value_type=str),
+        "driver_topics": ParameterValue(PythonExpression(has_driver), value_type=bool),
     }
     runtime = {
         "script.path": ParameterValue(value["program"], value_type=str),
@@ -93,27 +136,12 @@ def generate_launch_description() -> LaunchDescription:
         "foxglove_port": ParameterValue(value["foxglove_port"], value_type=int),
         "use_sim_time": True,
     }
-    return LaunchDescription(
-        [
-            *(
-                DeclareLaunchArgument(name, default_value=default, description=text, choices=CHOICES.get(name))
-                for name, (default, text) in ARGUMENTS.items()
-            ),
-            OpaqueFunction(function=_give_tokens),
-            # First: without rviz2 launch gives up at once, and would leave behind what runs by then.
-            Node(
-                package="rviz2",
-                executable="rviz2",
-                arguments=["-d", PathJoinSubstitution([FindPackageShare("thymio_sim_ros"), "rviz", "thymio.rviz"])],
-                parameters=[{"use_sim_time": True}],
-                condition=IfCondition(value["rviz"]),
-            ),
-            _node("simulator", simulator, value["respawn"]),
-            _node("aseba_runtime", runtime, value["respawn"]),
-            _node("foxglove_bridge", bridge, value["respawn"]),
-            _node("web_ui", page, value["respawn"], condition=IfCondition(value["web"])),
-        ]
-    )
+    return [
+        _node("simulator", [simulator, *shared], value),
+        _node("aseba_runtime", [runtime, *shared], value),
+        _node("foxglove_bridge", [bridge, *shared], value),
+        _node("web_ui", [page, *shared], value, condition=IfCondition(value["web"])),
+    ]
 
 
 def _give_tokens(context: LaunchContext) -> list[SetEnvironmentVariable]:
@@ -126,15 +154,16 @@ def _give_tokens(context: LaunchContext) -> list[SetEnvironmentVariable]:
     ]
 
 
-def _node(name: str, parameters: dict[str, object], respawn: LaunchConfiguration, **options: object) -> Node:
-    """One of our executables; its node has the same name."""
+def _node(name: str, parameters: list[object], value: dict[str, LaunchConfiguration], **options: object) -> Node:
+    """One of our executables; its node has the same name. Of the parameters the last win."""
     return Node(
         package="thymio_sim_ros",
         executable=name,
         name=name,
-        parameters=[parameters],
+        namespace=value["namespace"],
+        parameters=parameters,
         output="screen",
-        respawn=respawn,
+        respawn=value["respawn"],
         respawn_delay=RESPAWN_DELAY_S,
         on_exit=_end_all_if_refused,
         **options,

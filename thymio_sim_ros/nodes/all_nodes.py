@@ -5,64 +5,67 @@ The nodes are the same as in separate processes and talk by the same topics.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 from rclpy.context import Context
 
-from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.nodes.aseba_node import AsebaRuntime, RuntimeParams
-from thymio_sim_ros.nodes.life import Host, greeted, run_main
-from thymio_sim_ros.nodes.names import ros_names
-from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
+from thymio_sim_ros.nodes.aseba_node import AsebaRuntime
+from thymio_sim_ros.nodes.life import Host, Life, StartError, greeted, run_main
+from thymio_sim_ros.nodes.simulator_node import Simulator
+from thymio_sim_ros.nodes.suite_params import BRIDGE, PAGE, RUNTIME, SIMULATOR, SUITE, assigned, defaults
 from thymio_sim_ros.suite import Suite
 
+REFUSED = 2
 
-def lives(context: Context, suite: Suite) -> Iterator[Host]:
-    """Simulator, Aseba runtime and, as wanted, bridge and page, in the order of their start."""
-    simulator = SimulatorParams(
-        playground=suite.playground,
-        seed=suite.seed,
-        motor_model=suite.motor_model,
-        proximity_model=suite.proximity_model,
-        log=suite.log,
-        real_time_factor=suite.real_time_factor,
-        cmd_vel_timeout=suite.cmd_vel_timeout_s,
-    )
-    _, playground = load_playground(suite.playground)
-    robots = [names.name for names in ros_names(tuple(robot.name for robot in playground.robots)).values()]
-    yield Simulator(context, simulator)
-    device = suite.device
-    runtime = RuntimeParams(
-        robots=robots,
-        path=suite.program,
-        behaviour=suite.behaviour,
-        layout=device.layout,
-        events=device.events,
-        card=str(device.card or ""),
-        settings=str(device.settings or ""),
-    )
-    yield AsebaRuntime(context, runtime, use_sim_time=True)
-    tokens = suite.tokens
+
+def lives(context: Context, suite: Suite, warnings: Sequence[str] = ()) -> Iterator[Host]:
+    """Simulator, Aseba runtime and, as wanted, bridge and page, in the order of their start.
+
+    `warnings` about the arguments are logged by the first.
+    """
+    given = defaults(suite)
+    simulator = Simulator(context, given[SIMULATOR])
+    for warning in warnings:
+        simulator.node.get_logger().warning(warning)
+    robots = [names.name for names in simulator.names.values()]
+    yield simulator
+    yield AsebaRuntime(context, replace(given[RUNTIME], robots=robots), use_sim_time=True)
+    foxglove_port, tokens = suite.foxglove_port, suite.tokens
     if suite.foxglove:
         from thymio_sim_ros.nodes.foxglove_node import FoxgloveBridge
 
-        bridge = FoxgloveBridge(
-            context=context, address=suite.address, port=suite.foxglove_port, use_sim_time=True, tokens=tokens
-        )
-        tokens = bridge.tokens
+        bridge = FoxgloveBridge(context=context, defaults=given[BRIDGE], use_sim_time=True, tokens=tokens)
         yield bridge
+        foxglove_port, tokens = bridge.port, bridge.tokens
     if suite.web:
-        from thymio_sim_ros.nodes.web_node import WebPage, WebParams
+        from thymio_sim_ros.nodes.web_node import WebPage
 
-        web = WebParams(address=suite.address, port=suite.port, foxglove_port=suite.foxglove_port)
-        yield WebPage(context, web, tokens)
+        yield WebPage(context, replace(given[PAGE], foxglove_port=foxglove_port), tokens)
 
 
 def run(suite: Suite, args: Sequence[str] | None = None, *, on_ready: Callable[[], None] = lambda: None) -> int:
-    """Run the suite until SIGINT or SIGTERM; the exit code."""
-    return run_main(lambda context: lives(context, suite), args, on_ready=on_ready)
+    """Run the suite until SIGINT or SIGTERM; the exit code. `args`: those of ROS, else those of the process."""
+    return _run(suite, args, lambda hosts: hosts, on_ready)
 
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `thymio`: the suite with its defaults, ROS arguments for everything else."""
-    return run_main(lambda context: greeted(lives(context, Suite())), args)
+    return _run(Suite(), args, greeted)
+
+
+def _run(
+    suite: Suite,
+    args: Sequence[str] | None,
+    dressed: Callable[[Iterator[Host]], Iterator[Life]],
+    on_ready: Callable[[], None] = lambda: None,
+) -> int:
+    try:
+        with assigned(sys.argv[1:] if args is None else args) as (words, warnings):
+            return run_main(
+                lambda context: dressed(lives(context, suite, warnings)), words, executable=SUITE, on_ready=on_ready
+            )
+    except StartError as error:
+        print(f"thymio-sim: {error}", file=sys.stderr)
+        return REFUSED

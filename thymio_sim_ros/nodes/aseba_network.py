@@ -14,7 +14,8 @@ from thymio_sim_ros.nodes.warner import Warner
 
 __all__ = ["TOPIC", "AsebaNetwork", "Telegram"]
 
-TOPIC = "/aseba/network"
+TOPIC = "_aseba/network"
+"""Relative: runtimes in one namespace hear each other."""
 HEAD = 3
 
 
@@ -53,7 +54,7 @@ class AsebaNetwork:
         labels: Sequence[str] = [dimension.label for dimension in message.layout.dim]
         if len(labels) != 2 or len(message.data) < HEAD:
             found = f"{len(labels)} labels and {len(message.data)} values found"
-            self._warn(TOPIC, f"refused: {found}, expected 2 and 3 or more")
+            self._warn(self._publisher.topic_name, f"refused: {found}, expected 2 and 3 or more")
         elif labels[1] != self._own:
             source, channel, network, *args = message.data
             self._hear(Telegram(labels[0], source, (channel, network), tuple(args)))

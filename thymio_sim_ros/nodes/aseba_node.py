@@ -42,13 +42,14 @@ from thymio_sim_ros.nodes.aseba_params import RuntimeParams, WrongValueError
 from thymio_sim_ros.nodes.check_service import CheckService
 from thymio_sim_ros.nodes.device_ports import DevicePorts, Wishes
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
-from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.names import RobotNames, full_name
 from thymio_sim_ros.nodes.raw_topic import Decoder
 from thymio_sim_ros.nodes.warner import Warner
 
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
-SIMULATOR_STATE, SIMULATOR_RAW = "/simulator/state", "/simulator/raw"
+SIMULATOR_STATE, SIMULATOR_RAW = "simulator/_state", "simulator/_raw"
+"""Relative: of the simulator in the same namespace."""
 DIAGNOSTICS_S = 1.0
 LISTENERS_S = 0.25
 """How often robots look whether somebody has come to listen to them."""
@@ -156,7 +157,7 @@ class AsebaRuntime:
         self._bus = Bus(node, lambda: self.robots, self._on_told)
         self._bus.reaches_all = self.params.emit_reaches == "network"
         self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
-        self._behaviours = node.create_publisher(String, "~/behaviours", qos.LATCHED)
+        self._behaviours = node.create_publisher(String, "~/_behaviours", qos.LATCHED)
         listed = [{"name": name, "description": text} for name, text in shipped_behaviours().items()]
         self._behaviours.publish(String(data=json.dumps(listed)))
         self._check = CheckService(
@@ -249,7 +250,7 @@ class AsebaRuntime:
             told = json.loads(message.data)
             names, raw = [str(robot["name"]) for robot in told["robots"]], str(told.get("raw", ""))
         except (ValueError, KeyError, TypeError) as error:
-            self._warn(SIMULATOR_STATE, f"refused: {error!r}")
+            self._warn(full_name(self.node, SIMULATOR_STATE), f"refused: {error!r}")
             return
         self._listen_to("" if self.params.robot_topics == "driver" else raw)
         if names != [ports.names.name for ports in self.robots]:
@@ -260,6 +261,7 @@ class AsebaRuntime:
 
     def _listen_to(self, topic: str) -> None:
         """Hear the integers of all robots at once where a simulator tells them; else each robot has its topics."""
+        topic = topic and self.node.resolve_topic_name(topic)
         if self._raw is not None and self._raw.topic_name != topic:
             self.node.destroy_subscription(self._raw)
             self._raw = None
@@ -287,7 +289,7 @@ class AsebaRuntime:
                     robots[robot].feed(sensor, words)
                     fed[robots[robot]] = None
         except (ValueError, RuntimeError) as error:
-            self._warn(SIMULATOR_RAW, f"refused: {error}")
+            self._warn(full_name(self.node, SIMULATOR_RAW), f"refused: {error}")
         now_ns = self.node.get_clock().now().nanoseconds
         self._bus.settle(*[ports for ports in fed if ports.is_due(now_ns)])
 

@@ -60,7 +60,7 @@ class RuntimeParams:
         [""], "Namespaces of the robots that run the program at first; '' is the only robot", fixed=True
     )
     follow_simulator: bool = param(
-        True, "Whether the robots are those of /simulator/state, once there is one", fixed=True
+        True, "Whether the robots are those of simulator/_state, once there is one", fixed=True
     )
     path: str = param("", "Program: a built-in behaviour's name or an .aesl file", name="script.path")
     source: str = param("", "Program: text of an .aesl file or of one Aseba program", name="script.source")
@@ -78,14 +78,14 @@ class RuntimeParams:
     )
     emit_reaches: str = param(
         "network",
-        "Whom aseba/emit of a robot reaches: network (all that declare the event) or robot (that one)",
+        "Whom _aseba/emit of a robot reaches: network (all that declare the event) or robot (that one)",
         choices=("network", "robot"),
     )
-    language: str = param("en", "Language of the help in aseba/target; English where it is not translated")
+    language: str = param("en", "Language of the help in _aseba/target; English where it is not translated")
     first_id: int = param(1, "Number of the first robot on the Aseba network", low=1, high=32000, fixed=True)
     robot_topics: str = param(
         "raw",
-        "Where readings come from: raw (the simulator's raw/...) or driver (the ROS driver's topics)",
+        "Where readings come from: raw (the simulator's _raw/...) or driver (the ROS driver's topics)",
         fixed=True,
         choices=("raw", "driver"),
     )
@@ -112,7 +112,7 @@ def adopt_overrides(node: Node) -> dict[str, Any]:
     """
     found = {}
     ours = params.by_name(RuntimeParams())
-    params.warn_of_unknown(node, "ros.md", lambda name: name in ours or is_free(name))
+    params.warn_of_unknown(node, "ros.md", lambda name: name in ours or is_free(name), ours)
     for name in list(node.get_parameters_by_prefix("")):
         match = _FREE.fullmatch(name)
         if match is not None and (match["robot"] or match["constant"]):

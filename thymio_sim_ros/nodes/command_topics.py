@@ -67,8 +67,10 @@ class CommandRow:
 
 
 def led_topic(group: str) -> str:
-    """The topic of a group of lights."""
-    return f"led/body/{group}" if group in BODY_LEDS else f"led/{group}"
+    """The topic of a group of lights; all but the body's and the circle's are hidden."""
+    if group in BODY_LEDS:
+        return f"led/body/{group}"
+    return "led/circle" if group == "circle" else f"_led/{group}"
 
 
 def topic_of(command: Command) -> str | None:
@@ -79,18 +81,18 @@ def topic_of(command: Command) -> str | None:
 
 
 _TOPICS: dict[type[Any], str] = {
-    commands.MotorTargets: "motor/target",
-    commands.SetLed: "led/single",
-    commands.ShowOnLeds: "led/own",
+    commands.MotorTargets: "_motor/target",
+    commands.SetLed: "_led/single",
+    commands.ShowOnLeds: "_led/own",
     commands.PlayTone: "sound/tone",
     commands.StopSound: "sound/tone",
-    commands.PlaySystemSound: "sound/system",
-    commands.PlaySamples: "sound/samples",
-    commands.SetWave: "sound/wave",
-    commands.SetVolume: "sound/volume",
-    commands.SetSoundThreshold: "sound_threshold",
-    commands.EnableComm: "comm/enable",
-    commands.SetCommPayload: "comm/tx",
+    commands.PlaySystemSound: "_sound/system",
+    commands.PlaySamples: "_sound/samples",
+    commands.SetWave: "_sound/wave",
+    commands.SetVolume: "_sound/volume",
+    commands.SetSoundThreshold: "_sound_threshold",
+    commands.EnableComm: "_comm/enable",
+    commands.SetCommPayload: "_comm/tx",
 }
 
 
@@ -263,7 +265,7 @@ def _decode_pen_width(message: Float32) -> Command:
 
 def _rows() -> Iterator[CommandRow]:
     yield CommandRow(
-        "motor/target",
+        "_motor/target",
         Int16MultiArray,
         _decode_targets,
         _encode_targets,
@@ -297,7 +299,7 @@ def _rows() -> Iterator[CommandRow]:
                 holds=True,
             )
     yield CommandRow(
-        "led/single",
+        "_led/single",
         Int16MultiArray,
         _decode_single,
         _encode_single,
@@ -307,7 +309,7 @@ def _rows() -> Iterator[CommandRow]:
         holds=True,
     )
     yield CommandRow(
-        "led/own",
+        "_led/own",
         Float32MultiArray,
         _decode_own,
         _encode_own,
@@ -318,17 +320,17 @@ def _rows() -> Iterator[CommandRow]:
     )
     for name in ("circle", "blink", "kit"):
         yield CommandRow(
-            f"led/gesture/{name}",
+            f"_led/gesture/{name}",
             Float32,
             partial(_decode_gesture, name=name),
             profile=qos.LEDS,
             about="period in s, its sign the direction",
         )
     yield CommandRow(
-        "led/gesture/alive", Empty, _decode_alive, profile=qos.LEDS, about="the gesture of a robot that lives"
+        "_led/gesture/alive", Empty, _decode_alive, profile=qos.LEDS, about="the gesture of a robot that lives"
     )
     yield CommandRow(
-        "led/gesture/off", Empty, _decode_still, profile=qos.LEDS, about="no gesture; its lights go back to the robot"
+        "_led/gesture/off", Empty, _decode_still, profile=qos.LEDS, about="no gesture; its lights go back to the robot"
     )
     yield CommandRow(
         "sound/tone",
@@ -340,10 +342,10 @@ def _rows() -> Iterator[CommandRow]:
         beyond=limits.tone,
     )
     yield CommandRow(
-        "sound/system", Int8, _decode_system, _encode_system, qos.EVENTS, about="the robot's sound 0…7, -1 stops"
+        "_sound/system", Int8, _decode_system, _encode_system, qos.EVENTS, about="the robot's sound 0…7, -1 stops"
     )
     yield CommandRow(
-        "sound/samples",
+        "_sound/samples",
         UInt8MultiArray,
         _decode_samples,
         _encode_samples,
@@ -351,7 +353,7 @@ def _rows() -> Iterator[CommandRow]:
         about="unsigned 8 bit at 7812.5 Hz, at most ten minutes",
     )
     yield CommandRow(
-        "sound/wave",
+        "_sound/wave",
         Int8MultiArray,
         _decode_wave,
         _encode_wave,
@@ -360,7 +362,7 @@ def _rows() -> Iterator[CommandRow]:
         holds=True,
     )
     yield CommandRow(
-        "sound/volume",
+        "_sound/volume",
         Int8,
         _decode_volume,
         _encode_volume,
@@ -369,15 +371,15 @@ def _rows() -> Iterator[CommandRow]:
         holds=True,
     )
     yield CommandRow(
-        "sound_threshold",
+        "_sound_threshold",
         Float32,
         _decode_threshold,
         _encode_threshold,
-        about="0…1 of 255: louder is told on `sound`",
+        about="0…1 of 255: louder is told on `_sound`",
         holds=True,
     )
     yield CommandRow(
-        "comm/enable",
+        "_comm/enable",
         Bool,
         _decode_enable,
         _encode_enable,
@@ -385,7 +387,7 @@ def _rows() -> Iterator[CommandRow]:
         holds=True,
     )
     yield CommandRow(
-        "comm/tx",
+        "_comm/tx",
         Int16,
         _decode_payload,
         _encode_payload,
@@ -393,10 +395,10 @@ def _rows() -> Iterator[CommandRow]:
         beyond=limits.payload,
         holds=True,
     )
-    yield CommandRow("alarm", Bool, _decode_alarm, about="while true the sound of an arrow button every three seconds")
+    yield CommandRow("_alarm", Bool, _decode_alarm, about="while true the sound of an arrow button every three seconds")
     yield CommandRow("pen/down", Bool, _decode_pen_down, about="true: the pen draws")
-    yield CommandRow("pen/color", ColorRGBA, _decode_pen_color, about="0…1; alpha 0 erases", beyond=limits.color)
-    yield CommandRow("pen/width", Float32, _decode_pen_width, about="m, 0.001…0.1")
+    yield CommandRow("_pen/color", ColorRGBA, _decode_pen_color, about="0…1; alpha 0 erases", beyond=limits.color)
+    yield CommandRow("_pen/width", Float32, _decode_pen_width, about="m, 0.001…0.1")
 
 
 ROWS = tuple(_rows())

@@ -1,6 +1,6 @@
 """One robot's Aseba device joined to its topics: readings in, commands out, events both ways, run control.
 
-Topics: ros-interface.md section 6. The integers of a sensor come on `raw/<sensor>`, or are made of the topics of the
+Topics: ros-interface.md section 6. The integers of a sensor come on `_raw/<sensor>`, or are made of the topics of the
 ROS driver; commands leave on the topics that any robot listens to.
 """
 
@@ -25,7 +25,7 @@ from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.device.status import OFF, RUNNING
 from thymio_sim_ros.nodes import direct, driver_senses, qos
 from thymio_sim_ros.nodes.event_ports import EventPorts
-from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.names import RobotNames, full_name, raw_topic
 from thymio_sim_ros.nodes.output_ports import OutputPorts
 from thymio_sim_ros.nodes.status_ports import Loaded, StatusPorts, place
 from thymio_sim_ros.nodes.variable_ports import VariablePorts
@@ -193,7 +193,7 @@ class DevicePorts:
         try:
             self.device.feed(sensor, words)
         except ValueError as error:
-            self.warn(self.names.topic(f"raw/{sensor}"), f"refused: {error}")
+            self.warn(full_name(self._node, self.names.topic(raw_topic(sensor))), f"refused: {error}")
 
     def is_due(self, now_ns: int) -> bool:
         """Whether there is anything to do now for a robot that has been fed."""
@@ -292,7 +292,7 @@ class DevicePorts:
             return []
         return [
             self._node.create_subscription(
-                Int16MultiArray, self.names.topic(f"raw/{sensor}"), self._feeder(sensor), qos.SENSOR, raw=True
+                Int16MultiArray, self.names.topic(raw_topic(sensor)), self._feeder(sensor), qos.SENSOR, raw=True
             )
             for sensor in sensor_names()
         ]

@@ -1,28 +1,32 @@
-"""Topics whose types only the driver's own package `thymio_msgs` has, where that package is installed.
+"""Topics that only code written for the Thymio's ROS driver needs: with the parameter `driver_topics`.
 
-Each has a twin of standard types (ros-interface.md section 4), which is there everywhere.
+Some topics of the driver have hidden names here; with the parameter they are there under the driver's names as well.
+Those with types of the driver's own package `thymio_msgs` are there where that package is installed; each has a twin of
+standard types (ros-interface.md section 4).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
 
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
-from thymio_sim_ros.nodes import command_values, limits, qos
+from thymio_sim_ros.nodes import command_values, limits, qos, sensor_topics
 from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.limits import Beyond
-from thymio_sim_ros.nodes.robot_inputs import Moment, RobotInput
+from thymio_sim_ros.nodes.names import HIDDEN
+from thymio_sim_ros.nodes.robot_inputs import Moment, RobotInput, robot_inputs
 from thymio_sim_ros.nodes.sensor_topics import Row
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.sensors import all_sensors
 
-__all__ = ["PACKAGE", "TOPICS", "DriverTopics", "found"]
+__all__ = ["PACKAGE", "PLAIN", "TOPICS", "DriverTopics", "driver_name", "found"]
 
 PACKAGE = "thymio_msgs"
 
@@ -32,6 +36,27 @@ GROUPS = ("circle", "proximity", "buttons", "ground", "temperature", "microphone
 SHORTEST_NS = SECOND_NS // 60
 """Of a tone, as the driver plays it."""
 
+PLAIN = (
+    "alarm",
+    "buttons",
+    "comm/enable",
+    "comm/received",
+    "comm/tx",
+    "led/gesture/alive",
+    "led/gesture/blink",
+    "led/gesture/circle",
+    "led/gesture/kit",
+    "led/gesture/off",
+    "led/off",
+    "proximity/laser",
+    "remote",
+    "sound",
+    "sound_threshold",
+    "tap",
+    "temperature",
+)
+"""The driver's names, of standard types, whose topics have hidden names here: `_alarm` and so on."""
+
 TOPICS: Mapping[str, tuple[str, str, str]] = {
     "comm/rx": ("out", "Comm", "an infrared frame: value, payloads and intensities of the seven sensors"),
     "led": (
@@ -39,7 +64,7 @@ TOPICS: Mapping[str, tuple[str, str, str]] = {
         "Led",
         "group 0…6 (circle, proximity, buttons, ground, temperature, microphone, remote), intensities",
     ),
-    "led/gesture": ("in", "LedGesture", "the nearest of `led/gesture/{circle,blink,kit,alive,off}`"),
+    "led/gesture": ("in", "LedGesture", "the nearest of `_led/gesture/{circle,blink,kit,alive,off}`"),
     "sound/play": ("in", "Sound", "Hz, duration of at least 1/60 s"),
     "sound/play/system": ("in", "SystemSound", "the robot's sound 0…7, -1 stops"),
 }
@@ -48,14 +73,26 @@ TOPICS: Mapping[str, tuple[str, str, str]] = {
 
 @dataclass(frozen=True, slots=True)
 class DriverTopics:
-    """What a robot publishes and listens to besides: rows by sensor, and inputs. Nothing without the package."""
+    """What a robot publishes and listens to besides: rows by sensor, and inputs."""
 
     rows: Mapping[str, Sequence[Row]] = field(default_factory=dict)
     inputs: Sequence[RobotInput] = ()
 
     @classmethod
+    def plain(cls) -> DriverTopics:
+        """The topics with hidden names under those of the driver."""
+        rows = {sensor.name: _plain(sensor_topics.rows_of(sensor)) for sensor in all_sensors()}
+        return cls({sensor: plain for sensor, plain in rows.items() if plain}, _plain(robot_inputs()))
+
+    def with_all(self, other: DriverTopics) -> DriverTopics:
+        """Both together."""
+        sensors = self.rows.keys() | other.rows.keys()
+        rows = {name: (*self.rows.get(name, ()), *other.rows.get(name, ())) for name in sorted(sensors)}
+        return DriverTopics(rows, (*self.inputs, *other.inputs))
+
+    @classmethod
     def of(cls, messages: Any) -> DriverTopics:
-        """All of them, by the module `thymio_msgs.msg`."""
+        """Those with types of the module `thymio_msgs.msg`."""
 
         def comm(reading: Any, _names: object, _options: object) -> Any:
             words = reading.words
@@ -76,15 +113,29 @@ class DriverTopics:
         )
 
 
+def driver_name(topic: str) -> str:
+    """The driver's name of one of our topics."""
+    plain = topic.removeprefix(HIDDEN)
+    return plain if plain in PLAIN else topic
+
+
 def found(node: Node) -> DriverTopics:
-    """Those of the package, if there is one; one that cannot be loaded is told once."""
+    """All of them; those of the package if there is one. A package that cannot be loaded is logged."""
     try:
         import thymio_msgs.msg
     except ImportError as error:
         if not isinstance(error, ModuleNotFoundError) or error.name != PACKAGE:
             node.get_logger().warning(f"{PACKAGE} is left out: {error}")
-        return DriverTopics()
-    return DriverTopics.of(thymio_msgs.msg)
+        return DriverTopics.plain()
+    return DriverTopics.plain().with_all(DriverTopics.of(thymio_msgs.msg))
+
+
+_R = TypeVar("_R", Row, RobotInput)
+
+
+def _plain(rows: Iterable[_R]) -> tuple[_R, ...]:
+    """Those of the rows that have another name in the driver, under that name."""
+    return tuple(replace(row, topic=driver_name(row.topic)) for row in rows if driver_name(row.topic) != row.topic)
 
 
 def _group(number: int) -> str:

@@ -11,7 +11,7 @@ from std_msgs.msg import Int16MultiArray
 from thymio_sim_ros.device.behaviour_host import is_internal
 from thymio_sim_ros.device.program import ThymioProgram
 from thymio_sim_ros.nodes import convert, qos
-from thymio_sim_ros.nodes.names import RobotNames, topic_word
+from thymio_sim_ros.nodes.names import RobotNames, full_name, topic_word
 
 __all__ = ["Emit", "EventPorts", "unlike"]
 
@@ -31,9 +31,9 @@ class EventPorts:
         self._names = names
         self._emit = emit
         self._warn = warn
-        self._any = node.create_publisher(Int16MultiArray, names.topic("aseba/events"), qos.EVENTS)
+        self._any = node.create_publisher(Int16MultiArray, names.topic("_aseba/events"), qos.EVENTS)
         self._any_emit = node.create_subscription(
-            Int16MultiArray, names.topic("aseba/emit"), self._on_any_emit, qos.EVENTS
+            Int16MultiArray, names.topic("_aseba/emit"), self._on_any_emit, qos.EVENTS
         )
         self._publishers: dict[str, Any] = {}
         self._subscriptions: list[Any] = []
@@ -44,7 +44,7 @@ class EventPorts:
         events = [event for event, _ in program.events if not is_internal(event)]
         self.words, unfit = unlike([*events, *local_events], self._topic)
         for event, why in unfit.items():
-            self._warn(f"event {event}", f"{why}: use aseba/events and aseba/emit")
+            self._warn(f"event {event}", f"{why}: use _aseba/events and _aseba/emit")
         for event, word in self.words.items():
             self._publishers[event] = self._node.create_publisher(Int16MultiArray, self._topic(word), qos.EVENTS)
             if event in events:
@@ -75,14 +75,14 @@ class EventPorts:
         self._subscriptions.clear()
 
     def _topic(self, word: str) -> str:
-        return self._names.topic(f"aseba/events/{word}")
+        return full_name(self._node, self._names.topic(f"aseba/events/{word}"))
 
     def _emitter(self, event: str) -> Callable[[Int16MultiArray], None]:
         return lambda message: self._emit(event, list(message.data))
 
     def _on_any_emit(self, message: Int16MultiArray) -> None:
         if len(message.layout.dim) != 1:
-            self._warn("aseba/emit", "refused: layout.dim[0].label must be the name of the event")
+            self._warn("_aseba/emit", "refused: layout.dim[0].label must be the name of the event")
             return
         self._emit(message.layout.dim[0].label, list(message.data))
 

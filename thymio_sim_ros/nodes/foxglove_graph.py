@@ -10,7 +10,7 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from thymio_sim_ros.bridge.graph import ConnectionGraph
 
-__all__ = ["allow_list", "connection_graph", "is_parameter_service", "visible"]
+__all__ = ["allow_list", "connection_graph", "is_parameter_service", "visible", "visible_topics"]
 
 _PARAMETER_SERVICE = re.compile(
     r"/(describe_parameters|get_parameter_types|get_parameters|list_parameters|set_parameters|"
@@ -35,6 +35,13 @@ def visible(
 ) -> dict[str, Sequence[str]]:
     """What to offer: allowed, and without hidden names (a part begins with `_`, as those of actions) unless wanted."""
     return {name: types for name, types in names.items() if (hidden or "/_" not in name) and is_allowed(name)}
+
+
+def visible_topics(
+    names: Mapping[str, Sequence[str]], is_allowed: Callable[[str], bool], *, hidden: bool
+) -> dict[str, Sequence[str]]:
+    """Topics to offer: those with hidden names too, since a viewer is a tool; those of actions only if wanted."""
+    return {name: types for name, types in names.items() if (hidden or "/_action/" not in name) and is_allowed(name)}
 
 
 def connection_graph(node: Node, topics: Iterable[str], services: Iterable[str]) -> ConnectionGraph:

@@ -33,7 +33,13 @@ from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes import tokens as node_tokens
 from thymio_sim_ros.nodes.foxglove_assets import AssetError, load_asset
 from thymio_sim_ros.nodes.foxglove_calls import Calls
-from thymio_sim_ros.nodes.foxglove_graph import allow_list, connection_graph, is_parameter_service, visible
+from thymio_sim_ros.nodes.foxglove_graph import (
+    allow_list,
+    connection_graph,
+    is_parameter_service,
+    visible,
+    visible_topics,
+)
 from thymio_sim_ros.nodes.foxglove_options import FoxgloveParams, announced, check, tls_context
 from thymio_sim_ros.nodes.foxglove_parameters import Parameters
 from thymio_sim_ros.nodes.foxglove_publishers import ClientPublishers
@@ -153,7 +159,13 @@ class FoxgloveBridge:
         capabilities = announced(values, uses_sim_time=self._uses_sim_time)
         try:
             return ServerThread(
-                ServerInfo("thymio_sim_ros", capabilities, (CDR, JSON), session_id=_new_id()),
+                ServerInfo(
+                    "thymio_sim_ros",
+                    capabilities,
+                    (CDR, JSON),
+                    {"namespace": self.node.get_namespace()},
+                    session_id=_new_id(),
+                ),
                 self._mailbox,
                 address=values.address,
                 port=values.port,
@@ -247,7 +259,7 @@ class FoxgloveBridge:
             return
         self._seen = (topics, services)
         hidden = self.params.include_hidden
-        shown = visible(topics, self._is_topic, hidden=hidden)
+        shown = visible_topics(topics, self._is_topic, hidden=hidden)
         offered = visible(services, self._is_service, hidden=hidden)
         if not hidden:
             offered = {name: types for name, types in offered.items() if not is_parameter_service(name)}

@@ -54,7 +54,9 @@ class FoxgloveParams:
     client_topic_whitelist: tuple[str, ...] = param(
         (".*",), "Regular expressions of topics on which clients may publish", fixed=True
     )
-    include_hidden: bool = param(False, "Offer hidden topics and services too", fixed=True)
+    include_hidden: bool = param(
+        False, "Offer hidden services and topics of actions too; other hidden topics are always offered", fixed=True
+    )
     capabilities: tuple[str, ...] = param(
         tuple(item.value for item in Capability if item is not Capability.TIME),
         "What to offer: clientPublish, parameters, parametersSubscribe, services, connectionGraph, assets; "

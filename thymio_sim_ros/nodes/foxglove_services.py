@@ -80,7 +80,7 @@ class Services:
             self.fail(client, request, f"{offer.service.name}: undecodable request: {_first_line(error)}")
             return
         if refusal := call_refusal(offer.service.type, message):
-            self._fail(client, request, f"{offer.service.name}: {refusal}")
+            self.fail(client, request, f"{offer.service.name}: {refusal}")
             return
 
         def done(response: Any, reason: str) -> None:

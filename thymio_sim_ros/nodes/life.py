@@ -20,6 +20,7 @@ from types import FrameType
 from typing import Protocol, runtime_checkable
 
 import rclpy
+from rclpy._rclpy_pybind11 import RCLError, UnknownROSArgsError
 from rclpy.context import Context
 from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
@@ -196,15 +197,16 @@ def run_main(
     build: Callable[[Context], Iterable[Life]],
     args: Sequence[str] | None = None,
     *,
+    executable: str = "",
     on_ready: Callable[[], None] = lambda: None,
 ) -> int:
-    """Run the lives that `build` gives until SIGINT or SIGTERM; the exit code.
+    """Run the lives that `build` gives until SIGINT or SIGTERM; the exit code. `executable`: its name, with `args`.
 
     Each life gets its thread as soon as it is built; `on_ready` is called when all run. A `StartError` is one
     line on stderr and exit code 2, with nothing left running; arguments that are not of ROS likewise. Where DDS takes
     longer than `CLOSE_S` to forget all endpoints, the process ends without it.
     """
-    words = sys.argv if args is None else ["", *args]
+    words = sys.argv if args is None else [executable, *args]
     stray = _stray(words[1:])
     if stray:
         return _explain(Path(words[0]).name.removeprefix("thymio_"), stray)
@@ -221,9 +223,7 @@ def run_main(
     remove_half_made_ports()
     code = 1
     try:
-        rclpy.init(
-            args=None if args is None else list(args), context=context, signal_handler_options=SignalHandlerOptions.NO
-        )
+        _init(words[1:], context)
         for life in build(context):
             threads.start(life)
         on_ready()
@@ -240,6 +240,17 @@ def run_main(
             threads.close()
             context.try_shutdown()
     return code
+
+
+def _init(words: Sequence[str], context: Context) -> None:
+    """Begin with these arguments; StartError for one that ROS does not understand."""
+    try:
+        rclpy.init(args=list(words), context=context, signal_handler_options=SignalHandlerOptions.NO)
+    except UnknownROSArgsError as error:
+        raise StartError(f"no arguments of ROS: {error}") from error
+    except RCLError as error:
+        reason = str(error).removeprefix("failed to initialize rcl: ").partition(". Error:")[0]
+        raise StartError(f"ROS does not begin: {reason}") from error
 
 
 @contextmanager

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
 from thymio_sim_ros.nodes import command_topics, sensor_topics
+from thymio_sim_ros.nodes.names import is_hidden
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.aseba_face import Native
 from thymio_sim_ros.sim.commands import Command
@@ -57,6 +58,7 @@ def _sensed(sensor: Sensor, name: str) -> str:
     """Topics in SI units, that of the name's last word alone if it has one, then the integers."""
     topics = [row.topic for row in sensor_topics.rows_of(sensor)]
     *units, raw = topics
+    units = [topic for topic in units if not is_hidden(topic)] or units
     own = [topic for topic in units if topic.endswith(f"/{name.rpartition('.')[2]}")]
     if own:
         return ", ".join(f"`{topic}`" for topic in (*own, raw))

@@ -1,7 +1,8 @@
 """Names of topics and frames of one robot (ros-interface.md sections 2 and 8).
 
-A playground with one robot uses the empty name: `/odom`, frame `base_link`. With several, the robot's
-name is the namespace and the prefix of its frames and joints: `/thymio_1/odom`, `thymio_1/base_link`.
+A playground with one robot uses the empty name: `odom`, frame `base_link`. With several, the robot's
+name is the namespace and the prefix of its frames and joints: `thymio_1/odom`, `thymio_1/base_link`.
+All names of topics and services are relative to the namespace of the node, but for `GLOBAL`.
 """
 
 from __future__ import annotations
@@ -10,10 +11,18 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from rclpy.node import Node
+
 PROXIMITY = ("left", "center_left", "center", "center_right", "right", "rear_left", "rear_right")
 """Names of the seven proximity sensors in Thymio's order 0…6."""
 
 SIDES = ("left", "right")
+
+GLOBAL = ("/clock", "/diagnostics", "/tf", "/tf_static")
+"""Topics that are the same in all namespaces, as the tools of ROS expect it."""
+
+HIDDEN = "_"
+"""What a hidden topic's name begins with: `ros2 topic list` leaves out names with such a word (docs/ros.md)."""
 
 MAP_FRAME = "map"
 
@@ -41,8 +50,8 @@ class RobotNames:
     frames: FrameNames = USUAL
 
     def topic(self, relative: str) -> str:
-        """Absolute topic name."""
-        return f"/{self.name}/{relative}" if self.name else f"/{relative}"
+        """Topic or service name, relative to the node's namespace."""
+        return f"{self.name}/{relative}" if self.name else relative
 
     def frame(self, relative: str) -> str:
         """Frame or joint name; `relative` is its usual one."""
@@ -83,6 +92,21 @@ class Naming:
 def ros_names(robots: tuple[str, ...]) -> dict[str, RobotNames]:
     """World name → names in ROS, for the robots of one playground, where nobody chose otherwise."""
     return Naming().all(robots)
+
+
+def is_hidden(topic: str) -> bool:
+    """Whether `ros2 topic list` leaves this topic out: one of the words of its name begins with `_`."""
+    return any(word.startswith(HIDDEN) for word in topic.split("/"))
+
+
+def full_name(node: Node, topic: str) -> str:
+    """The whole name of a relative topic of a node, for people; remappings are left out."""
+    return topic if topic.startswith("/") else f"{node.get_namespace().rstrip('/')}/{topic}"
+
+
+def raw_topic(sensor: str) -> str:
+    """The topic with the integers of a sensor, relative to the robot's namespace."""
+    return f"_raw/{sensor}"
 
 
 def topic_word(event: str) -> str:

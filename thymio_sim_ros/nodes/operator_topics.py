@@ -1,4 +1,4 @@
-"""What an operator does to a robot, one row per topic `press/…`; programs never speak on them.
+"""What an operator does to a robot, one row per topic `_press/…`; programs never speak on them.
 
 Names: ros-interface.md section 4.2; those beyond it follow their pattern.
 """
@@ -80,9 +80,9 @@ def _charger(message: Bool) -> Command:
 
 
 ROWS = (
-    CommandRow("press/tap", Empty, _tap, profile=qos.EVENTS, about="a knock on the body"),
+    CommandRow("_press/tap", Empty, _tap, profile=qos.EVENTS, about="a knock on the body"),
     CommandRow(
-        "press/clap",
+        "_press/clap",
         Float32,
         lambda message: commands.Clap(_level(message)),
         profile=qos.EVENTS,
@@ -90,26 +90,26 @@ ROWS = (
         beyond=limits.loudness,
     ),
     CommandRow(
-        "press/sound",
+        "_press/sound",
         Float32,
         lambda message: commands.SetNoiseLevel(_level(message)),
         profile=qos.EVENTS,
         about="steady noise round the robot, 0…1",
         beyond=limits.loudness,
     ),
-    CommandRow("press/remote", Int8, _remote, profile=qos.EVENTS, about="a key of a remote control, 0…127"),
+    CommandRow("_press/remote", Int8, _remote, profile=qos.EVENTS, about="a key of a remote control, 0…127"),
     CommandRow(
-        "press/rc5", Int16MultiArray, _rc5, profile=qos.EVENTS, about="address 0…31, command 0…127 of a remote control"
+        "_press/rc5", Int16MultiArray, _rc5, profile=qos.EVENTS, about="address 0…31, command 0…127 of a remote control"
     ),
     CommandRow(
-        "press/tilt",
+        "_press/tilt",
         Float32MultiArray,
         _tilt,
         profile=qos.EVENTS,
         about="roll, pitch in rad: hold the robot at this angle until told otherwise",
     ),
     CommandRow(
-        "press/light",
+        "_press/light",
         Float32,
         _light,
         profile=qos.EVENTS,
@@ -117,21 +117,21 @@ ROWS = (
         beyond=limits.light,
     ),
     CommandRow(
-        "press/proximity",
+        "_press/proximity",
         Int16MultiArray,
         _proximity,
         profile=qos.EVENTS,
         about="what the seven sensors count from now on, 0…4505, -1 what it sees by itself; empty: all do",
     ),
     CommandRow(
-        "press/ground",
+        "_press/ground",
         Int16MultiArray,
         _ground,
         profile=qos.EVENTS,
         about="what the two ground sensors count, 0…1023, -1 what it sees by itself; empty: both do",
     ),
-    CommandRow("press/temperature", Float32, _temperature, profile=qos.EVENTS, about="°C round the robot, -40…85"),
-    CommandRow("press/battery", Float32, _battery, profile=qos.EVENTS, about="V of the battery, 0…5"),
-    CommandRow("press/charger", Bool, _charger, profile=qos.EVENTS, about="whether the charger is connected"),
+    CommandRow("_press/temperature", Float32, _temperature, profile=qos.EVENTS, about="°C round the robot, -40…85"),
+    CommandRow("_press/battery", Float32, _battery, profile=qos.EVENTS, about="V of the battery, 0…5"),
+    CommandRow("_press/charger", Bool, _charger, profile=qos.EVENTS, about="whether the charger is connected"),
 )
 """Loudness is 0…1 of 255, light of 1023, both limited; temperature in °C, battery in V, refused when out of range."""

@@ -14,7 +14,7 @@ from typing import Any
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
 
-from thymio_sim_ros.nodes import command_topics, direct, driver_senses, plugin_topics, qos
+from thymio_sim_ros.nodes import command_topics, direct, driver_senses, driver_topics, plugin_topics, qos
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.sim.commands import Command, SetLed, ShowOnLeds
 
@@ -57,11 +57,12 @@ class OutputPorts:
         for row in (*command_topics.ROWS, *plugin_topics.rows()):
             if row.encode is None:
                 continue
-            if has_driver and row.topic == "motor/target":
+            if has_driver and row.topic == "_motor/target":
                 publisher = node.create_publisher(Twist, names.topic("cmd_vel"), qos.COMMAND)
                 encode: Callable[[Any], Any] = driver_senses.twist_of
             else:
-                publisher, encode = node.create_publisher(row.type, names.topic(row.topic), row.profile), row.encode
+                topic = driver_topics.driver_name(row.topic) if has_driver else row.topic
+                publisher, encode = node.create_publisher(row.type, names.topic(topic), row.profile), row.encode
             self._outlets[row.topic] = _Outlet(encode, publisher, direct.counter(publisher), row.holds)
         self._counts = self._count()
 

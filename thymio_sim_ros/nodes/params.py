@@ -12,6 +12,7 @@ after a change; what no descriptor can refuse is refused by `refusal`.
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import Field, dataclass, field
@@ -25,6 +26,9 @@ from rclpy.parameter import Parameter
 from thymio_sim_ros.nodes.life import StartError
 
 T = TypeVar("T")
+
+_LIKE = 0.7
+"""How like a known name a name must be to be taken for a slip of the fingers, 0…1."""
 
 _OF_RCL = ("use_sim_time", "qos_overrides.", "start_type_description_service")
 
@@ -168,22 +172,32 @@ def declare(node: Node, defaults: T) -> T:
 
 
 def undeclared(node: Node, name: str) -> str:
-    """The text that a node was started with for a parameter that it never declares, so that nobody can read it; or ""."""
+    """The start value of a parameter that is never declared, so that it cannot be read from outside; or ""."""
     given = node._parameter_overrides.get(name)  # rclpy has no public way to see them
     return "" if given is None or given.value is None else str(given.value)
 
 
-def warn_of_unknown(node: Node, page: str, is_known: Callable[[str], bool] | None = None) -> None:
+def warn_of_unknown(
+    node: Node, page: str, is_known: Callable[[str], bool] | None = None, names: Iterable[str] = ()
+) -> None:
     """Tell which parameters a node was started with that it does not have: ROS ignores them without a word.
 
-    `page` of docs/ lists those that it has; `is_known` tells them, else all are declared when this is called.
+    `page` of docs/ lists those that it has; `is_known` tells them, else all are declared when this is called. The
+    nearest of these and of `names` is named.
     """
     known = is_known or node.has_parameter
     for name in sorted(node._parameter_overrides):  # rclpy has no public way to see them
         if not known(name) and not name.startswith(_OF_RCL):
+            near = meant(name, [one for one in (*node.get_parameters_by_prefix(""), *names) if known(one)])
             node.get_logger().warning(
-                f"parameter {name} is none of {node.get_name()} and does nothing; see docs/{page}"
+                f"parameter {name} is none of {node.get_name()} and does nothing{near}; see docs/{page}"
             )
+
+
+def meant(name: str, names: Sequence[str]) -> str:
+    """A question whether another of these names was meant; nothing where none is like it."""
+    near = difflib.get_close_matches(name, names, 1, _LIKE)
+    return f" (did you mean {near[0]}?)" if near else ""
 
 
 def refusal(values: Any, parameters: Iterable[Parameter]) -> str:

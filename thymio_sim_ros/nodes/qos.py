@@ -81,8 +81,10 @@ def overridable(node: Node, topic: str, profile: QoSProfile) -> dict[str, Any]:
     be ten thousand.
     """
     # rclpy tells nobody what a node was started with but the node itself.
-    started_with = node._parameter_overrides
-    if any(name.startswith(f"qos_overrides.{topic}.publisher.") for name in started_with):
+    started_with = [name for name in node._parameter_overrides if name.startswith("qos_overrides.")]
+    if started_with and any(
+        name.startswith(f"qos_overrides.{node.resolve_topic_name(topic)}.publisher.") for name in started_with
+    ):
         # rclpy writes the overrides into the profile that it is given.
         own = copy.copy(profile)
         return {"qos_profile": own, "qos_overriding_options": QoSOverridingOptions.with_default_policies()}

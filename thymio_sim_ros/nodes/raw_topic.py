@@ -1,7 +1,7 @@
 """The integers of all robots' sensors in one message a tick: what a runtime with many robots listens to.
 
 It is a `std_msgs/Int16MultiArray` with a dimension for each reading: the label is `robot/sensor`, or `sensor` where the
-robot has no name, the size is the number of its words, which follow each other in `data`. `raw/<sensor>` of each robot
+robot has no name, the size is the number of its words, which follow each other in `data`. `_raw/<sensor>` of each robot
 tells the same one by one; a message costs more than what is in it.
 """
 
@@ -17,6 +17,7 @@ from std_msgs.msg import Int16MultiArray
 
 from thymio_sim_ros.nodes import direct, sensor_topics
 from thymio_sim_ros.nodes.audience import Audience, Heard
+from thymio_sim_ros.nodes.names import raw_topic
 from thymio_sim_ros.sim.readings import Reading
 from thymio_sim_ros.sim.sensors import all_sensors
 
@@ -85,7 +86,7 @@ class RawTopic:
             sensor.name: Heard(sensor.name, is_regular=sensor_topics.is_regular(sensor, row))
             for sensor in all_sensors()
             for row in sensor_topics.rows_of(sensor)
-            if row.topic == f"raw/{sensor.name}"
+            if row.topic == raw_topic(sensor.name)
         }
         self._is_heard = False
         self._waiting: list[Told] = []

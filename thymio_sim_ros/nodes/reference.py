@@ -19,6 +19,7 @@ from thymio_sim_ros.nodes import (
     qos,
     robot_ports,
     sensor_topics,
+    suite_params,
     tf_messages,
     world_ports,
     world_services,
@@ -26,13 +27,14 @@ from thymio_sim_ros.nodes import (
 from thymio_sim_ros.nodes.aseba_node import RuntimeParams
 from thymio_sim_ros.nodes.description import fixed_frames, wheel_position
 from thymio_sim_ros.nodes.migration import migration
-from thymio_sim_ros.nodes.names import SIDES
-from thymio_sim_ros.nodes.reference_text import AFTER, BEFORE, DRIVER, INTERFACES, QUALITY, RVIZ
-from thymio_sim_ros.nodes.robot_inputs import RobotInput, robot_inputs
+from thymio_sim_ros.nodes.names import SIDES, is_hidden
+from thymio_sim_ros.nodes.reference_text import AFTER, ALL_IN_ONE, BEFORE, DRIVER, HIDDEN, INTERFACES, QUALITY, RVIZ
+from thymio_sim_ros.nodes.robot_inputs import robot_inputs
 from thymio_sim_ros.nodes.sim_interfaces import OFFERS, PACKAGE, STEPS
 from thymio_sim_ros.nodes.simulator_params import SimulatorParams
 from thymio_sim_ros.sim import sensors
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
+from thymio_sim_ros.suite import Suite
 
 __all__ = ["own_sensors", "published", "table", "text", "type_name"]
 
@@ -68,9 +70,14 @@ def text() -> str:
     parts = [
         BEFORE,
         "## What a robot publishes\n",
-        _topics(_published()),
+        _topics(line for line in _published() if not is_hidden(line.topic)),
         "## What a robot listens to\n",
-        _topics(_line_of_input(one) for one in robot_inputs()),
+        _topics(line for line in _listened() if not is_hidden(line.topic)),
+        HIDDEN,
+        "### What a robot publishes besides\n",
+        _topics(line for line in _published() if is_hidden(line.topic)),
+        "### What a robot listens to besides\n",
+        _topics(line for line in _listened() if is_hidden(line.topic)),
         DRIVER,
         table(("topic", "", "type", ""), _of_driver()),
         "## Topics of the world\n",
@@ -90,6 +97,8 @@ def text() -> str:
         "## Parameters of the Aseba runtime\n",
         "What they and its topics do: [aseba_ros.md](aseba_ros.md).\n",
         table(("parameter", "default", "values", "at run time", ""), _parameters(RuntimeParams())),
+        ALL_IN_ONE,
+        table(("parameter", "node", "default"), _of_all_nodes()),
         AFTER,
         migration(own_sensors()),
     ]
@@ -123,8 +132,9 @@ def _published() -> Iterator[_Line]:
     yield _Line(robot_ports.DESCRIPTION, type_name(kind), "once", "", "latched", about)
 
 
-def _line_of_input(one: RobotInput) -> _Line:
-    return _Line(one.topic, type_name(one.type), "", "", qos.kind_of(one.profile), one.about)
+def _listened() -> Iterator[_Line]:
+    for one in robot_inputs():
+        yield _Line(one.topic, type_name(one.type), "", "", qos.kind_of(one.profile), one.about)
 
 
 def _of_driver() -> Iterator[tuple[str, str, str, str]]:
@@ -134,13 +144,25 @@ def _of_driver() -> Iterator[tuple[str, str, str, str]]:
 
 def _of_world() -> Iterator[_Line]:
     for topic, one in world_ports.TOPICS.items():
-        name = topic.replace("~", "/simulator")
-        yield _Line(name, type_name(one.type), one.often, one.frame, qos.kind_of(one.profile), one.about)
+        yield _Line(
+            _in_no_namespace(topic), type_name(one.type), one.often, one.frame, qos.kind_of(one.profile), one.about
+        )
     moving = "`map -> odom -> base_link` and the wheels; `map -> odom` makes up for the odometry's drift"
     yield _Line("/tf", tf_messages.TF_TYPE_NAME, "20", "", "transforms", moving)
     yield _Line("/tf_static", tf_messages.TF_TYPE_NAME, "once", "", "latched", "the frames below that are fixed")
-    name = world_services.PLACE.replace("~", "/simulator")
-    yield _Line(name, "geometry_msgs/msg/TransformStamped", "in", "map", "command", world_services.PLACED)
+    yield _Line(
+        _in_no_namespace(world_services.PLACE),
+        "geometry_msgs/msg/TransformStamped",
+        "in",
+        "map",
+        "command",
+        world_services.PLACED,
+    )
+
+
+def _in_no_namespace(name: str) -> str:
+    """A name of the simulator as it is where the node has no namespace."""
+    return name if name.startswith("/") else f"/{name.replace('~', 'simulator')}"
 
 
 def _topics(lines: Iterable[_Line]) -> str:
@@ -174,7 +196,7 @@ def _services() -> Iterator[tuple[str, str, str]]:
     for name, (kind, about) in robot_ports.SERVICES.items():
         yield f"`{name}`", f"`{type_name(kind)}`", about
     for name, service in world_services.SERVICES.items():
-        yield f"`{name.replace('~', '/simulator')}`", f"`{type_name(service.type)}`", service.about
+        yield f"`{_in_no_namespace(name)}`", f"`{type_name(service.type)}`", service.about
 
 
 def _interfaces() -> Iterator[tuple[str, str, str]]:
@@ -199,12 +221,7 @@ def _vector(values: Iterable[float]) -> str:
 
 def _parameters(values: object) -> Iterator[tuple[str, str, str, str, str]]:
     """Each parameter; those of groups that differ in the middle of their names alone share a line."""
-    groups: dict[tuple[str, str], list[params.Declared]] = {}
-    for one in params.declared(values):
-        groups.setdefault((_outer(one.name), one.metadata["text"]), []).append(one)
-    for group in groups.values():
-        first = group[0]
-        name = first.name if len(group) == 1 else f"{first.name.split('.')[0]}.<sensor>.{first.name.rpartition('.')[2]}"
+    for first, name in _grouped(values):
         yield (
             f"`{name}`",
             _value(first.default),
@@ -212,6 +229,32 @@ def _parameters(values: object) -> Iterator[tuple[str, str, str, str, str]]:
             "" if first.metadata["fixed"] else "yes",
             _cell(first.metadata["text"]),
         )
+
+
+def _grouped(values: object) -> Iterator[tuple[params.Declared, str]]:
+    """The first parameter of each group, and the name of its line."""
+    groups: dict[tuple[str, str], list[params.Declared]] = {}
+    for one in params.declared(values):
+        groups.setdefault((_outer(one.name), one.metadata["text"]), []).append(one)
+    for group in groups.values():
+        first = group[0]
+        several = f"{first.name.split('.')[0]}.<sensor>.{first.name.rpartition('.')[2]}"
+        yield first, first.name if len(group) == 1 else several
+
+
+def _of_all_nodes() -> Iterator[tuple[str, str, str]]:
+    """Each parameter of the combined process, its nodes and its default; those of a group share a line."""
+    values = suite_params.defaults(Suite())
+    suite = ["port", "foxglove_port", "address"]
+    for name in suite:
+        nodes = suite_params.places(name)
+        node, own_name = nodes[-1]
+        called = [f"`{one}`" if own == name else f"`{one}` (its `{own}`)" for one, own in nodes]
+        yield f"`{name}`", ", ".join(called), _value(params.by_name(values[node])[own_name])
+    for node, own in values.items():
+        for first, line_name in _grouped(own):
+            if first.name not in suite:
+                yield f"`{line_name}`", f"`{node}`", _value(first.default)
 
 
 def _outer(name: str) -> str:

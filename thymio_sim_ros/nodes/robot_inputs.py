@@ -62,7 +62,7 @@ class RobotInput:
 
 def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
     """All of them; `stamped_cmd_vel`: `cmd_vel` is TwistStamped, as newer Nav2 has it."""
-    plain, stamped = ("cmd_vel_unstamped", "cmd_vel") if stamped_cmd_vel else ("cmd_vel", "cmd_vel_stamped")
+    plain, stamped = ("_cmd_vel_unstamped", "cmd_vel") if stamped_cmd_vel else ("cmd_vel", "_cmd_vel_stamped")
     speeds = "linear.x in m/s and angular.z in rad/s; scaled down together above the wheels' limit"
     return (
         RobotInput(plain, TwistMsg, _twist, speeds, qos.COMMAND, limits.twist),
@@ -74,9 +74,9 @@ def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
             qos.COMMAND,
             limits.stamped_twist,
         ),
-        RobotInput("wheels/command", Float64MultiArray, _wheels, "left, right in rad/s", qos.COMMAND, limits.wheels),
+        RobotInput("_wheels/command", Float64MultiArray, _wheels, "left, right in rad/s", qos.COMMAND, limits.wheels),
         *map(_of_row, command_topics.ROWS),
-        RobotInput("led/off", Empty, _leds_off, "all lights dark", qos.LEDS),
+        RobotInput("_led/off", Empty, _leds_off, "all lights dark", qos.LEDS),
         RobotInput(
             "shutdown",
             Empty,
@@ -94,7 +94,7 @@ def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
         ),
         *(
             RobotInput(
-                f"press/{button}", Bool, partial(_press, button), "a finger on the button, or off it", qos.EVENTS
+                f"_press/{button}", Bool, partial(_press, button), "a finger on the button, or off it", qos.EVENTS
             )
             for button in commands.BUTTONS
         ),

@@ -21,7 +21,7 @@ from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.description import urdf
 from thymio_sim_ros.nodes.driver_topics import DriverTopics
-from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.names import HIDDEN, RobotNames, full_name
 from thymio_sim_ros.nodes.robot_inputs import Moment, RobotInput, robot_inputs
 from thymio_sim_ros.nodes.sensor_topics import Row
 from thymio_sim_ros.nodes.templates import Template
@@ -48,10 +48,14 @@ SERVICES: Mapping[str, tuple[type, str]] = {
 
 
 def first_words() -> frozenset[str]:
-    """First words of a robot's topics, where there is more than one, and of what a program adds."""
+    """First words of a robot's topics, where there is more than one, and of what a program adds.
+
+    Of hidden ones also without the `_`: the driver's names.
+    """
     rows = (row.topic for sensor in all_sensors() for row in sensor_topics.rows_of(sensor))
     topics = (*rows, *(one.topic for one in robot_inputs()), "aseba/")
-    return frozenset(topic.partition("/")[0] for topic in topics if "/" in topic)
+    words = {topic.partition("/")[0] for topic in topics if "/" in topic}
+    return frozenset(words | {word.removeprefix(HIDDEN) for word in words})
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,7 +241,7 @@ class RobotPorts:
                     self._tell_limit(one, beyond)
             except (CommandError, PlacementError) as error:
                 self._on_refusal()
-                self._warn(self.names.topic(one.topic), f"refused: {error}")
+                self._warn(self._full_name(one), f"refused: {error}")
 
         return take
 
@@ -246,7 +250,10 @@ class RobotPorts:
         self._on_limit()
         if one.topic not in self._limited:
             self._limited.add(one.topic)
-            self._node.get_logger().warning(f"{self.names.topic(one.topic)} limited: {beyond}; told once")
+            self._node.get_logger().warning(f"{self._full_name(one)} limited: {beyond}; told once")
+
+    def _full_name(self, one: RobotInput) -> str:
+        return full_name(self._node, self.names.topic(one.topic))
 
     def _reset_odometry(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._post(commands.ResetOdometry())

@@ -30,14 +30,14 @@ from visualization_msgs.msg import Marker, MarkerArray
 from thymio_sim_ros.nodes import convert, patches, qos, senses
 from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.headers import SECOND_NS
-from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
+from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames, raw_topic
 from thymio_sim_ros.nodes.templates import Patch
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.readings import LoudspeakerReading, PenReading, Reading
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.tones import TRIANGLE
 
-JOINTS, TRUTH = "joint_states", "ground_truth/odom"
+JOINTS, TRUTH = "joint_states", "_ground_truth/odom"
 
 Encode = Callable[[Any, RobotNames, ConvertOptions], Any]
 
@@ -93,7 +93,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             for i, name in enumerate(PROXIMITY)
         ),
         Row(
-            "proximity/laser",
+            "_proximity/laser",
             LaserScan,
             convert.laser,
             "the five front sensors from right to left, m from the robot's middle; intensities are counts",
@@ -101,7 +101,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             patch=patches.LASER,
         ),
         Row(
-            "proximity/rays",
+            "_proximity/rays",
             Marker,
             senses.rays,
             "the seven rays as lines, as long as what they measure; red where something is met",
@@ -122,7 +122,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             for i, name in enumerate(commands.BUTTONS)
         ),
         Row(
-            "buttons",
+            "_buttons",
             Joy,
             convert.joy,
             "backward, left, center, forward, right",
@@ -154,7 +154,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
     ),
     "leds": (
         Row(
-            "led/state",
+            "_led/state",
             Float32MultiArray,
             convert.leds,
             "brightness 0…1 of every light, a labelled dimension for each group",
@@ -167,11 +167,11 @@ ROWS: dict[str, tuple[Row, ...]] = {
         Row("imu", Imu, senses.imu, "acceleration alone, m/s²; g upwards at rest", "base_link", patch=patches.IMU),
     ),
     "temperature": (
-        Row("temperature", Temperature, senses.temperature, "°C, in tenths", "base_link", patch=patches.TEMPERATURE),
+        Row("_temperature", Temperature, senses.temperature, "°C, in tenths", "base_link", patch=patches.TEMPERATURE),
     ),
     "battery": (
         Row(
-            "battery",
+            "_battery",
             BatteryState,
             senses.battery,
             "V, charge 0…1, charging or not",
@@ -181,7 +181,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
     ),
     "collision": (
         Row(
-            "collision",
+            "_collision",
             Bool,
             senses.collision,
             "whether anything but the floor is touched",
@@ -189,13 +189,13 @@ ROWS: dict[str, tuple[Row, ...]] = {
             always=True,
         ),
     ),
-    "tap": (Row("tap", Empty, senses.tap, "a shock was felt"),),
-    "sound": (Row("sound", Float32, senses.sound, "loudness 0…1 above `sound_threshold`", is_event=True),),
-    "remote": (Row("remote", Int8, senses.remote, "command 0…127 of a key of an RC5 remote control"),),
-    "comm": (Row("comm/received", Int16, senses.received, "value of an infrared frame"),),
+    "tap": (Row("_tap", Empty, senses.tap, "a shock was felt"),),
+    "sound": (Row("_sound", Float32, senses.sound, "loudness 0…1 above `_sound_threshold`", is_event=True),),
+    "remote": (Row("_remote", Int8, senses.remote, "command 0…127 of a key of an RC5 remote control"),),
+    "comm": (Row("_comm/received", Int16, senses.received, "value of an infrared frame"),),
     "pen": (
         Row(
-            "pen/trail",
+            "_pen/trail",
             MarkerArray,
             convert.trail,
             "what the pen drew, a line strip for each stroke",
@@ -205,7 +205,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
     ),
     "loudspeaker": (
         Row(
-            "sound/state/wave",
+            "_sound/state/wave",
             Int8MultiArray,
             convert.heard_wave,
             "the period that tones are made of, 142 samples",
@@ -214,14 +214,14 @@ ROWS: dict[str, tuple[Row, ...]] = {
             on_change=attrgetter("wave"),
         ),
         Row(
-            "sound/state/samples",
+            "_sound/state/samples",
             UInt8MultiArray,
             convert.heard_samples,
             "unsigned 8 bit at 7812.5 Hz of a sound that begins",
             profile=qos.EVENTS,
         ),
         Row(
-            "sound/state",
+            "_sound/state",
             Float32MultiArray,
             convert.sound,
             "Hz, s, volume 0…1 of what plays; zeros for silence",
@@ -230,7 +230,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
         ),
     ),
 }
-"""Sensor name → topics in SI units. Besides, every sensor that Aseba sees has `raw/<sensor>`."""
+"""Sensor name → topics in SI units. Besides, every sensor that Aseba sees has `_raw/<sensor>`."""
 
 
 AT_START: Mapping[str, Reading] = {
@@ -249,7 +249,7 @@ def rows_of(sensor: Sensor) -> tuple[Row, ...]:
     raw = (
         (
             Row(
-                f"raw/{sensor.name}",
+                raw_topic(sensor.name),
                 Int16MultiArray,
                 convert.words,
                 about,

@@ -25,9 +25,10 @@ from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import dds_profile, driver_topics, params, qos, robot_ports, sim_interfaces
 from thymio_sim_ros.nodes.audience import Audience
 from thymio_sim_ros.nodes.deferred_load import DeferredLoad
+from thymio_sim_ros.nodes.driver_topics import DriverTopics
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
-from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.names import RobotNames, full_name
 from thymio_sim_ros.nodes.raw_topic import RawTopic
 from thymio_sim_ros.nodes.robot_inputs import Moment
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
@@ -109,7 +110,7 @@ class Simulator:
         self._audience = Audience(self.params.periods_ns)
         self._raw = RawTopic(self._world_ports.raw, self._audience)
         self._transforms = Transforms(self.node, self._audience, self.params.transform_options)
-        self._port_options = replace(self.params.port_options, extra=driver_topics.found(self.node))
+        self._port_options = replace(self.params.port_options, extra=self._driver_topics())
         self._roster = Roster(self._ports, self.params.naming)
         self.playground_name, self._scene = prepared.name, prepared.scene
         self._set_world(self._new_world(prepared.playground, self.params, prepared.ground))
@@ -137,7 +138,7 @@ class Simulator:
     @property
     def greeting(self) -> str:
         """What there is now, for a person."""
-        robots = ", ".join(f"/{names.name}" for names in self.names.values())
+        robots = ", ".join(full_name(self.node, names.name).rstrip("/") or "/" for names in self.names.values())
         return f"Playground {self.playground_name}, robots in {robots or 'none'}"
 
     def turn(self, executor: Executor) -> None:
@@ -321,6 +322,9 @@ class Simulator:
 
     def _on_full_disk(self, error: OSError) -> None:
         self.node.get_logger().error(f"the log ends here: {self.params.log}: {error.strerror}")
+
+    def _driver_topics(self) -> DriverTopics:
+        return driver_topics.found(self.node) if self.params.driver_topics else DriverTopics()
 
     def _ports(self, robot: str, names: RobotNames) -> RobotPorts:
         return RobotPorts(

@@ -130,15 +130,20 @@ class SimulatorParams:
     cmd_vel_timeout: float = param(0.0, "Seconds after which a velocity command ends; 0 is never", low=0.0, high=3600.0)
     stamped_cmd_vel: bool = param(
         False,
-        "Whether cmd_vel is TwistStamped and cmd_vel_unstamped Twist, instead of cmd_vel_stamped and cmd_vel",
+        "Whether cmd_vel is TwistStamped and _cmd_vel_unstamped Twist, instead of _cmd_vel_stamped and cmd_vel",
         fixed=True,
     )
 
+    driver_topics: bool = param(
+        False,
+        "Whether topics of the Thymio's ROS driver with hidden names (docs/ros.md) have the driver's names too",
+        fixed=True,
+    )
     publish_map_tf: bool = param(True, "Whether map -> odom is published: perfect localisation", fixed=True)
     publish_static_tf: bool = param(True, "Whether the fixed frames are published on /tf_static", fixed=True)
     publish_wheel_tf: bool = param(True, "Whether the wheels' frames are published on /tf", fixed=True)
     publish_description: bool = param(True, "Whether robot_description is published", fixed=True)
-    publish_ground_truth: bool = param(True, "Whether ground_truth/odom is published", fixed=True)
+    publish_ground_truth: bool = param(True, "Whether _ground_truth/odom is published", fixed=True)
     publish_map: bool = param(False, "Whether /map is published, for Nav2", fixed=True)
 
     @property

@@ -32,18 +32,18 @@ class Loaded:
 
 
 class StatusPorts:
-    """The latched topics `aseba/status` and `aseba/target`."""
+    """The latched topics `_aseba/status` and `_aseba/target`."""
 
     def __init__(self, node: Node, names: RobotNames, *, number: int) -> None:
         self._node = node
-        self._name = f"aseba: {names.name or 'robot'}"
+        self._name = f"{node.get_namespace().strip('/')}/aseba: {names.name or 'robot'}".removeprefix("/")
         self._number = number
         self._last: tuple[DeviceStatus, int | None, str] | None = None
         self._constant: list[KeyValue] = []
         self._program = ""
         self.message = DiagnosticStatus(name=self._name)
-        self._status = node.create_publisher(DiagnosticStatus, names.topic("aseba/status"), qos.LATCHED)
-        self._target = node.create_publisher(String, names.topic("aseba/target"), qos.LATCHED)
+        self._status = node.create_publisher(DiagnosticStatus, names.topic("_aseba/status"), qos.LATCHED)
+        self._target = node.create_publisher(String, names.topic("_aseba/target"), qos.LATCHED)
 
     def begin(self, loaded: Loaded, spoken: str) -> None:
         """Something about the program is new: tell the target, in a language, and the status at the next `tell`."""

@@ -23,7 +23,7 @@ from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.help import help_of
 from thymio_sim_ros.nodes import convert, qos
 from thymio_sim_ros.nodes.event_ports import unlike
-from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.names import RobotNames, full_name
 
 __all__ = ["VariablePorts"]
 
@@ -50,7 +50,7 @@ class VariablePorts:
         self._last_table: list[int] = []
         self._last_table_s = 0.0
         topic = names.topic
-        self._table = node.create_publisher(Int16MultiArray, topic("aseba/variables"), qos.SENSOR)
+        self._table = node.create_publisher(Int16MultiArray, topic("_aseba/variables"), qos.SENSOR)
         self._services = [
             node.create_service(GetParameters, topic("aseba/get_variables"), self._on_get),
             node.create_service(SetParameters, topic("aseba/set_variables"), self._on_set),
@@ -90,7 +90,7 @@ class VariablePorts:
             self._node.destroy_service(service)
 
     def _topic(self, word: str) -> str:
-        return self._names.topic(f"aseba/variables/{word}")
+        return full_name(self._node, self._names.topic(f"aseba/variables/{word}"))
 
     def _publish_table(self) -> None:
         words = self._device.memory()

@@ -52,24 +52,24 @@ class WorldTopic:
 
 TOPICS: Mapping[str, WorldTopic] = {
     "/clock": WorldTopic(Clock, "≤ 50", "simulated time; 1 Hz while paused", qos.CLOCK),
-    "~/state": WorldTopic(
+    "~/_state": WorldTopic(
         String,
         "1, change",
-        "JSON: playground, paused, factors, seed, ns, robots, things that can be moved, the topic `~/raw`",
+        "JSON: playground, paused, factors, seed, ns, robots, things that can be moved, the topic `~/_raw`",
         qos.LATCHED,
     ),
-    "~/raw": WorldTopic(
+    "~/_raw": WorldTopic(
         Int16MultiArray,
         "≤ 100",
         "Aseba's integers of all robots: a dimension `robot/sensor` for each reading",
         qos.EVENTS,
     ),
-    "~/playgrounds": WorldTopic(String, "once", "JSON: shipped playgrounds with titles and descriptions", qos.LATCHED),
-    "/markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.LATCHED, "map"),
-    "/markers/objects": WorldTopic(
+    "~/_playgrounds": WorldTopic(String, "once", "JSON: shipped playgrounds with titles and descriptions", qos.LATCHED),
+    "_markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.LATCHED, "map"),
+    "_markers/objects": WorldTopic(
         MarkerArray, "≤ 20, change", "movable things and doors as they stand", qos.LATCHED, "map"
     ),
-    "/map": WorldTopic(OccupancyGrid, "change", "only with `publish_map`: walls, 1 cm cells", qos.LATCHED, "map"),
+    "map": WorldTopic(OccupancyGrid, "change", "only with `publish_map`: walls, 1 cm cells", qos.LATCHED, "map"),
     "/diagnostics": WorldTopic(
         DiagnosticArray,
         "1",
@@ -82,7 +82,7 @@ TOPICS: Mapping[str, WorldTopic] = {
 
 @dataclass(frozen=True, slots=True)
 class WorldState:
-    """What `~/state` tells: times in ns of simulated time, factors in simulated seconds per second."""
+    """What `~/_state` tells: times in ns of simulated time, factors in simulated seconds per second."""
 
     playground: str
     title: str
@@ -98,7 +98,7 @@ class WorldState:
     """Where the integers of all robots are told."""
 
     def as_json(self) -> str:
-        """The text of `~/state`."""
+        """The text of `~/_state`."""
         robots = [
             {"name": names.name, "frame": names.frame("base_link"), "robot": robot}
             for robot, names in self.robots.items()
@@ -148,7 +148,8 @@ class WorldPorts:
         map_frame: str = MAP_FRAME,
     ) -> None:
         """`clock_rate_hz`: of wall time, at most."""
-        left_out = {"/clock": not publish_clock, "/map": not publish_map}
+        self._name = node.get_fully_qualified_name().removeprefix("/")
+        left_out = {"/clock": not publish_clock, "map": not publish_map}
         self._publishers = {
             name: node.create_publisher(topic.type, name, topic.profile)
             for name, topic in TOPICS.items()
@@ -161,14 +162,14 @@ class WorldPorts:
         self._send_clock = direct.sender(clock) if clock is not None else None
         self._count_clock = direct.counter(clock) if clock is not None else None
         self._map_frame = map_frame
-        self._publishers["~/playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
+        self._publishers["~/_playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
         self._last_clock_ns = self._last_objects_ns = 0
         self._shown: tuple[Playground, tuple[ObjectSnapshot, ...]] | None = None
 
     @property
     def raw(self) -> Any:
         """The publisher of all robots' integers."""
-        return self._publishers["~/raw"]
+        return self._publishers["~/_raw"]
 
     @property
     def clock_due_ns(self) -> int | None:
@@ -190,13 +191,13 @@ class WorldPorts:
 
     def publish_state(self, state: WorldState) -> None:
         """Latched state as JSON."""
-        self._publishers["~/state"].publish(String(data=state.as_json()))
+        self._publishers["~/_state"].publish(String(data=state.as_json()))
 
     def publish_scene(self, scene: SceneMessages) -> None:
         """Latched markers of all in the playground that stays where it is."""
-        self._publishers["/markers"].publish(scene.markers)
+        self._publishers["_markers"].publish(scene.markers)
         if scene.map is not None:
-            self._publishers["/map"].publish(scene.map)
+            self._publishers["map"].publish(scene.map)
 
     def publish_objects(self, world: World, *, last: bool) -> None:
         """Latched markers of movable things and doors, when they have moved.
@@ -213,14 +214,14 @@ class WorldPorts:
         self._shown = shown
         solids = {solid.name: solid for solid in world.playground.solids if not solid.is_fixed}
         placed = [solids[thing.name].at(thing.pose) for thing in world.objects if not thing.is_fallen]
-        self._publishers["/markers/objects"].publish(playground_markers(placed, self._map_frame))
+        self._publishers["_markers/objects"].publish(playground_markers(placed, self._map_frame))
 
     def publish_diagnostics(self, state: WorldState, pace: Pace) -> None:
         """Pace of the simulation (ros-interface.md section 5)."""
         slow = not state.paused and 0 < state.achieved < SLOW * state.real_time_factor
         status = DiagnosticStatus(
             level=DiagnosticStatus.WARN if slow else DiagnosticStatus.OK,
-            name="simulator: pace",
+            name=f"{self._name}: pace",
             hardware_id="thymio_sim_ros",
             message="paused" if state.paused else "slower than wanted" if slow else "running",
             values=[

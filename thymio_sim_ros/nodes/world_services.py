@@ -52,7 +52,7 @@ SERVICES: Mapping[str, Service] = {
 }
 """Every service of the simulator that belongs to no robot."""
 
-PLACE = "~/place"
+PLACE = "~/_place"
 """The topic that does what `~/set_poses` does, for what a viewer drags."""
 
 STOPPED_BY_ITSELF = "the world stopped by a fault of ours: see the simulator's log"

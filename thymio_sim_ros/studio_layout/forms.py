@@ -28,9 +28,9 @@ _TITLES = ("lichtblickPanelTitle", "foxglovePanelTitle")
 """Where Lichtblick keeps the title of a panel, and where Studio before it did."""
 
 
-def render(app: str, robot: str = "") -> str:
-    """The file for an application of `APPS`, as JSON text."""
-    return json.dumps(APPS[app](describe(robot)), indent=1, ensure_ascii=False) + "\n"
+def render(app: str, robot: str = "", namespace: str = "") -> str:
+    """The file for an application of `APPS`, as JSON text; `namespace`: of the whole suite."""
+    return json.dumps(APPS[app](describe(robot, namespace)), indent=1, ensure_ascii=False) + "\n"
 
 
 def _lichtblick(root: Node) -> dict[str, Any]:

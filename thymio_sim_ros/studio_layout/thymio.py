@@ -35,23 +35,28 @@ _FRAMES = (
 
 
 class Names:
-    """Names of one robot: a namespace and a prefix of frames, both empty where it is the only one."""
+    """Names of one robot in a suite; `robot` is empty where it is the only one, `namespace` that of the suite."""
 
-    def __init__(self, robot: str = "") -> None:
+    def __init__(self, robot: str = "", namespace: str = "") -> None:
         self._prefix = f"{robot}/" if robot else ""
+        self._namespace = f"/{namespace}" if namespace else ""
+
+    def of_world(self, name: str) -> str:
+        """Absolute name of a topic or service of the suite as a whole."""
+        return f"{self._namespace}/{name}"
 
     def topic(self, name: str) -> str:
-        """Absolute topic or service name."""
-        return f"/{self._prefix}{name}"
+        """Absolute name of a topic or service of the robot."""
+        return self.of_world(f"{self._prefix}{name}")
 
     def frame(self, name: str) -> str:
         """Frame name."""
         return f"{self._prefix}{name}"
 
 
-def describe(robot: str = "") -> Node:
-    """The whole layout; `robot` is its namespace, empty for the only robot of a playground."""
-    names = Names(robot)
+def describe(robot: str = "", namespace: str = "") -> Node:
+    """The whole layout; `robot`: its name, empty for the only robot of a playground; `namespace`: of the suite."""
+    names = Names(robot, namespace)
     left = Split("column", ((62, _scene(names)), (38, _drive(names))))
     tabs = Tabs(
         "details",
@@ -68,7 +73,12 @@ def describe(robot: str = "") -> Node:
 
 
 def _scene(names: Names) -> Panel:
-    shown = ("/markers", "/markers/objects", names.topic("pen/trail"), names.topic("proximity/rays"))
+    shown = (
+        names.of_world("_markers"),
+        names.of_world("_markers/objects"),
+        names.topic("_pen/trail"),
+        names.topic("_proximity/rays"),
+    )
     return Panel(
         "3D",
         "scene",
@@ -126,10 +136,10 @@ def _drive(names: Names) -> Node:
     world = Tabs(
         "world",
         (
-            ("Reset", _call("world-reset", "/simulator/reset", "Begin again")),
-            ("Pause", _call("world-pause", "/simulator/pause", "Stop the clock", {"data": True})),
-            ("Go on", _call("world-go", "/simulator/pause", "Start the clock", {"data": False})),
-            ("Step", _call("world-step", "/simulator/step", "One step")),
+            ("Reset", _call("world-reset", names.of_world("simulator/reset"), "Begin again")),
+            ("Pause", _call("world-pause", names.of_world("simulator/pause"), "Stop the clock", {"data": True})),
+            ("Go on", _call("world-go", names.of_world("simulator/pause"), "Start the clock", {"data": False})),
+            ("Step", _call("world-step", names.of_world("simulator/step"), "One step")),
         ),
     )
     return Split("row", ((50, teleop), (50, world)))
@@ -147,7 +157,7 @@ def _sensors(names: Names) -> Node:
         "ground",
         "Ground (reflected light)",
         # Words 4 and 5 of the ground sensors are what Aseba calls prox.ground.delta.
-        ((side, f"{names.topic('raw/ground')}.data[{4 + index}]") for index, side in enumerate(("left", "right"))),
+        ((side, f"{names.topic('_raw/ground')}.data[{4 + index}]") for index, side in enumerate(("left", "right"))),
         low=0.0,
         high=1100.0,
     )
@@ -175,11 +185,11 @@ def _lights(names: Names) -> Node:
         _row(
             (
                 _publish("circle", names.topic("led/circle"), "std_msgs/msg/Float32MultiArray", "Circle", circle),
-                _publish("lights-off", names.topic("led/off"), "std_msgs/msg/Empty", "All lights off", {}),
+                _publish("lights-off", names.topic("_led/off"), "std_msgs/msg/Empty", "All lights off", {}),
             )
         )
     )
-    state = _raw("lights", "Lights (levels)", f"{names.topic('led/state')}.data")
+    state = _raw("lights", "Lights (levels)", f"{names.topic('_led/state')}.data")
     return Split("column", (*((14.0, line) for line in lines), (44.0, state)))
 
 
@@ -191,9 +201,9 @@ def _program(names: Names) -> Node:
             for word in ("run", "pause", "step", "stop", "reset")
         ),
     )
-    status = _raw("status", "Program", names.topic("aseba/status"))
-    variables = _raw("variables", "Variables", names.topic("aseba/variables"))
-    events = _raw("events", "Events", names.topic("aseba/events"))
+    status = _raw("status", "Program", names.topic("_aseba/status"))
+    variables = _raw("variables", "Variables", names.topic("_aseba/variables"))
+    events = _raw("events", "Events", names.topic("_aseba/events"))
     looks = Tabs("looks", (("State", status), ("Variables", variables), ("Events", events)))
     return Split("column", ((55, looks), (45, control)))
 

@@ -100,7 +100,7 @@ export class Link {
   /** @param {string} robot @param {string} event @param {number[]} values */
   emit(robot, event, values) {
     const layout = { dim: [{ label: event, size: values.length, stride: values.length }] };
-    this.client.publish(robotTopic(robot, "aseba/emit"), "std_msgs/msg/Int16MultiArray", { layout, data: values });
+    this.client.publish(robotTopic(robot, "_aseba/emit"), "std_msgs/msg/Int16MultiArray", { layout, data: values });
   }
 }
 

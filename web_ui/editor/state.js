@@ -39,8 +39,8 @@ export const KEPT_EVENTS = 500;
 /** @type {EditorState} */
 export const INITIAL = { targets: {}, variables: {}, log: [], behaviours: [] };
 
-const BEHAVIOURS = "/aseba_runtime/behaviours";
-const ROBOT_TOPIC = /^\/(?:([^/]+)\/)?aseba\/(target|variables|events)$/;
+const BEHAVIOURS = "/aseba_runtime/_behaviours";
+const ROBOT_TOPIC = /^\/(?:([^/]+)\/)?_aseba\/(target|variables|events)$/;
 
 /**
  * @param {string} topic

@@ -42,8 +42,8 @@ const DEGREE = Math.PI / 180;
  *   send: (value: number, other: (name: string) => number) => [topic: string, type: string, value: any] }[]}
  */
 const SLIDERS = [
-  { name: "noise", low: 0, high: 100, step: 1, start: 0, unit: "%", send: (value) => level("press/sound", value) },
-  { name: "light", low: 0, high: 100, step: 1, start: 0, unit: "%", send: (value) => level("press/light", value) },
+  { name: "noise", low: 0, high: 100, step: 1, start: 0, unit: "%", send: (value) => level("_press/sound", value) },
+  { name: "light", low: 0, high: 100, step: 1, start: 0, unit: "%", send: (value) => level("_press/light", value) },
   {
     name: "temperature",
     low: -10,
@@ -51,7 +51,7 @@ const SLIDERS = [
     step: 0.5,
     start: 22,
     unit: "°C",
-    send: (value) => ["press/temperature", "std_msgs/msg/Float32", { data: value }],
+    send: (value) => ["_press/temperature", "std_msgs/msg/Float32", { data: value }],
   },
   {
     name: "battery",
@@ -60,7 +60,7 @@ const SLIDERS = [
     step: 0.05,
     start: 4,
     unit: "V",
-    send: (value) => ["press/battery", "std_msgs/msg/Float32", { data: value }],
+    send: (value) => ["_press/battery", "std_msgs/msg/Float32", { data: value }],
   },
   { name: "roll", low: -60, high: 60, step: 1, start: 0, unit: "°", send: (roll, other) => tilt(roll, other("pitch")) },
   {
@@ -81,7 +81,7 @@ function level(topic, percent) {
 
 /** @param {number} roll @param {number} pitch  degrees @returns {[string, string, any]} */
 function tilt(roll, pitch) {
-  return ["press/tilt", "std_msgs/msg/Float32MultiArray", { data: [roll * DEGREE, pitch * DEGREE] }];
+  return ["_press/tilt", "std_msgs/msg/Float32MultiArray", { data: [roll * DEGREE, pitch * DEGREE] }];
 }
 
 /** @param {Context} context @returns {import("./index.js").Panel} */
@@ -100,7 +100,7 @@ export function surroundingsPanel({ t, actions, store }) {
     { class: "row verbs" },
     h(
       "button",
-      { type: "button", "data-operate": "tap", onclick: () => actions.operate("press/tap", "std_msgs/msg/Empty", {}) },
+      { type: "button", "data-operate": "tap", onclick: () => actions.operate("_press/tap", "std_msgs/msg/Empty", {}) },
       t("surroundings.tap"),
     ),
     h(
@@ -108,7 +108,7 @@ export function surroundingsPanel({ t, actions, store }) {
       {
         type: "button",
         "data-operate": "clap",
-        onclick: () => actions.operate("press/clap", "std_msgs/msg/Float32", { data: 1 }),
+        onclick: () => actions.operate("_press/clap", "std_msgs/msg/Float32", { data: 1 }),
       },
       t("surroundings.clap"),
     ),
@@ -147,7 +147,7 @@ export function surroundingsPanel({ t, actions, store }) {
           type: "button",
           "data-key": command,
           "aria-label": command in KEY_NAMES ? t(KEY_NAMES[command]) : sign,
-          onclick: () => actions.operate("press/remote", "std_msgs/msg/Int8", { data: command }),
+          onclick: () => actions.operate("_press/remote", "std_msgs/msg/Int8", { data: command }),
         },
         sign,
       ),
@@ -182,10 +182,10 @@ function pen(t, actions) {
   const width = h("input", { type: "number", min: 1, max: 100, step: 1, value: 10, "aria-label": t("pen.width") });
   const choose = (/** @type {string} */ tool) => {
     if (width.value !== "" && width.checkValidity()) {
-      actions.operate("pen/width", "std_msgs/msg/Float32", { data: Number(width.value) / 1000 });
+      actions.operate("_pen/width", "std_msgs/msg/Float32", { data: Number(width.value) / 1000 });
     }
     const [r, g, b] = [1, 3, 5].map((at) => parseInt(colour.value.slice(at, at + 2), 16) / 255);
-    actions.operate("pen/color", "std_msgs/msg/ColorRGBA", { r, g, b, a: tool === "eraser" ? 0 : 1 });
+    actions.operate("_pen/color", "std_msgs/msg/ColorRGBA", { r, g, b, a: tool === "eraser" ? 0 : 1 });
     actions.operate("pen/down", "std_msgs/msg/Bool", { data: tool !== "up" });
   };
   const tools = h(

@@ -1,8 +1,10 @@
 // One connection of the Foxglove protocol without a socket: what comes in becomes events, what
-// must go out is handed to `send`. `client.js` gives it a WebSocket, a test gives it a list.
+// must go out is handed to `send`. `client.js` gives it a WebSocket, a test gives it a list. Names of topics, services
+// and parameters are those of a suite without a namespace; `namespace.js` makes the whole names of them.
 
 import { decode, encode } from "./cdr.js";
 import { messageFrame, parseFrame, serviceRequestFrame } from "./frames.js";
+import { Namespace } from "./namespace.js";
 import { parseSchema } from "./ros2msg.js";
 
 /** @typedef {import("./ros2msg.js").Definition} Definition */
@@ -86,8 +88,9 @@ export class Session {
     this.emit = emit;
     this.wants = wants;
     this.watched = parameters;
+    this.names = new Namespace();
     /** @type {Map<number, Channel>} */ this.channels = new Map();
-    /** @type {Map<number, { channel: Channel, definition: Definition }>} */ this.subscriptions = new Map();
+    /** @type {Map<number, { channel: Channel, topic: string, definition: Definition }>} */ this.subscriptions = new Map();
     /** @type {Map<string, Service>} */ this.services = new Map();
     /** @type {Map<string, { id: number, definition: Definition }>} */ this.published = new Map();
     /** @type {Map<number, { service: Service, settle: (answer: ServiceAnswer) => void }>} */ this.calls = new Map();
@@ -126,7 +129,9 @@ export class Session {
       this.published.set(topic, channel);
       this.#sendJson({
         op: "advertise",
-        channels: [{ id: channel.id, topic, encoding: "cdr", schemaName, schema, schemaEncoding: "ros2msg" }],
+        channels: [
+          { id: channel.id, topic: this.names.outer(topic), encoding: "cdr", schemaName, schema, schemaEncoding: "ros2msg" },
+        ],
       });
     }
     this.send(messageFrame(channel.id, encode(channel.definition, value)));
@@ -140,7 +145,7 @@ export class Session {
    * @returns {Promise<ServiceAnswer>}
    */
   call(name, request = {}) {
-    const service = this.services.get(name);
+    const service = this.services.get(this.names.outer(name));
     if (service === undefined) return Promise.resolve({ ok: false, message: `${name} is not available` });
     const callId = this.nextId++;
     try {
@@ -167,7 +172,8 @@ export class Session {
     return new Promise((settle) => {
       const { name } = parameters[parameters.length - 1];
       this.requests.set(id, { name, refusal: null, settle });
-      this.#sendJson({ op: "setParameters", parameters, id });
+      const named = parameters.map((parameter) => ({ ...parameter, name: this.names.outer(parameter.name) }));
+      this.#sendJson({ op: "setParameters", parameters: named, id });
     });
   }
 
@@ -194,7 +200,7 @@ export class Session {
       const subscription = this.subscriptions.get(frame.subscriptionId);
       if (subscription === undefined) return; // still on its way when we unsubscribed
       const value = decode(subscription.definition, frame.payload);
-      this.emit({ type: "message", topic: subscription.channel.topic, value, timeNs: frame.timeNs });
+      this.emit({ type: "message", topic: subscription.topic, value, timeNs: frame.timeNs });
     } else if (frame.op === "serviceResponse") {
       const call = this.calls.get(frame.callId);
       if (call === undefined) return;
@@ -213,13 +219,25 @@ export class Session {
   /** @param {Channel[]} channels */
   advertise(channels) {
     for (const channel of channels) this.channels.set(channel.id, channel);
-    this.#subscribe(channels);
+    if (this.names.choose([...this.channels.values()].map(({ topic }) => topic))) this.#rename();
+    else this.#subscribe(channels);
     this.#emitChannels();
+  }
+
+  /** The suite is in another namespace than was thought: all names are others. */
+  #rename() {
+    const subscriptionIds = [...this.subscriptions.keys()];
+    if (subscriptionIds.length > 0) this.#sendJson({ op: "unsubscribe", subscriptionIds });
+    this.subscriptions.clear();
+    this.published.clear();
+    this.#subscribe([...this.channels.values()]);
+    this.emitServices();
+    this.watchParameters();
   }
 
   /** `wants` has another opinion now: subscribe to what it newly wants, let go of what it does not. */
   refresh() {
-    const unwanted = [...this.subscriptions].filter(([, { channel }]) => !this.wants(channel.topic)).map(([id]) => id);
+    const unwanted = [...this.subscriptions].filter(([, { topic }]) => !this.wants(topic)).map(([id]) => id);
     for (const id of unwanted) this.subscriptions.delete(id);
     if (unwanted.length > 0) this.#sendJson({ op: "unsubscribe", subscriptionIds: unwanted });
     const held = new Set([...this.subscriptions.values()].map(({ channel }) => channel.id));
@@ -230,11 +248,12 @@ export class Session {
   #subscribe(channels) {
     const subscriptions = [];
     for (const channel of channels) {
-      if (channel.encoding !== "cdr" || !this.wants(channel.topic)) continue;
+      const topic = this.names.inner(channel.topic);
+      if (channel.encoding !== "cdr" || topic === null || !this.wants(topic)) continue;
       const definition = this.#definitionOf(channel);
       if (definition === null) continue;
       const id = this.nextId++;
-      this.subscriptions.set(id, { channel, definition });
+      this.subscriptions.set(id, { channel, topic, definition });
       subscriptions.push({ id, channelId: channel.id });
     }
     if (subscriptions.length > 0) this.#sendJson({ op: "subscribe", subscriptions });
@@ -252,8 +271,9 @@ export class Session {
   /** Ask for the watched parameters and for news of them. */
   watchParameters() {
     if (this.watched.length === 0) return;
-    this.#sendJson({ op: "subscribeParameterUpdates", parameterNames: this.watched });
-    this.#sendJson({ op: "getParameters", parameterNames: this.watched, id: "watched" });
+    const parameterNames = this.watched.map((name) => this.names.outer(name));
+    this.#sendJson({ op: "subscribeParameterUpdates", parameterNames });
+    this.#sendJson({ op: "getParameters", parameterNames, id: "watched" });
   }
 
   /** A schema that cannot be read costs its channel only. @param {Channel} channel */
@@ -267,7 +287,17 @@ export class Session {
   }
 
   #emitChannels() {
-    this.emit({ type: "channels", topics: [...this.channels.values()].map((channel) => channel.topic).sort() });
+    const topics = this.inside([...this.channels.values()].map((channel) => channel.topic));
+    this.emit({ type: "channels", topics: topics.sort() });
+  }
+
+  emitServices() {
+    this.emit({ type: "services", names: this.inside([...this.services.keys()]).sort() });
+  }
+
+  /** The page's names of those that belong to the suite. @param {string[]} names */
+  inside(names) {
+    return names.map((name) => this.names.inner(name)).filter((name) => name !== null);
   }
 
   /** @param {object} message */
@@ -279,6 +309,7 @@ export class Session {
 /** What to do with each JSON message of the server; unknown ones are passed over. */
 const TEXT_HANDLERS = /** @type {Record<string, (session: Session, message: any) => void>} */ ({
   serverInfo(session, { name, sessionId = "", capabilities = [], metadata = {} }) {
+    session.names.prefer(metadata.namespace ?? "");
     session.readOnly = metadata.access === "read_only";
     session.emit({ type: "serverInfo", name, sessionId, capabilities, readOnly: session.readOnly });
     if (capabilities.includes("parameters")) session.watchParameters();
@@ -287,15 +318,19 @@ const TEXT_HANDLERS = /** @type {Record<string, (session: Session, message: any)
   unadvertise: (session, { channelIds }) => session.unadvertise(channelIds),
   advertiseServices(session, { services }) {
     for (const service of services) session.services.set(service.name, service);
-    session.emit({ type: "services", names: [...session.services.keys()].sort() });
+    session.emitServices();
   },
   unadvertiseServices(session, { serviceIds }) {
     for (const [name, service] of session.services) {
       if (serviceIds.includes(service.id)) session.services.delete(name);
     }
-    session.emit({ type: "services", names: [...session.services.keys()].sort() });
+    session.emitServices();
   },
-  parameterValues(session, { parameters, id }) {
+  parameterValues(session, { parameters: told, id }) {
+    const parameters = told.flatMap((/** @type {Parameter} */ parameter) => {
+      const name = session.names.inner(parameter.name);
+      return name === null ? [] : [{ ...parameter, name }];
+    });
     session.emit({ type: "parameters", parameters });
     const request = session.requests.get(id);
     if (request === undefined) return;
@@ -303,11 +338,12 @@ const TEXT_HANDLERS = /** @type {Record<string, (session: Session, message: any)
     const value = parameters.find((/** @type {Parameter} */ parameter) => parameter.name === request.name)?.value;
     request.settle({ ok: request.refusal === null, value, message: request.refusal ?? "" });
   },
-  status(session, { level, message, id }) {
+  status(session, { level, message: told, id }) {
+    const message = session.names.inner(told) ?? told; // it may begin with the name of a parameter
     session.emit({ type: "status", status: id === undefined ? { level, message } : { level, message, id } });
     if (level < STATUS_ERROR) return;
     for (const request of session.requests.values()) {
-      if (id === `parameter:${request.name}`) request.refusal = message;
+      if (id === `parameter:${session.names.outer(request.name)}`) request.refusal = message;
     }
   },
   removeStatus: (session, { statusIds }) => session.emit({ type: "removeStatus", ids: statusIds }),

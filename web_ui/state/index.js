@@ -179,7 +179,7 @@ function withChannels(state, { topics }) {
   const names = new Set();
   for (const topic of topics) {
     const part = splitTopic(topic);
-    if (part?.name === "ground_truth/odom") names.add(part.robot);
+    if (part?.name === "_ground_truth/odom") names.add(part.robot);
   }
   const there = [...names].filter((name) => isThere(state, name)).sort(byName);
   const robots = Object.fromEntries(there.map((name) => [name, state.robots[name] ?? NEW_ROBOT]));
@@ -206,7 +206,7 @@ function withTopic(state, { topic, value, nowMs = 0 }) {
   const part = splitTopic(topic);
   if (part === null) return state;
   if (part.robot === null) return GLOBAL_STEPS[part.name](state, value, nowMs);
-  if (part.name === "aseba/status")
+  if (part.name === "_aseba/status")
     return { ...state, programs: { ...state.programs, [part.robot]: readStatus(value) } };
   if (!isThere(state, part.robot)) return state;
   const robot = reduceRobot(state.robots[part.robot] ?? NEW_ROBOT, part.name, value, nowMs);
@@ -215,9 +215,9 @@ function withTopic(state, { topic, value, nowMs = 0 }) {
 
 const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any, nowMs: number) => State>} */ ({
   [TRANSFORMS]: placedBy,
-  "/markers": (state, value) => ({ ...state, markers: applyMarkers(state.markers, value.markers) }),
-  "/markers/objects": (state, value) => ({ ...state, objects: applyMarkers(state.objects, value.markers) }),
-  "/simulator/state"(state, value) {
+  "/_markers": (state, value) => ({ ...state, markers: applyMarkers(state.markers, value.markers) }),
+  "/_markers/objects": (state, value) => ({ ...state, objects: applyMarkers(state.objects, value.markers) }),
+  "/simulator/_state"(state, value) {
     const told = JSON.parse(value.data);
     const simulator = {
       playground: told.playground ?? "",
@@ -234,8 +234,8 @@ const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any, nowMs:
     };
     return withChannels({ ...state, simulator }, state);
   },
-  "/aseba_runtime/behaviours": (state, value) => ({ ...state, behaviours: JSON.parse(value.data) }),
-  "/simulator/playgrounds": (state, value) => ({
+  "/aseba_runtime/_behaviours": (state, value) => ({ ...state, behaviours: JSON.parse(value.data) }),
+  "/simulator/_playgrounds": (state, value) => ({
     ...state,
     playgrounds: JSON.parse(value.data).map(
       (/** @type {any} */ { name, title = name, description = "", translations = {} }) => ({

@@ -11,32 +11,32 @@ export const TRANSFORMS = "/tf";
 
 export const GLOBAL_TOPICS = [
   TRANSFORMS,
-  "/markers",
-  "/markers/objects",
-  "/simulator/state",
-  "/simulator/playgrounds",
-  "/aseba_runtime/behaviours",
+  "/_markers",
+  "/_markers/objects",
+  "/simulator/_state",
+  "/simulator/_playgrounds",
+  "/aseba_runtime/_behaviours",
 ];
 
 /** Topics of one robot, relative to its namespace. */
 export const ROBOT_TOPICS = [
-  "ground_truth/odom",
+  "_ground_truth/odom",
   "joint_states",
-  "led/state",
-  "raw/proximity",
-  "raw/ground",
-  "raw/motor",
-  "raw/accelerometer",
-  "raw/temperature",
-  "raw/sound",
-  "raw/remote",
-  "raw/comm",
-  "raw/battery",
-  "aseba/status",
-  "pen/trail",
-  "sound/state",
-  "sound/state/wave",
-  "sound/state/samples",
+  "_led/state",
+  "_raw/proximity",
+  "_raw/ground",
+  "_raw/motor",
+  "_raw/accelerometer",
+  "_raw/temperature",
+  "_raw/sound",
+  "_raw/remote",
+  "_raw/comm",
+  "_raw/battery",
+  "_aseba/status",
+  "_pen/trail",
+  "_sound/state",
+  "_sound/state/wave",
+  "_sound/state/samples",
   ...PROXIMITY.map((name) => `proximity/${name}`),
   ...GROUND.map((name) => `ground/${name}`),
   ...BUTTONS.map((name) => `buttons/${name}`),
@@ -46,9 +46,9 @@ export const ROBOT_TOPICS = [
 export const CROWD = 4;
 
 /** What every robot is drawn by. */
-const DRAWN = /^(?:ground_truth|joint_states|led|buttons|pen|sound|aseba)\b/;
+const DRAWN = /^(?:_ground_truth|joint_states|_led|buttons|_pen|_sound|_aseba)\b/;
 /** What the transforms tell as well while time goes on. */
-const PLACED = /^(?:ground_truth|joint_states)\b/;
+const PLACED = /^(?:_ground_truth|joint_states)\b/;
 
 /** @typedef {{ isByTransforms: boolean }} Placed */
 /**

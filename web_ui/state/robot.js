@@ -53,21 +53,21 @@ export const NEW_ROBOT = {
 
 /** One row per topic, or per folder of topics (then `leaf` is the rest of the name). */
 const READERS = /** @type {Record<string, (robot: Robot, value: any, leaf: string, nowMs: number) => Robot>} */ ({
-  "ground_truth/odom": (robot, value, _leaf, nowMs) => ({
+  "_ground_truth/odom": (robot, value, _leaf, nowMs) => ({
     ...robot,
     previous: robot.latest,
     latest: poseSample(value, nowMs),
   }),
   joint_states: readJoints,
-  "led/state": (robot, value) => ({ ...robot, leds: splitGroups(value) }),
+  "_led/state": (robot, value) => ({ ...robot, leds: splitGroups(value) }),
   proximity: (robot, value, leaf) => ({ ...robot, proximity: { ...robot.proximity, [leaf]: value.range } }),
   ground: (robot, value, leaf) => ({ ...robot, ground: { ...robot.ground, [leaf]: value.range } }),
   buttons: (robot, value, leaf) => ({ ...robot, buttons: { ...robot.buttons, [leaf]: value.data } }),
-  "pen/trail": (robot, value) => ({ ...robot, trail: applyMarkers(robot.trail, value.markers) }),
-  "sound/state": (robot, value) => ({ ...robot, sound: value.data }),
-  "sound/state/wave": (robot, value) => ({ ...robot, wave: value.data }),
-  "sound/state/samples": (robot, value) => ({ ...robot, samples: value.data }),
-  raw: (robot, value, leaf) => ({ ...robot, raw: { ...robot.raw, [leaf]: value.data } }),
+  "_pen/trail": (robot, value) => ({ ...robot, trail: applyMarkers(robot.trail, value.markers) }),
+  "_sound/state": (robot, value) => ({ ...robot, sound: value.data }),
+  "_sound/state/wave": (robot, value) => ({ ...robot, wave: value.data }),
+  "_sound/state/samples": (robot, value) => ({ ...robot, samples: value.data }),
+  _raw: (robot, value, leaf) => ({ ...robot, raw: { ...robot.raw, [leaf]: value.data } }),
 });
 
 /**

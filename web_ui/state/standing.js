@@ -1,4 +1,4 @@
-// Where a program stands, in words: state, line, and why it failed (docs/aseba_ros.md, aseba/status).
+// Where a program stands, in words: state, line, and why it failed (docs/aseba_ros.md, _aseba/status).
 
 /** @typedef {Readonly<Record<string, string>>} Values  of the status */
 /** @typedef {import("../i18n/index.js").Translate} Translate */

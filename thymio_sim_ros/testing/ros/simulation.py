@@ -13,6 +13,7 @@ from thymio_sim_ros.device.program import ThymioProgram
 from thymio_sim_ros.nodes import qos
 from thymio_sim_ros.nodes.aseba_node import AsebaRuntime
 from thymio_sim_ros.nodes.device_ports import DevicePorts
+from thymio_sim_ros.nodes.names import full_name
 from thymio_sim_ros.nodes.simulator_node import Simulator
 from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.world import World
@@ -156,12 +157,13 @@ class Simulation:
         ports.load(program_of(program, self._folder))
 
     def emit(self, event: str, args: Sequence[int]) -> None:
-        """Let every robot that knows an event hear it, by the topic aseba/emit of the first that has a machine."""
-        ports = next((ports for runtime in self._runtimes for ports in runtime.robots), None)
-        if ports is None:
+        """Let every robot that knows an event hear it, by the topic _aseba/emit of the first that has a machine."""
+        found = ((runtime, ports) for runtime in self._runtimes for ports in runtime.robots)
+        runtime, ports = next(found, (None, None))
+        if runtime is None or ports is None:
             raise LookupError(_NO_MACHINE.format("any robot"))
         layout = MultiArrayLayout(dim=[MultiArrayDimension(label=event, size=len(args), stride=1)])
-        publisher = self.ros.publisher(Int16MultiArray, ports.names.topic("aseba/emit"))
+        publisher = self.ros.publisher(Int16MultiArray, full_name(runtime.node, ports.names.topic("_aseba/emit")))
         publisher.publish(Int16MultiArray(layout=layout, data=list(args)))
 
     def _listen(self) -> None:
@@ -170,7 +172,7 @@ class Simulation:
             return
         for name, names in self.simulator.names.items():
             if name not in self._heard:
-                topic = names.topic("aseba/events")
+                topic = full_name(self.simulator.node, names.topic("_aseba/events"))
                 self._heard[name] = self.ros.node.create_subscription(
                     Int16MultiArray, topic, partial(self._hear, name), qos.EVENTS
                 )
