@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 
 import pytest
@@ -11,7 +12,7 @@ from rcl_interfaces.msg import Log
 from rcl_interfaces.srv import DescribeParameters, SetParameters
 from rclpy.parameter import Parameter
 from rclpy.qos import ReliabilityPolicy
-from sensor_msgs.msg import JointState, Range
+from sensor_msgs.msg import JointState, LaserScan, Range
 from std_msgs.msg import Int16MultiArray, String
 from visualization_msgs.msg import MarkerArray
 
@@ -201,6 +202,18 @@ def test_odometry_and_joints_have_their_rate(ros, simulation, rate, count):
     odometry, joints = ros.collect(Odometry, "/odom"), ros.collect(JointState, "/joint_states")
     sim.step(1.0)
     ros.until(lambda: (len(odometry), len(joints)) == (count, count))
+
+
+@pytest.mark.parametrize(("rate", "period_s"), [(0.0, 0.1), (25.0, 0.04), (100.0, 0.01)])
+def test_a_laser_scan_says_how_long_it_is_until_the_next(ros, simulation, rate, period_s):
+    sim = simulation(sensor_rate=rate)
+    scans = ros.collect(LaserScan, "/proximity/laser")
+    sim.until(lambda: len(scans) >= 5, seconds=2.0)
+    stamps = [scan.header.stamp.sec + scan.header.stamp.nanosec / 1e9 for scan in scans]
+    gaps = [later - earlier for earlier, later in itertools.pairwise(stamps)]
+    assert gaps == pytest.approx([period_s] * len(gaps))
+    assert [scan.scan_time for scan in scans] == pytest.approx([period_s] * len(scans))
+    assert {scan.time_increment for scan in scans} == {0.0}
 
 
 def test_all_sensors_have_one_rate_on_request(ros, simulation):
