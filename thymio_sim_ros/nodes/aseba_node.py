@@ -39,6 +39,7 @@ from thymio_sim_ros.nodes.aseba_bus import Bus
 from thymio_sim_ros.nodes.aseba_params import RuntimeParams, WrongValueError
 from thymio_sim_ros.nodes.check_service import CheckService
 from thymio_sim_ros.nodes.device_ports import DevicePorts, Wishes
+from thymio_sim_ros.nodes.input_types import InputTypes
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.raw_topic import Decoder
@@ -139,6 +140,7 @@ class AsebaRuntime:
         self._bus = Bus(node, lambda: self.robots, self._on_told)
         self._bus.reaches_all = self.params.emit_reaches == "network"
         self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
+        self._input_types = InputTypes(node)
         self._behaviours = node.create_publisher(String, "~/behaviours", qos.LATCHED)
         listed = [{"name": name, "description": text} for name, text in shipped_behaviours().items()]
         self._behaviours.publish(String(data=json.dumps(listed)))
@@ -290,7 +292,8 @@ class AsebaRuntime:
         self._publish_statuses([ports.status.message])
 
     def _publish_diagnostics(self) -> None:
-        self._publish_statuses([ports.status.message for ports in self.robots])
+        self._input_types.look()
+        self._publish_statuses([*(ports.status.message for ports in self.robots), self._input_types.status()])
 
     def _publish_statuses(self, statuses: Iterable[DiagnosticStatus]) -> None:
         if self._diagnostics.get_subscription_count():

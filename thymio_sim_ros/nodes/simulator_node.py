@@ -25,6 +25,7 @@ from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import dds_profile, driver_topics, params, qos, robot_ports, sim_interfaces
 from thymio_sim_ros.nodes.audience import Audience
 from thymio_sim_ros.nodes.headers import SECOND_NS
+from thymio_sim_ros.nodes.input_types import InputTypes
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.raw_topic import RawTopic
@@ -100,6 +101,7 @@ class Simulator:
         self._roster = Roster(self._ports, self.params.naming)
         self._set_world(self._new_world(playground, self.params))
         self._services = WorldServices(self.node, self)
+        self._input_types = InputTypes(self.node)
         self._interfaces = sim_interfaces.offered(self.node, self)
         self._accepted: tuple[str, World] | None = None
         self.node.add_on_set_parameters_callback(self._check_parameters)
@@ -366,8 +368,9 @@ class Simulator:
             for name, robot in self.world.robots.items():
                 self._roster[name].tell_place(self.world.now_ns, robot.pose, robot.tilt)
         self._publish_state()
+        self._input_types.look()
         pace = Pace(self._late_ticks, self._pacer.dropped_ticks, self._refused, self._limited)
-        self._world_ports.publish_diagnostics(self._state(), pace)
+        self._world_ports.publish_diagnostics(self._state(), pace, self._input_types.status())
 
     def _state(self) -> WorldState:
         return WorldState(
