@@ -58,6 +58,51 @@ def test_a_refused_value_says_why_and_changes_nothing(ros, simulation, name, val
     assert sim.simulator.params == before
 
 
+def test_the_present_playground_again_changes_nothing_unless_its_file_does(ros, simulation, tmp_path):
+    path = tmp_path / "mine.json"
+    path.write_text(TWO)
+    sim = simulation(playground=str(path))
+    sim.step(0.2)
+    world = sim.world
+    assert set_parameter(ros, "playground", str(path)).successful
+    assert sim.simulator.world is world
+    path.write_text(TWO.replace("anna", "carl"))
+    assert set_parameter(ros, "playground", str(path)).successful
+    assert "carl" in sim.simulator.world.robots
+
+
+def test_the_present_world_is_loaded_anew_by_who_wants_a_world(ros, simulation):
+    sim = simulation(playground=TWO)
+    sim.step(0.2)
+    assert sim.simulator.load(TWO) == ""
+    assert sim.world.now_ns == 0
+
+
+def test_the_present_values_of_seed_and_pace_change_nothing(ros, simulation):
+    sim = simulation(seed=3, real_time_factor=2.0)
+    sim.step(0.2)
+    world, pacer = sim.world, sim.simulator._pacer
+    assert set_parameter(ros, "seed", 3).successful
+    assert set_parameter(ros, "real_time_factor", 2.0).successful
+    assert (sim.simulator.world, sim.simulator._pacer) == (world, pacer)
+
+
+def test_simulated_time_of_somebody_else_is_refused(ros, simulation):
+    simulation()
+    result = set_parameter(ros, "use_sim_time", True)
+    assert (result.successful, result.reason) == (
+        False,
+        "use_sim_time is refused: the simulator is the source of simulated time, it cannot follow /clock",
+    )
+    assert set_parameter(ros, "use_sim_time", False).successful
+
+
+def test_simulated_time_of_somebody_else_is_left_out_at_the_start(simulator_with, capfd):
+    simulator = simulator_with("-p", "use_sim_time:=true")
+    assert simulator.node.get_parameter("use_sim_time").value is False
+    assert "use_sim_time is left out: the simulator is the source of simulated time" in capfd.readouterr().err
+
+
 def test_a_fault_of_ours_in_reading_a_playground_is_a_refusal(ros, simulation, monkeypatch):
     """A file that nobody thought of must not end the simulator of a class."""
     sim = simulation()

@@ -20,7 +20,6 @@ from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.executors import Executor
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_msgs.msg import Int16MultiArray, String
 
@@ -42,6 +41,7 @@ from thymio_sim_ros.nodes.device_ports import DevicePorts, Wishes
 from thymio_sim_ros.nodes.input_types import InputTypes
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.parameter_node import parameter_node
 from thymio_sim_ros.nodes.raw_topic import Decoder
 from thymio_sim_ros.nodes.warner import Warner
 
@@ -79,12 +79,12 @@ class AsebaRuntime:
     ) -> None:
         """`overrides`: values of parameters by name, as from a command line."""
         given = dict(overrides) | ({} if use_sim_time is None else {"use_sim_time": use_sim_time})
-        self.node = Node(
+        self.node = parameter_node(
             "aseba_runtime",
             context=context,
+            names_file=lambda name: name.endswith("script.path"),
             parameter_overrides=[Parameter(name, value=value) for name, value in given.items()],
             allow_undeclared_parameters=True,
-            automatically_declare_parameters_from_overrides=True,
         )
         self.robots: list[DevicePorts] = []
         self._accepted: _Accepted | None = None
@@ -156,7 +156,7 @@ class AsebaRuntime:
         self._set_robots(self.params.robots)
         if self.params.follow_simulator:
             node.create_subscription(String, SIMULATOR_STATE, self._on_simulator_state, qos.LATCHED)
-        node.add_pre_set_parameters_callback(aseba_params.exclusive)
+        node.add_pre_set_parameters_callback(lambda given: aseba_params.exclusive(given, self._told))
         node.add_on_set_parameters_callback(self._check_parameters)
         node.add_post_set_parameters_callback(self._apply_parameters)
         self._jumps = node.get_clock().create_jump_callback(
@@ -342,6 +342,7 @@ class AsebaRuntime:
         if accepted is None:
             return
         old, self._values = self._values, accepted.values
+        before = self._behaviour
         changes = accepted.changes
         self.params = params.updated(self.params, parameters)
         self._bus.reaches_all = self.params.emit_reaches == "network"
@@ -352,17 +353,17 @@ class AsebaRuntime:
             self._behaviour = self.params.behaviour
         for ports in self.robots:
             ports.want(self._wishes(ports.names.name))
-            self._apply_script(ports, old, accepted)
+            self._apply_script(ports, old, accepted, is_switched=self._behaviour != before)
 
-    def _apply_script(self, ports: DevicePorts, old: dict[str, Any], accepted: _Accepted) -> None:
+    def _apply_script(self, ports: DevicePorts, old: dict[str, Any], accepted: _Accepted, *, is_switched: bool) -> None:
         name = ports.names.name
         share = accepted.shares.get(name, ports.share)
-        is_touched = scripts.touched(old, accepted.values, accepted.changes, name)
-        if is_touched or _program(share) != _program(ports.share):
+        is_other = scripts.script_of(old, name) != scripts.script_of(accepted.values, name)
+        if is_other or _program(share) != _program(ports.share):
             if "behaviour" not in accepted.changes:
                 self._behaviour = ""
             self._begin(ports, share or Share(None))
-        elif "behaviour" in accepted.changes:
+        elif is_switched:
             self._begin(ports, share)
 
     def _wishes(self, robot: str) -> Wishes:

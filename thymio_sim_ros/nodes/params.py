@@ -159,7 +159,7 @@ def declare(node: Node, defaults: T) -> T:
         except (InvalidParameterTypeException, InvalidParameterValueException) as error:
             reason = " ".join(str(error).split())
             raise StartError(f"parameter {one.name} of {node.get_name()}: {reason}") from error
-        value = one.default if parameter.value is None else _plain(parameter.value)
+        value = one.default if parameter.value is None else plain(parameter.value)
         reason = one.refusal(value)
         if reason:
             raise StartError(reason)
@@ -173,17 +173,22 @@ def warn_of_unknown(node: Node, page: str, is_known: Callable[[str], bool] | Non
     `page` of docs/ lists those that it has; `is_known` tells them, else all are declared when this is called.
     """
     known = is_known or node.has_parameter
-    for name in sorted(node._parameter_overrides):  # rclpy has no public way to see them
+    for name in sorted(overrides(node)):
         if not known(name) and not name.startswith(_OF_RCL):
             node.get_logger().warning(
                 f"parameter {name} is none of {node.get_name()} and does nothing; see docs/{page}"
             )
 
 
+def overrides(node: Node) -> dict[str, Any]:
+    """What a command line, a file or a constructor gave a node: name → value; None for an empty list."""
+    return {name: one.value for name, one in node._parameter_overrides.items()}  # rclpy has no public way
+
+
 def refusal(values: Any, parameters: Iterable[Parameter]) -> str:
     """Why a change is refused by what the fields say, or nothing."""
     known = {one.name: one for one in declared(values)}
-    reasons = (known[one.name].refusal(_plain(one.value)) for one in parameters if one.name in known)
+    reasons = (known[one.name].refusal(plain(one.value)) for one in parameters if one.name in known)
     return next((reason for reason in reasons if reason), "")
 
 
@@ -192,7 +197,7 @@ def updated(values: T, parameters: Iterable[Parameter]) -> T:
     paths = {one.name: one.path for one in declared(values)}
     for parameter in parameters:
         if parameter.name in paths and parameter.value is not None:
-            values = _with(values, paths[parameter.name], _plain(parameter.value))
+            values = _with(values, paths[parameter.name], plain(parameter.value))
     return values
 
 
@@ -225,7 +230,7 @@ def changes(parameters: Iterable[Parameter]) -> dict[str, Any]:
     return {parameter.name: parameter.value for parameter in parameters}
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Arrays of parameters as lists."""
     return value if isinstance(value, str | bytes | int | float | bool) or value is None else list(value)
 

@@ -17,7 +17,6 @@ from dataclasses import replace
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.context import Context
 from rclpy.executors import Executor
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from thymio_sim_ros import resources
@@ -28,6 +27,7 @@ from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.input_types import InputTypes
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames
+from thymio_sim_ros.nodes.parameter_node import parameter_node
 from thymio_sim_ros.nodes.raw_topic import RawTopic
 from thymio_sim_ros.nodes.robot_inputs import Moment
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
@@ -45,6 +45,9 @@ from thymio_sim_ros.sim.playground import Playground, PlaygroundError, RobotStar
 from thymio_sim_ros.sim.world import World
 
 __all__ = ["Simulator", "SimulatorParams", "main"]
+
+USE_SIM_TIME = "use_sim_time"
+OWN_TIME = "the simulator is the source of simulated time, it cannot follow /clock"
 
 MOST_NOTES = 20
 """Remarks about a playground that the state tells; all of them are in the log."""
@@ -69,8 +72,9 @@ class Simulator:
     """The simulator node and its world. Invariant: only `turn`, `advance` and callbacks of `node` touch the world."""
 
     def __init__(self, context: Context, defaults: SimulatorParams | None = None) -> None:
-        self.node = Node("simulator", context=context)
+        self.node = parameter_node("simulator", context=context, names_file=lambda name: name == "playground")
         try:
+            self._keep_own_time()
             self.params = params.declare(self.node, defaults or SimulatorParams())
             params.warn_of_unknown(self.node, "ros.md")
             qos.check_overrides(self.node)
@@ -194,8 +198,11 @@ class Simulator:
         self._begin()
 
     def load(self, playground: str) -> str:
-        """Another playground, as the parameter has it; the reason if it is refused."""
+        """Another playground, as the parameter has it, or the present one anew; the reason if it is refused."""
+        before = self.world
         result = self.node.set_parameters_atomically([Parameter("playground", value=playground)])
+        if result.successful and self.world is before:
+            self.reset()
         return "" if result.successful else str(result.reason)
 
     def count_refusal(self) -> None:
@@ -282,6 +289,12 @@ class Simulator:
         self._late_ticks = 0
         self._usual_ticks = max(1, round(factor))
         self._most_put_off = max(1, min(MOST_PUT_OFF, int(MOST_PUT_OFF * factor)))
+
+    def _keep_own_time(self) -> None:
+        """Without `use_sim_time`, which launch files often set for all nodes: time comes from here."""
+        if self.node.get_parameter(USE_SIM_TIME).value is True:
+            self.node.get_logger().warning(f"{USE_SIM_TIME} is left out: {OWN_TIME}")
+            self.node.set_parameters([Parameter(USE_SIM_TIME, value=False)])
 
     def _load(self, playground: str) -> tuple[str, Playground]:
         """Its name and itself, robots named as wanted."""
@@ -395,6 +408,8 @@ class Simulator:
         return not params.by_name(self.params).keys().isdisjoint(parameter.name for parameter in parameters)
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        if params.changes(parameters).get(USE_SIM_TIME) is True:
+            return SetParametersResult(successful=False, reason=f"{USE_SIM_TIME} is refused: {OWN_TIME}")
         if not self._are_ours(parameters):
             return SetParametersResult(successful=True)
         self.catch_up()
@@ -405,7 +420,9 @@ class Simulator:
         if value is not None:
             try:
                 name, playground = self._load(value)
-                self._accepted = name, self._new_world(playground, params.updated(self.params, parameters))
+                is_other = value != self.params.playground or playground != self.world.playground
+                chosen = params.updated(self.params, parameters)
+                self._accepted = (name, self._new_world(playground, chosen)) if is_other else None
             except (PlaygroundError, resources.ResourceError, StartError, OSError) as error:
                 return SetParametersResult(successful=False, reason=str(error))
             except Exception as error:  # our own fault in reading a file: a class goes on without it

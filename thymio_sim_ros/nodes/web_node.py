@@ -22,7 +22,6 @@ from typing import Any
 
 from rclpy.context import Context
 from rclpy.executors import Executor
-from rclpy.node import Node
 
 import thymio_sim_ros
 from thymio_sim_ros import resources
@@ -30,6 +29,7 @@ from thymio_sim_ros.gallery import Gallery
 from thymio_sim_ros.greeting import places
 from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, greeted, run_main
+from thymio_sim_ros.nodes.parameter_node import parameter_node
 from thymio_sim_ros.nodes.params import param
 from thymio_sim_ros.sim.playground import PlaygroundError
 from thymio_sim_ros.suite import ADDRESS, FOXGLOVE_PORT, HTTP_PORT
@@ -178,7 +178,7 @@ class WebPage:
     """The web node and its HTTP server. `port` is the one really taken."""
 
     def __init__(self, context: Context, defaults: WebParams | None = None) -> None:
-        self.node = Node("web_ui", context=context)
+        self.node = parameter_node("web_ui", context=context)
         self.params = params.declare(self.node, defaults or WebParams())
         params.warn_of_unknown(self.node, "ros2-tools.md")
         config = {"foxglove_port": self.params.foxglove_port, "version": thymio_sim_ros.__version__}
