@@ -239,7 +239,7 @@ def test_what_our_format_refuses_is_located_in_the_original() -> None:
 
 
 def test_a_robot_in_a_wall_is_located_in_the_original() -> None:
-    with pytest.raises(PlaygroundError, match=r"line 4: <robot> \(robots\[0\]\): found 'thymio_0' inside 'ground'"):
+    with pytest.raises(PlaygroundError, match=r"line 4: <robot> \(robots\[0\]\): found 'thymio_0' inside 'west wall'"):
         playground.loads(text(WORLD + "\n<robot x='1' y='1'/>"), "mine.playground")
 
 
