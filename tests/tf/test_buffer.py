@@ -81,7 +81,7 @@ def test_messages_in_another_frame():
     assert (found.position.x, found.position.y) == (pytest.approx(1.0), pytest.approx(1.0))
     assert euler_from_quaternion([q.x, q.y, q.z, q.w])[2] == pytest.approx(math.pi / 2)
     assert isinstance(do_transform_pose(Pose(), buffer.lookup_transform("map", "base", Time())), Pose)
-    with pytest.raises(TypeException, match="String found, expected one of PointStamped"):
+    with pytest.raises(TypeException, match="Said found, expected one of PointStamped"):
         Buffer().transform(type("Said", (String,), {"header": point.header})(), "map")
 
 
