@@ -59,6 +59,12 @@ RULES = {
     f"{OURS}.web": Rule(_names("web", "bridge", "gallery", "resources", "sim"), frozenset({"aiohttp"})),
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
     f"{OURS}.nodes": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
+    f"{OURS}.tf": Rule(
+        _names("tf", "nodes.tf_messages", "nodes.warner"),
+        ROS | {"numpy", "tf2_geometry_msgs", "tf2_ros", "tf_transformations"},
+    ),
+    f"{OURS}.tf.buffer_core": Rule(_names("tf.errors"), never=NO_WALL_CLOCK),
+    f"{OURS}.tf.transformations": Rule(frozenset(), frozenset({"numpy"}), NO_WALL_CLOCK),
     f"{OURS}.launch": Rule(frozenset(), frozenset({"launch", "launch_ros"})),
     f"{OURS}.testing": Rule(_names("device", "loading", "runner", "sim", "testing"), frozenset({"pytest"})),
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
@@ -68,7 +74,7 @@ RULES = {
     # resources, loading, suite, webbuild: helpers of the commands, without ROS
     OURS: Rule(ALL_OF_OURS),
 }
-STARTERS = {f"{OURS}.cli", f"{OURS}.testing.ros", f"{OURS}.pytest_plugin", f"{OURS}.nodes"}
+STARTERS = {f"{OURS}.cli", f"{OURS}.testing.ros", f"{OURS}.pytest_plugin", f"{OURS}.nodes", f"{OURS}.tf"}
 
 
 def _sources() -> dict[str, Path]:
@@ -129,7 +135,7 @@ def test_no_module_imports_itself_by_a_detour() -> None:
 
 
 def test_everything_without_ros_can_be_imported_where_rclpy_cannot() -> None:
-    with_ros = (f"{OURS}.nodes", f"{OURS}.testing.ros", f"{OURS}.launch")
+    with_ros = (f"{OURS}.nodes", f"{OURS}.testing.ros", f"{OURS}.launch", f"{OURS}.tf")
     pure = [module for module in SOURCES if not any(_below(module, name) for name in with_ros)]
     pure = [module for module in pure if not module.endswith("__main__")]
     program = (

@@ -24,6 +24,7 @@ from thymio_sim_ros.sim.primitives import Box, Disc, Print
 from thymio_sim_ros.sim.shapes import all_shapes
 from thymio_sim_ros.sim.shapes.track import Track
 from thymio_sim_ros.sim.world import World
+from thymio_sim_ros.testing import Classroom, no_contact
 
 FOLDER = Path(__file__).parents[1] / "playgrounds"
 SCHEMA = FOLDER / "playground.schema.json"
@@ -186,7 +187,7 @@ def test_the_goal_of_the_maze_can_be_reached_from_the_start() -> None:
 
 
 def test_the_arena_has_light_and_heavy_things_to_push_and_posts_that_stay() -> None:
-    inside = [solid for solid in loaded("arena").solids if solid.name != "ground"]
+    inside = [solid for solid in loaded("arena").solids if not solid.name.endswith(" wall")]
     masses = [solid.load.mass_kg for solid in inside if solid.load is not None]
     assert (len(masses), min(masses), max(masses)) == (10, 0.02, 0.35)
     assert len(inside) - len(masses) == 4
@@ -280,3 +281,18 @@ def test_the_readme_tells_the_defaults() -> None:
         for field in dataclasses.fields(cast("Any", kind.form)):
             if isinstance(field.default, float) and field.name != "yaw_rad":
                 assert f"`{field.name}` ({field.default:g}" in rows[kind.name]
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_what_a_robot_can_touch_has_a_name_of_its_own(path: Path) -> None:
+    solids = loaded(path.stem).solids
+    assert not {solid.name for solid in solids} & {floor.name for floor in loaded(path.stem).floors}
+    names = [solid.name for solid in solids if solid.name != "u_figure"]
+    assert len(set(names)) == len(names)
+
+
+def test_a_robot_that_drives_against_the_border_touches_a_wall_and_not_the_ground() -> None:
+    room = Classroom("base", "motor.left.target = 200\nmotor.right.target = 200", noise=False)
+    (thymio,) = room
+    room.until(lambda: thymio.touching, 60.0)
+    assert repr(no_contact(thymio)).startswith("thymio touched east wall at ")

@@ -37,6 +37,8 @@ export class Actions {
    */
   constructor({ client, store, t, language, now = () => performance.now(), later = setTimeout.bind(globalThis) }) {
     this.client = client;
+    /** What was loaded last. */
+    this.loaded = "";
     this.store = store;
     this.t = t;
     this.language = language;
@@ -139,9 +141,28 @@ export class Actions {
     return result.successful;
   }
 
+  /**
+   * What is loaded once more begins anew: a parameter that is set to what it is changes nothing.
+   *
+   * @param {string} loaded
+   */
+  async #beginAnew(loaded) {
+    const isSame = this.loaded === loaded;
+    this.loaded = loaded;
+    if (!isSame) return;
+    const robots = Object.keys(this.store.state.robots);
+    if (loaded.startsWith("program")) {
+      await this.client.setParameters([{ name: PARAMETERS.behaviour, value: "" }]);
+    }
+    for (const verb of ["reset", "run"]) {
+      await Promise.all(robots.map((robot) => this.call(robotTopic(robot, `aseba/${verb}`))));
+    }
+  }
+
   /** Switch the robots on with a built-in behaviour. @param {string} name */
   async setBehaviour(name) {
     const answer = await this.client.setParameters([{ name: PARAMETERS.behaviour, value: name }]);
+    if (answer.ok) await this.#beginAnew(`behaviour ${name}`);
     if (!answer.ok) this.store.dispatch({ type: "notice", level: "error", text: answer.message });
   }
 
@@ -152,6 +173,7 @@ export class Actions {
       { name: PARAMETERS.programName, value: name },
       { name: PARAMETERS.source, value: text },
     ]);
+    if (answer.ok) await this.#beginAnew(`program ${text}`);
     const fault = answer.ok ? null : await this.#faultOf(text);
     this.store.dispatch({ type: "uploaded", what: "program", message: answer.ok ? null : answer.message, fault });
   }
@@ -170,7 +192,9 @@ export class Actions {
       content === undefined
         ? name
         : `data:application/octet-stream;name=${encodeURIComponent(name)};base64,${base64(content)}`;
+    const isPresent = this.store.state.parameters[PARAMETERS.playground] === value;
     const answer = await this.client.setParameters([{ name: PARAMETERS.playground, value }]);
+    if (answer.ok && isPresent) await this.reset();
     this.store.dispatch({ type: "uploaded", what: "playground", message: answer.ok ? null : answer.message });
   }
 

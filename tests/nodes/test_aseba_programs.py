@@ -7,6 +7,7 @@ import re
 
 import pytest
 from std_msgs.msg import String
+from std_srvs.srv import Trigger
 
 from tests.nodes.aseba_tools import Status, get_parameter, get_variables, set_parameters, set_variables, words
 from thymio_sim_ros.nodes import qos
@@ -156,11 +157,42 @@ def test_the_last_of_path_and_text_counts(ros, runtime):
     ros.until(lambda: status["program"] == "line_follower.aesl")
 
 
-def test_the_same_text_again_begins_anew(ros, runtime):
+def test_the_same_text_again_changes_nothing_and_a_reset_begins_anew(ros, runtime):
     robot = runtime("var me = 1\nonevent button.left\nme = 7").robots[0]
     robot.device.set_variable("me", (9,))
     assert set_parameters(ros, {"script.source": "var me = 1\nonevent button.left\nme = 7"}).successful
-    assert get_variables(ros, "me") == [[1]]
+    assert get_variables(ros, "me") == [[9]]
+    for verb in ("reset", "run"):
+        assert ros.call(Trigger, f"/aseba/{verb}").success
+    ros.until(lambda: get_variables(ros, "me") == [[1]])
+
+
+def test_another_program_ends_a_behaviour_and_the_behaviour_can_come_back(ros, runtime):
+    runtime("var me = 1")
+    status = Status(ros)
+    for _ in range(2):
+        assert set_parameters(ros, {"behaviour": "menu"}).successful
+        ros.until(lambda: status["program"].startswith("menu"))
+        assert set_parameters(ros, {"script.source": "var me = 1"}).successful  # waits behind the behaviour
+        assert get_parameter(ros, "behaviour") == "menu"
+        assert set_parameters(ros, {"behaviour": ""}).successful
+        ros.until(lambda: not status["program"].startswith("menu"))
+    assert set_parameters(ros, {"behaviour": "menu"}).successful
+    assert set_parameters(ros, {"script.source": "var me = 2"}).successful
+    assert get_parameter(ros, "behaviour") == ""
+    ros.until(lambda: get_variables(ros, "me") == [[2]])
+
+
+def test_a_file_that_was_written_anew_is_read_again(ros, runtime, tmp_path):
+    path = tmp_path / "counts.aesl"
+    path.write_text("var me = 1\nonevent button.left\nme = 7")
+    robot = runtime(path=str(path)).robots[0]
+    robot.device.set_variable("me", (9,))
+    assert set_parameters(ros, {"script.path": str(path)}).successful
+    assert get_variables(ros, "me") == [[9]]
+    path.write_text("var me = 2\nonevent button.left\nme = 7")
+    assert set_parameters(ros, {"script.path": str(path)}).successful
+    assert get_variables(ros, "me") == [[2]]
 
 
 def test_free_parameters_may_be_given_at_the_start(ros):

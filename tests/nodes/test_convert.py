@@ -7,12 +7,13 @@ import math
 import pytest
 from geometry_msgs.msg import Quaternion
 from sensor_msgs.msg import JointState, LaserScan, Range
+from std_msgs.msg import Float32
 from visualization_msgs.msg import Marker
 
-from thymio_sim_ros.nodes import convert, sensor_topics
+from thymio_sim_ros.nodes import convert, patches, sensor_topics
 from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.names import RobotNames, ros_names, topic_word
-from thymio_sim_ros.sim import readings
+from thymio_sim_ros.sim import readings, units
 from thymio_sim_ros.sim.geometry import Pose, Tilt
 from thymio_sim_ros.sim.geometry import Twist as BodyMotion
 from thymio_sim_ros.sim.primitives import Stroke
@@ -68,6 +69,21 @@ def test_the_ground_reflects_or_not(count, expected, driver):
     assert encode("ground/left", reading).range == expected
     assert encode("ground/left", reading, options=ConvertOptions(driver_ranges=True)).range == driver
     assert encode("ground/right", reading).range == -math.inf
+
+
+@pytest.mark.parametrize(("grey", "side"), [(0.0, "left"), (0.3, "right"), (1.0, "left")])
+def test_the_grey_of_the_ground_is_that_over_which_the_sensor_counts_so(grey, side):
+    count = round(units.ground_response(grey))
+    reading = readings.GroundReading(0, (200, 200, count + 200, count + 200, count, count), (0.9, 0.1))
+    message = encode(f"ground/{side}/reflectance", reading)
+    assert isinstance(message, Float32)
+    assert message.data == pytest.approx(grey, abs=0.01)
+
+
+@pytest.mark.parametrize("count", [-20, 0, 60, 944, 1023])
+def test_greys_are_from_0_to_1_whatever_is_counted(count):
+    reading = readings.GroundReading(0, (0, 0, count, count, count, count), (0.0, 0.0))
+    assert encode("ground/left/reflectance", reading).data == (1.0 if count > 500 else 0.0)
 
 
 def test_joints_carry_angles_and_speeds():
@@ -128,6 +144,25 @@ def test_a_trail_takes_the_place_of_the_one_before():
 def test_yaw_survives_as_quaternion(yaw):
     assert convert.yaw_of(convert.quaternion(yaw)) == pytest.approx(yaw)
     assert isinstance(convert.quaternion(yaw), Quaternion)
+
+
+@pytest.mark.parametrize("tilt", [Tilt(0.0, 0.0), Tilt(0.3, -0.2), Tilt(-3.0, 0.1), Tilt(0.1, 3.1)])
+@pytest.mark.parametrize("yaw", [0.0, 3.0, math.pi, 3.2, 5.0, 7.0, 40.0, -3.0, -3.2, -5.0, -40.0])
+def test_every_orientation_has_a_w_that_is_not_negative(yaw, tilt):
+    x, y, z, w = patches.rotation(yaw, tilt)
+    assert w >= 0.0
+    assert math.hypot(x, y, z, w) == pytest.approx(1.0)
+    forward = (1 - 2 * (y * y + z * z), 2 * (x * y + w * z))
+    lean = math.cos(tilt.pitch_rad)
+    assert forward == pytest.approx((math.cos(yaw) * lean, math.sin(yaw) * lean))
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.0, 3.5, -3.5, 100.0])
+def test_wheels_turn_with_a_w_that_is_not_negative(angle):
+    x, y, z, w = patches.wheel_rotation(angle)
+    assert w >= 0.0
+    assert (x, z) == (0.0, 0.0)
+    assert (w * w - y * y, 2 * w * y) == pytest.approx((math.cos(angle), math.sin(angle)))
 
 
 def test_one_robot_has_no_name_and_several_have_theirs():

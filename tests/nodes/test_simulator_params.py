@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 
 import pytest
@@ -11,7 +12,7 @@ from rcl_interfaces.msg import Log
 from rcl_interfaces.srv import DescribeParameters, SetParameters
 from rclpy.parameter import Parameter
 from rclpy.qos import ReliabilityPolicy
-from sensor_msgs.msg import JointState, Range
+from sensor_msgs.msg import JointState, LaserScan, Range
 from std_msgs.msg import Int16MultiArray, String
 from visualization_msgs.msg import MarkerArray
 
@@ -55,6 +56,51 @@ def test_a_refused_value_says_why_and_changes_nothing(ros, simulation, name, val
     assert not result.successful
     assert reason in result.reason
     assert sim.simulator.params == before
+
+
+def test_the_present_playground_again_changes_nothing_unless_its_file_does(ros, simulation, tmp_path):
+    path = tmp_path / "mine.json"
+    path.write_text(TWO)
+    sim = simulation(playground=str(path))
+    sim.step(0.2)
+    world = sim.world
+    assert set_parameter(ros, "playground", str(path)).successful
+    assert sim.simulator.world is world
+    path.write_text(TWO.replace("anna", "carl"))
+    assert set_parameter(ros, "playground", str(path)).successful
+    assert "carl" in sim.simulator.world.robots
+
+
+def test_the_present_world_is_loaded_anew_by_who_wants_a_world(ros, simulation):
+    sim = simulation(playground=TWO)
+    sim.step(0.2)
+    assert sim.simulator.load(TWO) == ""
+    assert sim.world.now_ns == 0
+
+
+def test_the_present_values_of_seed_and_pace_change_nothing(ros, simulation):
+    sim = simulation(seed=3, real_time_factor=2.0)
+    sim.step(0.2)
+    world, pacer = sim.world, sim.simulator._pacer
+    assert set_parameter(ros, "seed", 3).successful
+    assert set_parameter(ros, "real_time_factor", 2.0).successful
+    assert (sim.simulator.world, sim.simulator._pacer) == (world, pacer)
+
+
+def test_simulated_time_of_somebody_else_is_refused(ros, simulation):
+    simulation()
+    result = set_parameter(ros, "use_sim_time", True)
+    assert (result.successful, result.reason) == (
+        False,
+        "use_sim_time is refused: the simulator is the source of simulated time, it cannot follow /clock",
+    )
+    assert set_parameter(ros, "use_sim_time", False).successful
+
+
+def test_simulated_time_of_somebody_else_is_left_out_at_the_start(simulator_with, capfd):
+    simulator = simulator_with("-p", "use_sim_time:=true")
+    assert simulator.node.get_parameter("use_sim_time").value is False
+    assert "use_sim_time is left out: the simulator is the source of simulated time" in capfd.readouterr().err
 
 
 def test_a_fault_of_ours_in_reading_a_playground_is_a_refusal(ros, simulation, monkeypatch):
@@ -201,6 +247,18 @@ def test_odometry_and_joints_have_their_rate(ros, simulation, rate, count):
     odometry, joints = ros.collect(Odometry, "/odom"), ros.collect(JointState, "/joint_states")
     sim.step(1.0)
     ros.until(lambda: (len(odometry), len(joints)) == (count, count))
+
+
+@pytest.mark.parametrize(("rate", "period_s"), [(0.0, 0.1), (25.0, 0.04), (100.0, 0.01)])
+def test_a_laser_scan_says_how_long_it_is_until_the_next(ros, simulation, rate, period_s):
+    sim = simulation(sensor_rate=rate)
+    scans = ros.collect(LaserScan, "/proximity/laser")
+    sim.until(lambda: len(scans) >= 5, seconds=2.0)
+    stamps = [scan.header.stamp.sec + scan.header.stamp.nanosec / 1e9 for scan in scans]
+    gaps = [later - earlier for earlier, later in itertools.pairwise(stamps)]
+    assert gaps == pytest.approx([period_s] * len(gaps))
+    assert [scan.scan_time for scan in scans] == pytest.approx([period_s] * len(scans))
+    assert {scan.time_increment for scan in scans} == {0.0}
 
 
 def test_all_sensors_have_one_rate_on_request(ros, simulation):

@@ -182,3 +182,21 @@ def test_an_activation_is_a_low_red_block_and_an_area_around_it() -> None:
     assert trigger.door == "gate"
     assert trigger.holds(0.95, 2.05)
     assert not trigger.holds(1.05, 2.05)
+
+
+SIDES = ("east", "north-east", "north", "north-west", "west", "south-west", "south", "south-east")
+
+
+def compass(solid: Solid) -> str:
+    """Where a wall is, seen from the origin."""
+    return SIDES[round(math.atan2(solid.pose.y_m, solid.pose.x_m) / (math.pi / 4)) % 8]
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.3, 0.75 * math.pi, -math.pi / 2, 6.0])
+@pytest.mark.parametrize(("kind", "count"), [("rectangle", 4), ("octagon", 8)])
+def test_the_walls_of_a_ground_are_called_by_where_they_are(kind: str, count: int, yaw: float) -> None:
+    walls = built(kind, name="ground", yaw_rad=yaw).solids
+    assert len({wall.name for wall in walls}) == len(walls) == count
+    assert [wall.name for wall in walls] == [f"{compass(wall)} wall" for wall in walls]
+    named = built(kind, name="yard", yaw_rad=yaw).solids
+    assert [wall.name for wall in named] == [f"yard {wall.name}" for wall in walls]

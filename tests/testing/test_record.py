@@ -14,7 +14,7 @@ def test_a_thing_that_is_left_and_met_again_is_touched_twice() -> None:
         room.run(0.05)
         thymio.post(BodyTwist(0.15, 0.0))
         room.until(lambda: thymio.touching, 20.0)
-    assert [touch.other for touch in thymio.touches] == ["ground", "ground"]
+    assert [touch.other for touch in thymio.touches] == ["east wall", "east wall"]
     assert thymio.touches[0].at_s < thymio.touches[1].at_s
 
 
@@ -38,7 +38,7 @@ def test_what_is_touched_when_the_past_is_forgotten_is_touched_anew() -> None:
     room.until(lambda: thymio.touching, 60.0)
     thymio.record.clear()
     room.run(0.1)
-    assert [touch.other for touch in thymio.touches] == ["ground"]
+    assert [touch.other for touch in thymio.touches] == ["east wall"]
 
 
 def test_moments_are_told_from_a_time_on_and_forgotten() -> None:

@@ -152,6 +152,31 @@ test("a behaviour is a parameter of the runtime", async () => {
   assert.deepEqual(asked, [["set", [{ name: "/aseba_runtime.behaviour", value: "menu" }]]]);
 });
 
+test("what is loaded once more begins anew, since the same value changes nothing", async () => {
+  const { actions, asked, store } = prepared();
+  connect(store, ["/a/ground_truth/odom", "/b/ground_truth/odom"], []);
+  store.dispatch({ type: "parameters", parameters: [{ name: "/simulator.playground", value: "base" }] });
+  await actions.loadPlayground("base");
+  assert.deepEqual(asked.splice(0).map(([, name]) => name).slice(1), ["/simulator/reset"]);
+  await actions.loadProgram("a.aesl", "onevent prox");
+  assert.equal(asked.splice(0).length, 1);
+  await actions.loadProgram("a.aesl", "onevent prox");
+  const [, ...then] = asked.splice(0);
+  assert.deepEqual(
+    then.map(([, what]) => what),
+    [
+      [{ name: "/aseba_runtime.behaviour", value: "" }],
+      "/a/aseba/reset",
+      "/b/aseba/reset",
+      "/a/aseba/run",
+      "/b/aseba/run",
+    ],
+  );
+  await actions.setBehaviour("menu");
+  await actions.setBehaviour("menu");
+  assert.deepEqual(asked.slice(2).map(([, name]) => name), ["/a/aseba/reset", "/b/aseba/reset", "/a/aseba/run", "/b/aseba/run"]);
+});
+
 test("a program that is refused is explained in the language of the page", async () => {
   const errors = [{ line: 1, column: 9, length: 5, message: "kein Ereignis heißt 'zzzzz'", kind: "unknown-event", node: "" }];
   const value = { result: { successful: false, reason: JSON.stringify({ errors }) } };

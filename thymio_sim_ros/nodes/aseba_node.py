@@ -22,7 +22,6 @@ from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.executors import Executor
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_msgs.msg import Int16MultiArray, String
 
@@ -41,8 +40,10 @@ from thymio_sim_ros.nodes.aseba_bus import SLICE_S, Bus
 from thymio_sim_ros.nodes.aseba_params import RuntimeParams, WrongValueError
 from thymio_sim_ros.nodes.check_service import CheckService
 from thymio_sim_ros.nodes.device_ports import DevicePorts, Wishes
+from thymio_sim_ros.nodes.input_types import InputTypes
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames, full_name
+from thymio_sim_ros.nodes.parameter_node import parameter_node
 from thymio_sim_ros.nodes.raw_topic import Decoder
 from thymio_sim_ros.nodes.warner import Warner
 
@@ -81,12 +82,12 @@ class AsebaRuntime:
     ) -> None:
         """`overrides`: values of parameters by name, as from a command line."""
         given = dict(overrides) | ({} if use_sim_time is None else {"use_sim_time": use_sim_time})
-        self.node = Node(
+        self.node = parameter_node(
             "aseba_runtime",
             context=context,
+            names_file=lambda name: name.endswith("script.path"),
             parameter_overrides=[Parameter(name, value=value) for name, value in given.items()],
             allow_undeclared_parameters=True,
-            automatically_declare_parameters_from_overrides=True,
         )
         self.robots: list[DevicePorts] = []
         self._accepted: _Accepted | None = None
@@ -157,6 +158,7 @@ class AsebaRuntime:
         self._bus = Bus(node, lambda: self.robots, self._on_told)
         self._bus.reaches_all = self.params.emit_reaches == "network"
         self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
+        self._input_types = InputTypes(node)
         self._behaviours = node.create_publisher(String, "~/_behaviours", qos.LATCHED)
         listed = [{"name": name, "description": text} for name, text in shipped_behaviours().items()]
         self._behaviours.publish(String(data=json.dumps(listed)))
@@ -172,7 +174,7 @@ class AsebaRuntime:
         self._set_robots(self.params.robots)
         if self.params.follow_simulator:
             node.create_subscription(String, SIMULATOR_STATE, self._on_simulator_state, qos.LATCHED)
-        node.add_pre_set_parameters_callback(aseba_params.exclusive)
+        node.add_pre_set_parameters_callback(lambda given: aseba_params.exclusive(given, self._told))
         node.add_on_set_parameters_callback(self._check_parameters)
         node.add_post_set_parameters_callback(self._apply_parameters)
         self._jumps = node.get_clock().create_jump_callback(
@@ -311,7 +313,8 @@ class AsebaRuntime:
     def _publish_diagnostics(self) -> None:
         for ports in self.robots:
             ports.observe_load()
-        self._publish_statuses([ports.status.message for ports in self.robots])
+        self._input_types.look()
+        self._publish_statuses([*(ports.status.message for ports in self.robots), self._input_types.status()])
 
     def _publish_statuses(self, statuses: Iterable[DiagnosticStatus]) -> None:
         if self._diagnostics.get_subscription_count():
@@ -360,6 +363,7 @@ class AsebaRuntime:
         if accepted is None:
             return
         old, self._values = self._values, accepted.values
+        before = self._behaviour
         changes = accepted.changes
         self.params = params.updated(self.params, parameters)
         self._bus.reaches_all = self.params.emit_reaches == "network"
@@ -370,17 +374,17 @@ class AsebaRuntime:
             self._behaviour = self.params.behaviour
         for ports in self.robots:
             ports.want(self._wishes(ports.names.name))
-            self._apply_script(ports, old, accepted)
+            self._apply_script(ports, old, accepted, is_switched=self._behaviour != before)
 
-    def _apply_script(self, ports: DevicePorts, old: dict[str, Any], accepted: _Accepted) -> None:
+    def _apply_script(self, ports: DevicePorts, old: dict[str, Any], accepted: _Accepted, *, is_switched: bool) -> None:
         name = ports.names.name
         share = accepted.shares.get(name, ports.share)
-        is_touched = scripts.touched(old, accepted.values, accepted.changes, name)
-        if is_touched or _program(share) != _program(ports.share):
+        is_other = scripts.script_of(old, name) != scripts.script_of(accepted.values, name)
+        if is_other or _program(share) != _program(ports.share):
             if "behaviour" not in accepted.changes:
                 self._behaviour = ""
             self._begin(ports, share or Share(None))
-        elif "behaviour" in accepted.changes:
+        elif is_switched:
             self._begin(ports, share)
 
     def _wishes(self, robot: str) -> Wishes:

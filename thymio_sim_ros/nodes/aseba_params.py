@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence, Sized
+from collections.abc import Callable, Sequence, Sized
 from dataclasses import dataclass
 from typing import Any
 
@@ -32,6 +32,10 @@ __all__ = [
 STRINGS, INTEGERS = Parameter.Type.STRING_ARRAY, Parameter.Type.INTEGER_ARRAY
 INT16 = range(-0x8000, 0x8000)
 
+BEHAVIOUR = "behaviour"
+ROBOT_NAMES, OLD_ROBOT_NAMES = "robot_names", "robots"
+"""`ros2 param dump` cannot write a parameter `robots` beside those that begin with `robots.`."""
+
 ROBOT_TEXTS = {
     "script.path": "Program for this robot in place of that for all: a built-in program's name or an .aesl file",
     "script.source": "Program for this robot in place of that for all: the text",
@@ -57,7 +61,10 @@ class RuntimeParams:
     """Parameters of the Aseba runtime node."""
 
     robots: list[str] = param(
-        [""], "Namespaces of the robots that run the program at first; '' is the only robot", fixed=True
+        [""],
+        "Namespaces of the robots that run the program at first; '' is the only robot",
+        name=ROBOT_NAMES,
+        fixed=True,
     )
     follow_simulator: bool = param(
         True, "Whether the robots are those of simulator/_state, once there is one", fixed=True
@@ -106,20 +113,21 @@ class RuntimeParams:
 
 
 def adopt_overrides(node: Node) -> dict[str, Any]:
-    """Values of free parameters from the command line or a file; the others wait for their declaration.
+    """Declare free parameters that the command line or a file gives; their values. The others are declared as usual.
 
-    The node must have been made with its parameters declared from overrides. WrongValueError.
+    WrongValueError.
     """
     found = {}
     ours = params.by_name(RuntimeParams())
-    params.warn_of_unknown(node, "ros.md", lambda name: name in ours or is_free(name), ours)
-    for name in list(node.get_parameters_by_prefix("")):
-        match = _FREE.fullmatch(name)
-        if match is not None and (match["robot"] or match["constant"]):
-            found[name] = node.get_parameter(name).value
-            check_value(name, found[name])
-        if name in ours or (match is not None and not match["constant"]):
-            node.undeclare_parameter(name)
+    params.warn_of_unknown(node, "ros.md", lambda name: name in ours or is_free(name) or name == OLD_ROBOT_NAMES, ours)
+    given = params.overrides(node)
+    if OLD_ROBOT_NAMES in given and ROBOT_NAMES not in given:
+        node.get_logger().warning(f"the parameter {OLD_ROBOT_NAMES} is called {ROBOT_NAMES} now")
+        node._parameter_overrides[ROBOT_NAMES] = Parameter(ROBOT_NAMES, value=given[OLD_ROBOT_NAMES])
+    for name, value in given.items():
+        if value is not None and is_free(name):  # an empty list has no type, and says what would be without it
+            check_value(name, value)
+            found[name] = node.declare_parameter(name, value).value
     return found
 
 
@@ -141,7 +149,7 @@ def check_value(name: str, value: Any) -> None:
     """Raise WrongValueError for a free parameter that does not exist or cannot have this value."""
     if name == "local_events":
         _check_strings(name, value)
-    if name == "robots":
+    if name == ROBOT_NAMES:
         for robot in value:
             _check_namespace(name, robot)
     match = _FREE.fullmatch(name)
@@ -163,8 +171,11 @@ def is_free(name: str) -> bool:
     return match is not None and bool(match["robot"] or match["constant"])
 
 
-def exclusive(parameters: Sequence[Parameter]) -> list[Parameter]:
-    """The same with the other of path and source emptied where one is given, and empty lists of their own type."""
+def exclusive(parameters: Sequence[Parameter], present: Callable[[str], Any]) -> list[Parameter]:
+    """The same with the other of path and source emptied where one is given, and empty lists of their own type.
+
+    Another program for all, different from the `present` one, ends a behaviour.
+    """
     given = {parameter.name for parameter in parameters}
     result = []
     for parameter in parameters:
@@ -175,6 +186,9 @@ def exclusive(parameters: Sequence[Parameter]) -> list[Parameter]:
             sibling = parameter.name.removesuffix(one) + other
             if parameter.name.endswith(one) and parameter.value and sibling not in given:
                 result.append(Parameter(sibling, value=""))
+        is_program = parameter.name in ("script.path", "script.source") and parameter.value
+        if is_program and BEHAVIOUR not in given and parameter.value != present(parameter.name):
+            result.append(Parameter(BEHAVIOUR, value=""))
     return result
 
 

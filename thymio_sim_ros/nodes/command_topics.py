@@ -31,6 +31,7 @@ from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.limits import Beyond
 from thymio_sim_ros.sim import commands
+from thymio_sim_ros.sim.actuators.leds import LED_NUMBERS
 from thymio_sim_ros.sim.actuators.pen import PEN_WIDTHS_M
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.sound import FULL_LEVEL
@@ -130,6 +131,9 @@ def _encode_single(command: commands.SetLed) -> Int16MultiArray:
 
 def _decode_single(message: Int16MultiArray) -> Command:
     number, level = command_values.sized(message.data, 2, "[number of the light, brightness 0…32]")
+    if not 0 <= number < len(LED_NUMBERS) or LED_NUMBERS[number] is None:
+        none = ", ".join(str(place) for place, light in enumerate(LED_NUMBERS) if light is None)
+        raise CommandError(f"light {number} found, expected 0 to {len(LED_NUMBERS) - 1}, but for {none}")
     return commands.SetLed(int(number), int(level))
 
 
@@ -152,13 +156,14 @@ def _encode_tone(command: commands.PlayTone | commands.StopSound) -> Float32Mult
 
 
 def _decode_tone(message: Float32MultiArray) -> Command:
-    """[Hz, s]; 0 s is until stopped, a negative time stops."""
+    """[Hz, s]; 0 s, or more than anybody waits for, is until stopped; a negative time stops."""
     hertz, seconds = command_values.sized(message.data, 2, "[Hz, s]")
     command_values.finite(hertz, "frequency")
     command_values.finite(seconds, "duration")
     if seconds < 0:
         return commands.StopSound()
-    return commands.PlayTone(float(hertz), round(seconds * SECOND_NS) or None)
+    is_endless = seconds == 0.0 or seconds > limits.LONGEST_TONE_S
+    return commands.PlayTone(float(hertz), None if is_endless else round(seconds * SECOND_NS) or None)
 
 
 def _encode_system(command: commands.PlaySystemSound) -> Int8:
@@ -304,7 +309,7 @@ def _rows() -> Iterator[CommandRow]:
         _decode_single,
         _encode_single,
         qos.LEDS,
-        about="number of the light 0…38, brightness 0…32",
+        about="number of the light 0…39 (15 is none), brightness 0…32",
         beyond=limits.single,
         holds=True,
     )
@@ -342,7 +347,13 @@ def _rows() -> Iterator[CommandRow]:
         beyond=limits.tone,
     )
     yield CommandRow(
-        "_sound/system", Int8, _decode_system, _encode_system, qos.EVENTS, about="the robot's sound 0…7, -1 stops"
+        "_sound/system",
+        Int8,
+        _decode_system,
+        _encode_system,
+        qos.EVENTS,
+        about="the robot's sound 0…7, -1 stops",
+        beyond=limits.system_sound,
     )
     yield CommandRow(
         "_sound/samples",
@@ -375,7 +386,8 @@ def _rows() -> Iterator[CommandRow]:
         Float32,
         _decode_threshold,
         _encode_threshold,
-        about="0…1 of 255: louder is told on `_sound`",
+        about="0…1 of 255: louder is told on `_sound`; 0 is off",
+        beyond=limits.threshold,
         holds=True,
     )
     yield CommandRow(
@@ -397,7 +409,7 @@ def _rows() -> Iterator[CommandRow]:
     )
     yield CommandRow("_alarm", Bool, _decode_alarm, about="while true the sound of an arrow button every three seconds")
     yield CommandRow("pen/down", Bool, _decode_pen_down, about="true: the pen draws")
-    yield CommandRow("_pen/color", ColorRGBA, _decode_pen_color, about="0…1; alpha 0 erases", beyond=limits.color)
+    yield CommandRow("_pen/color", ColorRGBA, _decode_pen_color, about="0…1; alpha 0 erases", beyond=limits.paint)
     yield CommandRow("_pen/width", Float32, _decode_pen_width, about="m, 0.001…0.1")
 
 

@@ -17,6 +17,7 @@ from sensor_msgs.msg import JointState, Joy, LaserScan, Range
 from std_msgs.msg import (
     Bool,
     ColorRGBA,
+    Float32,
     Float32MultiArray,
     Int8MultiArray,
     Int16MultiArray,
@@ -57,7 +58,7 @@ class ConvertOptions:
     """What a user may choose about the content of messages.
 
     `driver_ranges`: −1 and minimum instead of ±inf (ros-interface.md section 4.3). `ground_threshold`: count.
-    `proximity`: in Thymio's order. Covariance diagonals: x y z roll pitch yaw.
+    `proximity`: in Thymio's order. Covariance diagonals: x y z roll pitch yaw. `scan_ns`: between two laser scans.
     """
 
     driver_ranges: bool = False
@@ -65,10 +66,11 @@ class ConvertOptions:
     proximity: tuple[RangeFields, ...] = (RangeFields(),) * len(PROXIMITY)
     pose_covariance: tuple[float, ...] = (1e-4, 1e-4, 0.0, 0.0, 0.0, 1e-3)
     twist_covariance: tuple[float, ...] = (1e-5, 1e-5, 0.0, 0.0, 0.0, 1e-4)
+    scan_ns: int = SECOND_NS // 10
 
 
 def quaternion(yaw_rad: float, tilt: Tilt = LEVEL) -> Quaternion:
-    """A turn about z, of a body that leans."""
+    """A turn about z, of a body that leans; w >= 0."""
     x, y, z, w = patches.rotation(yaw_rad, tilt)
     return Quaternion(x=x, y=y, z=z, w=w)
 
@@ -96,12 +98,14 @@ def proximity_range(
     return stamped(message, reading.stamp_ns, names.frame(f"proximity_{PROXIMITY[index]}_link"))
 
 
-def laser(reading: readings.ProximityReading, names: RobotNames, _options: ConvertOptions) -> LaserScan:
-    """The five front sensors as one scan from right to left."""
+def laser(reading: readings.ProximityReading, names: RobotNames, options: ConvertOptions) -> LaserScan:
+    """The five front sensors as one scan from right to left; all five measure at once, hence no time increment."""
     message = LaserScan(
         angle_min=-LASER_ANGLE_RAD,
         angle_max=LASER_ANGLE_RAD,
         angle_increment=LASER_STEP_RAD,
+        time_increment=0.0,
+        scan_time=options.scan_ns / SECOND_NS,
         range_min=PROXIMITY_MIN_M + LASER_OFFSET_M,
         range_max=PROXIMITY_MAX_M + LASER_OFFSET_M,
         ranges=patches.laser_m(reading),
@@ -120,6 +124,13 @@ def ground_range(reading: readings.GroundReading, names: RobotNames, options: Co
         range=patches.below_m(reading, options, index),
     )
     return stamped(message, reading.stamp_ns, names.frame(f"ground_{SIDES[index]}_link"))
+
+
+def ground_grey(
+    reading: readings.GroundReading, _names: RobotNames, _options: ConvertOptions, *, index: int
+) -> Float32:
+    """A ground sensor: how much light the floor reflects, 0 (black) to 1 (white)."""
+    return Float32(data=patches.grey(reading, index))
 
 
 def button(reading: readings.ButtonsReading, _names: RobotNames, _options: ConvertOptions, *, index: int) -> Bool:

@@ -107,8 +107,8 @@ class DriverTopics:
             (
                 taken("led", _led, qos.LEDS, _too_bright),
                 taken("led/gesture", _gesture, qos.LEDS),
-                taken("sound/play", _tone, qos.EVENTS),
-                taken("sound/play/system", _system, qos.EVENTS),
+                taken("sound/play", _tone, qos.EVENTS, lambda message: limits.frequency(message.frequency)),
+                taken("sound/play/system", _system, qos.EVENTS, lambda message: limits.sound_number(message.sound)),
             ),
         )
 

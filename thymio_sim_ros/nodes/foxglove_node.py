@@ -20,7 +20,6 @@ from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.executors import Executor
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_msgs.msg import UInt32
 
@@ -47,6 +46,7 @@ from thymio_sim_ros.nodes.foxglove_services import Services
 from thymio_sim_ros.nodes.foxglove_topics import Topics
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, greeted, run_main
 from thymio_sim_ros.nodes.mailbox import Mailbox
+from thymio_sim_ros.nodes.parameter_node import parameter_node
 from thymio_sim_ros.nodes.qos import LATCHED
 from thymio_sim_ros.nodes.time_share import TimeShare
 
@@ -81,7 +81,7 @@ class FoxgloveBridge:
     ) -> None:
         """`tokens`: those of the command line; None: the node's own, made where the network reaches the address."""
         overrides = [] if use_sim_time is None else [Parameter("use_sim_time", value=use_sim_time)]
-        self.node = Node("foxglove_bridge", context=context, parameter_overrides=overrides)
+        self.node = parameter_node("foxglove_bridge", context=context, parameter_overrides=overrides)
         try:
             values = defaults or FoxgloveParams()
             values = replace(

@@ -10,31 +10,42 @@ from functools import partial
 from typing import Any
 
 from geometry_msgs.msg import Twist, TwistStamped
-from std_msgs.msg import ColorRGBA, Float32, Float32MultiArray, Float64MultiArray, Int16, Int16MultiArray
+from std_msgs.msg import ColorRGBA, Float32, Float32MultiArray, Float64MultiArray, Int8, Int16, Int16MultiArray
 
 from thymio_sim_ros.sim import commands, thymio2
 from thymio_sim_ros.sim.actuators.comm import FULL_PAYLOAD
 from thymio_sim_ros.sim.actuators.motors import wanted_speeds
-from thymio_sim_ros.sim.tones import HIGHEST_HZ, LOWEST_HZ
+from thymio_sim_ros.sim.tones import HIGHEST_HZ, LOWEST_HZ, SYSTEM_SOUNDS
 
 __all__ = [
+    "LONGEST_TONE_S",
     "Beyond",
     "brightness",
     "color",
+    "frequency",
     "intensities",
     "light",
     "loudness",
     "nothing",
+    "paint",
     "payload",
     "single",
+    "sound_number",
     "stamped_twist",
+    "system_sound",
     "targets",
+    "threshold",
     "tone",
     "twist",
     "wheels",
 ]
 
 Beyond = Callable[[Any], str]
+
+LONGEST_TONE_S = 3600.0
+"""A tone that would be longer sounds until it is stopped."""
+STOP_SOUND = -1
+"""In place of the number of a sound."""
 
 _ROUNDING = 1e-6
 """Messages of single precision, and sums of theirs, may be this part beyond a limit that they mean to keep."""
@@ -87,6 +98,11 @@ def color(message: ColorRGBA) -> str:
     return _outside((message.r, message.g, message.b), 0.0, 1.0, "color")
 
 
+def paint(message: ColorRGBA) -> str:
+    """The same of a color whose alpha counts."""
+    return color(message) or _outside((message.a,), 0.0, 1.0, "alpha")
+
+
 def brightness(values: Iterable[float]) -> str:
     """Intensities of lights beyond 0…1."""
     return _outside(values, 0.0, 1.0, "intensity")
@@ -105,15 +121,41 @@ loudness: Beyond = partial(_one, what="loudness")
 light: Beyond = partial(_one, what="light")
 
 
+def threshold(message: Float32) -> str:
+    """A threshold that no loudness has: every sound is above a negative one, none above one beyond 1."""
+    beyond = _outside((message.data,), 0.0, 1.0, "threshold")
+    every = "every" if message.data < 0.0 else "no"
+    return beyond and f"{beyond} (0 is off); {every} sound is told with this one"
+
+
 def tone(message: Float32MultiArray) -> str:
-    """Frequencies that the loudspeaker's wave cannot have."""
+    """Frequencies that the loudspeaker's wave cannot have, and times that nobody waits for."""
     hertz, seconds = message.data
-    return _outside((abs(hertz),), LOWEST_HZ, HIGHEST_HZ, "frequency") if seconds >= 0 else ""
+    if seconds < 0:
+        return ""
+    return frequency(hertz) or _outside((seconds,), 0.0, LONGEST_TONE_S, "seconds")
+
+
+def frequency(hertz: float) -> str:
+    """A frequency that the loudspeaker's wave cannot have."""
+    return _outside((abs(hertz),), LOWEST_HZ, HIGHEST_HZ, "frequency")
+
+
+def system_sound(message: Int8) -> str:
+    """Numbers of sounds that the robot does not have."""
+    return sound_number(message.data)
+
+
+def sound_number(number: int) -> str:
+    """The same of a number."""
+    beyond = _outside((number,), STOP_SOUND, len(SYSTEM_SOUNDS) - 1, "sound")
+    return beyond and f"{beyond}; the robot beeps instead"
 
 
 def payload(message: Int16) -> str:
-    """Values that infrared frames cannot carry; a negative one is a pulse without data."""
-    return _outside((message.data,), -0x8000, FULL_PAYLOAD, "value")
+    """Values that infrared frames cannot carry."""
+    beyond = _outside((message.data,), 0, FULL_PAYLOAD, "value")
+    return f"{beyond}; a negative one is a pulse without data" if message.data < 0 else beyond
 
 
 def single(message: Int16MultiArray) -> str:

@@ -163,7 +163,7 @@ def declare(node: Node, defaults: T) -> T:
         except (InvalidParameterTypeException, InvalidParameterValueException) as error:
             reason = " ".join(str(error).split())
             raise StartError(f"parameter {one.name} of {node.get_name()}: {reason}") from error
-        value = one.default if parameter.value is None else _plain(parameter.value)
+        value = one.default if parameter.value is None else plain(parameter.value)
         reason = one.refusal(value)
         if reason:
             raise StartError(reason)
@@ -186,7 +186,7 @@ def warn_of_unknown(
     nearest of these and of `names` is named.
     """
     known = is_known or node.has_parameter
-    for name in sorted(node._parameter_overrides):  # rclpy has no public way to see them
+    for name in sorted(overrides(node)):
         if not known(name) and not name.startswith(_OF_RCL):
             near = meant(name, [one for one in (*node.get_parameters_by_prefix(""), *names) if known(one)])
             node.get_logger().warning(
@@ -200,10 +200,15 @@ def meant(name: str, names: Sequence[str]) -> str:
     return f" (did you mean {near[0]}?)" if near else ""
 
 
+def overrides(node: Node) -> dict[str, Any]:
+    """What a command line, a file or a constructor gave a node: name → value; None for an empty list."""
+    return {name: one.value for name, one in node._parameter_overrides.items()}  # rclpy has no public way
+
+
 def refusal(values: Any, parameters: Iterable[Parameter]) -> str:
     """Why a change is refused by what the fields say, or nothing."""
     known = {one.name: one for one in declared(values)}
-    reasons = (known[one.name].refusal(_plain(one.value)) for one in parameters if one.name in known)
+    reasons = (known[one.name].refusal(plain(one.value)) for one in parameters if one.name in known)
     return next((reason for reason in reasons if reason), "")
 
 
@@ -212,7 +217,7 @@ def updated(values: T, parameters: Iterable[Parameter]) -> T:
     paths = {one.name: one.path for one in declared(values)}
     for parameter in parameters:
         if parameter.name in paths and parameter.value is not None:
-            values = _with(values, paths[parameter.name], _plain(parameter.value))
+            values = _with(values, paths[parameter.name], plain(parameter.value))
     return values
 
 
@@ -245,7 +250,7 @@ def changes(parameters: Iterable[Parameter]) -> dict[str, Any]:
     return {parameter.name: parameter.value for parameter in parameters}
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Arrays of parameters as lists."""
     return value if isinstance(value, str | bytes | int | float | bool) or value is None else list(value)
 

@@ -9,7 +9,7 @@ from itertools import chain
 from typing import Any, TypeAlias
 
 from thymio_sim_ros.nodes.templates import Patch, Span
-from thymio_sim_ros.sim import readings, thymio2
+from thymio_sim_ros.sim import readings, thymio2, units
 from thymio_sim_ros.sim.commands import LED_FULL, LED_GROUPS
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt, Twist
 
@@ -26,12 +26,15 @@ __all__ = [
     "TRUTH",
     "below_m",
     "below_patch",
+    "grey",
+    "grey_patch",
     "laser_m",
     "led_levels",
     "ray_lines",
     "rotation",
     "seen_m",
     "seen_patch",
+    "wheel_rotation",
     "words_patch",
 ]
 
@@ -43,18 +46,25 @@ PROXIMITY_MIN_M, LASER_OFFSET_M = 0.0215, 0.08
 
 
 def rotation(yaw_rad: float, tilt: Tilt = LEVEL) -> tuple[float, float, float, float]:
-    """A turn about z, of a body that leans, as x, y, z, w."""
+    """A turn about z, of a body that leans, as x, y, z, w with w >= 0."""
     z, w = math.sin(yaw_rad / 2), math.cos(yaw_rad / 2)
     if tilt == LEVEL:
-        return (0.0, 0.0, z, w)
+        return (0.0, 0.0, z, w) if w >= 0.0 else (0.0, 0.0, -z, -w)
     sr, cr = math.sin(tilt.roll_rad / 2), math.cos(tilt.roll_rad / 2)
     sp, cp = math.sin(tilt.pitch_rad / 2), math.cos(tilt.pitch_rad / 2)
-    return (
+    turn = (
         w * cp * sr - z * sp * cr,
         w * sp * cr + z * cp * sr,
         z * cp * cr - w * sp * sr,
         w * cp * cr + z * sp * sr,
     )
+    return turn if turn[3] >= 0.0 else (-turn[0], -turn[1], -turn[2], -turn[3])
+
+
+def wheel_rotation(angle_rad: float) -> tuple[float, float, float, float]:
+    """A turn about the axle, the y axis, as x, y, z, w with w >= 0."""
+    y, w = math.sin(angle_rad / 2), math.cos(angle_rad / 2)
+    return (0.0, y, 0.0, w) if w >= 0.0 else (0.0, -y, 0.0, -w)
 
 
 def seen_m(reading: readings.ProximityReading, options: Any, index: int) -> float:
@@ -70,6 +80,11 @@ def below_m(reading: readings.GroundReading, options: Any, index: int) -> float:
     dark = reading.words[4 + index] < options.ground_threshold
     not_reflecting, reflecting = (1.0, 0.0) if options.driver_ranges else (math.inf, -math.inf)
     return not_reflecting if dark else reflecting
+
+
+def grey(reading: readings.GroundReading, index: int) -> float:
+    """The grey 0…1 over which a ground sensor gives its count, light from elsewhere taken away."""
+    return units.ground_reflectance(reading.words[4 + index])
 
 
 def ray_lines(reading: readings.ProximityReading) -> tuple[list[Point], list[Color]]:
@@ -174,6 +189,11 @@ def seen_patch(index: int) -> Patch:
 def below_patch(index: int) -> Patch:
     """Of one ground sensor's Range."""
     return _range_patch(below_m, index)
+
+
+def grey_patch(index: int) -> Patch:
+    """Of one ground sensor's grey."""
+    return Patch((Span(struct.Struct("<f"), lambda reading, _options: (grey(reading, index),)),), has_stamp=False)
 
 
 ODOMETRY = _odometry_patch(

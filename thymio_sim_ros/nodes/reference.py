@@ -26,6 +26,7 @@ from thymio_sim_ros.nodes import (
 )
 from thymio_sim_ros.nodes.aseba_node import RuntimeParams
 from thymio_sim_ros.nodes.description import fixed_frames, wheel_position
+from thymio_sim_ros.nodes.input_types import type_name
 from thymio_sim_ros.nodes.migration import migration
 from thymio_sim_ros.nodes.names import SIDES, is_hidden
 from thymio_sim_ros.nodes.reference_text import AFTER, ALL_IN_ONE, BEFORE, DRIVER, HIDDEN, INTERFACES, QUALITY, RVIZ
@@ -278,12 +279,6 @@ def _limits(one: params.Declared) -> str:
 
 def _cell(content: str) -> str:
     return content.replace("|", "\\|")
-
-
-def type_name(kind: type) -> str:
-    """`std_msgs/msg/Bool` of its class."""
-    package, form, *_ = kind.__module__.split(".")
-    return f"{package}/{form}/{kind.__name__}"
 
 
 if __name__ == "__main__":

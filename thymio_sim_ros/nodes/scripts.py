@@ -10,7 +10,7 @@ from thymio_sim_ros.device.fleet import Member, Share, share_out
 from thymio_sim_ros.device.program import load_file
 from thymio_sim_ros.loading import read_text
 
-__all__ = ["Script", "named", "named_robots", "script_of", "shares", "touched"]
+__all__ = ["Script", "named", "named_robots", "script_of", "shares"]
 
 _CONSTANTS = "script.constants."
 _NAME = "script.name"
@@ -76,15 +76,6 @@ def named(changes: Mapping[str, Any], waiting: Callable[[str], Any]) -> dict[str
         name = text.removesuffix(_SOURCE) + _NAME
         result[name] = names[name] if name in names else waiting(name)
     return result
-
-
-def touched(old: Mapping[str, Any], new: Mapping[str, Any], changes: Iterable[str], robot: str) -> bool:
-    """Whether a robot is to begin anew when these parameters are set, be it to what they were."""
-    given = {f"robots.{robot}.script.path", f"robots.{robot}.script.source"}
-    before, after = script_of(old, robot), script_of(new, robot)
-    if not after.is_own:
-        given |= {"script.path", "script.source"}
-    return not given.isdisjoint(changes) or before.constants != after.constants
 
 
 def named_robots(names: Iterable[str]) -> list[str]:

@@ -79,6 +79,16 @@ ROWS: dict[str, tuple[Row, ...]] = {
             )
             for i, side in enumerate(SIDES)
         ),
+        *(
+            Row(
+                f"ground/{side}/reflectance",
+                Float32,
+                partial(convert.ground_grey, index=i),
+                "grey of the floor as the sensor counts it: 0 black (or no floor), 1 white",
+                patch=patches.grey_patch(i),
+            )
+            for i, side in enumerate(SIDES)
+        ),
     ),
     "proximity": (
         *(

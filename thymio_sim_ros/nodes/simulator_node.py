@@ -17,7 +17,6 @@ from dataclasses import dataclass, replace
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.context import Context
 from rclpy.executors import Executor
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from thymio_sim_ros import resources
@@ -27,8 +26,10 @@ from thymio_sim_ros.nodes.audience import Audience
 from thymio_sim_ros.nodes.deferred_load import DeferredLoad
 from thymio_sim_ros.nodes.driver_topics import DriverTopics
 from thymio_sim_ros.nodes.headers import SECOND_NS
+from thymio_sim_ros.nodes.input_types import InputTypes
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, deliver, greeted, run_main
 from thymio_sim_ros.nodes.names import RobotNames, full_name
+from thymio_sim_ros.nodes.parameter_node import parameter_node
 from thymio_sim_ros.nodes.raw_topic import RawTopic
 from thymio_sim_ros.nodes.robot_inputs import Moment
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
@@ -47,6 +48,9 @@ from thymio_sim_ros.sim.playground import Playground, PlaygroundError, RobotStar
 from thymio_sim_ros.sim.world import World
 
 __all__ = ["Simulator", "SimulatorParams", "main"]
+
+USE_SIM_TIME = "use_sim_time"
+OWN_TIME = "the simulator is the source of simulated time, it cannot follow /clock"
 
 MOST_NOTES = 20
 """Remarks about a playground that the state tells; all of them are in the log."""
@@ -81,8 +85,9 @@ class Simulator:
     """The simulator node and its world. Invariant: only `turn`, `advance` and callbacks of `node` touch the world."""
 
     def __init__(self, context: Context, defaults: SimulatorParams | None = None) -> None:
-        self.node = Node("simulator", context=context)
+        self.node = parameter_node("simulator", context=context, names_file=lambda name: name == "playground")
         try:
+            self._keep_own_time()
             self.params = params.declare(self.node, defaults or SimulatorParams())
             params.warn_of_unknown(self.node, "ros.md")
             qos.check_overrides(self.node)
@@ -115,6 +120,7 @@ class Simulator:
         self.playground_name, self._scene = prepared.name, prepared.scene
         self._set_world(self._new_world(prepared.playground, self.params, prepared.ground))
         self._services = WorldServices(self.node, self)
+        self._input_types = InputTypes(self.node)
         self._interfaces = sim_interfaces.offered(self.node, self)
         self._accepted: tuple[_Prepared, World] | None = None
         self.node.add_on_set_parameters_callback(self._check_parameters)
@@ -207,8 +213,11 @@ class Simulator:
         self._begin()
 
     def load(self, playground: str) -> str:
-        """Another playground, as the parameter has it; the reason if it is refused."""
+        """Another playground, as the parameter has it, or the present one anew; the reason if it is refused."""
+        before = self.world
         result = self.node.set_parameters_atomically([Parameter("playground", value=playground)])
+        if result.successful and self.world is before:
+            self.reset()
         return "" if result.successful else str(result.reason)
 
     def count_refusal(self) -> None:
@@ -304,6 +313,12 @@ class Simulator:
         scene = SceneMessages.of(playground, self.params.map_frame, with_map=self.params.publish_map)
         return _Prepared(name, playground, Ground(playground.floors, playground.paints), scene)
 
+    def _keep_own_time(self) -> None:
+        """Without `use_sim_time`, which launch files often set for all nodes: time comes from here."""
+        if self.node.get_parameter(USE_SIM_TIME).value is True:
+            self.node.get_logger().warning(f"{USE_SIM_TIME} is left out: {OWN_TIME}")
+            self.node.set_parameters([Parameter(USE_SIM_TIME, value=False)])
+
     def _set_world(self, world: World) -> None:
         for note in world.playground.notes:
             self.node.get_logger().warning(f"playground {self.playground_name}: {note}")
@@ -388,8 +403,9 @@ class Simulator:
             for name, robot in self.world.robots.items():
                 self._roster[name].tell_place(self.world.now_ns, robot.pose, robot.tilt)
         self._publish_state()
+        self._input_types.look()
         pace = Pace(self._late_ticks, self._pacer.dropped_ticks, self._refused, self._limited)
-        self._world_ports.publish_diagnostics(self._state(), pace)
+        self._world_ports.publish_diagnostics(self._state(), pace, self._input_types.status())
 
     def _state(self) -> WorldState:
         return WorldState(
@@ -414,6 +430,8 @@ class Simulator:
         return not params.by_name(self.params).keys().isdisjoint(parameter.name for parameter in parameters)
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        if params.changes(parameters).get(USE_SIM_TIME) is True:
+            return SetParametersResult(successful=False, reason=f"{USE_SIM_TIME} is refused: {OWN_TIME}")
         if not self._are_ours(parameters):
             return SetParametersResult(successful=True)
         self.catch_up()
@@ -424,8 +442,11 @@ class Simulator:
         if value is not None:
             try:
                 prepared = self._loader.load(value)
+                is_other = value != self.params.playground or prepared.playground != self.world.playground
                 chosen = params.updated(self.params, parameters)
-                self._accepted = prepared, self._new_world(prepared.playground, chosen, prepared.ground)
+                self._accepted = (
+                    (prepared, self._new_world(prepared.playground, chosen, prepared.ground)) if is_other else None
+                )
             except (PlaygroundError, resources.ResourceError, StartError, OSError) as error:
                 return SetParametersResult(successful=False, reason=str(error))
             except Exception as error:  # our own fault in reading a file: a class goes on without it

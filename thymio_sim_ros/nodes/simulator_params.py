@@ -20,6 +20,7 @@ from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.fields import FieldError
 from thymio_sim_ros.sim.playground import Playground, RobotStart
 from thymio_sim_ros.sim.sensors import NEVER_NS, all_sensors
+from thymio_sim_ros.sim.sensors.proximity import SENSOR as SCANNER
 from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
 
 __all__ = ["SimulatorParams"]
@@ -163,6 +164,7 @@ class SimulatorParams:
             proximity=self.proximity.fields,
             pose_covariance=tuple(self.pose_covariance_diagonal),
             twist_covariance=tuple(self.twist_covariance_diagonal),
+            scan_ns=(self.periods_ns or {}).get(SCANNER.name, SCANNER.period_ns),
         )
 
     @property

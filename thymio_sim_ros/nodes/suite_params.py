@@ -32,8 +32,9 @@ Place = tuple[str, str]
 _SPECIAL: Mapping[str, tuple[Place, ...]] = {
     "port": ((PAGE, "port"),),
     "foxglove_port": ((BRIDGE, "port"), (PAGE, "foxglove_port")),
+    "robot_names": ((SIMULATOR, "robot_names"),),
 }
-"""Names that mean something else to one of the nodes that have them."""
+"""Names that mean something else to one of the nodes that have them; the runtime follows the simulator's robots."""
 
 _OF_ROS: Mapping[str, tuple[str, ...]] = {
     "use_sim_time": (RUNTIME, BRIDGE, PAGE),

@@ -19,7 +19,7 @@ from thymio_sim_ros.nodes import qos, tf_messages
 from thymio_sim_ros.nodes.audience import Audience, Heard
 from thymio_sim_ros.nodes.description import fixed_frames, wheel_position
 from thymio_sim_ros.nodes.names import MAP_FRAME, SIDES, RobotNames
-from thymio_sim_ros.nodes.patches import rotation
+from thymio_sim_ros.nodes.patches import rotation, wheel_rotation
 from thymio_sim_ros.nodes.tf_messages import Transform
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.readings import PoseReading, Reading
@@ -144,8 +144,7 @@ class Transforms:
             frames.insert(0, _planar(ns, origin, odom, origin_of(reading.truth, reading.odometry)))
         if self._options.publish_wheels:
             for wheel, place, angle in zip(wheels, _WHEELS, angles_rad, strict=True):
-                turn = (0.0, math.sin(angle / 2), 0.0, math.cos(angle / 2))
-                frames.append(Transform(ns, base, wheel, place, turn))
+                frames.append(Transform(ns, base, wheel, place, wheel_rotation(angle)))
         return frames
 
 

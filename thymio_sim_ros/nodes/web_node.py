@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 from rclpy.context import Context
 from rclpy.executors import Executor
-from rclpy.node import Node
 
 import thymio_sim_ros
 from thymio_sim_ros import resources
@@ -23,6 +22,7 @@ from thymio_sim_ros.greeting import places
 from thymio_sim_ros.nodes import params
 from thymio_sim_ros.nodes import tokens as node_tokens
 from thymio_sim_ros.nodes.life import SPIN_SLICE_S, StartError, greeted, run_main
+from thymio_sim_ros.nodes.parameter_node import parameter_node
 from thymio_sim_ros.nodes.params import param
 from thymio_sim_ros.suite import ADDRESS, FOXGLOVE_PORT, HTTP_PORT
 from thymio_sim_ros.web import Content, PageThread, Settings
@@ -48,7 +48,7 @@ class WebPage:
 
     def __init__(self, context: Context, defaults: WebParams | None = None, tokens: Tokens | None = None) -> None:
         """`tokens`: those of the bridge, for the address that is printed; None: what the node was given."""
-        self.node = Node("web_ui", context=context)
+        self.node = parameter_node("web_ui", context=context)
         try:
             self.params = params.declare(self.node, defaults or WebParams())
             params.warn_of_unknown(

@@ -73,7 +73,8 @@ TOPICS: Mapping[str, WorldTopic] = {
     "/diagnostics": WorldTopic(
         DiagnosticArray,
         "1",
-        "real-time factor wanted and achieved, late and dropped ticks, refused and limited messages, robots",
+        "real-time factor wanted and achieved, late and dropped ticks, refused and limited messages, robots; "
+        "publishers of a wrong type",
         qos.SENSOR,
     ),
 }
@@ -216,8 +217,8 @@ class WorldPorts:
         placed = [solids[thing.name].at(thing.pose) for thing in world.objects if not thing.is_fallen]
         self._publishers["_markers/objects"].publish(playground_markers(placed, self._map_frame))
 
-    def publish_diagnostics(self, state: WorldState, pace: Pace) -> None:
-        """Pace of the simulation (ros-interface.md section 5)."""
+    def publish_diagnostics(self, state: WorldState, pace: Pace, inputs: DiagnosticStatus) -> None:
+        """Pace of the simulation, and how its inputs are (ros-interface.md section 5)."""
         slow = not state.paused and 0 < state.achieved < SLOW * state.real_time_factor
         status = DiagnosticStatus(
             level=DiagnosticStatus.WARN if slow else DiagnosticStatus.OK,
@@ -235,7 +236,7 @@ class WorldPorts:
                 KeyValue(key="robots", value=str(len(state.robots))),
             ],
         )
-        message = DiagnosticArray(status=[status])
+        message = DiagnosticArray(status=[status, inputs])
         message.header.stamp = stamp(state.now_ns)
         self._publishers["/diagnostics"].publish(message)
 

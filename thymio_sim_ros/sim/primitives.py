@@ -118,7 +118,7 @@ class Slide:
 class Solid:
     """A thing that stands on the ground: outline, height, color.
 
-    `name` is its shape's, and may occur again, but only once for a solid with a load or a slide.
+    `name` is its shape's or that of a part of it, and may occur again, but only once for one with a load or a slide.
     """
 
     name: str

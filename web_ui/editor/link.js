@@ -15,6 +15,26 @@ export class Link {
   /** @param {Client} client */
   constructor(client) {
     this.client = client;
+    /** @type {Map<string | null, string>} What was loaded last, by robot. */
+    this.last = new Map();
+  }
+
+  /**
+   * What is loaded once more begins anew: a parameter that is set to what it is changes nothing.
+   *
+   * @param {string | null} robot
+   * @param {string} loaded
+   * @param {readonly string[]} robots  all there are
+   */
+  async #beginAnew(robot, loaded, robots) {
+    const isSame = this.last.get(robot) === loaded;
+    this.last.clear();
+    this.last.set(robot, loaded);
+    if (!isSame) return;
+    await this.client.setParameters([{ name: `${RUNTIME}behaviour`, value: "" }]);
+    for (const verb of /** @type {Verb[]} */ (["reset", "run"])) {
+      await Promise.all((robot === null ? robots : [robot]).map((each) => this.control(each, verb)));
+    }
   }
 
   /** @param {Parameters<typeof checkRequest>[0]} what @returns {Promise<import("./checking.js").Verdict | null>} */
@@ -58,15 +78,18 @@ export class Link {
       { name: `${prefix(robot)}script.name`, value: name },
       { name: `${prefix(robot)}script.source`, value: source },
     ]);
+    if (ok) await this.#beginAnew(robot, source, robots);
     return { ok, message: message.replace(`${prefix(robot)}script.source: `, "") };
   }
 
   /** A built-in behaviour as program. @param {string | null} robot @param {string} name @param {readonly string[]} robots */
-  loadBuiltIn(robot, name, robots) {
-    return this.client.setParameters([
+  async loadBuiltIn(robot, name, robots) {
+    const answer = await this.client.setParameters([
       ...this.#released(robot, robots),
       { name: `${prefix(robot)}script.path`, value: name },
     ]);
+    if (answer.ok) await this.#beginAnew(robot, name, robots);
+    return answer;
   }
 
   /** @param {string | null} robot @param {readonly string[]} robots */

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from thymio_sim_ros.sim.fields import Extent, Shade
@@ -14,3 +15,16 @@ class Walls:
     height_m: Extent = 0.12
     thickness_m: Extent = 0.02
     color: Shade | None = None
+
+
+_SIDES = ("east", "north-east", "north", "north-west", "west", "south-west", "south", "south-east")
+_USUAL_GROUND = "ground"
+
+
+def wall_name(ground: str, yaw_rad: float, eighths: int) -> str:
+    """What a wall is called that stands so many eighths of a turn from the x axis of a ground: "north wall".
+
+    In the world x is east; the name of a ground that is not simply called so comes first.
+    """
+    side = _SIDES[(eighths + math.floor(yaw_rad / (math.pi / 4) + 0.5)) % len(_SIDES)]
+    return f"{side} wall" if ground == _USUAL_GROUND else f"{ground} {side} wall"

@@ -9,7 +9,7 @@ from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_color
 from thymio_sim_ros.sim.geometry import Point, Pose
 from thymio_sim_ros.sim.primitives import Box, Floor, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
-from thymio_sim_ros.sim.shapes._border import Walls
+from thymio_sim_ros.sim.shapes._border import Walls, wall_name
 
 _EIGHTH = math.pi / 4
 
@@ -41,7 +41,7 @@ class Octagon:
         color = as_color(walls.color or self.color)
         return tuple(
             Solid(
-                name,
+                wall_name(name, self.yaw_rad, index),
                 Pose(*pose.place(_polar(apothem, index * _EIGHTH)), self.yaw_rad + index * _EIGHTH),
                 wall,
                 walls.height_m,

@@ -8,7 +8,7 @@ from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_color
 from thymio_sim_ros.sim.geometry import Pose
 from thymio_sim_ros.sim.primitives import Box, Floor, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
-from thymio_sim_ros.sim.shapes._border import Walls
+from thymio_sim_ros.sim.shapes._border import Walls, wall_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +38,16 @@ class Rectangle:
         x, y = self.size_x_m / 2, self.size_y_m / 2
         color = as_color(walls.color or self.color)
         return tuple(
-            Solid(name, Pose(*pose.place(middle), self.yaw_rad), box, walls.height_m, color)
-            for middle, box in (((x, 0.0), along_y), ((0.0, y), along_x), ((-x, 0.0), along_y), ((0.0, -y), along_x))
+            Solid(
+                wall_name(name, self.yaw_rad, 2 * quarter),
+                Pose(*pose.place(middle), self.yaw_rad),
+                box,
+                walls.height_m,
+                color,
+            )
+            for quarter, (middle, box) in enumerate(
+                (((x, 0.0), along_y), ((0.0, y), along_x), ((-x, 0.0), along_y), ((0.0, -y), along_x))
+            )
         )
 
 

@@ -1,0 +1,121 @@
+"""Publishers of a wrong type on topics that a node listens to: ROS connects neither, and says nothing.
+
+The usual one is a TwistStamped on `cmd_vel`, which newer teleoperation and Nav2 send. Nodes are asked what they
+publish, since topics are many and other nodes few; how often follows from what it takes.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from rclpy.node import Node, NodeNameNonExistentError
+
+__all__ = ["InputTypes", "Mismatch", "type_name"]
+
+SHARE = 0.002
+"""Of one core, at most, that looking takes."""
+LOOK_EVERY_S = 1.0
+"""Wall time between two looks, at least."""
+VELOCITY, STAMPED_PARAMETER = "cmd_vel", "stamped_cmd_vel"
+
+
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """A publisher whose messages never arrive: full names of topic and node, types as `package/msg/Name`."""
+
+    topic: str
+    node: str
+    found: str
+    expected: str
+    cure: str
+
+    def __str__(self) -> str:
+        return (
+            f"{self.topic} has a publisher of {self.found} by node {self.node}; expected {self.expected}: its messages"
+            f" never arrive. {self.cure}"
+        )
+
+
+class InputTypes:
+    """Looks for such publishers on the topics that a node subscribes to, and warns of each once while it is there."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._subscriptions: list[Any] = []
+        self._expected: dict[str, str] = {}
+        self._next_s = 0.0
+        self.mismatches: tuple[Mismatch, ...] = ()
+        """Those of the last look."""
+
+    def look(self) -> None:
+        """Look again if it is time, and warn of what is new."""
+        began_s = time.monotonic()
+        if began_s < self._next_s:
+            return
+        before, self.mismatches = self.mismatches, self._find()
+        for mismatch in self.mismatches:
+            if mismatch not in before:
+                self._node.get_logger().warning(str(mismatch))
+        ended_s = time.monotonic()
+        self._next_s = ended_s + max(LOOK_EVERY_S, (ended_s - began_s) / SHARE)
+
+    def status(self) -> DiagnosticStatus:
+        """For `/diagnostics`: WARN while there is such a publisher."""
+        count = len(self.mismatches)
+        return DiagnosticStatus(
+            level=DiagnosticStatus.WARN if count else DiagnosticStatus.OK,
+            name=f"{self._node.get_name()}: inputs",
+            hardware_id="thymio_sim_ros",
+            message=str(self.mismatches[0]) if count else "all publishers have the expected types",
+            values=[KeyValue(key=one.topic, value=str(one)) for one in self.mismatches],
+        )
+
+    def _find(self) -> tuple[Mismatch, ...]:
+        expected = self._inputs()
+        own = (self._node.get_name(), self._node.get_namespace())
+        found = {}
+        for name, namespace in dict.fromkeys(self._node.get_node_names_and_namespaces()):
+            if (name, namespace) == own:
+                continue
+            try:
+                published = self._node.get_publisher_names_and_types_by_node(name, namespace)
+            except NodeNameNonExistentError:  # it has just left
+                continue
+            for topic, types in published:
+                wanted = expected.get(topic)
+                for one in types:
+                    if wanted is not None and one != wanted:
+                        publisher = f"{namespace.rstrip('/')}/{name}"
+                        found[topic, publisher, one] = Mismatch(
+                            topic, publisher, one, wanted, cure(topic, one, wanted, expected)
+                        )
+        return tuple(found.values())
+
+    def _inputs(self) -> Mapping[str, str]:
+        """The types of all topics that the node is subscribed to now."""
+        subscriptions = list(self._node.subscriptions)
+        if subscriptions != self._subscriptions:
+            self._subscriptions = subscriptions
+            self._expected = {one.topic_name: type_name(one.msg_type) for one in subscriptions}
+        return self._expected
+
+
+def cure(topic: str, found: str, wanted: str, inputs: Mapping[str, str]) -> str:
+    """What to do about a publisher of `found` on a topic for `wanted`; `inputs`: types of topics that there are."""
+    space, _, word = topic.rpartition("/")
+    family = VELOCITY if word.startswith(VELOCITY) else word
+    others = [name for name, kind in inputs.items() if kind == found and name.startswith(f"{space}/{family}")]
+    if not others:
+        return f"Publish {wanted} there"
+    option = f", or start the simulator with {STAMPED_PARAMETER}:=true" if found.endswith("TwistStamped") else ""
+    return f"Publish it on {others[0]}{option if word == VELOCITY else ''}"
+
+
+def type_name(kind: Any) -> str:
+    """`std_msgs/msg/Bool` of a message class."""
+    package, form, *_ = kind.__module__.split(".")
+    return f"{package}/{form}/{kind.__name__}"
