@@ -159,7 +159,7 @@ async function main() {
     else actions.loadFile(file);
   });
   window.addEventListener("keydown", ({ key }) => {
-    if (key === "Escape") actions.stop();
+    if (key === "Escape" && store.state.connection === "connected") actions.stop();
   });
   client.start();
 

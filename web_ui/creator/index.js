@@ -6,7 +6,7 @@ import "./creator.css";
 import { translator } from "../i18n/index.js";
 import { download } from "../editor/download.js";
 import { faultView } from "../panels/fault.js";
-import { fileButton, h, icon, setText } from "../panels/dom.js";
+import { fileButton, h, icon, lock, setText } from "../panels/dom.js";
 import { parse } from "../playground/document.js";
 import { offGround } from "../playground/judge.js";
 import { kindNamed } from "../playground/kinds/index.js";
@@ -31,7 +31,8 @@ export { Workshop, WORDS };
 /**
  * @typedef {object} Creator
  * @property {{ stage: HTMLElement, side: HTMLElement, footer: HTMLElement }} elements
- * @property {() => void} render   once a frame: takes over what pointers did, and shows it
+ * @property {(offline: string) => void} render   once a frame: takes over what pointers did, and shows it; why the
+ *   simulator cannot be asked, if so
  * @property {(phrase: Phrase) => void} tell
  * @property {(fault: HTMLElement[] | null) => void} refuse   what is wrong with a file; null: nothing
  * @property {(file: File) => void} open   another playground from a file of ours
@@ -111,6 +112,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
   };
   /** @param {File} file */
   const open = async (file) => {
+    refuse(null);
     const content = await textOf(file);
     if (content === null) return refuse(faultView(pageText, pageText("file.notText", { name: file.name }), null));
     try {
@@ -137,6 +139,11 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     scene.look("home");
     tell({ word: "did.new" });
   };
+  const trying = h(
+    "button",
+    { type: "button", class: "primary", id: "creator-try", title: t("file.tryHelp"), onclick: tryIt },
+    t("file.try"),
+  );
   const side = h(
     "div",
     { class: "creator", role: "region", "aria-label": t("creator") },
@@ -150,11 +157,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     h(
       "div",
       { class: "row" },
-      h(
-        "button",
-        { type: "button", class: "primary", id: "creator-try", title: t("file.tryHelp"), onclick: tryIt },
-        t("file.try"),
-      ),
+      trying,
       h(
         "button",
         { type: "button", id: "creator-save", title: t("file.saveHelp"), onclick: save },
@@ -211,7 +214,8 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     tell,
     refuse,
     open: (file) => void open(file),
-    render() {
+    render(offline) {
+      lock(trying, offline);
       pointers.flush();
       scene.camera.controls.enabled = builder.cameraOn;
       setText(name, builder.playground.title || t("new.title"));

@@ -1,7 +1,7 @@
 // The robot's five buttons as a cross; a button shows as pressed when the robot says so.
 
 import { BUTTONS } from "../state/names.js";
-import { h, holdable, icon, ICONS, setAttribute } from "./dom.js";
+import { h, holdable, icon, ICONS, lock, setAttribute } from "./dom.js";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function dpadPanel({ t, actions, store }) {
@@ -23,9 +23,11 @@ export function dpadPanel({ t, actions, store }) {
   return {
     slot: "stage",
     element,
-    render({ robots, selected }) {
-      for (const { name, button } of buttons)
+    render({ connection, robots, selected }) {
+      for (const { name, button } of buttons) {
         setAttribute(button, "aria-pressed", String(robots[selected]?.buttons[name] ?? false));
+        lock(button, connection === "connected" ? "" : t("connection.needed"));
+      }
     },
   };
 }

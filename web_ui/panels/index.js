@@ -5,6 +5,7 @@ import { creatorSwitchPanel } from "./creator_switch.js";
 import { displayPanel } from "./display.js";
 import { dpadPanel } from "./dpad.js";
 import { editorSwitchPanel } from "./editor_switch.js";
+import { fallenPanel } from "./fallen.js";
 import { languagePanel } from "./language.js";
 import { noticesPanel } from "./notices.js";
 import { playgroundPanel } from "./playground.js";
@@ -53,6 +54,7 @@ export const PANELS = [
   noticesPanel,
   viewsPanel,
   dpadPanel,
+  fallenPanel,
   robotsPanel,
   programPanel,
   playgroundPanel,
