@@ -9,6 +9,7 @@ const ROOT = new URL("../../web_ui/", import.meta.url);
 const PARTS = [
   { sheet: "editor/editor.css", own: ["editor/", "editor_host.js"] },
   { sheet: "creator/creator.css", own: ["creator/", "creator_host.js"] },
+  { sheet: "tour/tour.css", own: ["tour/", "tour_host.js"] },
 ];
 
 /** Every script of the page. */

@@ -55,7 +55,8 @@ TOPICS: Mapping[str, WorldTopic] = {
     "~/state": WorldTopic(
         String,
         "1, change",
-        "JSON: playground, paused, factors, seed, ns, robots and whether they fell, things that can be moved, the topic `~/raw`",
+        "JSON: playground, paused, factors, seed, ns, robots and which of them fell, things that can be moved, the "
+        "topic `~/raw`",
         qos.LATCHED,
     ),
     "~/raw": WorldTopic(

@@ -5,15 +5,15 @@ import "./creator.css";
 
 import { translator } from "../i18n/index.js";
 import { download } from "../editor/download.js";
-import { faultView } from "../panels/fault.js";
+import { faultView, foreignView } from "../panels/fault.js";
 import { fileButton, h, icon, lock, setText } from "../panels/dom.js";
 import { parse } from "../playground/document.js";
-import { offGround } from "../playground/judge.js";
+import { lacksGround, offGround } from "../playground/judge.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { Fault } from "../playground/rules.js";
 import { textOf } from "../textfile.js";
 import { bar } from "./bar.js";
-import { newPlayground } from "./commands.js";
+import { newPlayground, withGround } from "./commands.js";
 import { itemForm } from "./form.js";
 import { CREATOR_ICONS } from "./icons.js";
 import { watchBuildingKeys } from "./keys.js";
@@ -26,6 +26,9 @@ import { WORDS } from "./words/index.js";
 import { Workshop } from "./workshop.js";
 
 export { Workshop, WORDS };
+
+/** What only a file of another kind misses. */
+const OF_ANOTHER_KIND = ["fault.json", "fault.object", "fault.format"];
 
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 /**
@@ -83,6 +86,20 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
   const list = thingsList(t, builder);
   const fault = h("div", { class: "fault", role: "alert", hidden: true });
   const warning = h("p", { class: "warning", hidden: true });
+  const groundless = h(
+    "div",
+    { class: "warning", role: "status", hidden: true },
+    h("p", {}, t("warn.noGround")),
+    h(
+      "button",
+      {
+        type: "button",
+        "data-verb": "ground",
+        onclick: () => builder.become(withGround(builder.playground), { word: "did.ground" }),
+      },
+      t("warn.addGround"),
+    ),
+  );
   const unsaved = h("span", { class: "unsaved", title: t("file.unsaved") });
   const name = h("strong", { class: "name" });
   const hint = h("p", { class: "hint building-hint" });
@@ -124,7 +141,10 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     } catch (error) {
       if (!(error instanceof Fault)) throw error;
       const text = `${error.key === "" ? "" : `${error.key}: `}found ${error.found}, expected ${say(error.expected)}`;
-      refuse(faultView(pageText, t("file.refused", { name: file.name }), { text, line: null, column: null }));
+      const headline = t("file.refused", { name: file.name });
+      const isWhole = error.key === "" || error.key === "format";
+      if (isWhole && OF_ANOTHER_KIND.includes(error.expected.word)) refuse(foreignView(pageText, headline, text));
+      else refuse(faultView(pageText, headline, { text, line: null, column: null }));
     }
   };
   const save = () => {
@@ -180,6 +200,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     ),
     fault,
     warning,
+    groundless,
     form.element,
     sheet.element,
     list.element,
@@ -224,6 +245,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
         judged = builder.playground;
         const outside = offGround(judged.items).map((item) => item.name);
         warning.hidden = outside.length === 0;
+        groundless.hidden = !lacksGround(judged.items);
         setText(warning, outside.length === 0 ? "" : t("warn.outside", { names: outside.join(", ") }));
       }
       const { placing } = builder;

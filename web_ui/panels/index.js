@@ -16,6 +16,7 @@ import { soundPanel } from "./sound.js";
 import { stopPanel } from "./stop.js";
 import { surroundingsPanel } from "./surroundings.js";
 import { timePanel } from "./time.js";
+import { tourSwitchPanel } from "./tour_switch.js";
 import { viewsPanel } from "./views.js";
 
 /** @typedef {import("../state/index.js").State} State */
@@ -32,6 +33,7 @@ import { viewsPanel } from "./views.js";
  * @property {import("../sound/speaker.js").Speaker} speaker
  * @property {import("../editor_host.js").EditorHost} editor
  * @property {import("../creator_host.js").CreatorHost} creator
+ * @property {import("../tour_host.js").TourHost} tour
  * @property {import("../gallery/shelf.js").Shelf} shelf   shipped playgrounds with their pictures
  * @property {string} address   of the simulator, for people
  * @property {(text: string) => void} announce   to the live region
@@ -50,6 +52,7 @@ export const PANELS = [
   creatorSwitchPanel,
   languagePanel,
   soundPanel,
+  tourSwitchPanel,
   stopPanel,
   noticesPanel,
   viewsPanel,

@@ -3,7 +3,7 @@
 import { galleryDialog } from "../gallery/index.js";
 import { card, showRefusal } from "./card.js";
 import { buttonOf, fileButton, h, icon, ICONS, lock, setText } from "./dom.js";
-import { faultView } from "./fault.js";
+import { faultText, faultView } from "./fault.js";
 
 const PENCIL = "M3 17.500V21h3.500L17 10.500 13.500 7zM15 5.500 18.500 9l2-2L17 3.500z";
 const PICTURES = "M4 4h7v7H4zM13 4h7v7h-7zM4 13h7v7H4zM13 13h7v7h-7z";
@@ -116,7 +116,7 @@ export function playgroundPanel(context) {
         icon(ICONS.close),
       );
       fault.replaceChildren(close, ...faultView(t, headline, playground.fault));
-      const words = `${headline} ${playground.fault?.text ?? ""}`;
+      const words = `${headline} ${faultText(t, playground.fault)}`;
       announce(words);
       if (!creator.isOpen) showRefusal(element, store, words, "playground"); // it says itself what is wrong with what it gave
     },

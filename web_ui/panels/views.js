@@ -27,6 +27,7 @@ export function viewsPanel({ t, scene, store, mover, announce }) {
     "button",
     {
       type: "button",
+      "data-view": "move",
       title: t("move"),
       "aria-label": t("move"),
       onclick: () => {
