@@ -125,7 +125,7 @@ FREE = """() => {
         const {width, height} = document.querySelector(selector).getBoundingClientRect();
         return width * height;
     };
-    return (area(".stage") - area(".drive")) / (innerWidth * innerHeight);
+    return (area(".stage") - area(".dpad") - area(".fold")) / (innerWidth * innerHeight);
 }"""
 
 
