@@ -26,7 +26,8 @@ export function placed(card, target, window) {
     { left: target.left - card.width - GAP, top: alongY },
   ].map((corner) => inside(corner, card, window));
   const free = beside.find((corner) => !overlap({ ...corner, ...card }, target));
-  return free ?? inside({ left: alongX, top: alongY }, card, window); // a large target has room in it
+  // A large target has room in it: above, where the card hides least of the view.
+  return free ?? inside({ left: alongX, top: target.top + 2 * GAP }, card, window);
 }
 
 /** @param {{ left: number, top: number }} corner @param {Size} card @param {Size} window */
