@@ -102,7 +102,7 @@ def visit(browser: Browser, address: str, size: tuple[int, int]) -> tuple[Page, 
     developer = page.context.new_cdp_session(page)
     developer.send("Network.enable")
     developer.on("Network.loadingFinished", lambda event: sizes.append(event["encodedDataLength"]))
-    page.goto(address)
+    page.goto(f"{address}?tour=off")
     page.wait_for_function("() => window.firstPictureMs")
     loading = Loading(
         paint_ms=page.evaluate(PAINT),

@@ -1,6 +1,8 @@
 // What a person can do, as the messages, calls and parameters that do it. No document, no scene.
 
 import { CHECK_SERVICE, checkRequest, firstFault } from "./editor/checking.js";
+import { startOf } from "./move/start.js";
+import { FILE } from "./state/index.js";
 import { PARAMETERS, robotTopic } from "./state/names.js";
 import { textOf } from "./textfile.js";
 
@@ -108,8 +110,11 @@ export class Actions {
     return this.call("/simulator/pause", { data: paused });
   }
 
-  step() {
-    return this.call("/simulator/step");
+  /** Let so many ticks of 10 ms pass while time is paused. @param {number} ticks */
+  async step(ticks) {
+    const chosen = await this.client.setParameters([{ name: PARAMETERS.stepTicks, value: ticks }]);
+    if (!chosen.ok) return this.#report("/simulator/step", chosen);
+    await this.call("/simulator/step");
   }
 
   reset() {
@@ -119,7 +124,7 @@ export class Actions {
   /** @param {number} factor  1: real time */
   async setFactor(factor) {
     const answer = await this.client.setParameters([{ name: PARAMETERS.factor, value: factor, type: "float64" }]);
-    if (!answer.ok) this.store.dispatch({ type: "notice", level: "error", text: answer.message });
+    this.#report(PARAMETERS.factor, answer);
   }
 
   /**
@@ -133,10 +138,15 @@ export class Actions {
     const answer = await this.client.call("/simulator/set_poses", { parameters: [{ name, value }] });
     const result = answer.value?.results?.[0] ?? { successful: answer.ok, reason: answer.message };
     if (!result.successful) {
-      this.store.dispatch({ type: "notice", level: "error", text: this.t("move.refused", { reason: result.reason }) });
-    }
-    else if (this.store.state.simulator?.paused) {
-      this.store.dispatch({ type: "notice", level: "info", text: this.t("move.later") });
+      this.#report("/simulator/set_poses", {
+        ok: false,
+        message: this.t("move.refused", { reason: result.reason }),
+      });
+    } else {
+      this.#report("/simulator/set_poses", { ok: true, message: "" });
+      if (this.store.state.simulator?.paused) {
+        this.store.dispatch({ type: "notice", level: "info", text: this.t("move.later") });
+      }
     }
     return result.successful;
   }
@@ -159,11 +169,19 @@ export class Actions {
     }
   }
 
+  /** Put a robot that fell where it started, or beside it where that is taken. @param {string} robot  in topics */
+  async putBack(robot) {
+    const text = await this.playgroundText();
+    if (text === null) return;
+    const name = this.store.state.simulator?.worldNames[robot] ?? robot;
+    await this.place(name, startOf(this.store.state, text, name));
+  }
+
   /** Switch the robots on with a built-in behaviour. @param {string} name */
   async setBehaviour(name) {
     const answer = await this.client.setParameters([{ name: PARAMETERS.behaviour, value: name }]);
     if (answer.ok) await this.#beginAnew(`behaviour ${name}`);
-    if (!answer.ok) this.store.dispatch({ type: "notice", level: "error", text: answer.message });
+    this.#report(PARAMETERS.behaviour, answer);
   }
 
   /** @param {string} name @param {string} text */
@@ -201,7 +219,7 @@ export class Actions {
   /** The playground that runs, as the text of our format; null when the simulator does not say. */
   async playgroundText() {
     const answer = await this.client.call("/simulator/get_playground");
-    if (!answer.ok) this.store.dispatch({ type: "notice", level: "error", text: answer.message });
+    this.#report("/simulator/get_playground", answer);
     return answer.ok ? answer.message : null;
   }
 
@@ -220,13 +238,18 @@ export class Actions {
 
   /** @param {string} key @param {File} file */
   refuse(key, { name }) {
-    this.store.dispatch({ type: "notice", level: "error", text: this.t(key, { name }) });
+    this.store.dispatch({ type: "notice", level: "error", text: this.t(key, { name }), cause: FILE });
   }
 
   /** @param {string} service @param {Record<string, any>} [request] */
   async call(service, request) {
-    const answer = await this.client.call(service, request);
-    if (!answer.ok) this.store.dispatch({ type: "notice", level: "error", text: answer.message });
+    this.#report(service, await this.client.call(service, request));
+  }
+
+  /** A refusal is shown until the same thing succeeds. @param {string} cause @param {{ ok: boolean, message: string }} answer */
+  #report(cause, { ok, message }) {
+    this.store.dispatch({ type: "solved", cause });
+    if (!ok) this.store.dispatch({ type: "notice", level: "error", text: message, cause });
   }
 }
 

@@ -4,6 +4,7 @@
 import { memory } from "./memory.js";
 import { faultView } from "./panels/fault.js";
 import { parse } from "./playground/document.js";
+import { CONNECTION } from "./state/index.js";
 
 /** @typedef {import("./creator/index.js").Creator} Creator */
 /** @typedef {import("./creator/workshop.js").Workshop} Workshop */
@@ -40,7 +41,9 @@ export class CreatorHost {
 
   /** Once a frame, before it is drawn. */
   render() {
-    if (this.isOpen) this.creator?.render();
+    if (!this.isOpen || this.context === null) return;
+    const { store, t } = this.context;
+    this.creator?.render(store.state.connection === "connected" ? "" : t("connection.needed"));
   }
 
   /** The page has other words, or is new. @param {Context} context */
@@ -55,7 +58,7 @@ export class CreatorHost {
     if (context === null) return;
     this.module ??= await import("./creator/index.js").catch(() => null);
     if (this.module === null) {
-      context.store.dispatch({ type: "notice", level: "error", text: context.t("app.notLoaded") });
+      context.store.dispatch({ type: "notice", level: "error", text: context.t("app.notLoaded"), cause: CONNECTION });
       return;
     }
     const title = this.module.WORDS[context.language]["new.title"];
@@ -128,6 +131,7 @@ export class CreatorHost {
     const { context, workshop, creator } = this;
     if (context === null || workshop === null || creator === null) return;
     const { actions, store, t } = context;
+    creator.refuse(null);
     await actions.loadPlayground(workshop.fileName, new TextEncoder().encode(workshop.text));
     const upload = store.state.uploads.playground;
     if (upload?.phase === "accepted") this.close();

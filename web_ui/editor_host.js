@@ -1,6 +1,7 @@
 // The place of the editor on the page: loads it when it is first opened, gives it messages while it is open.
 
 import { memory } from "./memory.js";
+import { CONNECTION } from "./state/index.js";
 
 /** @typedef {import("./editor/index.js").Editor} Editor */
 /** @typedef {import("./editor/desk.js").Desk} Desk */
@@ -52,7 +53,7 @@ export class EditorHost {
     if (this.isOpen) return;
     this.module ??= await import("./editor/index.js").catch(() => null);
     if (this.module === null) {
-      this.context?.store.dispatch({ type: "notice", level: "error", text: this.context.t("app.notLoaded") });
+      this.context?.store.dispatch({ type: "notice", level: "error", text: this.context.t("app.notLoaded"), cause: CONNECTION });
       return;
     }
     this.desk ??= new this.module.Desk(memory, Date.now);

@@ -18,6 +18,7 @@ import { snapshot } from "./state/index.js";
 import { isWatched, PARAMETERS, watchedFor } from "./state/names.js";
 import { Store } from "./state/store.js";
 import { takeToken, tokenIn } from "./token.js";
+import { TourHost } from "./tour_host.js";
 
 const DEFAULT_PORT = 8765;
 const LANGUAGE_KEY = "language";
@@ -60,6 +61,7 @@ async function main() {
     slot: (name) => element(`[data-slot="${name}"]`),
     scene: () => scene,
   });
+  const tour = new TourHost();
   const client = new Client({
     address,
     token,
@@ -105,6 +107,7 @@ async function main() {
     sketch: () => creator.sketch,
     beforeDraw: () => {
       creator.render();
+      tour.render();
       panels.forEach((panel) => panel.render?.(store.state));
       for (const driving of document.querySelectorAll("[data-drives]")) {
         driving.toggleAttribute("inert", store.state.readOnly);
@@ -136,11 +139,12 @@ async function main() {
     showTrouble();
     document.querySelectorAll(".banner, .hint").forEach((banner) => banner.remove());
     for (const panel of panels) panel.element.remove();
-    const context = { t, language, setLanguage, actions, store, scene, mover, speaker, editor, creator, shelf, address, announce };
+    const context = { t, language, setLanguage, actions, store, scene, mover, speaker, editor, creator, tour, shelf, address, announce };
     panels = PANELS.map((create) => create(context));
     for (const panel of panels) element(`[data-slot="${panel.slot}"]`).append(panel.element);
     editor.dress(context);
     creator.dress(context);
+    tour.dress(context);
     scene.invalidate();
   };
   /** @param {string} chosen */
@@ -169,9 +173,10 @@ async function main() {
     else actions.loadFile(file);
   });
   window.addEventListener("keydown", ({ key }) => {
-    if (key === "Escape") actions.stop();
+    if (key === "Escape" && store.state.connection === "connected") actions.stop();
   });
   client.start();
+  tour.begin();
 
   // Read-only, for tests: what the page knows, what it has drawn, and where a part is on the screen.
   Object.defineProperty(window, "thymio", {

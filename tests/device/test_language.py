@@ -5,9 +5,19 @@ import json
 import pytest
 
 from aseba_vm import messages
+from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros import resources
 from thymio_sim_ros.device import help as helps
-from thymio_sim_ros.device.language import MOST_CHARACTERS, Question, check, describe_program, describe_target, doubts
+from thymio_sim_ros.device.help_order import ORDER
+from thymio_sim_ros.device.language import (
+    MOST_CHARACTERS,
+    Question,
+    check,
+    describe_program,
+    describe_target,
+    doubts,
+    is_hidden,
+)
 from thymio_sim_ros.device.layout import PLAYGROUND, target
 from thymio_sim_ros.device.program import load_program
 
@@ -131,6 +141,24 @@ def test_the_target_says_all_that_a_program_can_use():
     assert told["limits"]["bytecode"] == 1534
     assert "onevent" in told["keywords"]
     assert len(describe_target(PLAYGROUND)["natives"]) < len(told["natives"])
+
+
+def test_what_beginners_need_most_comes_first():
+    told = describe_target()
+    names = {kind: [entry["name"] for entry in told[kind]] for kind in ("variables", "natives", "events")}
+    assert names["variables"][:2] == ["motor.left.target", "motor.right.target"]
+    assert names["natives"][0] == "leds.top"
+    families = list(dict.fromkeys(name.split(".")[0] for name in names["natives"] if not name.startswith("_")))
+    assert families[:4] == ["leds", "sound", "prox", "math"]
+    places = {name: place for place, name in enumerate(names["variables"])}
+    assert places["motor.left.target"] < places["motor.left.speed"] < places["motor.left.pwm"]
+    assert max(place for name, place in places.items() if not is_hidden(name)) < places["_id"]
+
+
+@pytest.mark.parametrize("kind", ["variables", "natives", "events"])
+def test_every_name_for_beginners_has_its_place_and_no_other_name(kind):
+    known = [entry.name for entry in getattr(THYMIO_II, {"events": "local_events"}.get(kind, kind))]
+    assert sorted(ORDER[kind]) == sorted(name for name in known if not is_hidden(name))
 
 
 def test_every_name_of_the_robot_has_help():

@@ -69,6 +69,16 @@ def test_a_robot_is_spawned_and_removed_while_the_world_is_paused(ros, simulatio
     ros.until(lambda: [robot["robot"] for robot in json.loads(states[-1].data)["robots"]] == ["thymio"])
 
 
+def test_the_state_says_which_robots_fell(ros, simulation):
+    sim = simulation(playground=ROOM)
+    states = ros.collect(String, "/simulator/state")
+    ros.until(lambda: states and json.loads(states[-1].data)["robots"][0]["fallen"] is False)
+    assert ask(ros, "set_poses", thymio=numbers(50.0, 50.0)) == {"thymio": ""}
+    sim.until(lambda: json.loads(states[-1].data)["robots"][0]["fallen"] is True)
+    assert ask(ros, "set_poses", thymio=numbers(0.0, 0.0)) == {"thymio": ""}
+    sim.until(lambda: json.loads(states[-1].data)["robots"][0]["fallen"] is False)
+
+
 def test_a_robot_that_was_spawned_measures_and_obeys(ros, simulation):
     sim = simulation(playground=ROOM)
     ask(ros, "spawn", anna=numbers(-0.5, 0.25))

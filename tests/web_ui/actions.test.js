@@ -72,7 +72,7 @@ test("a robot's own runtime is asked, else the one that all share", async () => 
 
 test("a call that is refused is told", async () => {
   const { actions, store } = prepared({ ok: false, message: "not paused" });
-  await actions.step();
+  await actions.step(10);
   assert.deepEqual(
     store.state.notices.map(({ level, text }) => [level, text]),
     [["error", "not paused"]],
@@ -214,4 +214,26 @@ test("a touch lasts long enough for the robot to see it", () => {
   now = 900;
   actions.press("", "left", false);
   assert.deepEqual(asked, [true, false, true, true, false]);
+});
+
+test("a step lets as much time pass as was chosen", async () => {
+  const { actions, asked } = prepared();
+  await actions.step(100);
+  assert.deepEqual(asked, [
+    ["set", [{ name: "/simulator.step_ticks", value: 100 }]],
+    ["call", "/simulator/step", undefined],
+  ]);
+});
+
+test("what was refused is not told any more when it is done", async () => {
+  const refused = prepared({ ok: false, message: "not paused" });
+  await refused.actions.step(1);
+  const done = new Actions({
+    client: /** @type {any} */ ({ call: async () => ({ ok: true, message: "" }), setParameters: async () => ({ ok: true }) }),
+    store: refused.store,
+    t: (key) => key,
+    language: () => "de",
+  });
+  await done.step(1);
+  assert.deepEqual(refused.store.state.notices, []);
 });

@@ -2,16 +2,17 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { Builder } from "../../web_ui/creator/builder.js";
-import { freeName, grounded, groundOf, newPlayground } from "../../web_ui/creator/commands.js";
+import { freeName, grounded, groundOf, newPlayground, withGround } from "../../web_ui/creator/commands.js";
 import { History } from "../../web_ui/creator/history.js";
 import { canTurn, middleOf, moved, pointsOf, turned, withPoint } from "../../web_ui/creator/place.js";
 import { sketchOf } from "../../web_ui/creator/sketch.js";
 import { rounded, snapped } from "../../web_ui/creator/snap.js";
 import { shown, taken } from "../../web_ui/creator/units.js";
+import { WheelSteps } from "../../web_ui/creator/wheel.js";
 import { WORDS } from "../../web_ui/creator/words/index.js";
 import { Workshop } from "../../web_ui/creator/workshop.js";
 import { parse, write } from "../../web_ui/playground/document.js";
-import { offGround } from "../../web_ui/playground/judge.js";
+import { lacksGround, offGround } from "../../web_ui/playground/judge.js";
 import { SHAPES } from "../../web_ui/playground/kinds/index.js";
 
 /** Straight down. @param {number} x @param {number} y */
@@ -384,4 +385,59 @@ test("while only the pointer moves the world that is drawn stays the same", () =
   workshop.builder.placing?.put();
   assert.notEqual(workshop.world, world);
   clearTimeout(workshop.timer);
+});
+
+test("a notch of any mouse is one step, and a touchpad's way adds up", () => {
+  const notches = [
+    { deltaY: 120, deltaMode: 0 },
+    { deltaY: 100, deltaMode: 0 },
+    { deltaY: 66.7, deltaMode: 0 }, // the page is at 150 %
+    { deltaY: 3, deltaMode: 1 },
+    { deltaY: 1, deltaMode: 2 },
+  ];
+  for (const notch of notches) {
+    const wheel = new WheelSteps();
+    assert.deepEqual([1, 2, 3].map(() => wheel.take(notch)), [1, 1, 1]);
+    assert.equal(wheel.take({ ...notch, deltaY: -notch.deltaY }), -1);
+  }
+  assert.equal(new WheelSteps().take({ deltaY: 240, deltaMode: 0 }), 2);
+  const pad = new WheelSteps();
+  const steps = Array.from({ length: 60 }, () => pad.take({ deltaY: 4, deltaMode: 0 }));
+  assert.equal(steps.reduce((sum, one) => sum + one, 0), 2);
+});
+
+test("a playground without any ground gets one under all that stands there", () => {
+  const bare = grounded(newPlayground("Mine"), "none");
+  assert.ok(lacksGround(bare.items));
+  assert.ok(!lacksGround(newPlayground("Mine").items));
+  assert.ok(!lacksGround([...bare.items, { kind: "of_a_plugin", name: "sand" }]));
+  const far = { ...bare, items: [...bare.items, { kind: "robot", name: "other", x_m: 2, y_m: -0.5 }] };
+  const whole = withGround(far);
+  assert.ok(!lacksGround(whole.items));
+  assert.deepEqual(offGround(whole.items), []);
+  parse(write(whole));
+});
+
+test("what was saved is saved after a reload too, and what is as in the file counts as saved", () => {
+  /** @type {Map<string, string>} */ const kept = new Map();
+  const shelf = {
+    getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
+    setItem: (/** @type {string} */ key, /** @type {string} */ value) => void kept.set(key, value),
+    removeItem: (/** @type {string} */ key) => void kept.delete(key),
+  };
+  const options = { shelf, title: "Mine", tell: () => {}, changed: () => {} };
+  const workshop = new Workshop(options);
+  const titled = (/** @type {Workshop} */ one, /** @type {string} */ title) =>
+    one.builder.become({ ...one.builder.playground, title }, { word: "did.titled" });
+  titled(workshop, "Yours");
+  workshop.keep();
+  assert.equal(new Workshop(options).isUnsaved, true);
+  workshop.noteSaved();
+  assert.equal(new Workshop(options).isUnsaved, false);
+  titled(workshop, "Ours");
+  assert.equal(workshop.isUnsaved, true);
+  titled(workshop, "Yours");
+  assert.equal(workshop.isUnsaved, false);
+  workshop.keep();
+  assert.equal(new Workshop(options).isUnsaved, false);
 });

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { poseAt, shortestTurn } from "../../web_ui/scene/motion.js";
-import { LEVELS, Quality } from "../../web_ui/scene/quality.js";
+import { LEVELS, pictureRatio, Quality } from "../../web_ui/scene/quality.js";
 
 /** @param {number} x @param {number} yaw @param {number} arrivedMs @param {number} [stampNs] */
 function sample(x, yaw, arrivedMs, stampNs = arrivedMs * 1e6) {
@@ -49,4 +49,18 @@ test("fast frames and pauses leave the quality alone", () => {
   const quality = new Quality(0);
   for (let frame = 0; frame < 1000; frame++) quality.note(frame * 20 + Math.floor(frame / 10) * 1000, frame % 10 !== 9);
   assert.equal(quality.level, 0);
+});
+
+test("a saved picture is large however coarsely the view is drawn, and never too large for a graphics card", () => {
+  for (const [width, height, devicePixelRatio] of [
+    [800, 600, 1],
+    [390, 480, 3],
+    [1600, 900, 2],
+    [150, 900, 1],
+  ]) {
+    const ratio = pictureRatio({ width, height }, devicePixelRatio);
+    assert.ok(ratio >= devicePixelRatio);
+    assert.ok(Math.max(width, height) * ratio <= 4096 + 1e-6);
+    assert.ok(width * ratio >= 1920 - 1e-6 || height * ratio >= 4096 - 1e-6);
+  }
 });

@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { Mover } from "../../web_ui/move/mover.js";
+import { startOf } from "../../web_ui/move/start.js";
 import { blocker, hit, movables, obstacles, overlap, reach } from "../../web_ui/move/things.js";
 import { INITIAL } from "../../web_ui/state/index.js";
 import { NEW_ROBOT } from "../../web_ui/state/robot.js";
@@ -146,4 +147,27 @@ test("an empty world leaves the hand empty", async () => {
   mover.nudge(1, 0);
   await mover.drop();
   assert.equal(mover.held, null);
+});
+
+/** A playground of ours with a floor, and one robot. @param {number} size @param {Record<string, any>} robot */
+function floor(size, robot) {
+  const shapes = [{ kind: "rectangle", name: "ground", size_x_m: size, size_y_m: size, color: "#ffffff" }];
+  return JSON.stringify({ format: 1, title: "Floor", shapes, robots: [{ name: "thymio", ...robot }] });
+}
+
+test("a robot that fell is put where it started", () => {
+  const found = startOf(world(), floor(2, { x_m: -0.5, y_m: 0.5, yaw_rad: 1 }), "thymio");
+  assert.deepEqual(found, { x: -0.5, y: 0.5, yaw: 1 });
+});
+
+test("where something stands at the start it is put beside it, on the ground", () => {
+  const start = { x_m: 0.25, y_m: 0 }; // its front would be in the can
+  assert.deepEqual(startOf(world(), floor(2, start), "thymio"), { x: 0.4, y: 0, yaw: 0 });
+  const onSmallFloor = startOf(world(), floor(0.6, start), "thymio");
+  assert.deepEqual([onSmallFloor.x.toFixed(3), onSmallFloor.y.toFixed(3)], ["0.250", "0.150"]);
+});
+
+test("a robot that came later is put at the start of another, or beside it", () => {
+  const found = startOf(world(), floor(2, { x_m: 0, y_m: 0 }), "anna");
+  assert.ok(Math.hypot(found.x, found.y) > 0.1);
 });

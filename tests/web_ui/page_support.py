@@ -55,10 +55,15 @@ def drop_file(page: Any, path: Path, selector: str) -> None:
         developer.send("Input.dispatchDragEvent", {"type": kind, "data": data} | place)
 
 
+def without_tour(address: str) -> str:
+    """The page's address for somebody who has seen the tour, as a teacher or a kiosk opens it."""
+    return f"{address}{'&' if '?' in address else '?'}tour=off"
+
+
 def open_page(page: Any, address: str) -> None:
     """Load the page, as soon as the suite answers, and wait for the robot and for what the simulator says of itself."""
     wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
-    page.goto(address)
+    page.goto(without_tour(address))
     page.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
     page.wait_for_function("window.thymio.state().simulator !== null")
 

@@ -26,3 +26,10 @@ test("a fault is told in the language of the page if the runtime speaks it", () 
   assert.equal(faultWords(FAILED, "de"), "division by zero");
   assert.equal(faultWords({ state: "running", fault: "", faults: "{}" }, "de"), "");
 });
+
+test("a program that runs while time is paused says so, and one that has ended does not", () => {
+  const t = translator("en");
+  assert.equal(stateWord("running", t, true), "running, time is paused");
+  assert.equal(stateWord("running", t, false), "running");
+  assert.equal(stateWord("stopped", t, true), "stopped");
+});

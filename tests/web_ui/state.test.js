@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { INITIAL, locate, programOf, reduce, snapshot } from "../../web_ui/state/index.js";
+import { Store } from "../../web_ui/state/store.js";
 import { applyMarkers } from "../../web_ui/state/markers.js";
 import { isWatched, splitTopic } from "../../web_ui/state/names.js";
 import { NEW_ROBOT } from "../../web_ui/state/robot.js";
@@ -121,7 +122,7 @@ test("the simulator and its playgrounds are told as JSON", () => {
     ),
     message("/simulator/_playgrounds", json([{ name: "line", title: "Line", description: "d" }, { name: "base" }])),
   ]);
-  assert.deepEqual(simulator, { playground: "line", title: "Line", notes: [], paused: true, factor: 2, achieved: 1.5, robots: null, worldNames: {}, movables: [] });
+  assert.deepEqual(simulator, { playground: "line", title: "Line", notes: [], paused: true, factor: 2, achieved: 1.5, robots: null, worldNames: {}, fallen: [], movables: [] });
   assert.deepEqual(playgrounds[1], { name: "base", title: "base", description: "", translations: {} });
 });
 
@@ -320,4 +321,50 @@ test("of a crowd, what a robot measured is forgotten when another is selected", 
 test("robots stand in the order of their numbers", () => {
   const topics = ["/thymio_10/_ground_truth/odom", "/thymio_2/_ground_truth/odom", "/anna/_ground_truth/odom"];
   assert.deepEqual(Object.keys(after([{ type: "channels", topics }]).robots), ["anna", "thymio_2", "thymio_10"]);
+});
+
+test("a notice goes with its cause, and one of the bridge when the bridge takes it back", () => {
+  const store = new Store();
+  /** @param {import("../../web_ui/state/index.js").Message[]} messages */
+  const told = (...messages) => {
+    for (const message of messages) store.dispatch(message);
+    return store.state.notices.map(({ text }) => text);
+  };
+  told({ type: "notice", level: "error", text: "refused", cause: "/simulator/step" });
+  told({ type: "notice", level: "error", text: "for good" });
+  told({ type: "status", status: { level: 2, message: "too many", id: "channels" } });
+  assert.deepEqual(told({ type: "solved", cause: "/simulator/step" }), ["for good", "too many"]);
+  assert.deepEqual(told({ type: "removeStatus", ids: ["channels"] }), ["for good"]);
+  told({ type: "notice", level: "error", text: "nobody there", cause: "connection" });
+  assert.deepEqual(told({ type: "connected" }), ["for good"]);
+});
+
+test("what was told of a file goes with the next attempt", () => {
+  const store = new Store();
+  store.dispatch({ type: "notice", level: "error", text: "no playground", cause: "file" });
+  store.dispatch({ type: "notice", level: "error", text: "bad.json", cause: "upload playground" });
+  store.dispatch({ type: "notice", level: "error", text: "bad.aesl", cause: "upload program" });
+  store.dispatch({ type: "upload", what: "playground", name: "good.json", text: "" });
+  assert.deepEqual(
+    store.state.notices.map(({ text }) => text),
+    ["bad.aesl"],
+  );
+});
+
+test("the id of a notice is never given again", () => {
+  const store = new Store();
+  store.dispatch({ type: "notice", level: "info", text: "one" });
+  const [{ id }] = store.state.notices;
+  store.dispatch({ type: "dismiss", id });
+  store.dispatch({ type: "notice", level: "info", text: "two" });
+  assert.notEqual(store.state.notices[0].id, id);
+});
+
+test("robots that fell are known by their names in topics", () => {
+  const robots = [
+    { name: "", robot: "thymio", fallen: true },
+    { name: "b", robot: "blue", fallen: false },
+  ];
+  const { simulator } = after([message("/simulator/state", json({ playground: "table", robots }))]);
+  assert.deepEqual(simulator?.fallen, [""]);
 });

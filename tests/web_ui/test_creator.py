@@ -289,7 +289,7 @@ def test_places_keep_to_the_grid_unless_alt_is_held_and_the_wheel_turns_what_is_
     page.mouse.move(*spot(page, -0.3, 0.2))
     page.wait_for_function("Math.abs(window.thymio.built().placing.place[0] + 0.3) < 0.01")
     page.mouse.wheel(0, 120)
-    playwright.expect(page.locator(".told")).to_contain_text("-30°")
+    playwright.expect(page.locator(".told")).to_contain_text("-15°")
     page.keyboard.down("Alt")
     click(page, -0.313, 0.207)
     page.keyboard.up("Alt")
@@ -299,7 +299,7 @@ def test_places_keep_to_the_grid_unless_alt_is_held_and_the_wheel_turns_what_is_
     assert placed["box_2"]["x_m"] == pytest.approx(-0.313, abs=0.003)
     assert placed["box_2"]["y_m"] == pytest.approx(0.207, abs=0.003)
     assert placed["box_2"]["x_m"] != -0.3
-    assert placed["box_2"]["yaw_rad"] == pytest.approx(-math.radians(30), abs=1e-3)
+    assert placed["box_2"]["yaw_rad"] == pytest.approx(-math.radians(15), abs=1e-3)
 
 
 def test_shift_switches_the_camera_off_and_on_and_clicks_place_either_way(suite, page):
@@ -441,3 +441,52 @@ def test_a_picture_lies_on_the_ground(suite, page, tmp_path):
     wait_for_items(page, 3)
     page.click("#creator-try")
     page.wait_for_function("window.thymio.state().simulator.playground === 'My_playground.json'")
+
+
+def test_the_mark_of_what_is_not_saved_is_that_of_the_creator_and_goes_for_good_when_it_is_saved(suite, page):
+    open_creator(page, suite)
+    mark = page.locator(".creator .unsaved")
+    playwright.expect(mark).to_be_hidden()
+    page.locator("[data-field=title]").fill("Kept")
+    page.locator("[data-field=title]").press("Enter")
+    playwright.expect(mark).to_be_visible()
+    page.click("#editor-switch")
+    page.focus(".cm-content")
+    page.keyboard.insert_text("var a")
+    star = page.locator(".editor .unsaved")
+    playwright.expect(star).to_be_visible()
+    assert star.evaluate("(one) => [getComputedStyle(one).backgroundColor, one.textContent]") == [
+        "rgba(0, 0, 0, 0)",
+        "●",
+    ]
+    page.click("#creator-switch")
+    playwright.expect(mark).to_be_visible()
+    with page.expect_download():
+        page.click("#creator-save")
+    playwright.expect(mark).to_be_hidden()
+    page.reload()
+    page.wait_for_function("window.thymio && window.thymio.connected")
+    page.click("#creator-switch")
+    page.wait_for_function("window.thymio.built()?.playground.title === 'Kept'")
+    wait_for_frame(page)
+    playwright.expect(mark).to_be_hidden()
+
+
+def test_without_any_ground_the_creator_warns_and_adds_one_at_a_click(suite, page):
+    open_creator(page, suite)
+    add = page.get_by_role("button", name="Add a ground")
+    playwright.expect(add).to_be_hidden()
+    page.select_option("#creator-ground", "none")
+    add.click()
+    playwright.expect(add).to_be_hidden()
+    page.wait_for_function("window.thymio.built().playground.items[0].kind === 'rectangle'")
+
+
+def test_a_file_that_is_no_playground_is_refused_in_plain_words(suite, page, tmp_path):
+    letter = tmp_path / "letter.json"
+    letter.write_text("hello")
+    open_creator(page, suite)
+    page.set_input_files("#creator-file", str(letter))
+    fault = page.locator(".creator .fault")
+    playwright.expect(fault).to_contain_text("This file is not a playground.")
+    playwright.expect(fault.locator(".technical")).to_be_hidden()

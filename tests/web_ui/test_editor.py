@@ -240,6 +240,19 @@ def test_a_text_is_as_it_was_left_after_a_look_at_the_robot_and_in_another_langu
     expect(editor, ".cm-activeLine").to_have_text("count = count + 1")
 
 
+def test_what_pupils_need_most_is_offered_first_and_stands_first_in_the_help(editor):
+    write(editor, "")
+    for typed, first in (("motor.", "motor.left.target"), ("call l", "leds.top"), ("onevent b", "button.center")):
+        write(editor, "")
+        editor.keyboard.type(typed)
+        offered = editor.locator(".cm-tooltip-autocomplete li .cm-completionLabel")
+        playwright.expect(offered.first).to_have_text(first)
+        editor.keyboard.press("Escape")
+    editor.get_by_role("tab", name="Help").click()
+    names = editor.locator(".reference .entry-help button")
+    playwright.expect(names.first).to_contain_text("leds.top(")
+
+
 def test_each_of_two_robots_has_its_program(suite, page):
     open_page(page, suite("--playground", "two_robots", "--program", "none"))
     page.click("#editor-switch")

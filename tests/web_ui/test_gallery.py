@@ -80,6 +80,18 @@ def test_a_broken_file_is_told_with_place_found_and_expected_and_the_world_stays
     assert page.evaluate("window.thymio.state().simulator.playground") == "base"
 
 
+def test_a_file_that_is_no_playground_is_refused_in_plain_words(suite, page, tmp_path):
+    letter = tmp_path / "letter.json"
+    letter.write_text("hello")
+    open_gallery(page, suite)
+    page.set_input_files("#gallery-file", str(letter))
+    fault = page.locator("dialog.gallery div.fault")
+    playwright.expect(fault).to_contain_text("This file is not a playground.")
+    playwright.expect(fault.get_by_text("Expecting value")).to_be_hidden()
+    fault.locator("summary").click()
+    playwright.expect(fault.locator(".technical")).to_contain_text("line 1, column 1")
+
+
 def test_a_playground_of_the_thesis_is_taken_and_shows_its_things(suite, page, tmp_path):
     foreign = tmp_path / "mine.json"
     pillar = {"topRadius": 2, "botRadius": 2, "height": 6, "color": "#9fa3bd", "positionX": 20, "positionZ": 0}

@@ -8,7 +8,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page, wait_for_service, wait_until_settled
+from tests.web_ui.page_support import MARKS, open_page, wait_for_program, wait_for_service, wait_until_settled
 
 pytestmark = MARKS
 
@@ -75,3 +75,25 @@ def test_the_move_mode_turns_by_the_ring_and_moves_by_keys(suite, page, still_wo
     page.keyboard.press("Escape")
     page.wait_for_function("() => window.thymio.held() === null")
     assert page.evaluate("() => window.thymio.state().robot.buttons.center") is False
+
+
+def test_a_robot_that_fell_says_so_and_is_put_back(suite, page, tmp_path):
+    ground = {"kind": "rectangle", "size_x_m": 0.8, "size_y_m": 0.8, "color": "#ffffff"}
+    playground, program = tmp_path / "table.json", tmp_path / "off.aesl"
+    robots = [{"name": "thymio", "x_m": 0.25, "y_m": 0}]
+    playground.write_text(json.dumps({"format": 1, "title": "Table", "shapes": [ground], "robots": robots}))
+    program.write_text("onevent button.forward\nmotor.left.target = 300\nmotor.right.target = 300\n")
+    open_page(page, suite("--playground", str(playground), "--program", str(program)))
+    wait_for_program(page, "off.aesl")
+    back = page.get_by_role("button", name="Put me back")
+    playwright.expect(back).to_have_count(0)
+    page.click("[data-button=forward]")
+    playwright.expect(page.locator(".fallen")).to_contain_text("I fell.")
+    page.click("button.stop")
+    page.wait_for_function("() => Math.abs(window.thymio.state().robot.wheelSpeeds.left) < 0.1")
+    back.click()
+    page.wait_for_function(
+        "() => { const {x, y, z} = window.thymio.state().robot.latest.pose;"
+        " return Math.hypot(x - 0.25, y) < 0.02 && Math.abs(z) < 0.01; }"
+    )
+    playwright.expect(back).to_have_count(0)

@@ -32,6 +32,47 @@ def test_a_restarted_simulator_is_found_again_and_what_was_known_of_the_old_one_
     playwright.expect(page.locator(".chip")).to_have_attribute("data-state", "connected")
 
 
+LOCKED = (
+    ".dpad button, .card.program .verbs button, #playground-choice, #gallery-open, .time button, .time select, .stop"
+)
+STATES = """(controls) => [...document.querySelectorAll(controls)]
+    .map((one) => [one.matches(":disabled"), one.title || one.closest("fieldset")?.title || ""])"""
+
+
+def test_what_needs_the_simulator_is_off_while_it_is_gone_and_says_why(suite, page):
+    ports = (free_port(), free_port())
+    arguments = ("--playground", "base", "--behaviour", "menu")
+    open_page(page, suite(*arguments, ports=ports))
+    page.wait_for_function("window.thymio.state().program?.state === 'running'")
+    page.click("#editor-switch")
+    page.locator(".cm-content").wait_for()
+    suite.end()
+    page.wait_for_function("() => !window.thymio.connected")
+    load = page.locator("[data-verb=load]")
+    playwright.expect(load).to_be_disabled()
+    page.focus(".cm-content")
+    page.keyboard.press("Control+End")
+    page.keyboard.insert_text("# kept")
+    page.click("#editor-switch")
+    surroundings = ".card.surroundings input, .card.surroundings button, .card.surroundings select"
+    states = page.evaluate(STATES, f"{LOCKED}, {surroundings}")
+    assert len(states) > 30
+    assert all(disabled for disabled, _ in states)
+    assert {title for _, title in page.evaluate(STATES, LOCKED)} == {"Not connected to the simulator"}
+    suite(*arguments, ports=ports)
+    wait_for_port(ports[1])
+    page.wait_for_function("window.thymio.connected && window.thymio.state().program?.state === 'running'")
+    playwright.expect(page.locator(".time button.primary")).to_be_enabled()
+    page.locator(".time button.primary").click()
+    page.wait_for_function(PAUSED)
+    playwright.expect(page.locator(".dpad button").first).to_be_enabled()
+    playwright.expect(page.locator(".dpad button").first).to_have_attribute("title", "Forward")
+    for states in (page.evaluate(STATES, LOCKED), page.evaluate(STATES, surroundings)):
+        assert not any(disabled for disabled, _ in states)
+    page.click("#editor-switch")
+    playwright.expect(page.locator(".cm-content")).to_contain_text("# kept")
+
+
 NO_STORAGE = """Object.defineProperty(window, "localStorage", {
     get() { throw new DOMException("The browser keeps nothing.", "SecurityError"); }
 })"""

@@ -118,3 +118,35 @@ def test_on_a_phone_nothing_lies_beyond_the_edge_and_stop_is_in_sight(suite, tab
             tablet.locator({"#editor-switch": ".cm-content", "#creator-switch": ".palette"}[switch]).wait_for()
         tablet.wait_for_function("() => document.documentElement.scrollWidth <= innerWidth")
         tablet.wait_for_function(STOP_IN_SIGHT)
+
+
+FREE = """() => {
+    const area = (selector) => {
+        const {width, height} = document.querySelector(selector).getBoundingClientRect();
+        return width * height;
+    };
+    return (area(".stage") - area(".dpad") - area(".fold")) / (innerWidth * innerHeight);
+}"""
+
+
+@pytest.mark.parametrize("size", [(390, 844), (360, 640)])
+def test_on_a_phone_the_scene_keeps_more_than_half_of_the_page_and_the_pad_can_be_hidden(suite, tablet, size):
+    tablet.set_viewport_size({"width": size[0], "height": size[1]})
+    open_page(tablet, suite(*RESTING))
+    for language in ("de", "fr", "it", "en"):
+        tablet.select_option("select.language", language)
+        tablet.wait_for_function("(language) => document.documentElement.lang === language", arg=language)
+        assert tablet.evaluate(FREE) > 0.5
+    forward = tablet.locator("[data-button=forward]")
+    tablet.get_by_role("button", name="Hide the buttons").tap()
+    forward.wait_for(state="hidden")
+    tablet.reload()
+    tablet.wait_for_function("window.thymio && window.thymio.connected")
+    show = tablet.get_by_role("button", name="Show the buttons")
+    show.wait_for()
+    assert forward.is_hidden()
+    show.tap()
+    forward.wait_for(state="visible")
+    tablet.set_viewport_size({"width": 1280, "height": 800})
+    show.wait_for(state="hidden")
+    forward.wait_for(state="visible")

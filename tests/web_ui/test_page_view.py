@@ -25,6 +25,7 @@ FLAT_COLORS = """() => {
   const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
   return new Set(new Uint32Array(data.buffer)).size;
 }"""
+CANVAS = "() => document.querySelector('#view').width"
 PNG = b"\x89PNG\r\n\x1a\n"
 RESTING = ("--playground", "base", "--program", "none")
 
@@ -43,7 +44,9 @@ def test_without_webgl_the_world_is_drawn_from_above_and_its_buttons_work(suite,
     page.mouse.up()
     with page.expect_download() as download:
         page.locator("button.picture").click()
-    assert Path(download.value.path()).read_bytes().startswith(PNG)
+    content = Path(download.value.path()).read_bytes()
+    assert content.startswith(PNG)
+    assert int.from_bytes(content[16:20]) >= 1920
 
 
 def test_a_picture_that_is_lost_for_good_is_drawn_from_above(suite, page):
@@ -57,6 +60,9 @@ def test_a_picture_that_is_lost_for_good_is_drawn_from_above(suite, page):
 def test_the_view_is_saved_as_a_picture_and_the_robot_sees_with_its_own_eye(suite, page):
     open_page(page, suite(*RESTING))
     wait_until_settled(page, "robot")
+    page.select_option("#quality", "simple")
+    page.wait_for_function(f"({CANVAS})() < 500")
+    coarse = page.evaluate(CANVAS)
     sizes = []
     for key in ("Home", "e"):
         page.locator("#view").focus()
@@ -68,7 +74,9 @@ def test_the_view_is_saved_as_a_picture_and_the_robot_sees_with_its_own_eye(suit
         assert download.value.suggested_filename.startswith("base-")
         sizes.append(content)
     assert sizes[0] != sizes[1]
+    assert all(int.from_bytes(content[16:20]) >= 1920 for content in sizes), "width in the PNG's header"
     assert page.evaluate("() => window.thymio.partPosition('robot')") is None  # it does not see itself
+    assert page.evaluate(CANVAS) == coarse
 
 
 def test_two_robots_have_colours_and_numbers_are_at_the_beams_of_the_selected_one(suite, page):

@@ -18,6 +18,7 @@ from aseba_vm.lexer import KEYWORDS
 from aseba_vm.messages import LANGUAGES, MESSAGES, wording
 from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros.device.help import help_of
+from thymio_sim_ros.device.help_order import rank
 from thymio_sim_ros.device.layout import THYMIO, target
 from thymio_sim_ros.device.outline import outline
 from thymio_sim_ros.device.program import ThymioProgram, is_left_out, made_for, memory_use, parse, select
@@ -85,7 +86,7 @@ def check(question: Question) -> dict[str, Any]:
 
 
 def describe_target(layout: str = THYMIO, language: str = ENGLISH) -> dict[str, Any]:
-    """What every program of a robot of this layout can use, and the limits it has to keep."""
+    """What every program of a robot of this layout can use, the most useful first, and the limits it has to keep."""
     memory = target(layout)
     return {
         "name": memory.name,
@@ -99,11 +100,11 @@ def describe_target(layout: str = THYMIO, language: str = ENGLISH) -> dict[str, 
                 "hidden": is_hidden(variable.name),
                 "help": help_of("variables", variable.name, language),
             }
-            for variable in memory.variables
+            for variable in sorted(memory.variables, key=lambda variable: _rank("variables", variable.name))
         ],
         "events": [
             {"name": event.name, "help": help_of("events", event.name, language, other=event.description)}
-            for event in memory.local_events
+            for event in sorted(memory.local_events, key=lambda event: _rank("events", event.name))
         ],
         "natives": [
             {
@@ -112,7 +113,7 @@ def describe_target(layout: str = THYMIO, language: str = ENGLISH) -> dict[str, 
                 "hidden": is_hidden(native.name),
                 "help": help_of("natives", native.name, language, other=native.description),
             }
-            for native in memory.natives
+            for native in sorted(memory.natives, key=lambda native: _rank("natives", native.name))
         ],
         "keywords": sorted(KEYWORDS),
         "limits": {
@@ -148,6 +149,10 @@ def doubts(program: ThymioProgram, language: str = ENGLISH) -> list[dict[str, An
 def is_hidden(name: str) -> bool:
     """Whether a name is for experts: one of its parts begins with `_`."""
     return name.startswith("_") or "._" in name
+
+
+def _rank(kind: str, name: str) -> int:
+    return rank(kind, name, hidden=is_hidden(name))
 
 
 def refusal(text: str) -> dict[str, Any]:

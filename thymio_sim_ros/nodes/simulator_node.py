@@ -104,6 +104,7 @@ class Simulator:
         """No tick is put off until this simulated time: something has come in."""
         self._set_pace()
         self._refused = self._limited = self._last_beat_ns = 0
+        self._published_fallen: frozenset[str] = frozenset()
         self._content = self.params.convert_options
         self._world_ports = WorldPorts(
             self.node,
@@ -268,6 +269,12 @@ class Simulator:
         if not self.paused:
             self._world_ports.publish_clock(self.world.now_ns, last=False)
         self._world_ports.publish_objects(self.world, last=self.paused)
+        if self._fallen() != self._published_fallen:
+            self._publish_state()
+
+    def _fallen(self) -> frozenset[str]:
+        """Names in the world of the robots that fell off an edge."""
+        return frozenset(name for name, robot in self.world.robots.items() if robot.is_fallen)
 
     def _run_owed(self) -> None:
         expected = max(self._usual_ticks, self._wanted_ticks())
@@ -420,10 +427,13 @@ class Simulator:
             movables=self.world.movables,
             robots=self.names,
             raw=self._world_ports.raw.topic_name,
+            fallen=self._fallen(),
         )
 
     def _publish_state(self) -> None:
-        self._world_ports.publish_state(self._state())
+        state = self._state()
+        self._published_fallen = state.fallen
+        self._world_ports.publish_state(state)
 
     def _are_ours(self, parameters: list[Parameter]) -> bool:
         """Whether any is; those of a topic's quality of service are declared while its robot comes."""

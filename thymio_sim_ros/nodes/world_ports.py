@@ -55,7 +55,8 @@ TOPICS: Mapping[str, WorldTopic] = {
     "~/_state": WorldTopic(
         String,
         "1, change",
-        "JSON: playground, paused, factors, seed, ns, robots, things that can be moved, the topic `~/_raw`",
+        "JSON: playground, paused, factors, seed, ns, robots and which of them fell, things that can be moved, the "
+        "topic `~/_raw`",
         qos.LATCHED,
     ),
     "~/_raw": WorldTopic(
@@ -97,14 +98,21 @@ class WorldState:
     movables: tuple[str, ...] = ()
     raw: str = ""
     """Where the integers of all robots are told."""
+    fallen: frozenset[str] = frozenset()
+    """Names in the world of the robots that fell off an edge."""
 
     def as_json(self) -> str:
         """The text of `~/_state`."""
         robots = [
-            {"name": names.name, "frame": names.frame("base_link"), "robot": robot}
+            {
+                "name": names.name,
+                "frame": names.frame("base_link"),
+                "robot": robot,
+                "fallen": robot in self.fallen,
+            }
             for robot, names in self.robots.items()
         ]
-        fields = {name: getattr(self, name) for name in self.__slots__ if name != "robots"}
+        fields = {name: getattr(self, name) for name in self.__slots__ if name not in {"robots", "fallen"}}
         return json.dumps(fields | {"achieved": round(self.achieved, 3), "robots": robots})
 
 

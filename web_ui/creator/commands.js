@@ -1,12 +1,16 @@
 // What can be done to a playground: functions from one to the next. Pure.
 
 import { kindNamed } from "../playground/kinds/index.js";
+import { outlinesOf } from "../playground/parts.js";
 import { changed, moved } from "./place.js";
 
 /** @typedef {import("../playground/document.js").Playground} Playground */
 /** @typedef {import("../playground/parts.js").Item} Item */
 
 const COPY_AWAY_M = 0.1;
+const LEAST_GROUND_M = 1;
+/** Ground beyond what stands on it. */
+const MARGIN_M = 0.1;
 
 /** @param {string} title @returns {Playground} */
 export function newPlayground(title) {
@@ -141,6 +145,28 @@ export function grounded(playground, kind) {
   const name = freeName({ ...playground, items: others }, "ground");
   const ground = /** @type {Item} */ (Object.freeze({ color: "#f3efe4", ...rest, kind, name, ...size }));
   return { ...playground, items: [ground, ...others] };
+}
+
+/**
+ * With a rectangle of ground under all there is.
+ *
+ * @param {Playground} playground
+ * @returns {Playground}
+ */
+export function withGround(playground) {
+  const corners = playground.items.flatMap((item) => outlinesOf(item).flatMap(({ outline }) => outline));
+  /** @param {0 | 1} axis */
+  const span = (axis) => {
+    const along = corners.map((corner) => corner[axis]);
+    const [low, high] = corners.length === 0 ? [0, 0] : [Math.min(...along), Math.max(...along)];
+    return { middle: round((low + high) / 2), size: round(Math.max(LEAST_GROUND_M, high - low + 2 * MARGIN_M)) };
+  };
+  const [x, y] = [span(0), span(1)];
+  const next = grounded(playground, "rectangle");
+  const ground = groundOf(next);
+  if (ground === null) return next;
+  const place = { x_m: x.middle, y_m: y.middle, size_x_m: x.size, size_y_m: y.size };
+  return replaced(next, ground.name, changed(ground, place));
 }
 
 /** The first ground: the one that the playground stands on. @param {Playground} playground */

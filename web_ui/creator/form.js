@@ -33,7 +33,7 @@ export function itemForm(setting, builder) {
       "button",
       {
         type: "button",
-        class: "tool",
+        class: "square",
         title: t(verb.word),
         "aria-label": t(verb.word),
         onclick: verb.act,

@@ -5,15 +5,15 @@ import "./creator.css";
 
 import { translator } from "../i18n/index.js";
 import { download } from "../editor/download.js";
-import { faultView } from "../panels/fault.js";
-import { fileButton, h, icon, setText } from "../panels/dom.js";
+import { faultView, foreignView } from "../panels/fault.js";
+import { fileButton, h, icon, lock, setText } from "../panels/dom.js";
 import { parse } from "../playground/document.js";
-import { offGround } from "../playground/judge.js";
+import { lacksGround, offGround } from "../playground/judge.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { Fault } from "../playground/rules.js";
 import { textOf } from "../textfile.js";
 import { bar } from "./bar.js";
-import { newPlayground } from "./commands.js";
+import { newPlayground, withGround } from "./commands.js";
 import { itemForm } from "./form.js";
 import { CREATOR_ICONS } from "./icons.js";
 import { watchBuildingKeys } from "./keys.js";
@@ -27,11 +27,15 @@ import { Workshop } from "./workshop.js";
 
 export { Workshop, WORDS };
 
+/** What only a file of another kind misses. */
+const OF_ANOTHER_KIND = ["fault.json", "fault.object", "fault.format"];
+
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 /**
  * @typedef {object} Creator
  * @property {{ stage: HTMLElement, side: HTMLElement, footer: HTMLElement }} elements
- * @property {() => void} render   once a frame: takes over what pointers did, and shows it
+ * @property {(offline: string) => void} render   once a frame: takes over what pointers did, and shows it; why the
+ *   simulator cannot be asked, if so
  * @property {(phrase: Phrase) => void} tell
  * @property {(fault: HTMLElement[] | null) => void} refuse   what is wrong with a file; null: nothing
  * @property {(file: File) => void} open   another playground from a file of ours
@@ -82,6 +86,20 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
   const list = thingsList(t, builder);
   const fault = h("div", { class: "fault", role: "alert", hidden: true });
   const warning = h("p", { class: "warning", hidden: true });
+  const groundless = h(
+    "div",
+    { class: "warning", role: "status", hidden: true },
+    h("p", {}, t("warn.noGround")),
+    h(
+      "button",
+      {
+        type: "button",
+        "data-verb": "ground",
+        onclick: () => builder.become(withGround(builder.playground), { word: "did.ground" }),
+      },
+      t("warn.addGround"),
+    ),
+  );
   const unsaved = h("span", { class: "unsaved", title: t("file.unsaved") });
   const name = h("strong", { class: "name" });
   const hint = h("p", { class: "hint building-hint" });
@@ -111,6 +129,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
   };
   /** @param {File} file */
   const open = async (file) => {
+    refuse(null);
     const content = await textOf(file);
     if (content === null) return refuse(faultView(pageText, pageText("file.notText", { name: file.name }), null));
     try {
@@ -122,7 +141,10 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     } catch (error) {
       if (!(error instanceof Fault)) throw error;
       const text = `${error.key === "" ? "" : `${error.key}: `}found ${error.found}, expected ${say(error.expected)}`;
-      refuse(faultView(pageText, t("file.refused", { name: file.name }), { text, line: null, column: null }));
+      const headline = t("file.refused", { name: file.name });
+      const isWhole = error.key === "" || error.key === "format";
+      if (isWhole && OF_ANOTHER_KIND.includes(error.expected.word)) refuse(foreignView(pageText, headline, text));
+      else refuse(faultView(pageText, headline, { text, line: null, column: null }));
     }
   };
   const save = () => {
@@ -137,6 +159,11 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     scene.look("home");
     tell({ word: "did.new" });
   };
+  const trying = h(
+    "button",
+    { type: "button", class: "primary", id: "creator-try", "data-drives": "", title: t("file.tryHelp"), onclick: tryIt },
+    t("file.try"),
+  );
   const side = h(
     "div",
     { class: "creator", role: "region", "aria-label": t("creator") },
@@ -150,11 +177,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     h(
       "div",
       { class: "row" },
-      h(
-        "button",
-        { type: "button", class: "primary", id: "creator-try", "data-drives": "", title: t("file.tryHelp"), onclick: tryIt },
-        t("file.try"),
-      ),
+      trying,
       h(
         "button",
         { type: "button", id: "creator-save", title: t("file.saveHelp"), onclick: save },
@@ -177,6 +200,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     ),
     fault,
     warning,
+    groundless,
     form.element,
     sheet.element,
     list.element,
@@ -211,7 +235,8 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     tell,
     refuse,
     open: (file) => void open(file),
-    render() {
+    render(offline) {
+      lock(trying, offline);
       pointers.flush();
       scene.camera.controls.enabled = builder.cameraOn;
       setText(name, builder.playground.title || t("new.title"));
@@ -220,6 +245,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
         judged = builder.playground;
         const outside = offGround(judged.items).map((item) => item.name);
         warning.hidden = outside.length === 0;
+        groundless.hidden = !lacksGround(judged.items);
         setText(warning, outside.length === 0 ? "" : t("warn.outside", { names: outside.join(", ") }));
       }
       const { placing } = builder;

@@ -2,13 +2,13 @@
 // a frame (`flush`), however many moves there were. They come before the camera's, which gets what is not ours.
 
 import { atHeight } from "../move/things.js";
+import { WheelSteps } from "./wheel.js";
 
 /** @typedef {import("./builder.js").Builder} Builder */
 /** @typedef {{ clientX: number, clientY: number, altKey: boolean }} Spot */
 
 /** A pointer that went up nearer than this has clicked. */
 const CLICK_PX = 6;
-const WHEEL_STEP = 60;
 
 /**
  * @param {object} options
@@ -22,7 +22,7 @@ export function watchBuilding({ stage, canvas, builder, scene }) {
   const ending = new AbortController();
   /** @type {Spot | null} */ let latest = null;
   /** @type {{ id: number, x: number, y: number, ours: boolean, click: boolean } | null} */ let down = null;
-  let wheeled = 0;
+  const wheel = new WheelSteps();
 
   const flush = () => {
     builder.pixel = scene.pixelSize;
@@ -93,9 +93,7 @@ export function watchBuilding({ stage, canvas, builder, scene }) {
     if (!turns && builder.cameraOn) return;
     event.stopPropagation();
     event.preventDefault();
-    wheeled += event.deltaY;
-    const steps = Math.trunc(wheeled / WHEEL_STEP);
-    wheeled -= steps * WHEEL_STEP;
+    const steps = wheel.take(event);
     if (steps !== 0) builder.turn(-steps, event.altKey);
   });
   return { flush, destroy: () => ending.abort() };

@@ -15,6 +15,8 @@ import { sketchOf } from "./sketch.js";
 /** @typedef {import("../memory.js").Memory} Shelf */
 
 const DRAFT_KEY = "creator.draft";
+/** Whether the draft is in a file. */
+const SAVED_KEY = "creator.draftSaved";
 const KEEP_AFTER_MS = 400;
 
 export class Workshop {
@@ -35,17 +37,25 @@ export class Workshop {
       this.#changed();
     });
     this.markers = new Markers((uri) => this.pictures.get(uri));
-    /** @type {Playground | null} as it was saved last */ this.saved = draft === null ? this.builder.playground : null;
+    const isSaved = draft === null || shelf.getItem(SAVED_KEY) === "true";
+    /** @type {Playground | null} as it was saved last */ this.saved = isSaved ? this.builder.playground : null;
     this.kept = this.builder.playground;
+    /** @type {{ of: Playground, as: Playground, same: boolean } | null} what was compared last */ this.compared = null;
     this.timer = 0;
     /** @type {{ of: Playground["items"], carried: string | undefined, world: State } | null} what was drawn last */
     this.drawn = null;
     /** @type {import("./sketch.js").Sketch | null} */ this.sketched = null;
   }
 
-  /** Whether it is in no file yet. */
+  /** Whether no file has it as it is. */
   get isUnsaved() {
-    return this.builder.playground !== this.saved;
+    const { saved } = this;
+    const { playground } = this.builder;
+    if (saved === null || playground === saved) return saved === null;
+    if (this.compared?.of !== playground || this.compared.as !== saved) {
+      this.compared = { of: playground, as: saved, same: write(playground) === write(saved) };
+    }
+    return !this.compared.same;
   }
 
   /** The playground as the scene draws it: without what is carried. */
@@ -82,6 +92,7 @@ export class Workshop {
 
   noteSaved() {
     this.saved = this.builder.playground;
+    this.#store();
     this.#changed();
   }
 
@@ -96,15 +107,21 @@ export class Workshop {
     this.builder.placing = null;
     this.builder.become(playground, did);
     this.saved = playground;
+    this.#changed();
   }
 
   /** Let the browser keep the draft now. */
   keep() {
     clearTimeout(this.timer);
     if (this.kept === this.builder.playground) return;
+    this.#store();
+  }
+
+  #store() {
     this.kept = this.builder.playground;
     try {
       this.shelf.setItem(DRAFT_KEY, this.text);
+      this.shelf.setItem(SAVED_KEY, String(!this.isUnsaved));
     } catch {
       this.shelf.removeItem(DRAFT_KEY); // too large: rather nothing than an old one
       this.builder.tell({ word: "tell.noDraft" });

@@ -4,7 +4,10 @@
 /** @typedef {import("./state.js").Native} Native */
 /** @typedef {import("./outline.js").Definition} Definition */
 /** @typedef {"variable" | "constant" | "event" | "native" | "subroutine" | "keyword"} Kind */
-/** @typedef {{ name: string, kind: Kind, detail: string, help: string, native?: Native }} Item */
+/**
+ * @typedef {{ name: string, kind: Kind, detail: string, help: string, native?: Native, rank: number }} Item
+ *   rank: what is offered first among names that fit as well: 0 the text's own, 1 keywords, 2 the robot's
+ */
 /**
  * @typedef {object} Vocabulary
  * @property {Target | null} target
@@ -45,10 +48,11 @@ export function signature({ name, parameters }) {
  */
 export function items({ target, events, constants, variables, definitions }) {
   /** @type {Map<string, Item>} */ const found = new Map();
-  /** @param {Item} item */
+  let rank = 0;
+  /** @param {Omit<Item, "rank">} item */
   const add = (item) => {
     const key = `${item.kind} ${item.name}`;
-    if (!found.has(key)) found.set(key, item);
+    if (!found.has(key)) found.set(key, { ...item, rank: item.kind === "keyword" ? 1 : rank });
   };
   /** @param {number | undefined} size */
   const dimension = (size) => (size === undefined || size === 1 ? "" : `[${size}]`);
@@ -56,6 +60,7 @@ export function items({ target, events, constants, variables, definitions }) {
   for (const { name, kind } of definitions) if (kind !== "event") add({ name, kind, detail: "", help: "" });
   for (const { name, value } of constants) add({ name, kind: "constant", detail: `= ${value}`, help: "" });
   for (const { name, value } of events) add({ name, kind: "event", detail: dimension(value), help: "" });
+  rank = 2;
   for (const { name, size, hidden, help } of target?.variables ?? []) {
     if (!hidden) add({ name, kind: "variable", detail: dimension(size), help });
   }

@@ -349,9 +349,10 @@ export function createEditor({ desk, client, store, language, pageText, announce
       }
     }
     const fault = faultWords(values, language);
-    const words = values.state ? stateWord(values.state, pageText) + placeWords(values, pageText) : "";
+    const timePaused = store.state.simulator?.paused ?? false;
+    const words = values.state ? stateWord(values.state, pageText, timePaused) + placeWords(values, pageText) : "";
     const sentence = words + (fault ? `: ${fault}` : "");
-    foot.robot(values.state ?? "", sentence);
+    foot.robot(timePaused && values.state === "running" ? "paused" : (values.state ?? ""), sentence);
     if (sentence !== said) {
       said = sentence;
       announce(said);
@@ -385,13 +386,15 @@ export function createEditor({ desk, client, store, language, pageText, announce
     element.style.setProperty("--code-size", `${desk.fontSize}px`);
     head.render(desk.tabs(robots()), file);
     drawStatus();
-    bar.render(can, workspace.keeper.recent(), desk.state.behaviours);
+    const offline = store.state.connection === "connected" ? "" : pageText("connection.needed");
+    bar.render(can, workspace.keeper.recent(), desk.state.behaviours, offline);
     tools.render({
       robot: robot(),
       target: target(),
       variables: desk.state.variables[robot()] ?? null,
       log: desk.state.log,
       file,
+      offline,
     });
   };
 

@@ -203,12 +203,13 @@ export function createText(options) {
   };
 }
 
-/** @param {Item} item @returns {import("@codemirror/autocomplete").Completion} */
-function option(item) {
-  const { name, kind, detail, help, native } = item;
+/** @param {Item} item @param {number} place  in the list @returns {import("@codemirror/autocomplete").Completion} */
+function option(item, place) {
+  const { name, kind, detail, help, native, rank } = item;
   const fields = native?.parameters.map((parameter) => `\${${parameter.name}}`).join(", ");
   return {
     label: name,
+    sortText: `${rank}${String(place).padStart(5, "0")}`,
     type: TYPES[kind],
     detail,
     ...(help === "" ? {} : { info: help }),

@@ -1,7 +1,7 @@
 // The editor's buttons: files on the left, the robot on the right, and the keys that do the same.
 
 import { plainKey } from "../keyboard.js";
-import { fileButton, h, icon, ICONS } from "../panels/dom.js";
+import { fileButton, h, icon, ICONS, lock } from "../panels/dom.js";
 
 /** @typedef {import("./link.js").Verb} Verb */
 /** @typedef {import("./storage.js").Kept} Kept */
@@ -58,6 +58,7 @@ export function toolbar(t, deeds, draftWords) {
     choice.value = "";
     if (chosen !== undefined) deeds.choose(chosen);
   });
+  const load = button("load", LOAD, "Ctrl+Enter", deeds.load, true);
   const run = button("run", ICONS.play, "F9", deeds.run, true);
   const verbs = VERBS.map(([verb, path, key]) => ({
     verb: /** @type {Verb} */ (verb),
@@ -92,7 +93,7 @@ export function toolbar(t, deeds, draftWords) {
     h(
       "div",
       { class: "group", "data-drives": "" },
-      button("load", LOAD, "Ctrl+Enter", deeds.load, true),
+      load,
       run,
       ...verbs.map(({ element }) => element),
     ),
@@ -106,9 +107,11 @@ export function toolbar(t, deeds, draftWords) {
      * @param {(verb: Verb) => boolean} can
      * @param {readonly Kept[]} recent
      * @param {readonly { name: string, description: string }[]} samples
+     * @param {string} offline  why no robot can be reached; empty: it can
      */
-    render(can, recent, samples) {
-      for (const { verb, element } of verbs) element.disabled = !can(verb);
+    render(can, recent, samples, offline) {
+      for (const button of [load, run]) lock(button, offline);
+      for (const { verb, element } of verbs) lock(element, offline || (can(verb) ? "" : t("editor.unavailable")));
       const names = JSON.stringify([recent.map(({ name, time, unsaved }) => [name, time, unsaved]), samples]);
       if (names === listed) return;
       listed = names;

@@ -1,17 +1,28 @@
 // The gallery: a window with a picture of every shipped playground, to choose one.
 
 import { faultView } from "../panels/fault.js";
-import { fileButton, h, icon, ICONS, setAttribute, setText } from "../panels/dom.js";
+import { buttonOf, fileButton, h, icon, ICONS, lock, setAttribute, setText } from "../panels/dom.js";
+import { FILE } from "../state/index.js";
 
 /** @typedef {import("../state/index.js").PlaygroundInfo} PlaygroundInfo */
 
 const PENCIL = "M3 17.500V21h3.500L17 10.500 13.500 7zM15 5.500 18.500 9l2-2L17 3.500z";
 
 /** @param {import("../panels/index.js").Context} context */
-export function galleryDialog({ t, language, actions, shelf, store, creator }) {
+export function galleryDialog({ t, language, actions, shelf, store, creator, scene }) {
   const fault = h("div", { class: "fault", role: "alert", hidden: true });
   const list = h("ul", { class: "samples" });
   const close = h("button", { type: "button", class: "plain", "aria-label": t("gallery.close") }, icon(ICONS.close));
+  const file = fileButton({
+    id: "gallery-file",
+    label: t("gallery.file"),
+    help: t("playground.openHelp"),
+    accept: ".json,.playground,.xml,.zip",
+    open: (chosen) => {
+      attempt();
+      void actions.loadFile(chosen);
+    },
+  });
   const dialog = h(
     "dialog",
     { class: "gallery", "aria-labelledby": "gallery-title" },
@@ -21,26 +32,26 @@ export function galleryDialog({ t, language, actions, shelf, store, creator }) {
     h(
       "div",
       { class: "row" },
-      fileButton({
-        id: "gallery-file",
-        label: t("gallery.file"),
-        help: t("playground.openHelp"),
-        accept: ".json,.playground,.xml,.zip",
-        open: (file) => {
-          waiting = true;
-          void actions.loadFile(file);
-        },
-      }),
+      file,
       h("small", {}, t("gallery.formats")),
     ),
   );
   close.addEventListener("click", () => dialog.close());
   dialog.addEventListener("click", (event) => event.target === dialog && dialog.close()); // beside it
+  dialog.addEventListener("close", () => scene.invalidate()); // messages go back to the page
   dialog.addEventListener("keydown", (event) => event.stopPropagation()); // Escape closes, and stops no robot
-  /** @type {{ name: string, button: HTMLElement }[]} */ let cards = [];
+  /** @type {{ name: string, button: HTMLButtonElement }[]} */ let cards = [];
   let listed = "";
-  /** Whether a choice is on its way to the simulator. */
-  let waiting = false;
+  /** The upload before the choice that is on its way to the simulator; undefined: none is. */
+  /** @type {import("../state/index.js").Upload | null | undefined} */ let before;
+  const attempt = () => {
+    before = store.state.uploads.playground;
+    forget();
+  };
+  const forget = () => {
+    fault.hidden = true;
+    store.dispatch({ type: "solved", cause: FILE });
+  };
 
   /** @param {PlaygroundInfo} info */
   const card = (info) => {
@@ -55,7 +66,7 @@ export function galleryDialog({ t, language, actions, shelf, store, creator }) {
       robots,
     );
     button.addEventListener("click", () => {
-      waiting = true;
+      attempt();
       void actions.loadPlayground(info.name);
     });
     cards.push({ name: info.name, button });
@@ -89,9 +100,10 @@ export function galleryDialog({ t, language, actions, shelf, store, creator }) {
     element: dialog,
     open: () => {
       listed = "";
-      waiting = false;
-      fault.hidden = true;
+      before = undefined;
+      forget();
       dialog.showModal();
+      scene.invalidate(); // messages are shown in it from now on
       render(store.state);
       (cards.find(({ button }) => button.ariaCurrent === "true")?.button ?? close).focus();
     },
@@ -99,7 +111,7 @@ export function galleryDialog({ t, language, actions, shelf, store, creator }) {
   };
 
   /** @param {import("../state/index.js").State} state */
-  function render({ playgrounds, simulator, uploads }) {
+  function render({ connection, playgrounds, simulator, uploads }) {
     if (!dialog.open) return;
     const now = JSON.stringify(playgrounds);
     if (now !== listed) {
@@ -107,10 +119,15 @@ export function galleryDialog({ t, language, actions, shelf, store, creator }) {
       cards = [];
       list.replaceChildren(...playgrounds.map(card));
     }
-    for (const { name, button } of cards) setAttribute(button, "aria-current", String(name === simulator?.playground));
+    const offline = connection === "connected" ? "" : t("connection.needed");
+    lock(buttonOf(file), offline);
+    for (const { name, button } of cards) {
+      setAttribute(button, "aria-current", String(name === simulator?.playground));
+      lock(button, offline);
+    }
     const { playground } = uploads;
-    if (!waiting || playground === null || playground.phase === "sending") return;
-    waiting = false;
+    if (before === undefined || playground === before || playground === null || playground.phase === "sending") return;
+    before = undefined;
     if (playground.phase === "accepted") return dialog.close();
     fault.replaceChildren(...faultView(t, t("playground.refused", { name: playground.name }), playground.fault));
     fault.hidden = false;

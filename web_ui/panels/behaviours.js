@@ -1,7 +1,7 @@
 // What a robot does without a program of one's own: the menu, and every built-in behaviour with its colour.
 
 import { programOf } from "../state/index.js";
-import { h, setAttribute } from "./dom.js";
+import { h, lock, setAttribute } from "./dom.js";
 
 /** The colours the robot itself shows in each of them (docs/behaviours.md). */
 export const COLOURS = /** @type {Record<string, string>} */ ({
@@ -40,6 +40,7 @@ export function behaviourChoice({ t, actions }) {
     element,
     render(state) {
       const { behaviours } = state;
+      lock(select, state.connection === "connected" ? "" : t("connection.needed"));
       if (behaviours !== listed) {
         listed = behaviours;
         element.hidden = behaviours.length === 0;

@@ -1,6 +1,7 @@
 // The frame of a side panel: a heading that folds it, remembered by the browser.
 
 import { memory, note } from "../memory.js";
+import { uploadCause } from "../state/index.js";
 import { h } from "./dom.js";
 
 /**
@@ -33,8 +34,10 @@ export function drivingCard(name, title, ...content) {
  * @param {HTMLDetailsElement} element  the card
  * @param {import("../state/store.js").Store} store
  * @param {string} text
+ * @param {import("../state/index.js").What} what
  */
-export function showRefusal(element, store, text) {
+export function showRefusal(element, store, text, what) {
   element.open = true;
-  if (element.offsetParent === null) store.dispatch({ type: "notice", level: "error", text });
+  const cause = uploadCause(what);
+  if (element.offsetParent === null) store.dispatch({ type: "notice", level: "error", text, cause });
 }

@@ -65,6 +65,22 @@ export function setAttribute(element, name, value) {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
 
+/** @type {WeakMap<Element, string>} tooltips of controls while they are enabled */
+const tooltips = new WeakMap();
+
+/**
+ * Enable a control, or disable it and say why in its tooltip.
+ *
+ * @param {HTMLButtonElement | HTMLSelectElement | HTMLInputElement | HTMLFieldSetElement} control
+ * @param {string} reason  empty: it is enabled
+ */
+export function lock(control, reason) {
+  const own = tooltips.get(control) ?? control.title;
+  tooltips.set(control, own);
+  if (control.disabled !== (reason !== "")) control.disabled = reason !== "";
+  if (control.title !== (reason || own)) control.title = reason || own;
+}
+
 /**
  * A control that is held: down by pointer, Enter or Space, up again when let go or left. Clicked with Shift it stays down
  * as long as that.
@@ -122,6 +138,11 @@ export function renew(parent, children) {
   const place = places()[Math.min(at, places().length - 1)];
   place?.focus();
   if (place instanceof HTMLInputElement) place.select(); // as after Tab
+}
+
+/** The button of a `fileButton`. @param {HTMLElement} file */
+export function buttonOf(file) {
+  return /** @type {HTMLButtonElement} */ (file.querySelector("button"));
 }
 
 /**

@@ -1,7 +1,12 @@
 // The robot's five buttons as a cross; a button shows as pressed when the robot says so.
 
+import { memory, note } from "../memory.js";
 import { BUTTONS } from "../state/names.js";
-import { h, holdable, icon, ICONS, setAttribute } from "./dom.js";
+import { h, holdable, icon, ICONS, lock, setAttribute } from "./dom.js";
+
+const CHEVRON = "M4 8.500 5.800 6.700 12 12.900l6.200-6.200L20 8.500l-8 8z";
+/** Where the browser remembers that the pad is hidden on a small screen. */
+const FOLDED_KEY = "padFolded";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function dpadPanel({ t, actions, store }) {
@@ -15,17 +20,36 @@ export function dpadPanel({ t, actions, store }) {
     holdable(button, (pressed) => actions.press(store.state.selected, name, pressed));
     return { name, button };
   });
-  const element = h(
+  const pad = h(
     "div",
-    { class: "dpad", role: "group", "aria-label": t("dpad"), "data-drives": "" },
+    { class: "dpad", id: "dpad", role: "group", "aria-label": t("dpad"), "data-drives": "" },
     ...buttons.map(({ button }) => button),
   );
+  // On a phone the pad can be hidden, so that it covers nothing of the scene.
+  const fold = h(
+    "button",
+    { type: "button", class: "fold", "aria-controls": "dpad", onclick: () => setFolded(!element.hasAttribute("data-folded")) },
+    icon(CHEVRON),
+  );
+  const element = h("div", { class: "drive" }, pad, fold);
+  /** @param {boolean} folded */
+  const setFolded = (folded) => {
+    note(memory, FOLDED_KEY, String(folded));
+    element.toggleAttribute("data-folded", folded);
+    const label = t(folded ? "dpad.unfold" : "dpad.fold");
+    setAttribute(fold, "aria-expanded", String(!folded));
+    setAttribute(fold, "aria-label", label);
+    setAttribute(fold, "title", label);
+  };
+  setFolded(memory.getItem(FOLDED_KEY) === "true");
   return {
     slot: "stage",
     element,
-    render({ robots, selected }) {
-      for (const { name, button } of buttons)
+    render({ connection, robots, selected }) {
+      for (const { name, button } of buttons) {
         setAttribute(button, "aria-pressed", String(robots[selected]?.buttons[name] ?? false));
+        lock(button, connection === "connected" ? "" : t("connection.needed"));
+      }
     },
   };
 }

@@ -5,6 +5,7 @@ import { creatorSwitchPanel } from "./creator_switch.js";
 import { displayPanel } from "./display.js";
 import { dpadPanel } from "./dpad.js";
 import { editorSwitchPanel } from "./editor_switch.js";
+import { fallenPanel } from "./fallen.js";
 import { languagePanel } from "./language.js";
 import { noticesPanel } from "./notices.js";
 import { playgroundPanel } from "./playground.js";
@@ -15,6 +16,7 @@ import { soundPanel } from "./sound.js";
 import { stopPanel } from "./stop.js";
 import { surroundingsPanel } from "./surroundings.js";
 import { timePanel } from "./time.js";
+import { tourSwitchPanel } from "./tour_switch.js";
 import { viewsPanel } from "./views.js";
 
 /** @typedef {import("../state/index.js").State} State */
@@ -31,6 +33,7 @@ import { viewsPanel } from "./views.js";
  * @property {import("../sound/speaker.js").Speaker} speaker
  * @property {import("../editor_host.js").EditorHost} editor
  * @property {import("../creator_host.js").CreatorHost} creator
+ * @property {import("../tour_host.js").TourHost} tour
  * @property {import("../gallery/shelf.js").Shelf} shelf   shipped playgrounds with their pictures
  * @property {string} address   of the simulator, for people
  * @property {(text: string) => void} announce   to the live region
@@ -49,10 +52,12 @@ export const PANELS = [
   creatorSwitchPanel,
   languagePanel,
   soundPanel,
+  tourSwitchPanel,
   stopPanel,
   noticesPanel,
   viewsPanel,
   dpadPanel,
+  fallenPanel,
   robotsPanel,
   programPanel,
   playgroundPanel,

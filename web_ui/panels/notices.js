@@ -1,17 +1,46 @@
-// What went wrong, one card each; errors are read out at once.
+// What a person is told about what they did: one area over the view, and in an open dialog, which covers all else.
+// Success goes by itself; what failed stays until it is closed or its cause is gone.
 
 import { h, icon, ICONS } from "./dom.js";
+
+/** How long success is shown. */
+export const SUCCESS_MS = 6000;
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function noticesPanel({ t, store }) {
   const element = h("div", { class: "notices", role: "alert" });
   /** @type {import("../state/index.js").Notice[] | null} */ let shown = null;
+  /** @type {Map<number, ReturnType<typeof setTimeout>>} */ const ends = new Map();
+
+  /** @param {number} id */
+  const dismiss = (id) => store.dispatch({ type: "dismiss", id });
+  /** Not while it is read. @param {number} id */
+  const end = (id) => {
+    if (element.matches(":hover, :focus-within")) ends.set(id, setTimeout(end, SUCCESS_MS, id));
+    else dismiss(id);
+  };
+  /** @param {import("../state/index.js").Notice[]} notices */
+  const time = (notices) => {
+    for (const [id, timer] of ends) {
+      if (notices.some((notice) => notice.id === id)) continue;
+      clearTimeout(timer);
+      ends.delete(id);
+    }
+    for (const { id, level } of notices) {
+      if (level === "info" && !ends.has(id)) ends.set(id, setTimeout(end, SUCCESS_MS, id));
+    }
+  };
+
   return {
     slot: "main",
     element,
     render({ notices }) {
+      // A modal dialog is above everything, and what is not in it can neither be seen nor clicked.
+      const place = document.querySelector("dialog:modal") ?? document.querySelector('[data-slot="main"]');
+      if (place !== null && element.parentElement !== place) place.append(element);
       if (notices === shown) return;
       shown = notices;
+      time(notices);
       element.replaceChildren(
         ...notices.map(({ id, level, text }) =>
           h(
@@ -20,12 +49,7 @@ export function noticesPanel({ t, store }) {
             h("p", {}, text),
             h(
               "button",
-              {
-                type: "button",
-                class: "plain",
-                "aria-label": t("notice.dismiss"),
-                onclick: () => store.dispatch({ type: "dismiss", id }),
-              },
+              { type: "button", class: "plain", "aria-label": t("notice.dismiss"), onclick: () => dismiss(id) },
               icon(ICONS.close),
             ),
           ),

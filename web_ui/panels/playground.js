@@ -2,8 +2,8 @@
 
 import { galleryDialog } from "../gallery/index.js";
 import { drivingCard, showRefusal } from "./card.js";
-import { fileButton, h, icon, setText } from "./dom.js";
-import { faultView } from "./fault.js";
+import { buttonOf, fileButton, h, icon, ICONS, lock, setText } from "./dom.js";
+import { faultText, faultView } from "./fault.js";
 
 const PENCIL = "M3 17.500V21h3.500L17 10.500 13.500 7zM15 5.500 18.500 9l2-2L17 3.500z";
 const PICTURES = "M4 4h7v7H4zM13 4h7v7h-7zM4 13h7v7H4zM13 13h7v7h-7z";
@@ -29,6 +29,26 @@ export function playgroundPanel(context) {
   const notes = h("ul");
   const remarks = h("details", { class: "remarks", hidden: true }, summary, notes);
   const fault = h("div", { class: "fault", hidden: true });
+  const pictures = h(
+    "button",
+    { type: "button", id: "gallery-open", title: t("gallery.help"), onclick: gallery.open },
+    icon(PICTURES),
+    t("gallery.open"),
+  );
+  const copy = h(
+    "button",
+    { type: "button", id: "playground-change", title: t("playground.changeHelp"), onclick: change },
+    icon(PENCIL),
+    t("playground.change"),
+  );
+  const file = fileButton({
+    id: "playground-file",
+    label: t("playground.open"),
+    help: t("playground.openHelp"),
+    accept: ".json,.playground,.xml,.zip",
+    open: (chosen) => actions.loadFile(chosen),
+  });
+  const controls = [select, pictures, copy, buttonOf(file)];
   const element = drivingCard(
     "playground",
     t("playground"),
@@ -36,25 +56,9 @@ export function playgroundPanel(context) {
     h(
       "div",
       { class: "row" },
-      h(
-        "button",
-        { type: "button", id: "gallery-open", title: t("gallery.help"), onclick: gallery.open },
-        icon(PICTURES),
-        t("gallery.open"),
-      ),
-      h(
-        "button",
-        { type: "button", id: "playground-change", title: t("playground.changeHelp"), onclick: change },
-        icon(PENCIL),
-        t("playground.change"),
-      ),
-      fileButton({
-        id: "playground-file",
-        label: t("playground.open"),
-        help: t("playground.openHelp"),
-        accept: ".json,.playground,.xml,.zip",
-        open: (file) => actions.loadFile(file),
-      }),
+      pictures,
+      copy,
+      file,
     ),
     description,
     remarks,
@@ -70,6 +74,8 @@ export function playgroundPanel(context) {
     render(state) {
       const { playgrounds, simulator, uploads } = state;
       gallery.render(state);
+      const offline = state.connection === "connected" ? "" : t("connection.needed");
+      for (const control of controls) lock(control, offline);
       const { playground } = uploads;
       const own =
         simulator !== null && !playgrounds.some(({ name }) => name === simulator.playground) ? simulator : null;
@@ -99,10 +105,20 @@ export function playgroundPanel(context) {
       fault.hidden = playground?.phase !== "refused";
       if (playground?.phase !== "refused") return;
       const headline = t("playground.refused", { name: playground.name });
-      fault.replaceChildren(...faultView(t, headline, playground.fault));
-      const words = `${headline} ${playground.fault?.text ?? ""}`;
+      const close = h(
+        "button",
+        {
+          type: "button",
+          class: "plain",
+          "aria-label": t("notice.dismiss"),
+          onclick: () => store.dispatch({ type: "forget", what: "playground" }),
+        },
+        icon(ICONS.close),
+      );
+      fault.replaceChildren(close, ...faultView(t, headline, playground.fault));
+      const words = `${headline} ${faultText(t, playground.fault)}`;
       announce(words);
-      if (!creator.isOpen) showRefusal(element, store, words); // it says itself what is wrong with what it gave
+      if (!creator.isOpen) showRefusal(element, store, words, "playground"); // it says itself what is wrong with what it gave
     },
   };
 }

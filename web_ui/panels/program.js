@@ -5,7 +5,8 @@ import { programOf } from "../state/index.js";
 import { faultWords, placeWords, stateWord } from "../state/standing.js";
 import { behaviourChoice } from "./behaviours.js";
 import { drivingCard, showRefusal } from "./card.js";
-import { fileButton, h, icon, ICONS, setAttribute, setText } from "./dom.js";
+import { buttonOf, fileButton, h, icon, ICONS, lock, setAttribute, setText } from "./dom.js";
+import { SUCCESS_MS } from "./notices.js";
 import { sourceView } from "./source.js";
 
 const VERBS = /** @type {const} */ ([
@@ -30,6 +31,14 @@ export function programPanel(context) {
       t(`program.${verb}`),
     ),
   }));
+  const file = fileButton({
+    id: "program-file",
+    label: t("program.open"),
+    help: t("program.openHelp"),
+    accept: ".aesl,.aseba,.txt",
+    open: (chosen) => actions.loadFile(chosen),
+  });
+  const open = buttonOf(file);
   const upload = h("div", { class: "upload", hidden: true });
   const element = drivingCard(
     "program",
@@ -40,13 +49,7 @@ export function programPanel(context) {
     h(
       "div",
       { class: "row" },
-      fileButton({
-        id: "program-file",
-        label: t("program.open"),
-        help: t("program.openHelp"),
-        accept: ".aesl,.aseba,.txt",
-        open: (file) => actions.loadFile(file),
-      }),
+      file,
       h("small", {}, t("program.dropHint")),
     ),
     upload,
@@ -90,9 +93,14 @@ export function programPanel(context) {
         ),
       );
     }
+    if (now.phase === "accepted") {
+      setTimeout(() => {
+        if (store.state.uploads.program === now) store.dispatch({ type: "forget", what: "program" });
+      }, SUCCESS_MS);
+    }
     const words = fault === null ? headline : `${headline}: ${fault.text}`;
     announce(words);
-    if (fault !== null) showRefusal(element, store, words);
+    if (fault !== null) showRefusal(element, store, words, "program");
   };
 
   return {
@@ -101,14 +109,20 @@ export function programPanel(context) {
     render(state) {
       behaviour.render(state);
       const program = programOf(state);
-      const word = program === null ? "" : stateWord(program.state, t);
+      const timePaused = state.simulator?.paused ?? false;
+      const word = program === null ? "" : stateWord(program.state, t, timePaused);
+      const offline = state.connection === "connected" ? "" : t("connection.needed");
       setText(name, program?.name || t("program.none"));
       setText(lamp, word);
-      setAttribute(lamp, "data-state", program?.state ?? "");
+      setAttribute(lamp, "data-state", timePaused && program?.state === "running" ? "paused" : (program?.state ?? ""));
       const { values, level, message: told } = program ?? { values: {}, level: 0, message: "" };
       setText(message, level > 0 ? (faultWords(values, language) || told) + placeWords(values, t) : "");
       message.hidden = message.textContent === "";
-      for (const { verb, button } of verbs) button.disabled = !state.services.includes(actions.programService(verb));
+      for (const { verb, button } of verbs) {
+        const there = state.services.includes(actions.programService(verb));
+        lock(button, offline || (there ? "" : t("program.unavailable")));
+      }
+      lock(open, offline);
       const news = program === null ? "" : `${program.name}: ${word}`;
       if (news !== announced && news !== "") announce(news);
       announced = news;

@@ -1,6 +1,6 @@
 // Stop: always in sight.
 
-import { h, icon, ICONS } from "./dom.js";
+import { h, icon, ICONS, lock } from "./dom.js";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function stopPanel({ t, actions }) {
@@ -10,5 +10,9 @@ export function stopPanel({ t, actions }) {
     icon(ICONS.stop),
     t("stop"),
   );
-  return { slot: "header", element };
+  return {
+    slot: "header",
+    element,
+    render: ({ connection }) => lock(element, connection === "connected" ? "" : t("connection.needed")),
+  };
 }

@@ -1,7 +1,7 @@
 // What an operator does to the selected robot: tap it, clap, tilt it, warm it, point a remote control, give it a pen.
 
 import { drivingCard } from "./card.js";
-import { h } from "./dom.js";
+import { h, lock } from "./dom.js";
 
 /** @typedef {import("./index.js").Context} Context */
 
@@ -154,9 +154,9 @@ export function surroundingsPanel({ t, actions, store }) {
     ),
   );
 
-  const element = drivingCard(
-    "surroundings",
-    t("surroundings"),
+  const controls = h(
+    "fieldset",
+    { "aria-label": t("surroundings") },
     knocks,
     ...sliders.map(({ element }) => element),
     h("h3", {}, t("surroundings.remote")),
@@ -164,11 +164,13 @@ export function surroundingsPanel({ t, actions, store }) {
     h("h3", {}, t("pen")),
     ...pen(t, actions),
   );
+  const element = drivingCard("surroundings", t("surroundings"), controls);
   /** @type {string | null} */ let robot = null;
   return {
     slot: "side",
     element,
-    render({ selected }) {
+    render({ connection, selected }) {
+      lock(controls, connection === "connected" ? "" : t("connection.needed"));
       if (selected === robot) return;
       robot = selected;
       for (const { refresh } of sliders) refresh();

@@ -1,8 +1,11 @@
-// Time: pause, one step, back to the start, and how fast; the factor really reached stands beside.
+// Time: pause, a step, back to the start, and how fast; the factor really reached stands beside.
 
-import { h, icon, ICONS, setAttribute, setText } from "./dom.js";
+import { h, icon, ICONS, lock, setAttribute, setText } from "./dom.js";
 
 export const FACTORS = [0.25, 0.5, 1, 2, 5, 10];
+/** Lengths of a step: ticks of 10 ms. */
+const STEPS = [1, 10, 100];
+const TICKS_PER_S = 100;
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function timePanel({ t, actions, store, announce }) {
@@ -13,9 +16,14 @@ export function timePanel({ t, actions, store, announce }) {
   });
   const step = h(
     "button",
-    { type: "button", title: t("time.step"), onclick: () => actions.step() },
+    { type: "button", title: t("time.stepHelp"), onclick: () => actions.step(Number(length.value)) },
     icon(ICONS.step),
     h("span", {}, t("time.step")),
+  );
+  const length = h(
+    "select",
+    { "aria-label": t("time.stepLength"), title: t("time.stepLength") },
+    ...STEPS.map((ticks) => h("option", { value: ticks, selected: ticks === 10 }, `${ticks / TICKS_PER_S} s`)),
   );
   const reset = h(
     "button",
@@ -35,7 +43,7 @@ export function timePanel({ t, actions, store, announce }) {
     "div",
     { class: "time", role: "group", "aria-label": t("time"), "data-drives": "" },
     pause,
-    step,
+    h("span", { class: "steps" }, step, length),
     reset,
     h("label", { class: "speed" }, h("span", {}, t("time.speed")), speed),
     achieved,
@@ -46,7 +54,8 @@ export function timePanel({ t, actions, store, announce }) {
   return {
     slot: "footer",
     element,
-    render({ simulator, timeNs, robots, selected, services }) {
+    render({ connection, simulator, timeNs, robots, selected, services }) {
+      const offline = connection === "connected" ? "" : t("connection.needed");
       const now = simulator?.paused ?? false;
       if (now !== paused) {
         pause.replaceChildren(
@@ -56,9 +65,13 @@ export function timePanel({ t, actions, store, announce }) {
         if (paused !== null) announce(t(now ? "time.paused" : "time.running"));
         paused = now;
       }
-      step.disabled = !now || !services.includes("/simulator/step");
-      pause.disabled = !services.includes("/simulator/pause");
-      reset.disabled = !services.includes("/simulator/reset");
+      /** @param {string} verb */
+      const missing = (verb) => offline || (services.includes(`/simulator/${verb}`) ? "" : t("time.unavailable"));
+      lock(step, missing("step") || (now ? "" : t("time.pauseFirst")));
+      lock(length, offline);
+      lock(pause, missing("pause"));
+      lock(reset, missing("reset"));
+      lock(speed, offline);
       const factor = simulator?.factor ?? 1;
       if (factor !== wanted) showFactor(speed, factor);
       wanted = factor;
@@ -84,9 +97,9 @@ function showFactor(select, factor) {
   select.value = String(factor);
 }
 
-/** Minutes, seconds, tenths. @param {number} ns */
+/** Minutes, seconds, and hundredths: the shortest step is one of them. @param {number} ns */
 export function formatTime(ns) {
-  const tenths = Math.floor(ns / 1e8);
-  const minutes = Math.floor(tenths / 600);
-  return `${minutes}:${((tenths % 600) / 10).toFixed(1).padStart(4, "0")}`;
+  const hundredths = Math.floor(ns / 1e7);
+  const minutes = Math.floor(hundredths / 6000);
+  return `${minutes}:${((hundredths % 6000) / 100).toFixed(2).padStart(5, "0")}`;
 }

@@ -1,7 +1,7 @@
 // How to look: overview, from above, following; and whether the sensor beams are shown.
 
 import { VIEWS } from "../scene/camera.js";
-import { h, icon, ICONS, setAttribute } from "./dom.js";
+import { h, icon, ICONS, lock, setAttribute } from "./dom.js";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function viewsPanel({ t, scene, store, mover, announce }) {
@@ -27,6 +27,7 @@ export function viewsPanel({ t, scene, store, mover, announce }) {
     "button",
     {
       type: "button",
+      "data-view": "move",
       title: t("move"),
       "aria-label": t("move"),
       "data-drives": "",
@@ -46,13 +47,13 @@ export function viewsPanel({ t, scene, store, mover, announce }) {
   );
   async function save() {
     const png = await scene.picture();
-    if (png === null) return announce(t("view.noPicture"));
+    if (png === null) return store.dispatch({ type: "notice", level: "error", text: t("view.noPicture") });
     const address = URL.createObjectURL(png);
     const { simulator, timeNs } = store.state;
     const name = `${simulator?.playground || "thymio"}-${(timeNs / 1e9).toFixed(1)}s.png`.replace(/[^\w.-]+/g, "_");
     h("a", { href: address, download: name }).click();
     URL.revokeObjectURL(address);
-    announce(t("view.pictureSaved", { name }));
+    store.dispatch({ type: "notice", level: "info", text: t("view.pictureSaved", { name }) });
   }
   const hint = h("p", { class: "hint", hidden: true }, t("move.help"));
   document.querySelector(".stage")?.append(hint);
@@ -67,7 +68,8 @@ export function viewsPanel({ t, scene, store, mover, announce }) {
   return {
     slot: "stage",
     element,
-    render() {
+    render({ connection }) {
+      lock(move, connection === "connected" ? "" : t("connection.needed"));
       for (const { view, button } of buttons) setAttribute(button, "aria-pressed", String(scene.camera.view === view));
       setAttribute(move, "aria-pressed", String(mover.mode));
       hint.hidden = !mover.mode;

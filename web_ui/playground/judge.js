@@ -71,6 +71,11 @@ export function offGround(items) {
   return items.filter((item) => !isOnGround(items, item));
 }
 
+/** Whether there is surely no ground; a shape of another package may be one. @param {readonly Item[]} items */
+export function lacksGround(items) {
+  return items.every((item) => kindNamed(item.kind) !== undefined && partsOf(item).floors.length === 0);
+}
+
 /** @param {Item} item @returns {import("./geometry.js").Point[]} */
 function groundPoints(item) {
   const kind = kindNamed(item.kind);

@@ -27,6 +27,8 @@ export class FlatView {
     this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.01, 2 * ABOVE_M);
     this.camera.position.set(0, 0, ABOVE_M);
     this.zoom = 1;
+    /** Pixels per CSS pixel. */
+    this.pixelRatio = 1;
     /** @type {Map<Marker, ImageBitmap | null>} pictures on the ground; null while they are decoded */
     this.pictures = new Map();
   }
@@ -90,14 +92,18 @@ export class FlatView {
       context.fillStyle = held.blocker === null ? "rgb(23 105 209 / 50%)" : "rgb(209 26 26 / 60%)";
       for (const polygon of placed(held.thing.outline, held.pose)) fill(context, polygon);
     }
-    if (sketch !== null) drawSketch(context, sketch, 1 / scale);
+    if (sketch !== null) drawSketch(context, sketch, this.pixelRatio / scale);
     context.setTransform(1, 0, 0, 1, 0, 0);
   }
 
   /** As it is shown on the page; as it was made, if it is not. */
   get #size() {
     const { clientWidth, clientHeight, width, height } = this.canvas;
-    return clientWidth > 0 ? { width: clientWidth, height: clientHeight } : { width, height };
+    if (clientWidth === 0) return { width, height };
+    return {
+      width: Math.round(clientWidth * this.pixelRatio),
+      height: Math.round(clientHeight * this.pixelRatio),
+    };
   }
 
   /** @param {CanvasRenderingContext2D} context @param {Marker} marker @param {() => void} changed */

@@ -14,7 +14,7 @@ import { Numbers, numbersOf } from "./numbers.js";
 import { photograph } from "./photographer.js";
 import { PlaygroundModel } from "./playground.js";
 import { watchPointer } from "./pointer.js";
-import { Quality } from "./quality.js";
+import { pictureRatio, Quality } from "./quality.js";
 import { RobotModel } from "./robot.js";
 import { SketchModel } from "./sketch.js";
 import { NameTags } from "./tags.js";
@@ -171,11 +171,25 @@ export class SceneView {
     this.invalidate();
   }
 
-  /** The view as PNG; null where the browser cannot. @returns {Promise<Blob | null>} */
+  /**
+   * The view as PNG in full resolution, however coarsely it is drawn now; null where the browser cannot. All of it is
+   * one task: the browser shows no frame of the large canvas.
+   *
+   * @returns {Promise<Blob | null>}
+   */
   picture() {
-    this.#draw(performance.now()); // a 3D picture is only there until the browser has shown it
+    const nowMs = performance.now();
+    const ratio = pictureRatio(this.size, window.devicePixelRatio);
+    this.renderer?.setPixelRatio(ratio);
+    this.flat.pixelRatio = ratio;
+    this.#updateRobots(this.state(), nowMs); // none is drawn coarsely that is large in the picture
+    this.#draw(nowMs); // a 3D picture is only there until the browser has shown it
     const shown = this.isFlat ? this.flat.canvas : this.canvas;
-    return new Promise((settle) => shown.toBlob(settle, "image/png"));
+    const picture = new Promise((/** @type {(png: Blob | null) => void} */ settle) => shown.toBlob(settle, "image/png"));
+    this.flat.pixelRatio = 1;
+    this.quality.forget();
+    this.#resize();
+    return picture;
   }
 
   /**

@@ -14,6 +14,21 @@ export const LEVELS = /** @type {readonly Level[]} */ ([
 /** What a person may choose: by itself, or a level and no other. */
 export const QUALITIES = /** @type {Readonly<Record<string, number | null>>} */ ({ auto: null, fine: 0, medium: 1, simple: 3 });
 
+/** A saved picture is at least so wide, and on neither side longer than what every graphics card draws. */
+const PICTURE_WIDTH = 1920;
+const LONGEST_PICTURE = 4096;
+
+/**
+ * Pixels per CSS pixel of a saved picture, whatever the view is drawn with.
+ *
+ * @param {{ width: number, height: number }} size  of the view in CSS pixels
+ * @param {number} devicePixelRatio
+ */
+export function pictureRatio({ width, height }, devicePixelRatio) {
+  const wanted = Math.max(devicePixelRatio, PICTURE_WIDTH / width);
+  return Math.min(wanted, LONGEST_PICTURE / Math.max(width, height));
+}
+
 const SLOWEST_FPS = 15;
 const WINDOW = 24;
 /** A longer gap means that nothing had to be drawn. */
@@ -38,6 +53,11 @@ export class Quality {
     this.choice = choice;
     this.level = level ?? this.first;
     this.intervals = [];
+  }
+
+  /** What is drawn next is no measure. */
+  forget() {
+    this.lastMs = null;
   }
 
   /** The level's settings. */

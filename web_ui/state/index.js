@@ -31,9 +31,14 @@ import { placedBy } from "./transforms.js";
  * @property {number} achieved
  * @property {string[] | null} robots  names; null where it does not say
  * @property {Readonly<Record<string, string>>} worldNames  of the robots, by those in topics
+ * @property {string[]} fallen    robots that fell off an edge, by their names in topics
  * @property {string[]} movables  names of things that can be moved
  */
-/** @typedef {{ id: number, level: "info" | "warning" | "error", text: string }} Notice */
+/**
+ * What a person is told beside the thing itself; `cause` names what it is about, so that it goes when that is gone.
+ *
+ * @typedef {{ id: number, level: "info" | "warning" | "error", text: string, cause: string }} Notice
+ */
 /**
  * @typedef {object} State
  * @property {"connecting" | "connected" | "lost" | "noToken" | "wrongToken"} connection
@@ -55,6 +60,7 @@ import { placedBy } from "./transforms.js";
  * @property {number} timeNs       simulated time
  * @property {Readonly<{ program: Upload | null, playground: Upload | null }>} uploads
  * @property {Notice[]} notices
+ * @property {number} noticeCount  how many there ever were: their ids
  */
 
 /**
@@ -73,11 +79,17 @@ import { placedBy } from "./transforms.js";
  *   | { type: "upload", what: What, name: string, text: string }
  *   | { type: "uploaded", what: What, message: string | null, fault?: Fault | null }
  *   | { type: "forget", what: What }
- *   | { type: "notice", level: Notice["level"], text: string }
+ *   | { type: "notice", level: Notice["level"], text: string, cause?: string }
+ *   | { type: "solved", cause: string }
  *   | { type: "dismiss", id: number }} Message
  */
 
 const KEPT_NOTICES = 4;
+
+/** Cause of notices about a file that was not even sent. */
+export const FILE = "file";
+/** Cause of notices about what needs the simulator. */
+export const CONNECTION = "connection";
 
 /** @type {State} */
 export const INITIAL = {
@@ -100,6 +112,7 @@ export const INITIAL = {
   timeNs: 0,
   uploads: { program: null, playground: null },
   notices: [],
+  noticeCount: 0,
 };
 
 /**
@@ -115,7 +128,8 @@ export function reduce(state, message) {
 /** One row per kind of message. */
 const STEPS = /** @type {Record<string, (state: State, message: any) => State>} */ ({
   connecting: (state) => ({ ...state, connection: state.connection === "lost" ? "lost" : "connecting" }),
-  connected: (state) => ({ ...state, connection: "connected", greeted: false, services: [], topics: [] }),
+  connected: (state) =>
+    withoutNotices({ ...state, connection: "connected", greeted: false, services: [], topics: [] }, [CONNECTION]),
   disconnected: (state) => ({ ...state, connection: "lost" }),
   refused: (state, { withToken }) => ({ ...state, connection: withToken ? "wrongToken" : "noToken" }),
   serverInfo(state, { name, sessionId, readOnly = false }) {
@@ -124,8 +138,9 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
     // On a connection that goes on, the simulation began anew: its topics stay, its time does not.
     if (state.greeted) return { ...known, timeNs: 0 };
     // Another simulator: what was known belongs to one that is no more.
-    const { connection, notices, selected } = state;
-    return { ...INITIAL, connection, notices, selected, readOnly, greeted: true, server: name, sessionId };
+    const { connection, notices, noticeCount, selected } = state;
+    const told = notices.filter(({ cause }) => !isSimulators(cause));
+    return { ...INITIAL, connection, notices: told, noticeCount, selected, readOnly, greeted: true, server: name, sessionId };
   },
   channels: withChannels,
   services: (state, { names }) => ({ ...state, services: names }),
@@ -145,11 +160,14 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
       state,
       /** @type {const} */ (["info", "warning", "error"])[status.level] ?? "error",
       status.message,
+      statusCause(status.id ?? ""),
     );
   },
+  removeStatus: (state, { ids }) => withoutNotices(state, ids.map(statusCause)),
   fault: (state, { what }) => withNotice(state, "error", what),
   select: (state, { robot }) => withoutUnheard({ ...state, selected: robot }, state.selected),
-  upload: (state, { what, name, text }) => withUpload(state, what, { name, text, phase: "sending", fault: null }),
+  upload: (state, { what, name, text }) =>
+    withoutNotices(withUpload(state, what, { name, text, phase: "sending", fault: null }), [uploadCause(what), FILE]),
   uploaded(state, { what, message, fault: told = null }) {
     const upload = state.uploads[/** @type {What} */ (what)];
     if (upload === null) return state;
@@ -157,7 +175,8 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
     return withUpload(state, what, { ...upload, phase: fault === null ? "accepted" : "refused", fault });
   },
   forget: (state, { what }) => withUpload(state, what, null),
-  notice: (state, { level, text }) => withNotice(state, level, text),
+  notice: (state, { level, text, cause }) => withNotice(state, level, text, cause),
+  solved: (state, { cause }) => withoutNotices(state, [cause]),
   dismiss: (state, { id }) => ({ ...state, notices: state.notices.filter((notice) => notice.id !== id) }),
 });
 
@@ -230,6 +249,7 @@ const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any, nowMs:
       worldNames: Object.fromEntries(
         (told.robots ?? []).map((/** @type {any} */ { name, robot = name }) => [name, robot]),
       ),
+      fallen: (told.robots ?? []).filter((/** @type {any} */ robot) => robot.fallen).map((/** @type {any} */ { name }) => name),
       movables: told.movables ?? [],
     };
     return withChannels({ ...state, simulator }, state);
@@ -253,11 +273,32 @@ function selection(wanted, robots) {
   return wanted in robots ? wanted : (Object.keys(robots)[0] ?? "");
 }
 
-/** @param {State} state @param {Notice["level"]} level @param {string} text @returns {State} */
-function withNotice(state, level, text) {
+/** @param {State} state @param {Notice["level"]} level @param {string} text @param {string} [cause] @returns {State} */
+function withNotice(state, level, text, cause = "") {
   if (state.notices.some((notice) => notice.text === text)) return state;
-  const id = 1 + Math.max(0, ...state.notices.map((notice) => notice.id));
-  return { ...state, notices: [...state.notices, { id, level, text }].slice(-KEPT_NOTICES) };
+  const id = state.noticeCount + 1;
+  return { ...state, noticeCount: id, notices: [...state.notices, { id, level, text, cause }].slice(-KEPT_NOTICES) };
+}
+
+/** Without the notices of causes that are gone. @param {State} state @param {readonly string[]} causes @returns {State} */
+function withoutNotices(state, causes) {
+  const notices = state.notices.filter(({ cause }) => cause === "" || !causes.includes(cause));
+  return notices.length === state.notices.length ? state : { ...state, notices };
+}
+
+/** Cause of notices about a file that was refused. @param {What} what */
+export function uploadCause(what) {
+  return `upload ${what}`;
+}
+
+/** Cause of what the bridge reports under an id. @param {string} id */
+function statusCause(id) {
+  return `status ${id}`;
+}
+
+/** Whether a cause is gone with the simulator that reported it. @param {string} cause */
+function isSimulators(cause) {
+  return cause.startsWith("status ") || cause.startsWith("/");
 }
 
 /** @param {State} state @param {What} what @param {Upload | null} upload @returns {State} */

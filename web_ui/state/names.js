@@ -98,6 +98,7 @@ export function watchedFor(state) {
 export const PARAMETERS = /** @type {const} */ ({
   playground: "/simulator.playground",
   factor: "/simulator.real_time_factor",
+  stepTicks: "/simulator.step_ticks",
   source: "/aseba_runtime.script.source",
   behaviour: "/aseba_runtime.behaviour",
   programName: "/aseba_runtime.script.name",

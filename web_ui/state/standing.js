@@ -5,8 +5,9 @@
 
 const KNOWN = ["running", "paused", "stopped", "fault", "off"];
 
-/** @param {string} state @param {Translate} t */
-export function stateWord(state, t) {
+/** @param {string} state @param {Translate} t @param {boolean} [timePaused]  a program that runs waits for time then */
+export function stateWord(state, t, timePaused = false) {
+  if (timePaused && state === "running") return t("state.runningPaused");
   return t(KNOWN.includes(state) ? `state.${state}` : "state.unknown");
 }
 

@@ -142,6 +142,8 @@ export const de = {
   "problem.picture": "{name} ist kein lesbares Bild",
   "problem.range": "von {low} bis {high} {unit}",
   "warn.outside": "Außerhalb des Bodens: {names}",
+  "warn.noGround": "Unter den Robotern ist kein Boden.",
+  "warn.addGround": "Boden einfügen",
   "problem.line": "Eine Zeile Text",
   "fault.json": "JSON-Text",
   "fault.object": "ein Objekt",

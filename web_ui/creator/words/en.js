@@ -142,6 +142,8 @@ export const en = {
   "problem.picture": "{name} is no picture that can be read",
   "problem.range": "from {low} to {high} {unit}",
   "warn.outside": "Outside the ground: {names}",
+  "warn.noGround": "There is no ground under the robots.",
+  "warn.addGround": "Add a ground",
   "problem.line": "One line of text",
   "fault.json": "JSON text",
   "fault.object": "an object",

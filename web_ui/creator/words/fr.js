@@ -143,6 +143,8 @@ export const fr = {
   "problem.picture": "{name} n’est pas une image lisible",
   "problem.range": "de {low} à {high} {unit}",
   "warn.outside": "Hors du sol : {names}",
+  "warn.noGround": "Il n’y a pas de sol sous les robots.",
+  "warn.addGround": "Ajouter un sol",
   "problem.line": "Une ligne de texte",
   "fault.json": "du texte JSON",
   "fault.object": "un objet",

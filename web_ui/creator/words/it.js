@@ -142,6 +142,8 @@ export const it = {
   "problem.picture": "{name} non è un’immagine leggibile",
   "problem.range": "da {low} a {high} {unit}",
   "warn.outside": "Fuori dal suolo: {names}",
+  "warn.noGround": "Sotto i robot non c’è un suolo.",
+  "warn.addGround": "Aggiungi un suolo",
   "problem.line": "Una riga di testo",
   "fault.json": "testo JSON",
   "fault.object": "un oggetto",

@@ -1,6 +1,6 @@
 // The program's events: send, add, remove, plot; and the log of what robots said.
 
-import { h, renew, setAttribute, setText } from "../../panels/dom.js";
+import { h, lock, renew, setAttribute, setText } from "../../panels/dom.js";
 import { LARGEST_EVENT } from "../aesl.js";
 import { eventKey } from "../desk.js";
 import { download } from "../download.js";
@@ -128,6 +128,9 @@ export function eventsTool({ t, desk, emit, define, announce, redraw }) {
         const kept = rows;
         rows = new Map(events.map(({ name, size }) => [`${name} ${size}`, kept.get(`${name} ${size}`) ?? rowOf(name, size)]));
         renew(body, [...rows.values()]);
+      }
+      for (const button of body.querySelectorAll("[data-send]")) {
+        lock(/** @type {HTMLButtonElement} */ (button), view.offline);
       }
       for (const star of body.querySelectorAll("[data-watch]")) {
         const watched = desk.watched.has(eventKey(star.getAttribute("data-watch") ?? ""));

@@ -14,6 +14,7 @@ import { variablesTool } from "./variables.js";
  * @property {import("../state.js").Variables | null} variables
  * @property {readonly import("../state.js").LoggedEvent[]} log
  * @property {import("../aesl.js").Aesl} file
+ * @property {string} offline   why no robot can be reached; empty: it can
  */
 /**
  * @typedef {object} ToolContext

@@ -24,6 +24,7 @@ export const de = {
   "editor.step_line": "Nächste Zeile",
   "editor.step": "Eine Anweisung",
   "editor.reset": "Neu starten",
+  "editor.unavailable": "Kein Roboter kann das jetzt",
   "editor.file": "Name der Datei",
   "editor.unsaved": "nicht als Datei gespeichert",
   "editor.notLoaded": "noch nicht im Roboter",

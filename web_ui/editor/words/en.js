@@ -24,6 +24,7 @@ export const en = {
   "editor.step_line": "Next line",
   "editor.step": "One instruction",
   "editor.reset": "Restart",
+  "editor.unavailable": "No robot can do this now",
   "editor.file": "Name of the file",
   "editor.unsaved": "not saved as a file",
   "editor.notLoaded": "not in the robot yet",

@@ -24,6 +24,7 @@ export const fr = {
   "editor.step_line": "Ligne suivante",
   "editor.step": "Une instruction",
   "editor.reset": "Redémarrer",
+  "editor.unavailable": "Aucun robot ne peut le faire maintenant",
   "editor.file": "Nom du fichier",
   "editor.unsaved": "pas enregistré dans un fichier",
   "editor.notLoaded": "pas encore dans le robot",

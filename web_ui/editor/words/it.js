@@ -24,6 +24,7 @@ export const it = {
   "editor.step_line": "Riga successiva",
   "editor.step": "Un'istruzione",
   "editor.reset": "Riavvia",
+  "editor.unavailable": "Ora nessun robot può farlo",
   "editor.file": "Nome del file",
   "editor.unsaved": "non salvato in un file",
   "editor.notLoaded": "non ancora nel robot",

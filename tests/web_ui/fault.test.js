@@ -1,0 +1,41 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { LANGUAGES, translator } from "../../web_ui/i18n/index.js";
+import { faultText, isForeign, refusalOf } from "../../web_ui/panels/fault.js";
+import { locate } from "../../web_ui/state/index.js";
+
+/** What the simulator's readers answer to files of another kind. */
+const FOREIGN = [
+  "a.json: line 1, column 1: found 'hello', expected JSON (Expecting value)",
+  "a.json: line 1, column 14: found the end of the text, expected JSON (Expecting property name enclosed in double quotes)",
+  "a.json: found [], expected an object",
+  "a.json: format: found None, expected 1",
+  "a.json: found a wrong byte at 0, expected UTF-8 text",
+  "a.json: line 1: found <html>, expected <aseba-playground>",
+  "a.json: found a broken zip archive, expected a whole one",
+  "a.json: line 1: found no element found, expected XML",
+];
+
+for (const message of FOREIGN) {
+  test(`'${message}' is said without the reader's words, in every language`, () => {
+    const fault = locate(`/simulator.playground: ${message}`, "a.json");
+    for (const language of Object.keys(LANGUAGES)) {
+      const said = faultText(translator(language), fault);
+      assert.equal(said, LANGUAGES[language]["fault.notPlayground"]);
+      assert.ok(!/Expecting|JSON|None|byte/.test(said));
+    }
+  });
+}
+
+test("a mistake in a playground is told as it is", () => {
+  for (const text of [
+    "shapes[0].x_m: found 'far', expected a number of m",
+    "shapes[0]: found 3, expected an object",
+    "title: found nothing, expected one line of text, at most 2000 characters",
+  ]) {
+    assert.equal(isForeign(refusalOf(text)), false, text);
+    assert.equal(faultText(translator("en"), locate(text)), text);
+  }
+  assert.equal(isForeign(null), false);
+});

@@ -1,0 +1,71 @@
+"""Messages of the page: above an open dialog, gone when their cause is, and success goes by itself."""
+
+from __future__ import annotations
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.test_gallery import open_gallery
+
+pytestmark = MARKS
+
+ON_TOP = """(notice) => {
+    const {left, top, width, height} = notice.getBoundingClientRect();
+    return notice.contains(document.elementFromPoint(left + width / 2, top + height / 2));
+}"""
+
+
+def test_a_message_is_above_the_open_gallery_and_can_be_closed_there(suite, page, tmp_path):
+    unknown = tmp_path / "song.mp3"
+    unknown.write_bytes(b"")
+    open_gallery(page, suite)
+    page.set_input_files("#gallery-file", str(unknown))
+    notice = page.locator(".notice", has_text="song.mp3")
+    notice.wait_for()
+    assert notice.evaluate(ON_TOP)
+    notice.get_by_role("button").click()
+    playwright.expect(notice).to_have_count(0)
+    page.set_input_files("#gallery-file", str(unknown))
+    notice.wait_for()
+    page.keyboard.press("Escape")
+    page.wait_for_function("() => document.querySelector('main > .notices .notice') !== null")
+    assert notice.evaluate(ON_TOP)
+    page.click("#gallery-open")
+    playwright.expect(notice).to_have_count(0)
+
+
+def test_the_gallery_never_shows_the_error_of_another_attempt(suite, page, tmp_path):
+    broken, unknown = tmp_path / "broken.json", tmp_path / "song.mp3"
+    broken.write_text('{"format": 1, "title": 3}')
+    unknown.write_bytes(b"")
+    open_gallery(page, suite)
+    fault = page.locator("dialog.gallery div.fault")
+    page.set_input_files("#gallery-file", str(broken))
+    playwright.expect(fault).to_contain_text("broken.json")
+    page.set_input_files("#gallery-file", str(unknown))
+    playwright.expect(page.locator(".notice")).to_contain_text("song.mp3")
+    playwright.expect(fault).to_be_hidden()
+    page.keyboard.press("Escape")
+    refusal = page.locator(".card.playground > .content > .fault")
+    refusal.get_by_role("button").click()
+    playwright.expect(refusal).to_be_hidden()
+
+
+def test_success_goes_by_itself_and_a_failure_stays_until_it_is_closed(suite, page, tmp_path):
+    program, unknown = tmp_path / "good.aesl", tmp_path / "song.mp3"
+    program.write_text("var a = 1\n")
+    unknown.write_bytes(b"")
+    open_page(page, suite("--playground", "base", "--program", "none"))
+    page.set_input_files("#playground-file", str(unknown))
+    page.locator(".notice.error").wait_for()
+    with page.expect_download():
+        page.locator("button.picture").click()
+    page.locator(".notice.info").wait_for()
+    playwright.expect(page.locator(".notice.info")).to_have_count(0)
+    page.locator(".notice.error button").click()
+    playwright.expect(page.locator(".notice")).to_have_count(0)
+    page.set_input_files("#program-file", str(program))
+    page.locator(".upload.accepted").wait_for()
+    playwright.expect(page.locator(".upload")).to_be_hidden()

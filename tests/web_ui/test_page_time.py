@@ -1,0 +1,47 @@
+"""Time on the page: a step is visible, and a program that waits for time says so."""
+
+from __future__ import annotations
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+from tests.web_ui.page_support import MARKS, open_page
+
+pytestmark = MARKS
+
+CLOCK = "() => document.querySelector('.clock').textContent"
+
+
+def seconds(page) -> float:
+    minutes, rest = page.evaluate(CLOCK).split(":")
+    return 60 * int(minutes) + float(rest)
+
+
+def test_a_step_moves_the_clock_as_far_as_was_chosen_and_a_program_says_that_time_is_paused(suite, page):
+    open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
+    state = page.locator(".card.program .state")
+    playwright.expect(state).to_have_text("running")
+    page.locator(".time button.primary").click()
+    playwright.expect(state).to_have_text("running, time is paused")
+    step = page.locator(".steps button")
+    playwright.expect(step).to_be_enabled()
+    page.wait_for_function("() => window.thymio.state().timeNs > 0")
+    for ticks, far in ((None, 0.1), ("1", 0.01), ("100", 1.0)):
+        if ticks is not None:
+            page.select_option(".steps select", ticks)
+        page.wait_for_function(
+            "() => { const {timeNs} = window.thymio.state(); const stood = window.stood === timeNs;"
+            " window.stood = timeNs; return stood; }",
+            polling=500,
+        )
+        before = page.evaluate(CLOCK)
+        start = seconds(page)
+        step.click()
+        page.wait_for_function(f"(before) => ({CLOCK})() !== before", arg=before)
+        page.wait_for_function(
+            f"(then) => {{ const [m, s] = ({CLOCK})().split(':'); return Math.abs(60 * m + +s - then) < 0.002; }}",
+            arg=start + far,
+        )
+    page.locator(".time button.primary").click()
+    playwright.expect(state).to_have_text("running")

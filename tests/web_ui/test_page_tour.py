@@ -1,0 +1,117 @@
+"""The first tour: shown once, closed for good, opened again by a button, usable by keys, and no obstacle."""
+
+from __future__ import annotations
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+from tests.processes import wait_for_port
+from tests.web_ui.page_support import MARKS
+from tests.web_ui.test_page_access import AXE, FINDINGS
+from tests.web_ui.test_page_recovery import NO_STORAGE
+
+pytestmark = MARKS
+
+READY = "window.thymio && window.thymio.connected && window.thymio.partPosition('robot')"
+IN_SIGHT = """() => {
+    const {left, top, right, bottom} = document.querySelector(".tour").getBoundingClientRect();
+    return left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight;
+}"""
+STEPS = 5
+
+
+@pytest.fixture
+def first_visit(suite, page):
+    """The page as somebody opens it for the first time, and its address."""
+    address = suite("--playground", "base", "--behaviour", "explorer")
+    wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
+    return page, address
+
+
+def visit(page, address):
+    page.goto(address)
+    page.wait_for_function(READY)
+
+
+def test_it_is_shown_once_goes_by_keys_stops_no_robot_and_comes_back_by_its_button(first_visit):
+    page, address = first_visit
+    visit(page, address)
+    tour = page.get_by_role("dialog", name="The world of your robot")
+    playwright.expect(tour).to_contain_text("1 of 5")
+    playwright.expect(page.locator(".tour .primary")).to_be_focused()
+    page.wait_for_function("() => window.thymio.state().program?.state === 'running'")
+    for step in range(2, STEPS + 1):
+        page.keyboard.press("Enter")
+        playwright.expect(page.locator(".tour")).to_contain_text(f"{step} of 5")
+        page.wait_for_function(IN_SIGHT)
+    playwright.expect(page.locator(".tour .primary")).to_have_text("Done")
+    page.locator(".tour").get_by_role("button", name="Back").press("Enter")
+    playwright.expect(page.locator(".tour")).to_contain_text("4 of 5")
+    page.keyboard.press("Escape")
+    playwright.expect(page.locator(".tour")).to_have_count(0)
+    playwright.expect(page.locator("#tour-switch")).to_be_focused()
+    page.locator(".time button.primary").click()
+    page.wait_for_function("window.thymio.state().simulator.paused")  # asked for after a stop would have been
+    assert page.evaluate("window.thymio.state().program.state") == "running"
+    visit(page, address)
+    page.wait_for_function("() => window.thymio.frames() > 2")
+    playwright.expect(page.locator(".tour")).to_have_count(0)
+    page.locator("#tour-switch").click()
+    playwright.expect(page.locator(".tour")).to_contain_text("1 of 5")
+    page.select_option("select.language", "de")
+    playwright.expect(page.locator(".tour")).to_contain_text("Die Welt deines Roboters")
+
+
+def test_what_it_stands_beside_goes_on_working(first_visit):
+    page, address = first_visit
+    visit(page, address)
+    page.locator(".tour").wait_for()
+    page.locator("[data-button=forward]").hover()
+    page.mouse.down()
+    page.wait_for_function("() => window.thymio.state().robot.buttons.forward")
+    page.mouse.up()
+    page.locator(".time button.primary").click()
+    page.wait_for_function("window.thymio.state().simulator.paused")
+
+
+def test_an_address_keeps_it_away_or_brings_it_back(first_visit):
+    page, address = first_visit
+    visit(page, f"{address}?tour=off")
+    page.wait_for_function("() => window.thymio.frames() > 2")
+    playwright.expect(page.locator(".tour")).to_have_count(0)
+    visit(page, f"{address}?tour=on")
+    page.locator(".tour-close").click()
+    visit(page, f"{address}?tour=on")
+    page.locator(".tour").wait_for()
+
+
+def test_it_can_be_closed_where_the_browser_keeps_nothing(first_visit):
+    page, address = first_visit
+    page.add_init_script(NO_STORAGE)
+    visit(page, address)
+    page.locator(".tour-close").click()
+    page.reload()
+    page.wait_for_function(READY)
+    page.wait_for_function("() => window.thymio.frames() > 2")
+    playwright.expect(page.locator(".tour")).to_have_count(0)
+
+
+@pytest.mark.parametrize("size", [(1280, 650), (820, 1180), (360, 640)])
+def test_it_is_in_sight_and_accessible_on_every_screen_in_every_language(first_visit, size):
+    page, address = first_visit
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    page.emulate_media(reduced_motion="reduce")
+    visit(page, address)
+    page.locator(".tour").wait_for()
+    for language in ("de", "fr", "it", "en"):
+        page.select_option("select.language", language)
+        page.wait_for_function("(language) => document.documentElement.lang === language", arg=language)
+        page.wait_for_function(IN_SIGHT)
+    if AXE.exists():
+        page.add_script_tag(path=str(AXE))
+        assert page.evaluate(FINDINGS) == []
+    for _ in range(STEPS - 1):
+        page.locator(".tour .primary").click()
+        page.wait_for_function(IN_SIGHT)
+    assert page.evaluate("() => getComputedStyle(document.querySelector('.tour')).transitionDuration") == "0s"

@@ -1,0 +1,66 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { LANGUAGES } from "../../web_ui/i18n/index.js";
+import { placed } from "../../web_ui/tour/place.js";
+import { STEPS } from "../../web_ui/tour/steps.js";
+import { WORDS } from "../../web_ui/tour/words.js";
+import { begins } from "../../web_ui/tour_host.js";
+
+/** @param {string | null} kept */
+const shelf = (kept) => ({ getItem: () => kept });
+
+test("the tour begins at a first visit, and never again once it was closed", () => {
+  assert.equal(begins({ search: "", shelf: shelf(null), entry: null }), true);
+  assert.equal(begins({ search: "?token=abc", shelf: shelf("closed"), entry: null }), false);
+  assert.equal(begins({ search: "", shelf: shelf(null), entry: { tour: "closed" } }), false); // nothing can be stored
+});
+
+test("the address decides for a kiosk or a class", () => {
+  assert.equal(begins({ search: "?token=abc&tour=off", shelf: shelf(null), entry: null }), false);
+  assert.equal(begins({ search: "?tour=on", shelf: shelf("closed"), entry: { tour: "closed" } }), true);
+});
+
+for (const language of Object.keys(LANGUAGES)) {
+  test(`the tour has every word in ${language}, with the same values`, () => {
+    /** @param {string} text */
+    const values = (text) => [...text.matchAll(/\{\w+\}/g)].map(([name]) => name).sort();
+    assert.deepEqual(Object.keys(WORDS[language]), Object.keys(WORDS.en));
+    for (const [key, text] of Object.entries(WORDS.en)) assert.deepEqual(values(WORDS[language][key]), values(text), key);
+    for (const { name } of STEPS) assert.ok(name in WORDS[language] && `${name}.text` in WORDS[language]);
+  });
+}
+
+test("the card stands beside what it speaks of, and always in the window", () => {
+  const card = { width: 320, height: 170 };
+  const targets = [
+    { left: 14, top: 600, width: 160, height: 160 },
+    { left: 900, top: 8, width: 120, height: 34 },
+    { left: 1230, top: 300, width: 38, height: 38 },
+    { left: 960, top: 770, width: 300, height: 28 },
+  ];
+  for (const window of [
+    { width: 1280, height: 800 },
+    { width: 1280, height: 650 },
+  ]) {
+    for (const target of targets) {
+      const { left, top } = placed(card, target, window);
+      assert.ok(left >= 0 && top >= 0 && left + card.width <= window.width && top + card.height <= window.height);
+      const apart =
+        left >= target.left + target.width ||
+        left + card.width <= target.left ||
+        top >= target.top + target.height ||
+        top + card.height <= target.top;
+      assert.ok(apart, JSON.stringify(target));
+    }
+  }
+});
+
+test("a large target has the card in its upper part, and nothing to see has it in the middle of the window", () => {
+  const card = { width: 300, height: 200 };
+  const window = { width: 1000, height: 800 };
+  const view = { left: 0, top: 60, width: 1000, height: 740 };
+  assert.deepEqual(placed(card, view, window), { left: 350, top: 88 });
+  assert.deepEqual(placed(card, null, window), { left: 350, top: 300 });
+  assert.deepEqual(placed(card, null, { width: 200, height: 100 }), { left: 8, top: 8 });
+});

@@ -1,0 +1,93 @@
+// The tour's place on the page: shown at a first visit, never again once it was closed, and whenever it is asked for.
+
+import { memory, note } from "./memory.js";
+import { CONNECTION } from "./state/index.js";
+
+/** @typedef {import("./tour/index.js").Tour} Tour */
+/** @typedef {import("./panels/index.js").Context} Context */
+
+const KEY = "tour";
+const CLOSED = "closed";
+
+/**
+ * Whether the tour begins by itself. In the address, `tour=off` prevents it, for kiosks and tests, and `tour=on` begins
+ * it even where it was closed.
+ *
+ * @param {object} visit
+ * @param {string} visit.search             of the address
+ * @param {Pick<import("./memory.js").Memory, "getItem">} visit.shelf
+ * @param {unknown} visit.entry             what the browser's history keeps of this visit, also where it stores nothing
+ */
+export function begins({ search, shelf, entry }) {
+  const asked = new URLSearchParams(search).get("tour");
+  if (asked === "on" || asked === "off") return asked === "on";
+  return shelf.getItem(KEY) !== CLOSED && /** @type {any} */ (entry)?.[KEY] !== CLOSED;
+}
+
+export class TourHost {
+  constructor() {
+    this.step = 0;
+    /** @type {Tour | null} */ this.tour = null;
+    /** @type {typeof import("./tour/index.js") | null} */ this.module = null;
+    /** @type {Context | null} */ this.context = null;
+    /** @type {Element | null} what had the focus before */ this.before = null;
+  }
+
+  get isOpen() {
+    return this.tour !== null;
+  }
+
+  /** The page has other words, or is new. @param {Context} context */
+  dress(context) {
+    this.context = context;
+    if (this.isOpen) this.#build();
+  }
+
+  /** Once, when the page is there. */
+  begin() {
+    if (begins({ search: location.search, shelf: memory, entry: history.state })) void this.open();
+  }
+
+  async open() {
+    if (this.isOpen) return;
+    const { activeElement } = document;
+    this.module ??= await import("./tour/index.js").catch(() => null);
+    if (this.module === null) {
+      const { store, t } = /** @type {Context} */ (this.context);
+      store.dispatch({ type: "notice", level: "error", text: t("app.notLoaded"), cause: CONNECTION });
+      return;
+    }
+    this.before = activeElement;
+    this.step = 0;
+    this.#build();
+  }
+
+  /** For good: only the button in the header brings it back. */
+  close() {
+    this.tour?.destroy();
+    this.tour = null;
+    note(memory, KEY, CLOSED);
+    history.replaceState({ ...history.state, [KEY]: CLOSED }, "");
+    const place = this.before instanceof HTMLElement && this.before !== document.body ? this.before : null;
+    (place?.isConnected ? place : /** @type {HTMLElement | null} */ (document.querySelector("#tour-switch")))?.focus();
+  }
+
+  /** Once a frame: what it speaks of may have moved. */
+  render() {
+    this.tour?.render();
+  }
+
+  #build() {
+    if (this.module === null || this.context === null) return;
+    this.tour?.destroy();
+    this.tour = this.module.createTour({
+      language: this.context.language,
+      step: this.step,
+      stepped: (step) => {
+        this.step = step;
+      },
+      close: () => this.close(),
+    });
+    this.tour.begin();
+  }
+}
