@@ -18,7 +18,7 @@ import thymio_sim_ros
 
 ROOT = Path(__file__).parent.parent
 NAME = "thymio_sim_ros"
-OPTIONAL = {"thymio_msgs"}
+OPTIONAL = {"tf2_geometry_msgs", "thymio_msgs"}
 """ROS packages that are used where they are installed."""
 EXECUTABLES = {"simulator", "aseba_runtime", "foxglove_bridge", "web_ui", "thymio"}
 

@@ -114,7 +114,7 @@ def test_what_a_robot_publishes(ros, simulation, sensor, row):
 
 SENT = {
     "cmd_vel": (Twist(linear=Vector3(x=0.1)), commands.BodyTwist(0.1, 0.0)),
-    "_cmd_vel_stamped": (TwistStamped(twist=Twist(linear=Vector3(x=0.1))), commands.BodyTwist(0.1, 0.0)),
+    "cmd_vel_stamped": (TwistStamped(twist=Twist(linear=Vector3(x=0.1))), commands.BodyTwist(0.1, 0.0)),
     "_wheels/command": (Float64MultiArray(data=[1.0, 2.0]), commands.WheelVelocities(1.0, 2.0)),
     "_motor/target": (Int16MultiArray(data=[100, -100]), commands.MotorTargets(100, -100)),
     **{
@@ -190,7 +190,7 @@ def test_what_a_robot_listens_to(ros, simulation, monkeypatch, topic):
     sim.world.robots["anna"].accepts(command)
 
 
-@pytest.mark.parametrize("topic", ["cmd_vel", "_cmd_vel_stamped", "_wheels/command"])
+@pytest.mark.parametrize("topic", ["cmd_vel", "cmd_vel_stamped", "_wheels/command"])
 def test_velocities_end_after_their_timeout_on_all_topics(ros, simulation, topic):
     sim = simulation(cmd_vel_timeout=0.25)
     ros.publisher(INPUTS[topic].type, f"/{topic}").publish(SENT[topic][0])

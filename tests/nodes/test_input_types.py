@@ -80,7 +80,7 @@ def test_the_right_type_is_nothing_to_tell(ros, simulation, stranger):
 def test_every_input_of_every_robot_is_looked_at(ros, simulation, stranger):
     sim = simulation(playground="two_robots")
     robots = [names.name for names in sim.simulator.names.values()]
-    topics = [*(f"/{robot}/{one.topic}" for robot in robots for one in robot_inputs()), "/simulator/place"]
+    topics = [*(f"/{robot}/{one.topic}" for robot in robots for one in robot_inputs()), "/simulator/_place"]
     node = stranger(String, topics[0])
     for topic in topics[1:]:
         node.create_publisher(String, topic, 1)
@@ -102,8 +102,8 @@ def test_robots_that_come_are_looked_at_too(ros, simulation, stranger):
     looks.look()
     sim.world.remove(name)
     sim.simulator.follow()
-    stranger(String, f"/{name}/alarm", "late")
-    ros.until(lambda: ros.node.count_publishers(f"/{name}/alarm"))
+    stranger(String, f"/{name}/_alarm", "late")
+    ros.until(lambda: ros.node.count_publishers(f"/{name}/_alarm"))
     looks._next_s = 0.0
     looks.look()
     assert looks.mismatches == ()
@@ -111,14 +111,14 @@ def test_robots_that_come_are_looked_at_too(ros, simulation, stranger):
 
 def test_a_runtime_looks_at_its_inputs(ros, runtime, stranger):
     made = runtime("onevent prox")
-    stranger(Twist, "/aseba/emit")
+    stranger(Twist, "/_aseba/emit")
 
     def found():
         made._publish_diagnostics()
         return made._input_types.mismatches
 
     ros.until(found)
-    assert [one.topic for one in made._input_types.mismatches] == ["/aseba/emit"]
+    assert [one.topic for one in made._input_types.mismatches] == ["/_aseba/emit"]
 
 
 @pytest.mark.parametrize(

@@ -78,14 +78,20 @@ def _actions(description: Call, kind: str) -> list[Call]:
     return [action for action in description.args[0] if type(action).__name__ == kind]
 
 
+def _function(description: Call, name: str) -> Any:
+    """The function of that name that is run when the launch arguments are known."""
+    functions = [action.kwargs["function"] for action in _actions(description, "OpaqueFunction")]
+    return {function.__name__: function for function in functions}[name]
+
+
 def _defaults(description: Call) -> dict[str, str]:
     return {one.args[0]: one.kwargs["default_value"] for one in _actions(description, "DeclareLaunchArgument")}
 
 
 def _ours(description: Call, **arguments: str) -> list[dict[str, Any]]:
     """How each of our own nodes is started with these launch arguments."""
-    (opaque,) = _actions(description, "OpaqueFunction")
-    nodes = [node.kwargs for node in opaque.kwargs["function"](_defaults(description) | arguments)]
+    make_nodes = _function(description, "_nodes")
+    nodes = [node.kwargs for node in make_nodes(_defaults(description) | arguments)]
     assert {node["package"] for node in nodes} == {"thymio_sim_ros"}
     return nodes
 
@@ -224,7 +230,9 @@ def test_rviz_is_started_with_the_shipped_configuration_if_wanted(description: C
     kinds = [
         type(action).__name__ for action in description.args[0] if type(action).__name__ != "DeclareLaunchArgument"
     ]
-    assert kinds == ["Node", "OpaqueFunction"], "where it is not installed, nothing may be running yet"
+    assert kinds == ["Node", "OpaqueFunction", "OpaqueFunction"], (
+        "where it is not installed, nothing may be running yet"
+    )
     config = (ROOT / "resource" / "rviz" / "thymio.rviz").read_text()
     absolute = set(re.findall(r"Value: (/\S+)", config)) - {"/map_updates"}
     assert {old for old, _ in rviz.kwargs["remappings"]} == absolute
@@ -238,10 +246,9 @@ def test_a_node_that_refuses_what_it_was_given_ends_all_others(description: Call
 
 
 def _tokens(description: Call, address: str, require_token: str, environment: dict[str, str]) -> dict[str, str]:
-    (function,) = _actions(description, "OpaqueFunction")
     configurations = {"address": address, "require_token": require_token}
     context = SimpleNamespace(launch_configurations=configurations, environment=environment)
-    return dict(variable.args for variable in function.kwargs["function"](context))
+    return dict(variable.args for variable in _function(description, "_give_tokens")(context))
 
 
 def test_bridge_and_page_get_the_same_tokens_by_their_environment(description: Call) -> None:

@@ -47,7 +47,7 @@ BEYOND = {
         twist(MAX_SPEED_M_S),
         "a wheel would need 0.5 m/s, expected at most 0.166; both wheels are slowed down together",
     ),
-    "_cmd_vel_stamped": (TwistStamped(twist=twist(0.0, 10.0)), TwistStamped(twist=twist(0.1, -1.0)), "a wheel would"),
+    "cmd_vel_stamped": (TwistStamped(twist=twist(0.0, 10.0)), TwistStamped(twist=twist(0.1, -1.0)), "a wheel would"),
     "_wheels/command": (
         Float64MultiArray(data=[0.0, -20.0]),
         Float64MultiArray(data=[FULL_RAD_S, -FULL_RAD_S]),
@@ -63,13 +63,14 @@ BEYOND = {
         for group in ("top", "bottom_left", "bottom_right")
     },
     **{
-        f"led/{group}": (
+        topic: (
             Float32MultiArray(data=[0.0] * (size - 1) + [32.0]),
             Float32MultiArray(data=[1.0] * size),
             "intensity 32 found, expected 0 to 1",
         )
         for group, size in LED_GROUPS.items()
-        if f"led/{group}" in INPUTS
+        for topic in (f"led/{group}", f"_led/{group}")
+        if topic in INPUTS and group not in ("top", "bottom_left", "bottom_right")
     },
     "_led/single": (Int16MultiArray(data=[3, 33]), Int16MultiArray(data=[38, 32]), "brightness 33 found"),
     "sound/tone": (
@@ -100,7 +101,7 @@ def test_what_is_beyond_the_robot_is_said(topic):
 
 
 NOW = Moment(0, 0, lambda: {"map": WORLD})
-NOTHING_TO_REFUSE = {"sound/samples": "any bytes are a sound", "sound/wave": "any bytes are a wave"}
+NOTHING_TO_REFUSE = {"_sound/samples": "any bytes are a sound", "_sound/wave": "any bytes are a wave"}
 """Topics of which each number that their type holds is meant as it is."""
 ENDLESS = [math.nan, math.inf, -math.inf]
 FAR = [-1e30, 1e30]
@@ -135,7 +136,7 @@ def bad_messages(one):
     elif kind is Float32:
         places, values = ["data"], [*FAR, *ENDLESS]
     elif kind is ColorRGBA:
-        places, values = ["r", "g", "b"] + ["a"] * (one.topic == "pen/color"), [*FAR, *ENDLESS]
+        places, values = ["r", "g", "b"] + ["a"] * (one.topic == "_pen/color"), [*FAR, *ENDLESS]
     else:
         before = {Twist: "", TwistStamped: "twist."}.get(kind)
         places = [f"{before}linear.x", f"{before}angular.z"] if before is not None else [
@@ -149,15 +150,15 @@ def bad_messages(one):
             copy = changed(good, 0, good.data[0]) if len(good.data) else kind()
             copy.data = [*good.data, *good.data[-1:]][:size]
             yield copy
-    if one.topic == "sound/samples":
+    if one.topic == "_sound/samples":
         yield UInt8MultiArray(data=bytes(MOST_SAMPLES + 1))
 
 
 EMPTY_MEANS = {topic: {0} for topic in INPUTS if topic.endswith(("press/proximity", "press/ground"))} | {
-    topic: {0} for topic in INPUTS if topic.startswith("led/") and INPUTS[topic].type is Float32MultiArray
+    topic: {0} for topic in INPUTS if topic.startswith(("led/", "_led/")) and INPUTS[topic].type is Float32MultiArray
 }
 """Where an array of nothing gives something back to the robot."""
-EMPTY_MEANS["led/own"] = set()
+EMPTY_MEANS["_led/own"] = set()
 GOOD = {topic: message for topic, (message, _) in SENT.items()}
 
 
@@ -192,7 +193,7 @@ def test_every_input_but_switches_is_tried_with_bad_messages():
 @pytest.mark.parametrize("number", [-1, 15, 40])
 def test_a_light_that_there_is_not_is_refused(number):
     with pytest.raises(CommandError, match=f"light {number} found, expected 0 to 39, but for 15"):
-        INPUTS["led/single"].commands(Int16MultiArray(data=[number, 5]), NOW)
+        INPUTS["_led/single"].commands(Int16MultiArray(data=[number, 5]), NOW)
 
 
 @pytest.mark.parametrize("hertz", [LOWEST_HZ, -LOWEST_HZ, HIGHEST_HZ, -HIGHEST_HZ])

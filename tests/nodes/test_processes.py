@@ -62,11 +62,12 @@ def test_the_whole_suite_runs_and_ends(ros, process, number):
     odometry: list[Odometry] = []
     ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
     ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, START_S, what="a moving robot")
-    ros.until(lambda: len(suite.output.splitlines()) >= 4, START_S)
-    page, foxglove, layout, stop = suite.output.splitlines()[:4]
+    ros.until(lambda: len(suite.output.splitlines()) >= 5, START_S)
+    page, foxglove, layout, access, stop = suite.output.splitlines()[:5]
     assert str(port) in page
     assert str(foxglove_port) in foxglove
     assert "layout" in layout
+    assert "this computer only" in access
     assert "Ctrl-C" in stop
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
     connection.request("GET", "/config.json")

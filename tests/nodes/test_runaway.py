@@ -68,7 +68,7 @@ def test_a_program_can_always_be_stopped(ros, threaded, tmp_path, program):
 def test_what_is_too_fast_is_said_and_clears(ros, threaded):
     threaded(source=FLOOD)
     status = Status(ros)
-    diagnostics = ros.collect(DiagnosticStatus, "/aseba/status", latched=True)
+    diagnostics = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
     ros.until(lambda: diagnostics and diagnostics[-1].level == DiagnosticStatus.WARN)
     assert "call leds.top" in status["overload"]
     assert "slowed down" in diagnostics[-1].message

@@ -122,7 +122,7 @@ def test_a_robot_that_is_shut_down_is_silent(ros, simulation):
 def test_a_stamped_command_turns_the_robot(ros, simulation):
     sim = simulation()
     truth = ros.collect(Odometry, "/_ground_truth/odom")
-    ros.publisher(TwistStamped, "/_cmd_vel_stamped").publish(TwistStamped(twist=forward(0.0, 1.0)))
+    ros.publisher(TwistStamped, "/cmd_vel_stamped").publish(TwistStamped(twist=forward(0.0, 1.0)))
     sim.until(lambda: truth and yaw_of(truth[-1].pose.pose.orientation) > 0.5)
     assert truth[-1].header.frame_id == "map"
 

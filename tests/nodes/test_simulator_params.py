@@ -252,7 +252,7 @@ def test_odometry_and_joints_have_their_rate(ros, simulation, rate, count):
 @pytest.mark.parametrize(("rate", "period_s"), [(0.0, 0.1), (25.0, 0.04), (100.0, 0.01)])
 def test_a_laser_scan_says_how_long_it_is_until_the_next(ros, simulation, rate, period_s):
     sim = simulation(sensor_rate=rate)
-    scans = ros.collect(LaserScan, "/proximity/laser")
+    scans = ros.collect(LaserScan, "/_proximity/laser")
     sim.until(lambda: len(scans) >= 5, seconds=2.0)
     stamps = [scan.header.stamp.sec + scan.header.stamp.nanosec / 1e9 for scan in scans]
     gaps = [later - earlier for earlier, later in itertools.pairwise(stamps)]

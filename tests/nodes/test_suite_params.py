@@ -14,7 +14,7 @@ from thymio_sim_ros.nodes.suite_params import BRIDGE, PAGE, RUNTIME, SIMULATOR, 
 from thymio_sim_ros.suite import Suite
 
 NODES = (SIMULATOR, RUNTIME, BRIDGE, PAGE)
-SHARED = {"port", "foxglove_port", "address"}
+SHARED = {"port", "foxglove_port", "address", "robot_names"}
 """Parameters of more than one node."""
 
 

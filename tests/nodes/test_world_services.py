@@ -71,7 +71,7 @@ def test_a_robot_is_spawned_and_removed_while_the_world_is_paused(ros, simulatio
 
 def test_the_state_says_which_robots_fell(ros, simulation):
     sim = simulation(playground=ROOM)
-    states = ros.collect(String, "/simulator/state")
+    states = ros.collect(String, "/simulator/_state")
     ros.until(lambda: states and json.loads(states[-1].data)["robots"][0]["fallen"] is False)
     assert ask(ros, "set_poses", thymio=numbers(50.0, 50.0)) == {"thymio": ""}
     sim.until(lambda: json.loads(states[-1].data)["robots"][0]["fallen"] is True)

@@ -154,7 +154,7 @@ test("a behaviour is a parameter of the runtime", async () => {
 
 test("what is loaded once more begins anew, since the same value changes nothing", async () => {
   const { actions, asked, store } = prepared();
-  connect(store, ["/a/ground_truth/odom", "/b/ground_truth/odom"], []);
+  connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], []);
   store.dispatch({ type: "parameters", parameters: [{ name: "/simulator.playground", value: "base" }] });
   await actions.loadPlayground("base");
   assert.deepEqual(asked.splice(0).map(([, name]) => name).slice(1), ["/simulator/reset"]);

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import pytest
 
@@ -62,7 +63,7 @@ def without_tour(address: str) -> str:
 
 def open_page(page: Any, address: str) -> None:
     """Load the page, as soon as the suite answers, and wait for the robot and for what the simulator says of itself."""
-    wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
+    wait_for_port(urlsplit(address).port or 80)
     page.goto(without_tour(address))
     page.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
     page.wait_for_function("window.thymio.state().simulator !== null")

@@ -365,6 +365,6 @@ test("robots that fell are known by their names in topics", () => {
     { name: "", robot: "thymio", fallen: true },
     { name: "b", robot: "blue", fallen: false },
   ];
-  const { simulator } = after([message("/simulator/state", json({ playground: "table", robots }))]);
+  const { simulator } = after([message("/simulator/_state", json({ playground: "table", robots }))]);
   assert.deepEqual(simulator?.fallen, [""]);
 });

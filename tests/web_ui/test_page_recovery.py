@@ -29,7 +29,7 @@ def test_a_restarted_simulator_is_found_again_and_what_was_known_of_the_old_one_
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 1")
     page.wait_for_function("() => Boolean(window.thymio.state().robot?.latest)")
     playwright.expect(banner).to_have_count(0)
-    playwright.expect(page.locator(".chip")).to_have_attribute("data-state", "connected")
+    playwright.expect(page.locator(".chip[data-state]")).to_have_attribute("data-state", "connected")
 
 
 LOCKED = (

@@ -47,7 +47,7 @@ def test_a_tone_is_heard_after_the_first_touch_and_until_it_is_muted(suite, page
     button = page.locator("button.sound")
     playwright.expect(button).to_have_attribute("data-phase", "waiting")
     assert page.evaluate("() => window.heard.length") == 0
-    page.locator(".chip").click()
+    page.locator(".chip[data-state]").click()
     page.wait_for_function(f"({SOUNDING})() === 1")
     source = "window.heard[0].sounding[0]"
     assert (
@@ -71,7 +71,7 @@ def test_the_browser_makes_a_tone_of_that_pitch(suite, page, tmp_path):
     page.add_init_script(OFFLINE)
     open_page(page, suite("--program", str(program)))
     page.wait_for_function("() => window.thymio.state().robot.sound[0] === 440")
-    page.locator(".chip").click()
+    page.locator(".chip[data-state]").click()
     page.wait_for_function("() => window.heard")
     heard = page.evaluate(LISTEN_A_SECOND)
     assert abs(heard["rising"] - 440) <= 1
@@ -83,7 +83,7 @@ def test_a_pause_holds_the_sound(suite, page, tmp_path):
     program.write_text(SINGING)
     page.add_init_script(LISTEN)
     open_page(page, suite("--program", str(program)))
-    page.locator(".chip").click()
+    page.locator(".chip[data-state]").click()
     page.wait_for_function(f"({SOUNDING})() === 1")
     page.locator(".time button.primary").click()
     page.wait_for_function("() => window.heard[0].state === 'suspended'")

@@ -127,7 +127,7 @@ All other topics have hidden names: a word of the name begins with `_`. Hidden a
 
 - what only a simulation has: `_ground_truth/odom`, `_collision`, the operator's hand (`_press/…`), what lights,
   loudspeaker and pen show (`_led/state`, `_sound/state`, `_pen/trail`), the playground (`_markers`);
-- other forms of what is shown: Aseba's integers (`_raw/…`, `_motor/target`), `_wheels/command`, `_cmd_vel_stamped`,
+- other forms of what is shown: Aseba's integers (`_raw/…`, `_motor/target`), `_wheels/command`,
   `_proximity/laser`, `_proximity/rays`, `_buttons`;
 - what few programs need: the other lights, gestures, sounds, microphone, remote control, taps, infrared
   communication, temperature, battery;

@@ -62,7 +62,7 @@ class RobotInput:
 
 def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
     """All of them; `stamped_cmd_vel`: `cmd_vel` is TwistStamped, as newer Nav2 has it."""
-    plain, stamped = ("_cmd_vel_unstamped", "cmd_vel") if stamped_cmd_vel else ("cmd_vel", "_cmd_vel_stamped")
+    plain, stamped = ("cmd_vel_unstamped", "cmd_vel") if stamped_cmd_vel else ("cmd_vel", "cmd_vel_stamped")
     speeds = "linear.x in m/s and angular.z in rad/s; scaled down together above the wheels' limit"
     return (
         RobotInput(plain, TwistMsg, _twist, speeds, qos.COMMAND, limits.twist),

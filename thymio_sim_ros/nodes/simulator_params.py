@@ -131,7 +131,7 @@ class SimulatorParams:
     cmd_vel_timeout: float = param(0.0, "Seconds after which a velocity command ends; 0 is never", low=0.0, high=3600.0)
     stamped_cmd_vel: bool = param(
         False,
-        "Whether cmd_vel is TwistStamped and _cmd_vel_unstamped Twist, instead of _cmd_vel_stamped and cmd_vel",
+        "Whether cmd_vel is TwistStamped and cmd_vel_unstamped Twist, instead of cmd_vel_stamped and cmd_vel",
         fixed=True,
     )
 

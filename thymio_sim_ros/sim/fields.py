@@ -10,6 +10,7 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import functools
+import itertools
 import math
 import re
 import reprlib
@@ -193,7 +194,22 @@ def join(key: str, name: str) -> str:
 
 
 _DESCRIBED = 60
-_REPR = reprlib.Repr()
+
+
+class _Repr(reprlib.Repr):
+    """Like `reprlib.Repr`, but members stay in the file's order."""
+
+    def repr_dict(self, value: dict[Any, Any], level: int) -> str:
+        if level <= 0 and value:
+            return "{...}"
+        shown = [
+            f"{self.repr1(key, level - 1)}: {self.repr1(item, level - 1)}"
+            for key, item in itertools.islice(value.items(), self.maxdict)
+        ]
+        return "{" + ", ".join([*shown, *["..."] * (len(value) > self.maxdict)]) + "}"
+
+
+_REPR = _Repr()
 _REPR.maxlevel, _REPR.maxlong, _REPR.maxstring, _REPR.maxother = 8, _DESCRIBED, 2 * _DESCRIBED, 2 * _DESCRIBED
 _REPR.maxlist = _REPR.maxdict = _DESCRIBED
 """Neither the size nor the depth of a value matters to how long it takes to describe."""
