@@ -69,7 +69,19 @@ def test_every_native_function_is_called():
 UNREACHABLE = {"static-read-out-of-bounds", "static-write-out-of-bounds"}
 #: Limits of our own and faults of the machine's user have tests elsewhere (test_limits.py, test_vm.py),
 #: as have hints (test_hints.py) and the words of the command line (test_main.py).
-ELSEWHERE = ("too-many-tokens", "too-many-elements", "fault-", "aesl-", "xml-", "text-", "hint-", "check-", "note-")
+ELSEWHERE = (
+    "too-many-tokens",
+    "too-many-elements",
+    "fault-",
+    "aesl-",
+    "xml-",
+    "text-",
+    "hint-",
+    "check-",
+    "note-",
+    "label-",
+    "fmt-",
+)
 #: Words inside of messages (test_messages.py).
 TOKENS = ("token-", "valued-")
 

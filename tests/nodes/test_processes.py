@@ -79,7 +79,7 @@ def test_the_whole_suite_runs_and_ends(ros, process, number):
     assert suite.wait() == 0, suite.output
     assert is_free(port)
     assert is_free(foxglove_port)
-    assert len(suite.output.splitlines()) == 4, suite.output
+    assert len(suite.output.splitlines()) == 5, suite.output
     assert left_behind(used) == set()
 
 

@@ -272,7 +272,7 @@ def test_velocities_swap_their_names_on_request(ros, simulation):
     sim = simulation(stamped_cmd_vel=True)
     ros.publisher(TwistStamped, "/cmd_vel").publish(TwistStamped(twist=Twist(linear=Vector3(x=0.1))))
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m > 0.05)
-    ros.publisher(Twist, "/_cmd_vel_unstamped").publish(Twist(linear=Vector3(x=-0.1)))
+    ros.publisher(Twist, "/cmd_vel_unstamped").publish(Twist(linear=Vector3(x=-0.1)))
     sim.until(lambda: sim.world.robots["thymio"].pose.x_m < 0.0)
 
 

@@ -46,7 +46,7 @@ def test_without_a_valid_token_the_page_says_what_to_do(suite, page, rest, state
 def test_with_the_read_only_token_the_page_watches(suite, page):
     address = suite(*TOKENS)
     wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
-    page.goto(f"{address}#token=looktoken")
+    page.goto(f"{address}?tour=off#token=looktoken")
     page.wait_for_function("window.thymio?.state().readOnly && window.thymio.state().simulator !== null")
     page.locator("#read-only").wait_for()
     page.wait_for_function("document.querySelector('.time').inert && document.querySelector('.dpad').inert")
