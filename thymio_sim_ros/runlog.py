@@ -21,6 +21,7 @@ from __future__ import annotations
 import json
 import zlib
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, TextIO
@@ -87,7 +88,7 @@ def digest(result: object) -> str:
 class RunLog:
     """Writes a log; the journal of one world at a time. Invariant: the file always ends with a whole line.
 
-    When the file cannot be written any more, `on_error` is told once and the log stays as it is; without it OSError
+    When the file cannot be written any more, `on_error` is called once and the log stays as it is; without it OSError
     is raised.
     """
 
@@ -128,24 +129,33 @@ class RunLog:
         """Write the last lines and close the file."""
         self._flush()
         self._write({"end": True})
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+        file, self._file = self._file, None
+        if file is not None:
+            with self._guarded(file):
+                file.close()
 
     def _flush(self) -> None:
         if self._crcs:
             self._write({"ticks": len(self._crcs), "crc": "".join(self._crcs)})
             self._crcs.clear()
             if self._file is not None:
-                self._file.flush()
+                with self._guarded(self._file):
+                    self._file.flush()
 
     def _write(self, line: Mapping[str, Any]) -> None:
-        if self._file is None:
-            return
+        if self._file is not None:
+            with self._guarded(self._file):
+                self._file.write(json.dumps(line, ensure_ascii=False) + "\n")
+
+    @contextmanager
+    def _guarded(self, file: TextIO) -> Iterator[None]:
+        """Meanwhile an OSError ends the log; what the file still buffers is dropped."""
         try:
-            self._file.write(json.dumps(line, ensure_ascii=False) + "\n")
+            yield
         except OSError as error:
             self._file = None
+            with suppress(OSError):
+                file.close()
             if self._on_error is None:
                 raise
             self._on_error(error)

@@ -1,11 +1,17 @@
-"""The console scripts: each imports its program here, so that Ctrl-C ends also its start without a traceback.
+"""The console scripts: each imports its program here, so that Ctrl-C also ends the start without a traceback.
 
-Once nodes run, signals belong to them (`nodes/life.py`).
+Imports cannot be interrupted by an exception: it may be raised in an extension that turns it into another one, or in a
+destructor that prints and drops it. So SIGINT ends the process at once, without Python, until nodes or a batch run
+install their own handler (`nodes/life.py`, `interruption.py`): nothing has begun by then that needs an end.
 """
 
 from __future__ import annotations
 
+import os
+import signal
+import sys
 from importlib import import_module
+from types import FrameType
 
 __all__ = ["aseba_runtime", "foxglove_bridge", "simulator", "thymio", "thymio_sim", "web_ui"]
 
@@ -44,7 +50,28 @@ def web_ui() -> int:
 
 
 def _run(program: str, interrupted: int = 0) -> int:
+    _open_standard_streams()
+
+    def leave(_number: int, _frame: FrameType | None) -> None:
+        os._exit(interrupted)
+
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is ignored, as in the background
+        signal.signal(signal.SIGINT, leave)
     try:
         return int(import_module(program).main())
     except KeyboardInterrupt:
         return interrupted
+
+
+def _open_standard_streams() -> None:
+    """Open those of stdin, stdout and stderr that were closed (`thymio-sim >&-`, some services): to nowhere.
+
+    Python leaves None in their place, and the next file that is opened gets their descriptor.
+    """
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            descriptor = os.open(os.devnull, os.O_RDWR)  # the lowest free number: that of the closed stream
+            if descriptor != number:
+                os.dup2(descriptor, number)
+                os.close(descriptor)
+            setattr(sys, name, open(number, "r" if number == 0 else "w", encoding="utf-8", closefd=False))

@@ -1,0 +1,45 @@
+"""The folder where rcl writes its log files: rcl raises an error where it cannot create it.
+
+rcl's rule: `ROS_LOG_DIR`, else `log` in `ROS_HOME`, else `.ros/log` in `HOME` (ros-packaging.md section 5). A robot in a
+container, or a class room's account, may have no `HOME` or one that cannot be written.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from collections.abc import MutableMapping
+from pathlib import Path
+
+__all__ = ["ensure"]
+
+_NAME = "thymio_sim_ros-log"
+
+
+def ensure(environment: MutableMapping[str, str] = os.environ) -> None:
+    """Set `ROS_LOG_DIR` to a temporary folder, and report it on stderr, if rcl's own choice cannot be written."""
+    wanted = _wanted(environment)
+    problem = "HOME is not set" if wanted is None else _problem(wanted)
+    if not problem:
+        return
+    folder = tempfile.mkdtemp(prefix=f"{_NAME}-")
+    environment["ROS_LOG_DIR"] = folder
+    print(f"thymio-sim: log files go to {folder}: {problem}; set ROS_LOG_DIR to choose another", file=sys.stderr)
+
+
+def _wanted(environment: MutableMapping[str, str]) -> Path | None:
+    if environment.get("ROS_LOG_DIR"):
+        return Path(environment["ROS_LOG_DIR"]).expanduser()
+    if environment.get("ROS_HOME"):
+        return Path(environment["ROS_HOME"]).expanduser() / "log"
+    return Path(environment["HOME"]) / ".ros" / "log" if environment.get("HOME") else None
+
+
+def _problem(folder: Path) -> str:
+    """Why log files cannot be written there; empty if they can."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        return f"{folder}: {error.strerror}"
+    return "" if os.access(folder, os.W_OK | os.X_OK) else f"{folder}: cannot be written"
