@@ -7,7 +7,6 @@ of the stack into memory. Structure and rules are those of :mod:`aseba_vm.engine
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Sequence
 
 from aseba_vm.blocks import Blocks
@@ -27,19 +26,15 @@ from aseba_vm.wasm_host import (
     Code,
 )
 from aseba_vm.wasm_natives import call, functions, is_usual, unrolled
-from aseba_vm.wasm_runtime import Runtime
+from aseba_vm.wasm_runtime import Runtime, is_usable
 
 _TRAPPED = -1
 """The kind of exit until there is one."""
 
 
 def is_available() -> bool:
-    """Tell whether ``wasmtime`` can be imported."""
-    try:
-        importlib.import_module("wasmtime")
-    except (ImportError, OSError):
-        return False
-    return True
+    """Tell whether ``wasmtime`` works here."""
+    return is_usable()
 
 
 def translate(blocks: Blocks, structure: Structure, natives: Sequence[Known]) -> Code:

@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from aseba_vm import CompileError, VirtualMachine, compile, engine, engine_python
+from aseba_vm import CompileError, VirtualMachine, compile, engine, engine_python, engine_wasm
 from aseba_vm.bytecode import Op
 from aseba_vm.costs import NO_COSTS, Cost, Costs
 from aseba_vm.engine import INTERPRETER, WASM
@@ -310,7 +310,7 @@ def test_an_unknown_engine_is_refused():
 
 
 def test_webassembly_by_name_needs_its_package(monkeypatch):
-    monkeypatch.setitem(sys.modules, "wasmtime", None)
+    monkeypatch.setattr(engine_wasm, "is_usable", lambda: False)
     with pytest.raises(ValueError, match=r"needs the package wasmtime, which the extra \[fast\] installs"):
         VirtualMachine(THYMIO_II, engine=WASM)
 

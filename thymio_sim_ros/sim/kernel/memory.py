@@ -6,7 +6,6 @@ depends on it. A kernel that reads beyond its arrays would not be noticed here: 
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Callable, Sequence
 from functools import cache
 from types import ModuleType
@@ -16,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from aseba_vm.wasm_calls import caller
-from aseba_vm.wasm_runtime import Runtime
+from aseba_vm.wasm_runtime import Runtime, is_usable
 from thymio_sim_ros.sim.kernel.language import Kernel, KernelError, parameters, translate
 
 __all__ = ["KernelMemory", "is_available"]
@@ -29,10 +28,9 @@ Shape = int | tuple[int, ...]
 A = TypeVar("A", bound=np.generic)
 
 
-@cache
 def is_available() -> bool:
     """Whether kernels can be compiled here."""
-    return importlib.util.find_spec("wasmtime") is not None
+    return is_usable()
 
 
 class KernelMemory:
