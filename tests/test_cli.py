@@ -206,6 +206,13 @@ def test_settings_that_cannot_be_read_are_one_line(capsys, tmp_path):
     assert "sound_shift: expected 1 whole numbers" in refused(capsys, "runner", "--settings", str(tmp_path))
 
 
+def test_a_log_on_a_full_disk_is_one_line(capsys):
+    assert cli.main(["runner", "--seconds", "3", "--log", "/dev/full"]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err == "thymio-sim: /dev/full: No space left on device; expected a file that can be written\n"
+
+
 def test_a_log_in_no_folder_is_one_line(capsys, tmp_path):
     path = tmp_path / "nowhere" / "run.jsonl"
     assert refused(capsys, "--log", str(path)).endswith("run.jsonl: expected a file in a folder that exists")

@@ -32,6 +32,50 @@ class Full(io.StringIO):
         return super().write(text)
 
 
+class FullWhen(io.StringIO):
+    """A file whose disk is found to be full by one method, as by a buffered one."""
+
+    def __init__(self, method: str) -> None:
+        super().__init__()
+        self._method = method
+
+    def flush(self) -> None:
+        if self._method == "flush":
+            raise OSError(28, "No space left on device")
+
+    def close(self) -> None:
+        method, self._method = self._method, ""
+        super().close()
+        if method == "close":
+            raise OSError(28, "No space left on device")
+
+
+@pytest.mark.parametrize("method", ["flush", "close"])
+def test_a_disk_that_turns_out_to_be_full_later_is_told_once_and_the_world_goes_on(method: str) -> None:
+    told: list[OSError] = []
+    log = RunLog(FullWhen(method), on_error=told.append)
+    world = World(make([FLOOR]))
+    log.begin("small", world)
+    run(world, 2.5)
+    log.close()
+    assert [error.errno for error in told] == [28]
+    assert world.now_ns == 2_500_000_000
+
+
+def run_and_close(log: RunLog, world: World) -> None:
+    run(world, 2.5)
+    log.close()
+
+
+@pytest.mark.parametrize("method", ["flush", "close"])
+def test_without_a_handler_it_is_raised(method: str) -> None:
+    log = RunLog(FullWhen(method))
+    world = World(make([FLOOR]))
+    log.begin("small", world)
+    with pytest.raises(OSError, match="No space left"):
+        run_and_close(log, world)
+
+
 @pytest.fixture
 def written(tmp_path: Path) -> Path:
     """The log of a small run."""
