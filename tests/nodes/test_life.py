@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 import sys
+import time
 
 import pytest
 from nav_msgs.msg import Odometry
@@ -21,6 +23,7 @@ from visualization_msgs.msg import MarkerArray
 from thymio_sim_ros.nodes import qos, tf_messages
 from thymio_sim_ros.nodes.aseba_node import AsebaRuntime
 from thymio_sim_ros.nodes.life import MOST_FAULTS, drive, greeted, run_main
+from thymio_sim_ros.nodes.life import STUCK as STUCK_CODE
 from thymio_sim_ros.nodes.simulator_node import Simulator
 from thymio_sim_ros.nodes.web_node import WebPage, WebParams
 from thymio_sim_ros.nodes.world_services import SERVICES
@@ -235,7 +238,7 @@ class Slow:
     def close(self):
         threading.Event().wait()
 
-life.CLOSE_S = 0.1
+life.LEAVE_S = 0.5
 sys.exit(life.run_main(lambda context: [Slow(context)], []))
 """
 
@@ -246,3 +249,91 @@ def test_a_process_that_dds_does_not_let_go_ends_without_it(ros_domain):
     )
     assert (ended.returncode, ended.stdout) == (1, "ended\n")
     assert "RuntimeError: enough" in ended.stderr
+
+
+STUCK = """
+import sys, threading, time
+from rclpy.node import Node
+from thymio_sim_ros.nodes import life
+
+class Turning:
+    def __init__(self, context, name):
+        self.node = Node(name, context=context)
+
+    def turn(self, executor):
+        executor.spin_once(timeout_sec=0.01)
+
+    def end(self):
+        print(self.node.get_name(), "ended", flush=True)
+
+    def close(self):
+        self.node.destroy_node()
+
+class InPython(Turning):
+    def turn(self, executor):
+        here = True
+        while here:
+            pass
+
+class InC(Turning):
+    def turn(self, executor):
+        threading.Lock().acquire() and time.sleep(1e6)
+
+KINDS = {"python": InPython, "c": InC, "": Turning}
+
+def build(context):
+    for number, kind in enumerate(sys.argv[1].split(",")):
+        if kind == "slow":
+            print("begun", flush=True)
+            while True:
+                pass
+        yield KINDS[kind](context, f"{kind or 'well'}_{number}")
+
+sys.exit(life.run_main(build, [], on_ready=lambda: print("begun", flush=True)))
+"""
+
+
+def ended_by_interrupt(kinds: str) -> tuple[int, list[str], str]:
+    """Exit code, lines on stdout and text on stderr of a process with lives of these kinds."""
+    command = [sys.executable, "-c", STUCK, kinds]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout is not None
+            while process.stdout.readline() != "begun\n":
+                assert process.poll() is None
+            began_s = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            out, err = process.communicate(timeout=60)
+            assert time.monotonic() - began_s < 20.0, "5 s on a machine that has time"
+        finally:
+            process.kill()
+    return process.returncode, out.splitlines(), err
+
+
+@pytest.mark.process
+@pytest.mark.parametrize(
+    ("kinds", "stuck", "ended"),
+    [
+        ("python", "python_0", []),
+        ("c", "c_0", []),
+        (",python,", "python_1", ["well_2 ended", "well_0 ended"]),
+        (",c", "c_1", ["well_0 ended"]),
+    ],
+)
+def test_a_stuck_thread_is_reported_and_does_not_keep_the_process(ros_domain, kinds, stuck, ended):
+    code, out, err = ended_by_interrupt(kinds)
+    assert code == STUCK_CODE
+    assert out == ended
+    assert f"{stuck} did not stop within 1.5 s; it is here:" in err
+    assert "in turn" in err
+
+
+@pytest.mark.process
+def test_an_interrupt_while_a_node_is_built_ends_those_that_run(ros_domain):
+    code, out, err = ended_by_interrupt(",slow")
+    assert (code, out, err) == (0, ["well_0 ended"], "")
+
+
+@pytest.mark.process
+def test_without_a_stuck_thread_all_ends_in_order(ros_domain):
+    assert ended_by_interrupt(",") == (0, ["well_1 ended", "well_0 ended"], "")

@@ -7,14 +7,17 @@ The shutdown pattern is the one of ros-packaging.md section 5 that always exits 
 
 from __future__ import annotations
 
+import _thread
+import faulthandler
 import gc
 import os
 import signal
 import sys
 import threading
+import time
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 from types import FrameType
 from typing import Protocol, runtime_checkable
@@ -26,6 +29,7 @@ from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
+from thymio_sim_ros.nodes import log_directory
 from thymio_sim_ros.nodes.leftovers import remove_half_made_ports
 
 SWITCH_INTERVAL_S = 0.0005
@@ -43,9 +47,19 @@ SPIN_SLICE_S = 0.1
 MOST_FAULTS = 10
 """Turns that fail one after the other before a node gives up."""
 
-CLOSE_S = 3.0
-"""Longest time for leaving the graph: Fast DDS compares each endpoint with all others once more, which takes a minute
-with a hundred robots. `ros2 launch` kills after 10 s, and Ctrl-C ends within 5 s, whatever programs do."""
+STOP_S = 1.5
+"""Longest time for all threads to come to the end of their turns; then they count as stuck."""
+
+LEAVE_S = 4.0
+"""Longest time from Ctrl-C to the end of the process: Fast DDS compares each endpoint with all others once more, which
+takes a minute with a hundred robots. `ros2 launch` kills after 10 s."""
+
+LAST_RESORT_S = 0.5
+"""So much later the process ends even if no thread gets the interpreter, which a call into DDS may keep."""
+
+
+STUCK = 1
+"""Exit code of a process with a thread that did not stop."""
 
 
 class StartError(Exception):
@@ -146,38 +160,59 @@ class Threads:
     def __init__(self, context: Context) -> None:
         self._context = context
         self._ended = threading.Event()
+        self._is_end_requested = False
         self._stop = threading.Event()
+        self._ending = threading.Lock()
         self._running: list[tuple[Life, threading.Thread]] = []
         self.failure: BaseException | None = None
+        self.is_stuck = False
+        """Whether a thread did not stop."""
+
+    @property
+    def is_end_requested(self) -> bool:
+        """Whether `request_end` was called."""
+        return self._is_end_requested
 
     def start(self, life: Life) -> None:
-        """Give the life a thread."""
-        thread = threading.Thread(target=self._drive, args=(life,), name=life.node.get_name())
+        """Give the life a thread, which does not keep the process alive."""
+        thread = threading.Thread(target=self._drive, args=(life,), name=life.node.get_name(), daemon=True)
         self._running.append((life, thread))
         thread.start()
 
     def wait(self) -> None:
         """Block until a life ends by itself or `request_end` is called."""
-        while not self._ended.wait(SPIN_SLICE_S):
+        while not self._is_end_requested and not self._ended.wait(SPIN_SLICE_S):
             pass
 
     def request_end(self) -> None:
-        """Let `wait` return; safe in a signal handler."""
-        self._ended.set()
+        """Let `wait` return; safe in a signal handler, which may have interrupted a thread that holds a lock."""
+        self._is_end_requested = True
 
     def end(self) -> None:
-        """Stop all threads, then end the lives, last started first; once."""
-        if self._stop.is_set():
-            return
-        self._stop.set()
-        for _, thread in self._running:
-            thread.join()
-        for life, _ in reversed(self._running):
-            life.end()
+        """Stop all threads, then end the lives whose threads have stopped, last started first; once.
+
+        It takes at most `STOP_S` for the threads. One that is stuck is reported, with the place where it is.
+        """
+        with self._ending:
+            if self._stop.is_set():
+                return
+            self._stop.set()
+            deadline = time.monotonic() + STOP_S
+            for _, thread in self._running:
+                thread.join(max(0.0, deadline - time.monotonic()))
+            stuck = [(life, thread) for life, thread in self._running if thread.is_alive()]
+            self.is_stuck = bool(stuck)
+            for life, thread in reversed(self._running):
+                if not thread.is_alive():
+                    life.end()
+            for life, thread in stuck:
+                life.node.get_logger().fatal(f"{thread.name} did not stop within {STOP_S:g} s; {_place(thread)}")
 
     def close(self) -> None:
-        """`end` them, then close them in the same order."""
+        """`end` them, then close them in the same order; not where a thread is stuck, which may use any of them."""
         self.end()
+        if self.is_stuck:
+            return
         for life, _ in reversed(self._running):
             life.close()
         self._running.clear()
@@ -193,6 +228,12 @@ class Threads:
             self._ended.set()
 
 
+def _place(thread: threading.Thread) -> str:
+    """Where a thread is now, as a traceback."""
+    frame = sys._current_frames().get(thread.ident or 0)
+    return "it has just ended" if frame is None else f"it is here:\n{''.join(traceback.format_stack(frame))}"
+
+
 def run_main(
     build: Callable[[Context], Iterable[Life]],
     args: Sequence[str] | None = None,
@@ -203,18 +244,22 @@ def run_main(
     """Run the lives that `build` gives until SIGINT or SIGTERM; the exit code. `executable`: its name, with `args`.
 
     Each life gets its thread as soon as it is built; `on_ready` is called when all run. A `StartError` is one
-    line on stderr and exit code 2, with nothing left running; arguments that are not of ROS likewise. Where DDS takes
-    longer than `CLOSE_S` to forget all endpoints, the process ends without it.
+    line on stderr and exit code 2, with nothing left running; arguments that are not of ROS likewise. `LEAVE_S` after
+    a signal the process ends in any case: with 0 where only DDS is slow to forget all endpoints, with 1 where a thread
+    does not stop.
     """
     words = sys.argv if args is None else [executable, *args]
     stray = _stray(words[1:])
     if stray:
         return _explain(Path(words[0]).name.removeprefix("thymio_"), stray)
+    log_directory.ensure()
     context = Context()
     threads = Threads(context)
+    departure = _Departure(threads)
 
     def end(_number: int, _frame: FrameType | None) -> None:
         threads.request_end()
+        departure.begin()
 
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     gc.set_threshold(YOUNG_OBJECTS, *gc.get_threshold()[1:])
@@ -226,7 +271,10 @@ def run_main(
         _init(words[1:], context)
         for life in build(context):
             threads.start(life)
-        on_ready()
+            if threads.is_end_requested:
+                break
+        else:
+            on_ready()
         threads.wait()
         code = 1 if threads.failure else 0
     except StartError as error:
@@ -235,10 +283,13 @@ def run_main(
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
-        threads.end()
-        with _at_most(CLOSE_S, code):
-            threads.close()
-            context.try_shutdown()
+        departure.begin()
+        departure.code = code
+        threads.close()
+        if threads.is_stuck:
+            departure.leave()
+        context.try_shutdown()
+        departure.end()
     return code
 
 
@@ -253,22 +304,50 @@ def _init(words: Sequence[str], context: Context) -> None:
         raise StartError(f"ROS does not begin: {reason}") from error
 
 
-@contextmanager
-def _at_most(seconds: float, code: int) -> Iterator[None]:
-    """End the process with this code if what is done meanwhile takes longer; nothing that matters may be left to it."""
+class _Departure:
+    """Ends the process `LEAVE_S` after the begin, whatever its threads do; `end` calls that off.
 
-    def leave() -> None:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(code)
+    The thread that waits for it also ends the lives, if the main thread is still busy with building one.
+    """
 
-    timer = threading.Timer(seconds, leave)
-    timer.daemon = True
-    timer.start()
-    try:
-        yield
-    finally:
-        timer.cancel()
+    def __init__(self, threads: Threads) -> None:
+        self._threads = threads
+        self._is_begun = False
+        self._is_over = threading.Event()
+        self.code = 0
+        """That of the process, unless a thread is stuck."""
+
+    def begin(self) -> None:
+        """Start to count, once; safe in a signal handler: no lock of Python's is taken here."""
+        if self._is_begun:
+            return
+        self._is_begun = True
+        self._nowhere = open(os.devnull, "w")  # noqa: SIM115  # as long as the process
+        faulthandler.dump_traceback_later(LEAVE_S + LAST_RESORT_S, exit=True, file=self._nowhere)
+        _thread.start_new_thread(self._wait, ())
+
+    def end(self) -> None:
+        """All has ended in order."""
+        if self._is_begun:
+            faulthandler.cancel_dump_traceback_later()
+            self._nowhere.close()
+        self._is_over.set()
+
+    def leave(self) -> None:
+        """End the process now."""
+        with suppress(OSError, ValueError):
+            sys.stdout.flush()
+            sys.stderr.flush()
+        os._exit(STUCK if self._threads.is_stuck else self.code)
+
+    def _wait(self) -> None:
+        deadline = time.monotonic() + LEAVE_S
+        if self._is_over.wait(min(STOP_S, LEAVE_S)):
+            return
+        ender = threading.Thread(target=self._threads.end, daemon=True)
+        ender.start()
+        if not self._is_over.wait(deadline - time.monotonic()):
+            self.leave()
 
 
 def _stray(words: Sequence[str]) -> list[str]:

@@ -1,7 +1,7 @@
 """The folder where rcl writes its log files: rcl raises an error where it cannot create it.
 
-rcl's rule: `ROS_LOG_DIR`, else `log` in `ROS_HOME`, else `.ros/log` in `HOME` (ros-packaging.md section 5). A robot in a
-container, or a class room's account, may have no `HOME` or one that cannot be written.
+rcl's rule: `ROS_LOG_DIR`, else `log` in `ROS_HOME`, else `.ros/log` in `HOME`. A container or a service may have no
+`HOME`, or one that cannot be written.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 
 __all__ = ["ensure"]
 
-_NAME = "thymio_sim_ros-log"
+_NAME = "thymio-sim-log-"
 
 
 def ensure(environment: MutableMapping[str, str] = os.environ) -> None:
@@ -23,7 +23,7 @@ def ensure(environment: MutableMapping[str, str] = os.environ) -> None:
     problem = "HOME is not set" if wanted is None else _problem(wanted)
     if not problem:
         return
-    folder = tempfile.mkdtemp(prefix=f"{_NAME}-")
+    folder = tempfile.mkdtemp(prefix=_NAME)
     environment["ROS_LOG_DIR"] = folder
     print(f"thymio-sim: log files go to {folder}: {problem}; set ROS_LOG_DIR to choose another", file=sys.stderr)
 

@@ -19,6 +19,7 @@ from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_default_context, try_shutdown
 
+from thymio_sim_ros.nodes import log_directory
 from thymio_sim_ros.nodes.life import deliver, make_executor
 from thymio_sim_ros.testing.ros import matching, student
 from thymio_sim_ros.testing.ros.recorder import Recorder
@@ -72,6 +73,7 @@ class Ros:
         self.context = get_default_context()
         if self.context.ok():
             self.context = Context()
+        log_directory.ensure()
         rclpy.init(args=[], context=self.context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
         # The events executor has crashes written to a file behind stderr: what `--capture=sys` gives has none.
         with contextlib.redirect_stderr(sys.__stderr__):
