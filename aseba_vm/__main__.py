@@ -31,7 +31,7 @@ from aseba_vm.lexer import is_name
 from aseba_vm.listing import listing
 from aseba_vm.messages import LANGUAGES, wording
 from aseba_vm.outbox import Emitted, NativeCalled
-from aseba_vm.output import end_by, standard_output, write_file
+from aseba_vm.output import end_by, open_standard_streams, standard_output, write_file
 from aseba_vm.sources import Source, SourceError, network_of, read_text, sources_of
 from aseba_vm.target import TargetDescription
 from aseba_vm.targets import THYMIO_II
@@ -66,6 +66,7 @@ class _UseError(Exception):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Obey a command line and return the exit code."""
+    open_standard_streams()
     options = _parser().parse_args(arguments)
     command: Callable[[argparse.Namespace], int] = options.command
     options.text = ""

@@ -63,6 +63,21 @@ def standard_output() -> Iterator[None]:
         raise OSError(error.errno, error.strerror, STANDARD_OUTPUT) from error
 
 
+def open_standard_streams() -> None:
+    """Open those of stdin, stdout and stderr that were closed (`aseba … >&-`, some services): to nowhere.
+
+    Python leaves None in their place, and the next file that is opened gets their descriptor.
+    """
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            descriptor = os.open(os.devnull, os.O_RDWR)  # the lowest free number: that of the closed stream
+            if descriptor != number:
+                os.dup2(descriptor, number)
+                os.close(descriptor)
+            mode = "r" if number == 0 else "w"
+            setattr(sys, name, open(number, mode, encoding="utf-8", closefd=False))  # noqa: SIM115
+
+
 def end_by(number: int) -> None:
     """End the process as this signal does, without a word: on SIGINT the loop of a shell around it ends, too."""
     signal.signal(number, signal.SIG_DFL)

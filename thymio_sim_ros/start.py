@@ -1,27 +1,24 @@
 """The console scripts: each imports its program here, so that Ctrl-C also ends the start without a traceback.
 
 Imports cannot be interrupted by an exception: it may be raised in an extension that turns it into another one, or in a
-destructor that prints and drops it. So SIGINT ends the process at once, without Python, until nodes or a batch run
-install their own handler (`nodes/life.py`, `interruption.py`): nothing has begun by then that needs an end.
+destructor that prints and drops it. So SIGINT ends the process at once, until nodes or a batch run install a handler
+of their own (`nodes/life.py`, `interruption.py`): nothing has begun by then that needs an end.
 """
 
 from __future__ import annotations
 
 import os
 import signal
-import sys
+from collections.abc import Callable
 from importlib import import_module
 from types import FrameType
 
 __all__ = ["aseba_runtime", "foxglove_bridge", "simulator", "thymio", "thymio_sim", "web_ui"]
 
-INTERRUPTED = 130
-"""Exit code of a command that did not come to its end, as shells have it; a node that is ended has done its work."""
-
 
 def thymio_sim() -> int:
     """The whole suite, or what works without ROS; the exit code, as of all here."""
-    return _run("thymio_sim_ros.cli", INTERRUPTED)
+    return _run("thymio_sim_ros.cli", signal.SIG_DFL)
 
 
 def aseba_runtime() -> int:
@@ -49,29 +46,17 @@ def web_ui() -> int:
     return _run("thymio_sim_ros.nodes.web_node")
 
 
-def _run(program: str, interrupted: int = 0) -> int:
-    _open_standard_streams()
-
-    def leave(_number: int, _frame: FrameType | None) -> None:
-        os._exit(interrupted)
-
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is ignored, as in the background
-        signal.signal(signal.SIGINT, leave)
-    try:
-        return int(import_module(program).main())
-    except KeyboardInterrupt:
-        return interrupted
+def _leave(_number: int, _frame: FrameType | None) -> None:
+    """A node that is ended has done its work."""
+    os._exit(0)
 
 
-def _open_standard_streams() -> None:
-    """Open those of stdin, stdout and stderr that were closed (`thymio-sim >&-`, some services): to nowhere.
+def _run(program: str, on_interrupt: Callable[[int, FrameType | None], None] | signal.Handlers = _leave) -> int:
+    """The exit code of a program. The handler stays: the end of the interpreter is as hard to interrupt as the start.
 
-    Python leaves None in their place, and the next file that is opened gets their descriptor.
+    By the default of the system (`SIG_DFL`) a process dies by the signal, so that the loop of a shell ends, too.
     """
-    for number, name in enumerate(("stdin", "stdout", "stderr")):
-        if getattr(sys, name) is None:
-            descriptor = os.open(os.devnull, os.O_RDWR)  # the lowest free number: that of the closed stream
-            if descriptor != number:
-                os.dup2(descriptor, number)
-                os.close(descriptor)
-            setattr(sys, name, open(number, "r" if number == 0 else "w", encoding="utf-8", closefd=False))
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is ignored, as in the background
+        signal.signal(signal.SIGINT, on_interrupt)
+    import_module("aseba_vm.output").open_standard_streams()
+    return int(import_module(program).main())
