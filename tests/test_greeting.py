@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import ipaddress
+import os
 import re
 import socket
 import sys
@@ -13,6 +14,7 @@ import segno
 
 from thymio_sim_ros import greeting
 from thymio_sim_ros.bridge import Tokens
+from thymio_sim_ros.domain import described
 from thymio_sim_ros.suite import Suite
 
 
@@ -49,7 +51,12 @@ def test_other_addresses(monkeypatch, address, told):
 
 def test_without_page_and_bridge():
     told = greeting.greeting(Suite(web=False, foxglove=False), ["thymio"])
-    assert told == "Page      none (started without it)\nFoxglove  none (started without it)\nStop      Ctrl-C"
+    assert told.splitlines() == [
+        "Page      none (started without it)",
+        "Foxglove  none (started without it)",
+        f"Domain    {described(os.environ)}",
+        "Stop      Ctrl-C",
+    ]
 
 
 TOKENS = Tokens("fulltoken", "looktoken")

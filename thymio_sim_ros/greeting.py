@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import io
 import ipaddress
+import os
 import socket
 from collections.abc import Sequence
 
 from thymio_sim_ros import foxglove_layout
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
+from thymio_sim_ros.domain import described
 from thymio_sim_ros.suite import Suite
 
 __all__ = ["access", "greeting", "own_address", "patience", "places", "qr_code", "urls"]
@@ -34,7 +36,7 @@ def greeting(suite: Suite, robots: Sequence[str]) -> str:
         lines += [f"Read only {place}" for place in _read_only_places(suite, tokens)]
         lines.append(f"Layout    {foxglove_layout.hint(robots)}")
         lines.append(f"Access    {access(suite.address, tokens)}")
-    return "\n".join([*lines, "Stop      Ctrl-C"])
+    return "\n".join([*lines, f"Domain    {described(os.environ)}", "Stop      Ctrl-C"])
 
 
 def access(address: str, tokens: Tokens) -> str:

@@ -178,7 +178,7 @@ def test_an_executable_says_what_there_is_and_where(ros, logged, simulation, run
     assert list(greeted(hosts)) == hosts
     where, world, programs = logged
     assert where == f"Page: http://localhost:{page.port}/"
-    assert world == "Playground two_robots, robots in /red, /blue"
+    assert world.startswith(f"Playground two_robots, robots in /red, /blue; ROS_DOMAIN_ID {ros.domain}, ")
     assert programs == "Program: program"
 
 

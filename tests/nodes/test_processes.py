@@ -62,12 +62,13 @@ def test_the_whole_suite_runs_and_ends(ros, process, number):
     odometry: list[Odometry] = []
     ros.node.create_subscription(Odometry, "/odom", odometry.append, 10)
     ros.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02, START_S, what="a moving robot")
-    ros.until(lambda: len(suite.output.splitlines()) >= 5, START_S)
-    page, foxglove, layout, access, stop = suite.output.splitlines()[:5]
+    ros.until(lambda: len(suite.output.splitlines()) >= 6, START_S)
+    page, foxglove, layout, access, domain, stop = suite.output.splitlines()[:6]
     assert str(port) in page
     assert str(foxglove_port) in foxglove
     assert "layout" in layout
     assert "this computer only" in access
+    assert domain == f"Domain    ROS_DOMAIN_ID {ros.domain}, this computer only"
     assert "Ctrl-C" in stop
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
     connection.request("GET", "/config.json")
@@ -79,7 +80,7 @@ def test_the_whole_suite_runs_and_ends(ros, process, number):
     assert suite.wait() == 0, suite.output
     assert is_free(port)
     assert is_free(foxglove_port)
-    assert len(suite.output.splitlines()) == 5, suite.output
+    assert len(suite.output.splitlines()) == 6, suite.output
     assert left_behind(used) == set()
 
 

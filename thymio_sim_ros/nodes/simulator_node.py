@@ -9,6 +9,7 @@ sections 4, 5 and 10.
 
 from __future__ import annotations
 
+import os
 import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
@@ -20,6 +21,7 @@ from rclpy.executors import Executor
 from rclpy.parameter import Parameter
 
 from thymio_sim_ros import resources
+from thymio_sim_ros.domain import described
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.nodes import dds_profile, driver_topics, params, qos, robot_ports, sim_interfaces
 from thymio_sim_ros.nodes.audience import Audience
@@ -146,7 +148,8 @@ class Simulator:
     def greeting(self) -> str:
         """What there is now, for a person."""
         robots = ", ".join(full_name(self.node, names.name).rstrip("/") or "/" for names in self.names.values())
-        return f"Playground {self.playground_name}, robots in {robots or 'none'}"
+        where = described(os.environ, self.node.context.get_domain_id())
+        return f"Playground {self.playground_name}, robots in {robots or 'none'}; {where}"
 
     def turn(self, executor: Executor) -> None:
         """Ticks that are owed, then messages until the next one is due that anybody hears."""

@@ -19,6 +19,7 @@ from visualization_msgs.msg import MarkerArray
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.nodes import direct, qos
+from thymio_sim_ros.nodes.clock_rivals import ClockRivals
 from thymio_sim_ros.nodes.headers import SECOND_NS, stamp
 from thymio_sim_ros.nodes.markers import playground_markers
 from thymio_sim_ros.nodes.names import MAP_FRAME, RobotNames
@@ -75,7 +76,7 @@ TOPICS: Mapping[str, WorldTopic] = {
         DiagnosticArray,
         "1",
         "real-time factor wanted and achieved, late and dropped ticks, refused and limited messages, robots; "
-        "publishers of a wrong type",
+        "publishers of a wrong type; another simulator with the same clock",
         qos.SENSOR,
     ),
 }
@@ -170,6 +171,9 @@ class WorldPorts:
         clock = self._publishers.get("/clock")
         self._send_clock = direct.sender(clock) if clock is not None else None
         self._count_clock = direct.counter(clock) if clock is not None else None
+        self._rivals = None
+        if clock is not None:
+            self._rivals = ClockRivals(node, clock.topic_name, node.context.get_domain_id())
         self._map_frame = map_frame
         self._publishers["~/_playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
         self._last_clock_ns = self._last_objects_ns = 0
@@ -193,6 +197,8 @@ class WorldPorts:
             return
         self._last_clock_ns = wall_ns
         self._send_clock(self._clock.at(now_ns))
+        if self._rivals is not None:
+            self._rivals.sent(now_ns)
 
     def look(self) -> None:
         """Find out whether somebody hears the clock now."""
@@ -226,7 +232,7 @@ class WorldPorts:
         self._publishers["_markers/objects"].publish(playground_markers(placed, self._map_frame))
 
     def publish_diagnostics(self, state: WorldState, pace: Pace, inputs: DiagnosticStatus) -> None:
-        """Pace of the simulation, and how its inputs are (ros-interface.md section 5)."""
+        """Pace of the simulation, its inputs, and whether another simulator publishes its clock."""
         slow = not state.paused and 0 < state.achieved < SLOW * state.real_time_factor
         status = DiagnosticStatus(
             level=DiagnosticStatus.WARN if slow else DiagnosticStatus.OK,
@@ -244,7 +250,11 @@ class WorldPorts:
                 KeyValue(key="robots", value=str(len(state.robots))),
             ],
         )
-        message = DiagnosticArray(status=[status, inputs])
+        statuses = [status, inputs]
+        if self._rivals is not None:
+            self._rivals.look()
+            statuses.append(self._rivals.status())
+        message = DiagnosticArray(status=statuses)
         message.header.stamp = stamp(state.now_ns)
         self._publishers["/diagnostics"].publish(message)
 

@@ -1,0 +1,24 @@
+"""The part of ROS that a process sees: its domain, and which computers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+__all__ = ["described"]
+
+_RANGES = {
+    "": "this network",
+    "SYSTEM_DEFAULT": "as DDS is configured",
+    "SUBNET": "this network",
+    "LOCALHOST": "this computer only",
+    "OFF": "this process only",
+}
+
+
+def described(environment: Mapping[str, str], number: int | None = None) -> str:
+    """Domain and reach in one line, from ROS's own variables. `number`: the domain, where it is known already."""
+    domain = environment.get("ROS_DOMAIN_ID") or "0"
+    given = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
+    if environment.get("ROS_LOCALHOST_ONLY") == "1":  # older, and still the stronger one
+        given = "LOCALHOST"
+    return f"ROS_DOMAIN_ID {domain if number is None else number}, {_RANGES.get(given, _RANGES[''])}"
