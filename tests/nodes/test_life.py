@@ -221,7 +221,7 @@ def test_an_argument_that_ros_does_not_understand_is_told_in_one_line(capfd, wor
 
 
 SLOW_TO_CLOSE = """
-import sys, threading
+import ctypes, sys, threading
 from rclpy.node import Node
 from thymio_sim_ros.nodes import life
 
@@ -236,16 +236,20 @@ class Slow:
         print("ended")
 
     def close(self):
-        threading.Event().wait()
+        if sys.argv[1] == "python":
+            threading.Event().wait()
+        ctypes.PyDLL(None).sleep(1000)
 
 life.LEAVE_S = 0.5
 sys.exit(life.run_main(lambda context: [Slow(context)], []))
 """
 
 
-def test_a_process_that_dds_does_not_let_go_ends_without_it(ros_domain):
+@pytest.mark.parametrize("keeps", ["python", "interpreter"])
+def test_a_process_that_dds_does_not_let_go_ends_without_it(ros_domain, keeps):
+    """Also where DDS keeps the interpreter meanwhile."""
     ended = subprocess.run(
-        [sys.executable, "-c", SLOW_TO_CLOSE], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-u", "-c", SLOW_TO_CLOSE, keeps], capture_output=True, text=True, timeout=60, check=False
     )
     assert (ended.returncode, ended.stdout) == (1, "ended\n")
     assert "RuntimeError: enough" in ended.stderr
@@ -289,6 +293,7 @@ def build(context):
                 pass
         yield KINDS[kind](context, f"{kind or 'well'}_{number}")
 
+life.LEAVE_S = 10.0
 sys.exit(life.run_main(build, [], on_ready=lambda: print("begun", flush=True)))
 """
 
@@ -304,7 +309,7 @@ def ended_by_interrupt(kinds: str) -> tuple[int, list[str], str]:
             began_s = time.monotonic()
             process.send_signal(signal.SIGINT)
             out, err = process.communicate(timeout=60)
-            assert time.monotonic() - began_s < 20.0, "5 s on a machine that has time"
+            assert time.monotonic() - began_s < 30.0
         finally:
             process.kill()
     return process.returncode, out.splitlines(), err
