@@ -574,3 +574,15 @@ def test_the_standard_input_is_formatted(monkeypatch, capsysbinary):
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"sub   s")))
     assert main(["fmt", "-"]) == 0
     assert capsysbinary.readouterr().out == b"sub s\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "closed", "code"),
+    [("run {}", ">&-", 0), ("check {}", "<&- >&- 2>&-", 0), ("check -", "<&-", 0), ("run {}.not", "2>&-", 2)],
+)
+def test_closed_standard_streams_lead_to_nowhere(tmp_path, arguments, closed, code):
+    program = tmp_path / "program.aseba"
+    program.write_text("var n = 1\n")
+    command = f'"{sys.executable}" -m aseba_vm {arguments.format(program)} {closed}'
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (code, "", "")

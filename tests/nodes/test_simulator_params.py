@@ -318,3 +318,15 @@ def test_a_quality_of_service_that_is_none_is_refused_at_the_start(simulator_wit
     with pytest.raises(StartError) as refusal:
         simulator_with("-p", f"{name}:={value}", playground="base")
     assert str(refusal.value) == f"parameter {name}: {reason}"
+
+
+def test_a_log_on_a_full_disk_ends_and_the_world_goes_on(ros, simulation):
+    sim = simulation(log="/dev/full")
+    logs = ros.collect(Log, "/rosout", where=lambda log: "the log ends here" in log.msg)
+    sim.step(5.0)
+    ros.until(lambda: logs)
+    sim.step(5.0)
+    sim.simulator.end()
+    ros.settle()
+    assert [log.msg for log in logs] == ["the log ends here: /dev/full: No space left on device"]
+    assert sim.world.now_ns == 10_000_000_000
