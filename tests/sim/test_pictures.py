@@ -287,8 +287,10 @@ def test_without_its_package_a_picture_is_refused_with_the_way_out(
 
 def test_an_svg_that_takes_too_long_is_refused() -> None:
     pytest.importorskip("resvg_py")
-    body = '<g opacity=".5"><rect width="100" height="50"/></g>' * 5000
-    assert "longer than 2 s" in refused(svg_uri(body)).found
+    body = '<g opacity=".5"><rect width="100" height="50"/></g>' * 5000  # a second and more on any machine
+    with pictures.budgeted() as budget:
+        budget.svg_seconds = 0.2
+        assert "longer than 2 s" in refused(svg_uri(body)).found
 
 
 def test_the_pictures_of_a_playground_share_the_time_to_draw(monkeypatch: pytest.MonkeyPatch) -> None:
