@@ -4,7 +4,7 @@
 
 Every program of `tests/data/runaway` runs on all robots of a `thymio-sim` of its own, with page and bridge. Then, in
 this order: `aseba/get_variables`, the program of one robot set by a parameter, a parameter by the bridge, and
-`aseba/stop` of five robots are called, each timed; "acts" is the time until `aseba/status` says that the robot has
+`aseba/stop` of five robots are called, each timed; "acts" is the time until `_aseba/status` says that the robot has
 stopped. "factor" is the simulated time per second of wall time meanwhile, "status" whether a robot says that its
 program is too fast. Last is the time from Ctrl-C to the end of the process. Limits: 1 s for each answer, 5 s for the
 end; the exit code tells.
@@ -87,7 +87,7 @@ class Class:
         self.gets = {name: self.node.create_client(GetParameters, f"/{name}/aseba/get_variables") for name in names}
         self.set = self.node.create_client(SetParametersAtomically, "/aseba_runtime/set_parameters_atomically")
         for name in names:
-            self.node.create_subscription(DiagnosticStatus, f"/{name}/aseba/status", self._keeper(name), qos.LATCHED)
+            self.node.create_subscription(DiagnosticStatus, f"/{name}/_aseba/status", self._keeper(name), qos.LATCHED)
 
     def until(self, condition: Callable[[], bool], seconds: float) -> float:
         """Spin until a condition holds; how long it took, `seconds` if it did not hold by then."""
