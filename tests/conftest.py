@@ -1,8 +1,13 @@
 """Fixtures of all tests; those that need ROS come from the package itself, as a teacher would use them."""
 
+import signal
 from pathlib import Path
 
 import hypothesis
+
+# Whatever a shell starts in the background ignores Ctrl-C, and so would every program that a test starts.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 hypothesis.settings.register_profile("thymio", deadline=None)  # a loaded machine is no defect
 hypothesis.settings.load_profile("thymio")

@@ -14,10 +14,6 @@ import pytest
 from aseba_vm.__main__ import main
 
 ASEBA = [sys.executable, "-m", "aseba_vm"]
-WITH_CTRL_C = """import signal, sys
-from aseba_vm.__main__ import main
-signal.signal(signal.SIGINT, signal.default_int_handler)  # what shells start in the background ignores it
-sys.exit(main())"""
 ASCII = os.environ | {"PYTHONIOENCODING": "ascii"}
 GOOD = "var n = 1\nonevent ping\nn = n + event.args[0]\nemit ping n\ncall leds.top(n, 0, 32)\n"
 
@@ -339,16 +335,7 @@ def test_a_full_disk_is_told_with_what_was_written(file, capsys):
 
 
 def test_ctrl_c_ends_a_run_without_a_word(file):
-    command = [
-        sys.executable,
-        "-c",
-        WITH_CTRL_C,
-        "run",
-        "--limit",
-        "999999999999",
-        "--trace",
-        file("var n\nwhile n == 0 do n = 0 end"),
-    ]
+    command = [*ASEBA, "run", "--limit", "999999999999", "--trace", file("var n\nwhile n == 0 do n = 0 end")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
         running.stdout.readline()  # it runs
         running.send_signal(signal.SIGINT)
