@@ -1,8 +1,8 @@
-"""The .aesl file: definitions and code of the nodes of one network (language spec, section 13).
+"""The .aesl file: definitions and code of the nodes of one network (docs/spec/aseba-language.md section 13).
 
-``loads`` forgives what the reference forgives; with ``strict=True`` it refuses what would surprise a person later (web
-user interface features, "integrity checks"). Declared entities and overlong files are always refused, and no other
-document is ever read.
+``loads`` forgives what the reference forgives; with ``strict=True`` it refuses what would surprise a person later
+(docs/aseba_vm.md, "Files"). Declared entities and overlong files are always refused, and no other document is ever
+read.
 ``dumps`` gives back the text that was read, byte for byte, but for what has been changed in between.
 """
 

@@ -17,7 +17,7 @@ MAX_CHARACTERS = 1_000_000
 MAX_NODES = 64
 """Own limit: more robots than a class has."""
 MAX_EVENT_WORDS = 258
-"""Words that a message on the Aseba network holds (language spec, sections 12 and 13)."""
+"""Words that a message on the Aseba network holds (docs/spec/aseba-language.md sections 12 and 13)."""
 
 _MARK = "\ufeff"  # byte order mark
 _NUMBER = re.compile(r"\s*[+-]?[0-9]{1,10}\s*")

@@ -40,7 +40,7 @@ from aseba_vm.statements import (
 )
 
 MAX_EMITTED = 516
-"""Most words that an event carries (VM spec, section 10.1)."""
+"""Most words that an event carries (docs/spec/aseba-bytecode-vm.md section 10.1)."""
 
 _BINARY_COUNT = 18
 _UNARY_COUNT = 3

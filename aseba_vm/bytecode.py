@@ -1,4 +1,7 @@
-"""Instructions and words: the table of operations, encoding, linking and disassembly (VM spec, sections 1 and 2)."""
+"""Instructions and words: the table of operations, encoding, linking and disassembly.
+
+Source: docs/spec/aseba-bytecode-vm.md sections 1 and 2.
+"""
 
 from __future__ import annotations
 
@@ -72,7 +75,8 @@ class Segment:
 
     ``number`` is that of the event or the index of the subroutine, ``depth`` the estimated depth of the stack,
     ``row`` that of ``sub``. ``falls_through``: the last instruction may be skipped, so that the code runs on.
-    ``far_blocks``: where blocks begin that are too long for the 12 bits of a jump (language spec, section 12).
+    ``far_blocks``: where blocks begin that are too long for the 12 bits of a jump (docs/spec/aseba-language.md section
+    12).
     """
 
     is_sub: bool

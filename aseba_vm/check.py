@@ -1,4 +1,7 @@
-"""Third pass: sizes of vectors; sixth pass: types and subroutines of scalars (language spec, sections 8 and 11)."""
+"""Third pass: sizes of vectors; sixth pass: types and subroutines of scalars.
+
+Source: docs/spec/aseba-language.md sections 8 and 11.
+"""
 
 from __future__ import annotations
 

@@ -44,7 +44,10 @@ class CodeMemory:
                 self.turn(pc)
 
     def clear_edges(self) -> None:
-        """Let branches forget, from the word on where the reference starts its scan (VM spec, section 10.4)."""
+        """Let branches forget, from the word on where the reference starts its scan.
+
+        Source: docs/spec/aseba-bytecode-vm.md section 10.4.
+        """
         words = self.words
         pc = 2 * words[0] + 1 if words else 0
         while pc < len(words):

@@ -1,4 +1,4 @@
-"""All passes in order: text to program, every stage kept if asked for (VM spec, section 3)."""
+"""All passes in order: text to program, every stage kept if asked for (docs/spec/aseba-bytecode-vm.md section 3)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The natives for deques: rings of words inside an array (VM spec, section 12).
+"""The natives for deques: rings of words inside an array (docs/spec/aseba-bytecode-vm.md section 12).
 
 Word 0 of the array is the number of elements, word 1 the start, the rest the ring. The moves do not always keep the
 contents when the start is not 0; programs and the reference agree on that, so it is reproduced. An insertion behind the

@@ -1,4 +1,6 @@
-"""How events reach a machine, without a robot (VM spec, section 10.5): two policies, one interface.
+"""How events reach a machine, without a robot: two policies, one interface.
+
+Source: docs/spec/aseba-bytecode-vm.md section 10.5.
 
 ``raise_local(name)`` and ``receive(event, source, arguments)`` tell what happens; ``turn(limit)`` is one turn of the
 main loop. The robot itself lets a global event kill a handler; here it waits, as pupils expect of a queue.
@@ -16,7 +18,10 @@ TURN = 65535
 """Instructions of one turn of the firmware's main loop."""
 
 STEP = 1000
-"""Instructions of one step of the reference's playground (thymio-robot.md section 3); a longer handler goes on."""
+"""Instructions of one step of the reference's playground; a longer handler goes on.
+
+Source: docs/spec/thymio-robot.md section 3.
+"""
 
 MOST_WAITING = 100
 """Global events that may wait; more are refused."""

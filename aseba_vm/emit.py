@@ -1,4 +1,7 @@
-"""Eighth to tenth pass: tree to instructions, terminators, stack check (VM spec, sections 4 to 9)."""
+"""Eighth to tenth pass: tree to instructions, terminators, stack check.
+
+Source: docs/spec/aseba-bytecode-vm.md sections 4 to 9.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +60,10 @@ def emit(tree: Tree) -> tuple[Segment, ...]:
 
 
 def check_stack(segments: Sequence[Segment], stack_size: int) -> int:
-    """Return the estimate of the deepest stack, calls included. Raises CompileError if it does not fit (VM spec, 8)."""
+    """Return the estimate of the deepest stack, calls included. Raises CompileError if it does not fit.
+
+    Source: docs/spec/aseba-bytecode-vm.md section 8.
+    """
     subs = [segment for segment in segments if segment.is_sub]
     calls = [[code.operand for code in sub.code if code.op is Op.CALL] for sub in subs]
     call_depth = [0] * len(subs)
@@ -108,7 +114,7 @@ class _Builder:
         self.last_row = row
 
     def finish(self) -> Segment:
-        """Append the terminator (VM spec, section 7)."""
+        """Append the terminator (docs/spec/aseba-bytecode-vm.md section 7)."""
         falls_through = False
         if self.is_sub:
             self.code = [replace(code, op=Op.RET) if code.op is Op.STOP else code for code in self.code]

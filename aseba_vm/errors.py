@@ -15,7 +15,10 @@ Argument = int | str | tuple[int | str, ...]
 
 @dataclass(frozen=True, slots=True)
 class SourcePos:
-    """A place in a text: index of the code point, row and column, all from 0 (language spec, section 2)."""
+    """A place in a text: index of the code point, row and column, all from 0.
+
+    Source: docs/spec/aseba-language.md section 2.
+    """
 
     offset: int
     row: int
@@ -69,7 +72,7 @@ class AsebaError(Exception):
 
 
 class CompileError(AsebaError):
-    """A program that is refused: the first error met, in the order of the language spec, section 11.
+    """A program that is refused: the first error met, in the order of docs/spec/aseba-language.md section 11.
 
     ``kind`` is a stable identifier, ``arguments`` its ordered values, ``pos`` the place or None; ``hint`` says what was
     probably meant, if that is known (:mod:`aseba_vm.hints`).

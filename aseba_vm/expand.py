@@ -1,4 +1,7 @@
-"""Fourth and fifth pass: compound assignments and loops to plain ones, vectors to scalars (VM spec, section 3)."""
+"""Fourth and fifth pass: compound assignments and loops to plain ones, vectors to scalars.
+
+Source: docs/spec/aseba-bytecode-vm.md section 3.
+"""
 
 from __future__ import annotations
 
@@ -90,7 +93,7 @@ class _Expander:
         return replace(statement, condition=condition, then=then, otherwise=otherwise)
 
     def loop(self, loop: For) -> Task[list[Statement]]:
-        """Lower a ``for`` (VM spec, section 6)."""
+        """Lower a ``for`` (docs/spec/aseba-bytecode-vm.md section 6)."""
         statements: list[Statement] = list(self.assign(loop.variable, loop.start, loop.start.pos))
         body: Block
         if loop.start.value == loop.end.value:

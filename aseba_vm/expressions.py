@@ -1,4 +1,4 @@
-"""Second pass, expressions: tokens to vectors (language spec, sections 4 and 6).
+"""Second pass, expressions: tokens to vectors (docs/spec/aseba-language.md sections 4 and 6).
 
 A recursive-descent parser, one method per rule of the grammar, which stands above it. Names are looked up and constant
 indexes evaluated on the way.
@@ -139,7 +139,7 @@ def literal(token: Token, value: int) -> Number:
 
 
 def constant_value(expression: Expression, pos: SourcePos) -> int:
-    """Return the value of a constant expression (language spec, section 9.3). Raises CompileError."""
+    """Return the value of a constant expression (docs/spec/aseba-language.md section 9.3). Raises CompileError."""
     simple = simplify(first_constant(expression))
     if not isinstance(simple, Number):
         raise CompileError("not-constant", (), pos)

@@ -1,6 +1,6 @@
 """The letters and digits of names: a fixed Unicode 15 table, so that every Python gives the same answer.
 
-``str.isalnum`` differs (language spec, section 3) and changes with the version of Python.
+``str.isalnum`` differs (docs/spec/aseba-language.md section 3) and changes with the version of Python.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""The interpreter: one loop over decoded operations (VM spec, sections 7 to 10.3), the oracle of the translators.
+"""The interpreter: one loop over decoded operations, the oracle of the translators.
+
+Source: docs/spec/aseba-bytecode-vm.md sections 7 to 10.3.
 
 The loop meets operations with their operands ready (:mod:`aseba_vm.codememory`); a BRANCH that remembers its condition
 rewrites its own word. Arithmetic is exact in Python and cut to 16 bits in :func:`aseba_vm.nativecall.wrap`.

@@ -1,7 +1,7 @@
-"""First pass: text to tokens (language spec, sections 2 and 3).
+"""First pass: text to tokens (docs/spec/aseba-language.md sections 2 and 3).
 
 One regular expression finds the longest next token, comments and white space too. The column is the offset minus
-``base``, the offset that column 0 would have, which makes each of the odd columns of the spec one assignment.
+``base``, the offset that column 0 would have, which makes each of the odd columns of section 2 one assignment.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Look-up of names, with the suggestion for one that is not found (language spec, section 5.3)."""
+"""Look-up of names, with the suggestion for one that is not found (docs/spec/aseba-language.md section 5.3)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a native function is given, and how it refuses (VM spec, section 11)."""
+"""What a native function is given, and how it refuses (docs/spec/aseba-bytecode-vm.md section 11)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def wrap32(value: int) -> int:
     return ((value + 0x80000000) & 0xFFFFFFFF) - 0x80000000
 
 
-class NativeFault(Exception):  # noqa: N818  # a fault, in the words of the specification
+class NativeFault(Exception):  # noqa: N818  # a fault, in the words of section 11
     """Raised by a native that cannot do its work; the event ends and the reason is told."""
 
     def __init__(self, reason: str) -> None:

@@ -1,4 +1,4 @@
-"""The standard natives, one function each (VM spec, section 12).
+"""The standard natives, one function each (docs/spec/aseba-bytecode-vm.md section 12).
 
 Elements are processed in index order and each result is stored before the next element is read, so that overlapping
 arguments behave as specified. The numbers of arguments are those of the declarations in the target.
@@ -14,7 +14,7 @@ from aseba_vm.nativecall import DivisionFault, Native, NativeCall, NativeFault, 
 from aseba_vm.trigonometry import arctangent, cosine, sine
 
 RANDOM_FACTOR, RANDOM_STEP = 25173, 13849
-"""Of the generator of random numbers (VM spec, section 12)."""
+"""Of the generator of random numbers (docs/spec/aseba-bytecode-vm.md section 12)."""
 
 SQUARE_ROOT_FAULT = "sqrt-of-negative"
 """Reason for refusing the root of a negative number."""

@@ -1,4 +1,7 @@
-"""What an .aesl file says: events, constants and programs that the nodes of one network share (language spec, 13)."""
+"""What an .aesl file says: events, constants and programs that the nodes of one network share.
+
+Source: docs/spec/aseba-language.md section 13.
+"""
 
 from __future__ import annotations
 

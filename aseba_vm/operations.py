@@ -1,4 +1,7 @@
-"""The operations of the machine: arithmetic by operator, words decoded for the loop (VM spec, sections 1 and 10)."""
+"""The operations of the machine: arithmetic by operator, words decoded for the loop.
+
+Source: docs/spec/aseba-bytecode-vm.md sections 1 and 10.
+"""
 
 from __future__ import annotations
 

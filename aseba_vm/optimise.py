@@ -1,4 +1,4 @@
-"""Seventh pass: folding and simplification of a scalar tree (language spec, section 9)."""
+"""Seventh pass: folding and simplification of a scalar tree (docs/spec/aseba-language.md section 9)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a machine says: values left in its outbox, in order (VM spec, sections 10.1 to 10.5)."""
+"""What a machine says: values left in its outbox, in order (docs/spec/aseba-bytecode-vm.md sections 10.1 to 10.5)."""
 
 from __future__ import annotations
 

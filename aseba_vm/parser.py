@@ -1,4 +1,4 @@
-"""Second pass, statements: tokens to tree (language spec, sections 4 to 7 and 10).
+"""Second pass, statements: tokens to tree (docs/spec/aseba-language.md sections 4 to 7 and 10).
 
 A recursive-descent parser, one method per rule of the grammar, which stands above it. Names are looked up, constants
 evaluated and the temporary words of events and natives allocated on the way, as the order of errors demands.
@@ -144,7 +144,7 @@ class _Parser:
         return size
 
     def initial_value(self) -> Task[Expression]:
-        """oldlist = element , "," , element , { "," , element }   (language spec, section 5.2)"""
+        """oldlist = element , "," , element , { "," , element }   (docs/spec/aseba-language.md section 5.2)"""
         if self.stream.peek(1) != "," and not (self.stream.token.kind == "-" and self.stream.peek(2) == ","):
             value: Expression = yield self.expressions.expression()
             return value

@@ -38,7 +38,10 @@ def spaced(text: str, start: int, end: int, tokens: Sequence[Token], first: int,
 
 
 def token_begin(token: Token) -> int:
-    """Return the offset at which a token begins; shifts carry the place of their second character (spec, section 3)."""
+    """Return the offset at which a token begins; shifts carry the place of their second character.
+
+    Source: docs/spec/aseba-language.md section 3.
+    """
     return token.pos.offset - (token.kind in _SHIFTS)
 
 

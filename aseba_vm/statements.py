@@ -111,7 +111,8 @@ class Call(NamedTuple):
 class Known(NamedTuple):
     """A native as far as a translator may rely on it.
 
-    ``is_confined``: it touches nothing but its arguments. ``is_standard``: it is the function of the specification.
+    ``is_confined``: it touches nothing but its arguments. ``is_standard``: it is the function of
+    docs/spec/aseba-bytecode-vm.md section 12.
     """
 
     signature: Signature

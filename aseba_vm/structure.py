@@ -1,4 +1,6 @@
-"""Blocks as structured code: loops and conditions again, from the shapes that the compiler makes (VM spec, section 6).
+"""Blocks as structured code: loops and conditions again, from the shapes that the compiler makes.
+
+Source: docs/spec/aseba-bytecode-vm.md section 6.
 
 What has another shape becomes an :class:`Exit` to an address, where other translated code or the interpreter goes on;
 so any program can be translated, only some profit less. The budget of instructions is checked at :class:`Check` and

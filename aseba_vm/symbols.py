@@ -1,4 +1,4 @@
-"""The tables of names and the allocation of memory while parsing (language spec, sections 5 and 10)."""
+"""The tables of names and the allocation of memory while parsing (docs/spec/aseba-language.md sections 5 and 10)."""
 
 from __future__ import annotations
 

@@ -46,7 +46,10 @@ class NativeFunction:
 
     @property
     def free_sizes(self) -> tuple[int, ...]:
-        """For each size pushed, in list order, the index of a parameter that has it (VM spec, section 6)."""
+        """For each size pushed, in list order, the index of a parameter that has it.
+
+        Source: docs/spec/aseba-bytecode-vm.md section 6.
+        """
         free = [index for index, parameter in enumerate(self.parameters) if parameter.size == 0]
         lowest = min((parameter.size for parameter in self.parameters), default=0)
         sizes = [parameter.size for parameter in self.parameters]

@@ -202,7 +202,7 @@ class ElementArgument:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A native function: number, sizes in list order (VM spec, section 6), arguments."""
+    """A native function: number, sizes in list order (docs/spec/aseba-bytecode-vm.md section 6), arguments."""
 
     number: int
     sizes: tuple[int, ...]

@@ -1,4 +1,6 @@
-"""Sine, cosine and arc tangent in 16-bit integers, by interpolation in tables (VM spec, section 12).
+"""Sine, cosine and arc tangent in 16-bit integers, by interpolation in tables.
+
+Source: docs/spec/aseba-bytecode-vm.md section 12.
 
 A full circle is 65536, one is 32767.
 """

@@ -1,4 +1,6 @@
-"""Expressions as vectors: their size, their address, their scalar elements (language spec, sections 6 and 11).
+"""Expressions as vectors: their size, their address, their scalar elements.
+
+Source: docs/spec/aseba-language.md sections 6 and 11.
 
 Used while parsing (sizes of arguments, constants) and by the passes that check and expand. An element that does not
 exist stays in place as ``Missing`` until the scalar assignment that needs it, so that errors keep their order.

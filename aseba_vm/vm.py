@@ -1,4 +1,6 @@
-"""The virtual machine (VM spec, section 10): one object of state, one loop, a budget of instructions.
+"""The virtual machine: one object of state, one loop, a budget of instructions.
+
+Source: docs/spec/aseba-bytecode-vm.md section 10.
 
 The machine never raises for what a program does: a fault stops it, is told in the outbox and kept in ``fault``.
 :mod:`aseba_vm.interpreter` holds the loop, :mod:`aseba_vm.engine` the quicker ways.
@@ -116,7 +118,7 @@ class VirtualMachine:
         self.outbox.clear()
         return messages
 
-    # -- commands (VM spec, section 10.4)
+    # -- commands (docs/spec/aseba-bytecode-vm.md section 10.4)
 
     def set_bytecode(self, words: Sequence[int], start: int = 0) -> None:
         """Write words and reset. Raises ValueError if they do not fit the memory."""
@@ -200,7 +202,7 @@ class VirtualMachine:
             raise ValueError(f"{len(values)} words at {start} are outside a memory of {len(self.variables)}")
         self.variables.words[start : start + len(values)] = [wrap(value) for value in values]
 
-    # -- events (VM spec, sections 10.2 and 10.5)
+    # -- events (docs/spec/aseba-bytecode-vm.md sections 10.2 and 10.5)
 
     def address_of(self, event: int) -> int:
         """Return the address of the code of an event, 0 if there is none."""
@@ -242,7 +244,7 @@ class VirtualMachine:
         self.setup(0xFFFE - index)
         return True
 
-    # -- running (VM spec, section 10.3)
+    # -- running (docs/spec/aseba-bytecode-vm.md section 10.3)
 
     def run(self, limit: int = 0) -> bool:
         """Execute the active event until ``limit`` instructions are spent (0: to its end); tell whether it ran at all.

@@ -66,13 +66,13 @@ def _unreachable(block: Block) -> Iterator[CompileWarning]:
 
 
 def _constant_when(node: If) -> Iterator[CompileWarning]:
-    """A condition without variables: such a ``when`` is no edge trigger (language spec, section 7)."""
+    """A condition without variables: such a ``when`` is no edge trigger (docs/spec/aseba-language.md section 7)."""
     if not any(isinstance(part, Access | Subscript) for part in walk(node.condition)):
         yield CompileWarning("warning-constant-when", (), node.pos)
 
 
 def _endless_for(loop: For) -> Iterator[CompileWarning]:
-    """A step that jumps over the end of the 16-bit range (language spec, section 7)."""
+    """A step that jumps over the end of the 16-bit range (docs/spec/aseba-language.md section 7)."""
     start, end = loop.start.value, loop.end.value
     last = start + int((end - start) / loop.step) * loop.step
     if start != end and not -0x8000 <= last + loop.step <= 0x7FFF:
@@ -80,7 +80,7 @@ def _endless_for(loop: For) -> Iterator[CompileWarning]:
 
 
 def _vector_index(node: Subscript) -> Iterator[CompileWarning]:
-    """Arrays in an index, of which only the first word counts (language spec, section 6.1)."""
+    """Arrays in an index, of which only the first word counts (docs/spec/aseba-language.md section 6.1)."""
     parts: list[Node] = [node.index]
     while parts:
         part = parts.pop()
@@ -91,7 +91,10 @@ def _vector_index(node: Subscript) -> Iterator[CompileWarning]:
 
 
 def _subroutines(tree: Tree, segments: Sequence[Segment]) -> Iterator[CompileWarning]:
-    """Subroutines that nobody calls, or that may run on into the code after them (VM spec, section 7)."""
+    """Subroutines that nobody calls, or that may run on into the code after them.
+
+    Source: docs/spec/aseba-bytecode-vm.md section 7.
+    """
     called = {code.operand for segment in segments for code in segment.code if code.op is Op.CALL}
     for segment in segments:
         if not segment.is_sub:

@@ -1,4 +1,6 @@
-"""The natives for deques in WebAssembly: those of :mod:`aseba_vm.deque`, step by step (VM spec, section 12).
+"""The natives for deques in WebAssembly: those of :mod:`aseba_vm.deque`, step by step.
+
+Source: docs/spec/aseba-bytecode-vm.md section 12.
 
 Parameters are addresses and sizes in bytes; ``$cap`` is the capacity, ``$n`` a number of words. A function returns 0,
 FAULT, or for a pop of which both halves failed TWO_FAULTS; what it changed before that stays, as in the reference.

@@ -1,4 +1,4 @@
-"""Standard natives in WebAssembly (VM spec, section 12), for arguments known beforehand.
+"""Standard natives in WebAssembly (docs/spec/aseba-bytecode-vm.md section 12), for arguments known beforehand.
 
 Words are read and stored in the order of :mod:`aseba_vm.natives`, so that overlapping arguments behave the same. Few
 words are unrolled in the place of the call; everything else is a function, which a module has if it calls it. Its

@@ -9,8 +9,9 @@ makes everything dearer, by caches alone two to three times: the load is printed
 "Floor" is what a bare loop takes that sends ready bytes on as many topics at the same rate to the same listener, right
 after: what is left is the simulator's own.
 
-"All topics" are those of `topics`: all of every robot, /tf and /clock; "13 topics" those that performance.md section 7
-counts: nine Range, odometry, transforms, joints, Imu. All that is regular is sent at the scene's rate, the clock too.
+"All topics" are those of `topics`: all of every robot, /tf and /clock; "13 topics" those that
+docs/spec/ros-packaging.md section 9 counts: nine Range, odometry, transforms, joints, Imu. All that is regular is sent
+at the scene's rate, the clock too.
 """
 
 from __future__ import annotations

@@ -120,7 +120,7 @@ def start_suite(argv: Sequence[str]) -> int:
     _check_ros()
     if (wait := patience(len(robots))) is not None:
         _tell(wait)
-    # A class room's robots stay apart, unless somebody has chosen otherwise (ros-packaging.md section 4).
+    # A class room's robots stay apart, unless somebody has chosen otherwise (docs/spec/ros-packaging.md section 4).
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     from thymio_sim_ros.nodes import leftovers
 

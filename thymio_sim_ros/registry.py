@@ -1,6 +1,6 @@
 """Collects plug-ins: what the modules of a folder of ours export, and what other packages offer by entry points.
 
-A package of plug-ins is its own registry (architecture section 9): putting a file into the folder adds the plug-in,
+A package of plug-ins is its own registry (docs/plugins.md): putting a file into the folder adds the plug-in,
 and nothing else has to know. Another package adds to `thymio_sim_ros.sensors`, `.actuators` or `.shapes` by an entry
 point of a group of that name, and whole folders to `.behaviours` and `.playgrounds`. Ours must be whole; one of
 others that is broken is named in the log and left out. Name order makes every walk over a registry repeatable.

@@ -2,7 +2,7 @@
 
 The same look-up serves a source tree, a wheel, an editable install and a colcon workspace: first the
 source tree, then `share/thymio_sim_ros` beside the installed code, then the ament prefixes, then the
-interpreter's prefix (ros-packaging.md section 1.1: the wheels leave AMENT_PREFIX_PATH unset).
+interpreter's prefix (docs/spec/ros-packaging.md section 1.1: the wheels leave AMENT_PREFIX_PATH unset).
 """
 
 from __future__ import annotations

@@ -23,7 +23,8 @@ class Suite:
     switched on with instead, the program then waiting in its menu; `log`: file of a run log, empty for none.
     `address`: where page and bridge listen, `ADDRESS` or an IPv4 number.
     `tokens`: what clients of page and bridge need; None leaves it to the bridge.
-    `cmd_vel_timeout_s`: browser teleop sends nothing on release, hence half a second (ros-interface.md section 13).
+    `cmd_vel_timeout_s`: browser teleop sends nothing on release, hence half a second (docs/spec/ros-interface.md
+    section 13).
     """
 
     playground: str = "line"

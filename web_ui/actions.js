@@ -16,7 +16,7 @@ export const LARGEST_PROGRAM = 1_000_000;
 /** A playground may hold pictures; as text it must fit into one message of the bridge. */
 export const LARGEST_PLAYGROUND = 3_000_000;
 
-/** At a quarter of the speed of time this is more than the 20 ms between two looks (thymio-robot.md section 3). */
+/** At a quarter of the speed of time this is more than the 20 ms between two looks (docs/spec/thymio-robot.md section 3). */
 const SHORTEST_PRESS_MS = 120;
 
 /** What the ending of a file's name says about it. */

@@ -1,4 +1,4 @@
-"""The examples of the VM document, section 15, and the map between rows and words."""
+"""The examples of docs/spec/aseba-bytecode-vm.md section 15, and the map between rows and words."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Folding and simplification (language spec, section 9), seen in the code that is left."""
+"""Folding and simplification (docs/spec/aseba-language.md section 9), seen in the code that is left."""
 
 import pytest
 

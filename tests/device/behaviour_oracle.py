@@ -1,4 +1,5 @@
-"""The built-in behaviours once more, tick by tick, written from the tables of thymio-behaviours.md and nothing else."""
+"""The built-in behaviours once more, tick by tick, written from the tables of docs/spec/thymio-behaviors.md and nothing
+else."""
 
 from __future__ import annotations
 

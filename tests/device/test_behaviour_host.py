@@ -1,4 +1,7 @@
-"""The robot's menu: which program runs, and what the robot shows meanwhile (thymio-behaviours.md section 1)."""
+"""The robot's menu: which program runs, and what the robot shows meanwhile.
+
+Source: docs/spec/thymio-behaviors.md section 1.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""One program that calls every native and reads every variable of the robot (thymio-robot.md sections 4 and 6)."""
+"""One program that calls every native and reads every variable of the robot.
+
+Source: docs/spec/thymio-robot.md sections 4 and 6.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The settings in the menu, with their lights (thymio-behaviours.md section 2)."""
+"""The settings in the menu, with their lights (docs/spec/thymio-behaviors.md section 2)."""
 
 from __future__ import annotations
 

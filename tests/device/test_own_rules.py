@@ -1,4 +1,4 @@
-"""What the robot shows by itself (thymio-robot.md section 8.4), and what ends it."""
+"""What the robot shows by itself (docs/spec/thymio-robot.md section 8.4), and what ends it."""
 
 from __future__ import annotations
 

@@ -129,7 +129,7 @@ WRITTEN = {
     "prox.comm.tx", "motor.left.target", "motor.right.target", "leds.top", "leds.bottom.left", "leds.bottom.right",
     "leds.circle", "mic.threshold", "timer.period",
 }  # fmt: skip
-"""What programs write; they read everything else (thymio-robot.md section 4)."""
+"""What programs write; they read everything else (docs/spec/thymio-robot.md section 4)."""
 
 
 def test_a_program_reads_every_variable_that_is_there_to_be_read():

@@ -1,4 +1,4 @@
-"""Code written for the Thymio's ROS driver runs unchanged (ros-interface.md section 12)."""
+"""Code written for the Thymio's ROS driver runs unchanged (docs/spec/ros-interface.md section 12)."""
 
 from __future__ import annotations
 

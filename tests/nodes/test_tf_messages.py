@@ -1,4 +1,4 @@
-"""TFMessage bytes, and a TFMessage type nobody compiled (ros-packaging.md section 1.3)."""
+"""TFMessage bytes, and a TFMessage type nobody compiled (docs/spec/ros-packaging.md section 1.3)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""SI ↔ Thymio integers at the values of thymio-robot.md."""
+"""SI ↔ Thymio integers at the values of docs/spec/thymio-robot.md."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from tests.web_ui.page_support import MARKS, drop_file, open_page, wait_for_fram
 
 pytestmark = MARKS
 
-MOST_BYTES = 800_000  # compressed, web-ui-features.md section 5.3
+MOST_BYTES = 800_000  # compressed, docs/performance.md, "The page"
 
 PROGRAM = """\
 var lit = 0

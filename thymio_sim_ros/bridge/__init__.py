@@ -8,7 +8,7 @@
     turn                whose turn it is to work on all that
     events              what the source of data is told (events) and tells (commands)
 
-Why our own server on `websockets` and not one of the vendor's packages: foxglove.md section 1.
+Why our own server on `websockets` and not one of the vendor's packages: docs/spec/foxglove.md section 1.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Every message of the protocol as a frozen value (foxglove.md section 2).
+"""Every message of the protocol as a frozen value (docs/spec/foxglove.md section 2).
 
 JSON messages name their `op`; their other keys are the camelCase names of the fields. An `int` is an unsigned 32-bit
 id, an optional field that is None is left out. Messages without `op` are binary. `wire` turns all of them into frames.

@@ -2,7 +2,7 @@
 
 Opcodes and levels come from `foxglove-websocket`, the package that defined them. Its vocabulary module imports nothing
 but the standard library, so the deprecated `websockets.legacy` behind its server stays out of our process; what it
-lacks (assets, capability names) is added here. Facts: foxglove.md section 2.
+lacks (assets, capability names) is added here. Facts: docs/spec/foxglove.md section 2.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Frames ↔ messages: text frames are JSON, binary frames begin with an opcode (foxglove.md section 2).
+"""Frames ↔ messages: text frames are JSON, binary frames begin with an opcode (docs/spec/foxglove.md section 2).
 
 One table per direction and form; both ends use it, the server one half and tests or clients the other. A frame that
 breaks the protocol yields one `FrameError` and nothing else.

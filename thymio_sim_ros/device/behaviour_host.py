@@ -1,7 +1,7 @@
 """Which program a robot runs: the menu, a behaviour chosen in it, or what a computer has loaded.
 
-The firmware's menu and behaviours (thymio-behaviours.md section 1) are programs of the folder `behaviours` here. One
-asks for another by an event that stays inside the robot, so that neither other robots nor ROS hear it:
+The firmware's menu and behaviours (docs/spec/thymio-behaviors.md section 1) are programs of the folder `behaviours`
+here. One asks for another by an event that stays inside the robot, so that neither other robots nor ROS hear it:
 
 - `menu.start [entry]`: run the program of this entry (`ENTRIES`; 0 is the user's own program),
 - `menu.back`: open the menu, which shows the entry that was running.

@@ -1,4 +1,7 @@
-"""Breakpoints and steps by the lines of a program's file (ros-interface.md section 6.2, web-ui-features.md)."""
+"""Breakpoints and steps by the lines of a program's file.
+
+Source: docs/aseba_ros.md, "Run control and breakpoints".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The memory card: a folder that stands for it (thymio-robot.md sections 6.3, 9 and 10).
+"""The memory card: a folder that stands for it (docs/spec/thymio-robot.md sections 6.3, 9 and 10).
 
 Programs name files by number only: data `uN.dat`; sounds `pN.wav` to play, `rN.wav` recorded, `sN.wav` in place of
 missing system sounds. Names are found in any case, as on the card's file system. Nothing outside the folder is

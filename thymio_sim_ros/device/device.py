@@ -1,8 +1,9 @@
 """An Aseba Thymio: readings in, machine, commands and events out. It knows no world and no ROS.
 
 How events meet is decided by an `EventQueue`; here a global event also ends a handler that has had its turn of
-instructions (aseba-bytecode-vm.md section 10.5). Beside the program runs what the robot does by itself: its own rules
-for lights and button sounds, its card, settings and radio. A reset clears all variables and switches the lights off.
+instructions (docs/spec/aseba-bytecode-vm.md section 10.5). Beside the program runs what the robot does by itself: its
+own rules for lights and button sounds, its card, settings and radio. A reset clears all variables and switches the
+lights off.
 """
 
 from __future__ import annotations
@@ -460,7 +461,7 @@ class AsebaDevice:
         self._are_periods_new = False
 
     def _on_reset(self, vm: VirtualMachine) -> None:
-        """The robot's share in a reset (thymio-robot.md section 4)."""
+        """The robot's share in a reset (docs/spec/thymio-robot.md section 4)."""
         vm.variables[:] = [0] * len(vm.variables)
         vm.node_id = self.node_id
         has_card = int(self.body.card is not None)

@@ -1,4 +1,4 @@
-"""Events that wait for the machine, and the order in which it hears them (thymio-robot.md section 3).
+"""Events that wait for the machine, and the order in which it hears them (docs/spec/thymio-robot.md section 3).
 
 As the firmware does: one flag for each local event, the lowest number first, nothing interrupts a handler; global
 events wait in line. As the reference playground does: events come one by one as they happened, each ends the handler

@@ -1,4 +1,4 @@
-"""Which program of a file is whose: by name, then by number, then in order (web-ui-features.md, "multi-node files")."""
+"""Which program of a file is whose: by name, then by number, then in order (docs/aseba_ros.md, "Programs")."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """One line of help for each variable, native and local event of the Thymio, in one table per language.
 
-Other languages are `help_<language>.py`; what they lack is given in English (facts: thymio-robot.md sections 4 to 6).
+Other languages are `help_<language>.py`; what they lack is given in English (facts: docs/spec/thymio-robot.md sections
+4 to 6).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The Thymio that programs are compiled for: the layout of a robot or of the reference playground, and plug-ins.
 
-A layout says in which order variables, events and natives come (thymio-robot.md sections 4 and 6.1); programs find
-them by name, bytecode by place.
+A layout says in which order variables, events and natives come (docs/spec/thymio-robot.md sections 4 and 6.1); programs
+find them by name, bytecode by place.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Native functions of the Thymio as the machine calls them (thymio-robot.md section 6).
+"""Native functions of the Thymio as the machine calls them (docs/spec/thymio-robot.md section 6).
 
 The machine itself knows `math.*` and `deque.*`. Natives that actuators declare become their commands; the others
 reach the parts of the robot's body by the table at the end.

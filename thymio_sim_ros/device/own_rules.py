@@ -1,7 +1,7 @@
 """What the robot itself shows while a program runs: its sensors on its lights, a sound for each button.
 
-Rules and numbers: thymio-robot.md section 8.4, 50 times a second. A rule ends when a program takes its lights over,
-and the sounds end when a program uses sound itself; after a reset all begin again.
+Rules and numbers: docs/spec/thymio-robot.md section 8.4. They run 50 times a second. A rule ends when a program
+takes its lights over, and the sounds end when a program uses sound itself; after a reset all begin again.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The robot's settings: 92 words that survive a restart once they are flashed (thymio-robot.md section 6.3).
+"""The robot's settings: 92 words that survive a restart once they are flashed (docs/spec/thymio-robot.md section 6.3).
 
 With a file they are kept there as JSON, by the names of their parts; without, as long as the device lives.
 """

@@ -1,4 +1,4 @@
-"""timer0 and timer1: `timer.period` in ms of simulated time (thymio-robot.md section 3).
+"""timer0 and timer1: `timer.period` in ms of simulated time (docs/spec/thymio-robot.md section 3).
 
 Each counts milliseconds, fires when its count equals its period, and counts from 0 again. A changed period starts the
 count again and is noticed when no handler runs. The timers lag behind the clock until the machine is free to hear

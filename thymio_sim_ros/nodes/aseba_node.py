@@ -1,8 +1,8 @@
 """The Aseba runtime as a ROS node: feeds readings to devices, sends their commands, carries their events.
 
-It knows topics, not simulators: any robot that has them will do (ros-interface.md section 6, docs/aseba_ros.md).
-Devices keep simulated time by the node's clock. Programs are parameters; a text that does not compile is refused
-with its place, and the old program goes on. A robot without a program is switched on with its menu.
+It knows topics, not simulators: any robot that has them will do (docs/spec/ros-interface.md section 6,
+docs/aseba_ros.md). Devices keep simulated time by the node's clock. Programs are parameters; a text that does not
+compile is refused with its place, and the old program goes on. A robot without a program is switched on with its menu.
 """
 
 from __future__ import annotations

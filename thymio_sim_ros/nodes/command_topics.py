@@ -1,7 +1,7 @@
 """Commands ↔ messages, one row per topic that a robot listens to and an Aseba program speaks on.
 
 The simulator decodes what arrives, the Aseba runtime encodes what its programs command: both from these rows
-(ros-interface.md sections 4.2 and 6.3). Topics that only people and nodes speak on are rows without `encode`.
+(docs/spec/ros-interface.md sections 4.2 and 6.3). Topics that only people and nodes speak on are rows without `encode`.
 """
 
 from __future__ import annotations

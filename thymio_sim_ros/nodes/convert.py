@@ -1,6 +1,6 @@
 """Readings → messages; nothing else knows what a Range is.
 
-Names, units, frames and QoS are those of ros-interface.md sections 4, 6.3 and 9.
+Names, units, frames and QoS are those of docs/spec/ros-interface.md sections 4, 6.3 and 9.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from thymio_sim_ros.sim import readings
 from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt, Twist
 from thymio_sim_ros.sim.tones import VOLUME_OFF
 
-# The driver's constants of a Range (ros-interface.md section 3).
+# The driver's constants of a Range (docs/spec/ros-interface.md section 3).
 PROXIMITY_MAX_M, PROXIMITY_FOV_RAD = 0.14, 0.3
 GROUND_MIN_M, GROUND_MAX_M, GROUND_FOV_RAD = 0.009, 0.03, 0.3
 LASER_STEP_RAD, LASER_ANGLE_RAD = 0.32, 0.64
@@ -57,7 +57,7 @@ class RangeFields:
 class ConvertOptions:
     """What a user may choose about the content of messages.
 
-    `driver_ranges`: −1 and minimum instead of ±inf (ros-interface.md section 4.3). `ground_threshold`: count.
+    `driver_ranges`: −1 and minimum instead of ±inf (docs/spec/ros-interface.md section 4.3). `ground_threshold`: count.
     `proximity`: in Thymio's order. Covariance diagonals: x y z roll pitch yaw. `scan_ns`: between two laser scans.
     """
 

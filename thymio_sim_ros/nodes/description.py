@@ -1,4 +1,7 @@
-"""The robot as URDF made of primitives, for RViz and Foxglove; and its fixed frames (ros-interface.md section 8)."""
+"""The robot as URDF made of primitives, for RViz and Foxglove; and its fixed frames.
+
+Source: docs/spec/ros-interface.md section 8.
+"""
 
 from __future__ import annotations
 

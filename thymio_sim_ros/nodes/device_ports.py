@@ -1,7 +1,7 @@
 """One robot's Aseba device joined to its topics: readings in, commands out, events both ways, run control.
 
-Topics: ros-interface.md section 6. The integers of a sensor come on `_raw/<sensor>`, or are made of the topics of the
-ROS driver; commands leave on the topics that any robot listens to.
+Topics: docs/spec/ros-interface.md section 6. The integers of a sensor come on `_raw/<sensor>`, or are made of the
+topics of the ROS driver; commands leave on the topics that any robot listens to.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""Readings of a robot behind its ROS driver: its topics back to Thymio's integers (ros-interface.md section 3).
+"""Readings of a robot behind its ROS driver: its topics back to Thymio's integers.
+
+Source: docs/spec/ros-interface.md section 3.
 
 What the driver does not tell stays zero: ambient light, radio intensities, raw buttons. Ranges that come one by one
 make a reading together when all are there, or when one comes again.
@@ -123,7 +125,10 @@ def _others(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
 
 
 def _acceleration(message: Imu) -> list[int]:
-    """acc counts to the right, back and down what Imu counts forward, left and up (thymio-robot.md section 7.3)."""
+    """acc counts to the right, back and down what Imu counts forward, left and up.
+
+    Source: docs/spec/thymio-robot.md section 7.3.
+    """
     vector = message.linear_acceleration
     return [units.acceleration_to_units(value) for value in (-vector.y, vector.x, vector.z)]
 

@@ -2,7 +2,7 @@
 
 Some topics of the driver have hidden names here; with the parameter they are there under the driver's names as well.
 Those with types of the driver's own package `thymio_msgs` are there where that package is installed; each has a twin of
-standard types (ros-interface.md section 4).
+standard types (docs/spec/ros-interface.md section 4).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Events of one robot's program ↔ topics, both ways (ros-interface.md section 6.1)."""
+"""Events of one robot's program ↔ topics, both ways (docs/spec/ros-interface.md section 6.1)."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ __all__ = ["ASSETS", "AssetError", "load_asset"]
 
 _SCHEME = "package://"
 ASSETS = r"(?i)package://[^?#]+\.(dae|fbx|glb|gltf|jpeg|jpg|mtl|obj|png|stl|tif|tiff|urdf|webp|xacro)"
-"""What viewers need: the files that are given unless the user says otherwise (foxglove.md section 5)."""
+"""What viewers need: the files that are given unless the user says otherwise (docs/spec/foxglove.md section 5)."""
 
 _MAX_SIZE = 64 << 20
 

@@ -1,4 +1,4 @@
-"""QoS of the bridge's endpoints, from what the graph tells about the others (foxglove.md section 5)."""
+"""QoS of the bridge's endpoints, from what the graph tells about the others (docs/spec/foxglove.md section 5)."""
 
 from __future__ import annotations
 

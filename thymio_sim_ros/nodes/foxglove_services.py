@@ -117,7 +117,7 @@ class Services:
 
     def fail(self, client: int, request: ServiceRequest, text: str) -> None:
         """Answer a call with the reason why it failed."""
-        # Some clients handle one, some the other (foxglove.md section 2).
+        # Some clients handle one, some the other (docs/spec/foxglove.md section 2).
         failure = ServiceCallFailure(request.service_id, request.call_id, text)
         self._post(Answer(client, failure, len(request.payload)))
         self._post(Tell(client, Status(StatusLevel.ERROR, text)))

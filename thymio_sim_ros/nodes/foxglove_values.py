@@ -1,4 +1,4 @@
-"""Parameter values: the bridge's form ↔ ROS's (foxglove.md section 2)."""
+"""Parameter values: the bridge's form ↔ ROS's (docs/spec/foxglove.md section 2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""JSON objects ↔ ROS messages: what clients publish and call in JSON (foxglove.md section 5).
+"""JSON objects ↔ ROS messages: what clients publish and call in JSON (docs/spec/foxglove.md section 5).
 
 Missing keys keep their defaults, unknown keys are refused; arrays are lists, byte arrays also base64 text. The setters
 of rosidl check nothing in Jazzy (unless asked by an environment variable), hence ranges and lengths are checked here.

@@ -2,7 +2,7 @@
 
 A `Life` owns one rclpy node and what belongs to it. `run_main` gives it a process of its own
 (`ros2 run`); `thymio` gives several of them a thread each in one process. Same behaviour both ways.
-The shutdown pattern is the one of ros-packaging.md section 5 that always exits cleanly.
+The shutdown pattern is the one of docs/spec/ros-packaging.md section 5 that always exits cleanly.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ YOUNG_OBJECTS = 20_000
 that, nearly all of which are gone soon (measured: 6 % of the simulator's time)."""
 
 SPIN_SLICE_S = 0.1
-"""Longest wait in one spin: the events executor needs finite time-outs (ros-packaging.md section 3)."""
+"""Longest wait in one spin: the events executor needs finite time-outs (docs/spec/ros-packaging.md section 3)."""
 
 
 MOST_FAULTS = 10
@@ -111,7 +111,7 @@ def greeted(hosts: Iterable[Host]) -> Iterator[Life]:
 
 
 def make_executor(context: Context) -> Executor:
-    """The events executor where this rclpy has it, else the standard one (performance.md section 7)."""
+    """The events executor where this rclpy has it, else the standard one (docs/spec/ros-packaging.md section 3)."""
     try:
         from rclpy.experimental.events_executor import EventsExecutor
     except ImportError:

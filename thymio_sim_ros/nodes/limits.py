@@ -1,6 +1,7 @@
 """What in a message lies beyond what the robot can do: it is limited, and whoever sent it is told once.
 
-Each function answers for messages of one type with a sentence, or with nothing (ros-interface.md section 4.2).
+Each function answers for messages of one type with a sentence, or with nothing (docs/spec/ros-interface.md section
+4.2).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The playground as visualization_msgs/MarkerArray in the frame `map`: solids, floors and paint.
 
 Namespaces are the kinds of primitive, ids their order, so that both are stable; DELETEALL comes first
-(ros-interface.md section 5).
+(docs/spec/ros-interface.md section 5).
 """
 
 from __future__ import annotations

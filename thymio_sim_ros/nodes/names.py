@@ -1,4 +1,4 @@
-"""Names of topics and frames of one robot (ros-interface.md sections 2 and 8).
+"""Names of topics and frames of one robot (docs/spec/ros-interface.md sections 2 and 8).
 
 A playground with one robot uses the empty name: `odom`, frame `base_link`. With several, the robot's
 name is the namespace and the prefix of its frames and joints: `thymio_1/odom`, `thymio_1/base_link`.
@@ -110,6 +110,6 @@ def raw_topic(sensor: str) -> str:
 
 
 def topic_word(event: str) -> str:
-    """The name of an Aseba event as one word of a topic name (ros-interface.md section 6.1)."""
+    """The name of an Aseba event as one word of a topic name (docs/spec/ros-interface.md section 6.1)."""
     word = re.sub(r"[^A-Za-z0-9_]", "_", event)
     return f"_{word}" if word[:1].isdigit() else word

@@ -1,6 +1,6 @@
 """What an operator does to a robot, one row per topic `_press/…`; programs never speak on them.
 
-Names: ros-interface.md section 4.2; those beyond it follow their pattern.
+Names: docs/spec/ros-interface.md section 4.2; those beyond it follow their pattern.
 """
 
 from __future__ import annotations

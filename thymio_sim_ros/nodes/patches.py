@@ -41,7 +41,7 @@ __all__ = [
 Point: TypeAlias = tuple[float, float, float]
 Color: TypeAlias = tuple[float, float, float, float]
 
-# The driver's constants (ros-interface.md section 3).
+# The driver's constants (docs/spec/ros-interface.md section 3).
 PROXIMITY_MIN_M, LASER_OFFSET_M = 0.0215, 0.08
 
 

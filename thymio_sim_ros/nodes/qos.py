@@ -1,4 +1,4 @@
-"""QoS profiles by kind of topic (ros-interface.md section 9)."""
+"""QoS profiles by kind of topic (docs/spec/ros-interface.md section 9)."""
 
 from __future__ import annotations
 

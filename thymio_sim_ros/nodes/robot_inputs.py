@@ -1,7 +1,7 @@
 """Everything a robot of the simulator listens to, one value per topic.
 
 Most are rows of `command_topics`, `operator_topics` and `plugin_topics`; here are those that need more than the
-message, or make more than one command of it (ros-interface.md section 4.2).
+message, or make more than one command of it (docs/spec/ros-interface.md section 4.2).
 """
 
 from __future__ import annotations

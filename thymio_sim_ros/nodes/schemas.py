@@ -1,7 +1,8 @@
 """Definition text of message and service types (ros2msg), from installed files or from the classes themselves.
 
 The text is the type's own definition, then each type it needs, once, after a line of 80 `=` and `MSG: pkg/Type`.
-The wheels do not set AMENT_PREFIX_PATH, therefore the interpreter's prefix is searched too (foxglove.md section 5).
+The wheels do not set AMENT_PREFIX_PATH, therefore the interpreter's prefix is searched too (docs/spec/foxglove.md
+section 5).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""From the script parameters to each robot's program (ros-interface.md section 6.2)."""
+"""From the script parameters to each robot's program (docs/spec/ros-interface.md section 6.2)."""
 
 from __future__ import annotations
 

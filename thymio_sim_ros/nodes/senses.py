@@ -1,4 +1,4 @@
-"""Messages of the senses besides proximity and ground (ros-interface.md sections 3 and 4.1)."""
+"""Messages of the senses besides proximity and ground (docs/spec/ros-interface.md sections 3 and 4.1)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from thymio_sim_ros.sim import readings
 
 ACCELERATION_VARIANCE = 0.07
 TEMPERATURE_VARIANCE = 0.01
-"""As the robot's driver has them (ros-interface.md section 3)."""
+"""As the robot's driver has them (docs/spec/ros-interface.md section 3)."""
 
 ABSENT = -1.0
 """First element of the covariance of a quantity that an Imu does not measure (REP 145)."""

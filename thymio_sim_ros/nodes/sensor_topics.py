@@ -1,6 +1,6 @@
 """The topics of every sensor, one row for each, and how often they are sent.
 
-Names, units, frames and QoS are those of ros-interface.md sections 4, 6.3 and 9.
+Names, units, frames and QoS are those of docs/spec/ros-interface.md sections 4, 6.3 and 9.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """How services of the package simulation_interfaces answer: a code, and a sentence where it is not OK.
 
-The package is optional (ros-interface.md sections 5 and 7), so its types are asked for by name: one that an older
-version lacks is not offered.
+The package is optional (docs/spec/ros-interface.md sections 5 and 7), so its types are asked for by name: one that an
+older version lacks is not offered.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ __all__ = [
 ]
 
 UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = range(5)
-"""Result codes of all services (ros-interface.md section 7); those of single services begin at 101."""
+"""Result codes of all services (docs/spec/ros-interface.md section 7); those of single services begin at 101."""
 
 WORLD_FRAMES = ("", "world", MAP_FRAME)
 """What a pose in the world's frame may call it, besides the name that the user gave it."""

@@ -1,7 +1,8 @@
 """The services of the package simulation_interfaces on the simulator's node, where that package is installed.
 
-They are those that other simulators of ROS have, too (ros-interface.md sections 5 and 7): tools that know them pause,
-step, reset, spawn and load here as there. What they do, `~/pause` and the others do as well, with standard types.
+They are those that other simulators of ROS have, too (docs/spec/ros-interface.md sections 5 and 7): tools that know
+them pause, step, reset, spawn and load here as there. What they do, `~/pause` and the others do as well, with standard
+types.
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ OFFERS = (
 STEPS = Offer("simulate_steps", "SimulateSteps", ("STEP_SIMULATION_ACTION",), "an action: ticks with feedback on each")
 
 STOPPED, PLAYING, PAUSED = range(3)
-"""SimulationState (ros-interface.md section 7)."""
+"""SimulationState (docs/spec/ros-interface.md section 7)."""
 _STATES = ("stopped", "playing", "paused")
 ALREADY, INCORRECT_TRANSITION = 101, 103
 MOST_STEPS = 100_000

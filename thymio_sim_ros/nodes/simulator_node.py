@@ -1,10 +1,10 @@
 """The simulator as a ROS node: owns the world, steps it, publishes readings, posts commands.
 
 One thread does all of it: between ticks the executor delivers messages, whose callbacks only convert and
-post. The world is paced by absolute deadlines, never by a ROS timer (architecture section 15). While nobody would
-hear what they give, ticks are put off and done together, at the latest when a message comes in: what it asks for takes
-effect in the tick that follows, as if no tick had been put off. Topics, services and parameters: ros-interface.md
-sections 4, 5 and 10.
+post. The world is paced by absolute deadlines, never by a ROS timer (docs/architecture.md, "Threads"). While nobody
+would hear what they give, ticks are put off and done together, at the latest when a message comes in: what it asks for
+takes effect in the tick that follows, as if no tick had been put off. Topics, services and parameters:
+docs/spec/ros-interface.md sections 4, 5 and 10.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ MOST_PUT_OFF = 10
 LOOK_EVERY_NS = SECOND_NS // 20
 """Wall time after which the simulator looks again who listens, but for this share of the processor at most:"""
 LOOK_NS = 1_000
-"""what a look at one topic costs (performance.md section 7), a hundred times."""
+"""what a look at one topic costs (docs/spec/ros-packaging.md section 9), a hundred times."""
 
 MOST_AT_ONCE = 2 * MOST_PUT_OFF
 """Ticks done at once at most, when the machine was busy with other things; what is owed beyond is dropped."""
@@ -299,7 +299,7 @@ class Simulator:
         return ticks if clock_ns is None else min(ticks, self._pacer.ticks_until(clock_ns))
 
     def _guard(self, act: Callable[[], None]) -> bool:
-        """Whether it went well. Our own bug in the core: log it, pause, stay alive (architecture section 12)."""
+        """Whether it went well. Our own bug in the core: log it, pause, stay alive (docs/architecture.md, "Errors")."""
         try:
             act()
         except Exception:

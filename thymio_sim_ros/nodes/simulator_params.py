@@ -1,4 +1,4 @@
-"""The parameters of the simulator node (ros-interface.md section 10)."""
+"""The parameters of the simulator node (docs/spec/ros-interface.md section 10)."""
 
 from __future__ import annotations
 

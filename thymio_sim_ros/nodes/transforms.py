@@ -1,4 +1,4 @@
-"""/tf and /tf_static of all robots (ros-interface.md sections 4.1 and 8).
+"""/tf and /tf_static of all robots (docs/spec/ros-interface.md sections 4.1 and 8).
 
 `odom → base_link` is the wheels' odometry and how the robot leans; `map → odom` makes up for its drift, so that
 `map → base_link` is the truth (perfect localisation); the wheels turn by their angles. What nobody hears costs nothing.

@@ -1,4 +1,7 @@
-"""Variables of one robot's program: services of parameters' types, and topics (ros-interface.md section 6.2)."""
+"""Variables of one robot's program: services of parameters' types, and topics.
+
+Source: docs/spec/ros-interface.md section 6.2.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Time: the world's own clock, the schedule of its sensors, and the one meeting with wall time.
 
 All times are integer nanoseconds. Simulated time is a count of ticks; `Pacer` alone sees readings of a
-wall clock, which its caller takes (architecture section 5).
+wall clock, which its caller takes (docs/architecture.md, "Time").
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 __all__ = ["NEVER_NS", "TICK_NS", "Pacer", "Schedule", "SimClock", "next_due_ns"]
 
 TICK_NS = 10_000_000
-"""One step of the world: 10 ms, the fastest event of the robot (thymio-robot.md section 3)."""
+"""One step of the world: 10 ms, the fastest event of the robot (docs/spec/thymio-robot.md section 3)."""
 
 NEVER_NS = 1 << 62
 """A time that never comes."""

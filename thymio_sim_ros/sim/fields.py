@@ -53,9 +53,9 @@ T = TypeVar("T")
 FAR_M = 100.0
 """No coordinate lies farther from the origin."""
 OBJECT_FRICTION = 0.25
-"""Between a movable thing and the floor (thymio-robot.md section 11)."""
+"""Between a movable thing and the floor (docs/spec/thymio-robot.md section 11)."""
 OBJECT_RESTITUTION = 0.1
-"""Between a movable thing and a robot: the middle of 0…0.2 (thymio-robot.md section 11)."""
+"""Between a movable thing and a robot: the middle of 0…0.2 (docs/spec/thymio-robot.md section 11)."""
 
 
 _LONGEST_PART = 2000

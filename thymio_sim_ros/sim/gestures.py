@@ -1,4 +1,4 @@
-"""Lights that move by themselves, as the robot's driver offers them (ros-interface.md section 4.2).
+"""Lights that move by themselves, as the robot's driver offers them (docs/spec/ros-interface.md section 4.2).
 
 How each looks is our own choice: the facts give names, a period, and its sign as the direction.
 """

@@ -1,8 +1,8 @@
 """The ground under a sensor: a picture of floors, paint and drawings, and what a footprint sees of it.
 
-A sensor sees 9 x 9 samples, 2.5 mm apart along the world's axes, weighted by a Gaussian of 4 mm (thymio-robot.md
-section 7.2). Since samples lie on half millimetres, the picture is blurred once for every half millimetre; this is
-done tile by tile, when a sensor first comes near. Drawing forgets the tiles that see it.
+A sensor sees 9 x 9 samples, 2.5 mm apart along the world's axes, weighted by a Gaussian of 4 mm
+(docs/spec/thymio-robot.md section 7.2). Since samples lie on half millimetres, the picture is blurred once for every
+half millimetre; this is done tile by tile, when a sensor first comes near. Drawing forgets the tiles that see it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The firmware's control of one wheel, and the wheel that follows it (thymio-robot.md section 2.1).
+"""The firmware's control of one wheel, and the wheel that follows it (docs/spec/thymio-robot.md section 2.1).
 
 In every tick, with speed and target in Thymio units and the output's sign against the speed's:
 error = speed − target; integral += error, within ±4806; output = 5 error + integral / 3; then the mean of this and the

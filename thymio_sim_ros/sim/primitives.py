@@ -1,6 +1,6 @@
 """What every shape is made of: solids that stop robots and reflect light, floors, paint and pictures on floors.
 
-Shapes give primitives; physics, sensors, scene and editor know nothing else (architecture section 14).
+Shapes give primitives; physics, sensors, scene and editor know nothing else (docs/architecture.md, "Decisions").
 Colors are red, green, blue from 0 to 1.
 """
 

@@ -125,7 +125,7 @@ class SoundFinishedReading:
 
 @dataclass(frozen=True, slots=True)
 class AccelerometerReading:
-    """Proper acceleration; `words`: acc, 23 for each g: right, forward, up (thymio-robot.md section 7.3)."""
+    """Proper acceleration; `words`: acc, 23 for each g: right, forward, up (docs/spec/thymio-robot.md section 7.3)."""
 
     stamp_ns: int
     words: tuple[int, ...]

@@ -1,7 +1,7 @@
 """Sound in the world: who makes it, and how it fades with distance.
 
-A level is what a microphone at `NEAR_M` from the source reads as mic.intensity, 0…255 (thymio-robot.md section 7.4).
-Loudspeakers and claps are sources; a robot hears its own.
+A level is what a microphone at `NEAR_M` from the source reads as mic.intensity, 0…255 (docs/spec/thymio-robot.md
+section 7.4). Loudspeakers and claps are sources; a robot hears its own.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from typing import Protocol, runtime_checkable
 __all__ = ["FULL_LEVEL", "NEAR_M", "SPEAKER_SHARE", "Sound", "Sounding", "heard"]
 
 FULL_LEVEL = 255
-"""The loudest that a microphone tells: the range of its 8-bit samples (thymio-robot.md section 7.4)."""
+"""The loudest that a microphone tells: the range of its 8-bit samples (docs/spec/thymio-robot.md section 7.4)."""
 
 NEAR_M = 0.1
 """Up to here a source is heard in full. Own choice: about the nearest that two robots come, centre to centre."""
 
 SPEAKER_SHARE = 0.6
 """Level near a loudspeaker for each count of its samples' swing. Own choice: clear beside the robot, and in full below
-the 246 that the built-in attentive behaviour takes for a clap (thymio-behaviours.md section 8)."""
+the 246 that the built-in attentive behaviour takes for a clap (docs/spec/thymio-behaviors.md section 8)."""
 
 
 @runtime_checkable

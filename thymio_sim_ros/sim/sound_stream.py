@@ -1,7 +1,7 @@
 """What a loudspeaker says, as samples: one mono stream at 7812.5 Hz of simulated time, made from its readings.
 
 A sound begins at the first sample not before it, a tone goes through its wave from the beginning, and the volume takes
-bits away (thymio-robot.md section 9).
+bits away (docs/spec/thymio-robot.md section 9).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """What the robot's loudspeaker can say: one stream of samples, tones made of a wave, the robot's own sounds.
 
-Numbers: thymio-robot.md section 9.
+Numbers: docs/spec/thymio-robot.md section 9.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """SI units ↔ Thymio integers: the only place where one becomes the other.
 
-Sources: thymio-robot.md sections 2 (motors), 7.1 (proximity), 7.2 (ground), 7.3 (acc), 7.4 (others), 8.1 (LEDs).
+Sources: docs/spec/thymio-robot.md sections 2 (motors), 7.1 (proximity), 7.2 (ground), 7.3 (acc), 7.4 (others), 8.1
+(LEDs).
 """
 
 from __future__ import annotations
@@ -53,7 +54,10 @@ def speeds_to_units(speeds_m_s: Values) -> Counts:
 
 
 def units_to_speed(target: int) -> float:
-    """motor.*.target as ground speed in m/s; the wheels are limited, not the target (thymio-robot.md section 2)."""
+    """motor.*.target as ground speed in m/s; the wheels are limited, not the target.
+
+    Source: docs/spec/thymio-robot.md section 2.
+    """
     return target * (MAX_SPEED_M_S / FULL_TARGET)
 
 

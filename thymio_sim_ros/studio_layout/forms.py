@@ -1,7 +1,7 @@
 """A layout as a file of either application.
 
 Lichtblick and older versions of Studio: panels by id in one table, and a binary tree of areas. The present Foxglove
-app: one tree with the panels in it, some types renamed (foxglove.md sections 3 and 4).
+app: one tree with the panels in it, some types renamed (docs/spec/foxglove.md sections 3 and 4).
 """
 
 from __future__ import annotations

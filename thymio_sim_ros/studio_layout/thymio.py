@@ -1,4 +1,7 @@
-"""The layout of one robot: which panels, on which topics, services and parameters (foxglove.md sections 3 and 4)."""
+"""The layout of one robot: which panels, on which topics, services and parameters.
+
+Source: docs/spec/foxglove.md sections 3 and 4.
+"""
 
 from __future__ import annotations
 

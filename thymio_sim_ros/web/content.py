@@ -16,7 +16,7 @@ from thymio_sim_ros.gallery import Gallery
 
 __all__ = ["TYPES", "Content", "Document"]
 
-# The platform's own table may be wrong (web-ui-features.md section 5.4).
+# The platform's own table may give another type, and browsers refuse a module with a wrong one.
 TYPES = {
     ".html": "text/html; charset=utf-8",
     ".css": "text/css; charset=utf-8",

@@ -1,5 +1,5 @@
 // An .aesl file as text with places: what is edited is cut out and put in, the rest stays byte for byte
-// (aseba-language.md section 13).
+// (docs/spec/aseba-language.md section 13).
 
 import { AeslError, attributesOf, decoded, encoded, scan } from "./xml.js";
 

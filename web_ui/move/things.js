@@ -16,7 +16,7 @@ import { MARKER } from "../state/markers.js";
  * @property {number} height
  */
 
-/** The robot's outline (thymio-robot.md section 1.1). */
+/** The robot's outline (docs/spec/thymio-robot.md section 1.1). */
 const ROBOT = { radius: 0.08, half: 0.055, rear: -0.03, height: 0.053 };
 const ROUND = 20;
 /** Footprints that share less than this only touch. */

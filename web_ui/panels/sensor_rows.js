@@ -14,7 +14,7 @@ import { BUTTONS, GROUND, PROXIMITY } from "../state/names.js";
 const WHEEL_RADIUS_M = 0.022;
 const PROXIMITY_FULL = 4505;
 const GROUND_FULL = 1023;
-// thymio-robot.md sections 2.1, 7.3 and 7.4
+// docs/spec/thymio-robot.md sections 2.1, 7.3 and 7.4
 const PWM_FULL = 801;
 const ACC_PER_G = 23;
 const GRAVITY = 9.81;
@@ -149,7 +149,7 @@ function strongest(words) {
 }
 
 /**
- * Reflecting ground is told as "too close" (−inf) or, as the driver does, 0 (ros-interface.md 4.3).
+ * Reflecting ground is told as "too close" (−inf) or, as the driver does, 0 (docs/spec/ros-interface.md section 4.3).
  *
  * @param {number} range
  */

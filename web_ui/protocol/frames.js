@@ -1,4 +1,4 @@
-// Binary frames of the Foxglove WebSocket protocol ↔ values (foxglove.md section 2).
+// Binary frames of the Foxglove WebSocket protocol ↔ values (docs/spec/foxglove.md section 2).
 // All numbers are little endian; the first byte tells the kind.
 
 /**

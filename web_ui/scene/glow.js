@@ -3,7 +3,7 @@
 import * as THREE from "three";
 
 /**
- * Colour = levels divided by the largest, opacity = the largest (thymio-robot.md section 8.1).
+ * Colour = levels divided by the largest, opacity = the largest (docs/spec/thymio-robot.md section 8.1).
  *
  * @param {THREE.Color} target
  * @param {THREE.Color} off

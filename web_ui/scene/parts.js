@@ -1,4 +1,4 @@
-// The robot's parts by name, with their places in its own frame (metres, thymio-robot.md sections 1,
+// The robot's parts by name, with their places in its own frame (metres, docs/spec/thymio-robot.md sections 1,
 // 7.1 and 8.3). Everything that is drawn, hovered, pressed or looked for by a test is found here.
 
 import { GROUND, PROXIMITY } from "../state/names.js";

@@ -3,7 +3,7 @@
 
 /** @typedef {{ pixelRatio: number }} Level */
 
-/** From fine to simple; the pixel ratio costs most (web-ui-features.md section 5.1). */
+/** From fine to simple; the pixel ratio costs most (docs/performance.md, "The page"). */
 export const LEVELS = /** @type {readonly Level[]} */ ([
   { pixelRatio: 2 },
   { pixelRatio: 1 },

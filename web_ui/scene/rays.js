@@ -11,7 +11,7 @@ import { PROXIMITY_PLACES } from "./parts.js";
 
 export const MAX_RANGE_M = 0.14;
 const SHORTEST_M = 0.002;
-const HALF_ANGLE = 0.15; // rad, field of view 0.3 (ros-interface.md section 3)
+const HALF_ANGLE = 0.15; // rad, field of view 0.3 (docs/spec/ros-interface.md section 3)
 const OPACITY = { seen: 0.4, empty: 0.13 };
 const FAR = new THREE.Color(0x3b82d0);
 const MIDDLE = new THREE.Color(0xf0a202);

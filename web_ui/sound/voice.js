@@ -1,5 +1,5 @@
 // What a robot's loudspeaker says, as something that can be played. Pure.
-// Sound: 8 bit samples, 7812.5 a second; tones go through a wave of 142 of them (thymio-robot.md section 9).
+// Sound: 8 bit samples, 7812.5 a second; tones go through a wave of 142 of them (docs/spec/thymio-robot.md section 9).
 
 /** @typedef {import("../state/robot.js").Robot} Robot */
 /**

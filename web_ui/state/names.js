@@ -1,5 +1,5 @@
 // Topic names: which belong to the simulator, which to a robot, and which the page watches.
-// A robot alone has no namespace; of several each has its own (ros-interface.md section 2).
+// A robot alone has no namespace; of several each has its own (docs/spec/ros-interface.md section 2).
 
 /** The sensors in Thymio's order 0…6. */
 export const PROXIMITY = ["left", "center_left", "center", "center_right", "right", "rear_left", "rear_right"];

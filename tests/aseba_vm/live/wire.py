@@ -1,4 +1,7 @@
-"""Frames of the Aseba network protocol (protocol spec, sections 1.1 and 1.3), as much as these tests need."""
+"""Frames of the Aseba network protocol, as much as these tests need.
+
+Source: docs/spec/aseba-protocol.md sections 1.1 and 1.3.
+"""
 
 from __future__ import annotations
 

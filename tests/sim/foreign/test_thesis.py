@@ -1,4 +1,7 @@
-"""The JSON of the thesis (playground-formats.md part 2): key beside shape, and its three playgrounds beside ours."""
+"""The JSON of the thesis: key beside shape, and its three playgrounds beside ours.
+
+Source: docs/spec/playground-formats.md section 2.
+"""
 
 from __future__ import annotations
 

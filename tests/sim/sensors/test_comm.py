@@ -44,7 +44,10 @@ def facing(gap_m: float) -> list[dict[str, Any]]:
 
 
 def expected(gap_m: float) -> float:
-    """Intensity of the centre sensor, from the three front emitters of the other (thymio-robot.md section 7.5)."""
+    """Intensity of the centre sensor, from the three front emitters of the other.
+
+    Source: docs/spec/thymio-robot.md section 7.5.
+    """
     total = 0.0
     for x, y, angle in ((0.0795, 0.0, 0.0), (0.075, 0.0255, 20.0), (0.075, -0.0255, -20.0)):
         across, along = y, gap_m + 0.0795 - x

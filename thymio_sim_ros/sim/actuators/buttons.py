@@ -1,4 +1,4 @@
-"""Fingers on the five buttons, put there by an operator (thymio-robot.md section 7.4)."""
+"""Fingers on the five buttons, put there by an operator (docs/spec/thymio-robot.md section 7.4)."""
 
 from __future__ import annotations
 

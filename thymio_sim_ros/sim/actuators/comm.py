@@ -1,4 +1,4 @@
-"""The sending half of infrared communication (thymio-robot.md section 7.5); `sensors/comm.py` is the other.
+"""The sending half of infrared communication (docs/spec/thymio-robot.md section 7.5); `sensors/comm.py` is the other.
 
 All seven emitters send the same value in every frame. A negative value is a pulse without data, which nobody decodes.
 Off is the state after a reset; switching off zeroes what was sent and what was received.
@@ -16,7 +16,7 @@ from thymio_sim_ros.sim.commands import Command, EnableComm, SetCommPayload
 __all__ = ["ACTUATOR", "FULL_PAYLOAD", "CommState"]
 
 FULL_PAYLOAD = 2047
-"""The largest value that is sent (thymio-robot.md section 7.5)."""
+"""The largest value that is sent (docs/spec/thymio-robot.md section 7.5)."""
 
 
 @dataclass(slots=True)

@@ -1,4 +1,4 @@
-"""The lights: brightness 0…32 for each light of each group (thymio-robot.md sections 6.3 and 8).
+"""The lights: brightness 0…32 for each light of each group (docs/spec/thymio-robot.md sections 6.3 and 8).
 
 The robot's own rules show the sensors on them until somebody, a program or ROS, takes a group over. A gesture moves
 the lights of one group until it is stopped, or somebody else sets them.
@@ -48,7 +48,7 @@ _NATIVES: tuple[tuple[str, str, tuple[str, ...], str], ...] = (
     ("leds.sound", "microphone", _numbered(1), "Set the sound light"),
     ("leds.temperature", "temperature", ("red", "blue"), "Set the temperature lights"),
 )
-"""Native, group, parameters, description; in the firmware's order (thymio-robot.md section 6.1)."""
+"""Native, group, parameters, description; in the firmware's order (docs/spec/thymio-robot.md section 6.1)."""
 
 _VARIABLES = ("leds.top", "leds.bottom.left", "leds.bottom.right", "leds.circle")
 """Natives that also write the variable of their name; writing it sets the lights as well (section 8.1)."""

@@ -1,4 +1,4 @@
-"""The loudspeaker (thymio-robot.md sections 6.3 and 9): tones of a wave, the robot's own sounds, samples.
+"""The loudspeaker (docs/spec/thymio-robot.md sections 6.3 and 9): tones of a wave, the robot's own sounds, samples.
 
 One sound at a time; a new one replaces it. Its natural end, and only that, counts as finished.
 """
@@ -27,7 +27,7 @@ from thymio_sim_ros.sim.view import ActuatorView
 __all__ = ["ACTUATOR", "LoudspeakerState"]
 
 ALARM_NS = 3_000_000_000
-"""Between two sounds of an alarm (ros-interface.md section 4.2)."""
+"""Between two sounds of an alarm (docs/spec/ros-interface.md section 4.2)."""
 _NO_SOUND = b"\x80"
 """One sample of silence: a sound of no length ends, too."""
 SHORTEST_TICKS = 4

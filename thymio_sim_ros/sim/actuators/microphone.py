@@ -1,4 +1,4 @@
-"""The loudness above which a sound is worth telling: mic.threshold (thymio-robot.md section 5)."""
+"""The loudness above which a sound is worth telling: mic.threshold (docs/spec/thymio-robot.md section 5)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The two motors (thymio-robot.md section 2).
+"""The two motors (docs/spec/thymio-robot.md section 2).
 
 Targets of a program persist. A ROS command holds until it times out, after which the targets hold again;
 newer targets end it at once. Each wheel slips by a new random factor every tick.

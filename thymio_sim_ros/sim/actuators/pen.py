@@ -1,7 +1,7 @@
 """The pen in the pen hole: it draws on the ground where the robot goes, or takes drawings away (`SetPen`).
 
-The hole is on the wheel axis (thymio-robot.md section 1), so turning on the spot draws a dot. The robot itself has no
-way to move the pen: an operator, ROS or the playground puts it in.
+The hole is on the wheel axis (docs/spec/thymio-robot.md section 1), so turning on the spot draws a dot. The robot
+itself has no way to move the pen: an operator, ROS or the playground puts it in.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The battery as an operator sets it (thymio-robot.md section 7.4); it does not run down by itself."""
+"""The battery as an operator sets it (docs/spec/thymio-robot.md section 7.4); it does not run down by itself."""
 
 from __future__ import annotations
 

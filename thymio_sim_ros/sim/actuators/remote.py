@@ -1,4 +1,4 @@
-"""The remote control in the operator's hand (thymio-robot.md section 7.4).
+"""The remote control in the operator's hand (docs/spec/thymio-robot.md section 7.4).
 
 While a key is held, a remote control repeats its frame; every new press turns the toggle bit over, which is how the
 receiver tells a repeated frame, to be ignored, from a key pressed again.

@@ -1,6 +1,6 @@
 """What an operator makes of the room round a robot: its temperature, light and noise, claps.
 
-Sources: thymio-robot.md sections 7.2 and 7.4.
+Sources: docs/spec/thymio-robot.md sections 7.2 and 7.4.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ __all__ = [
 ]
 
 MOTOR_MODELS = ("ideal", "firmware")
-"""Without delay, or as the robot's own control loop moves them (thymio-robot.md sections 2 and 2.1)."""
+"""Without delay, or as the robot's own control loop moves them (docs/spec/thymio-robot.md sections 2 and 2.1)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,13 +32,13 @@ LED_GROUPS: dict[str, int] = {
     "battery": 3,
     "sd": 1,
 }
-"""LED groups and their number of lights (thymio-robot.md sections 6.3 and 8)."""
+"""LED groups and their number of lights (docs/spec/thymio-robot.md sections 6.3 and 8)."""
 
 LED_GESTURES = ("circle", "blink", "kit", "alive")
-"""Lights that move by themselves (ros-interface.md section 4.2)."""
+"""Lights that move by themselves (docs/spec/ros-interface.md section 4.2)."""
 
 LED_FULL = 32
-"""Brightness of a fully lit LED (thymio-robot.md section 8.1)."""
+"""Brightness of a fully lit LED (docs/spec/thymio-robot.md section 8.1)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ class SetLeds:
 
 @dataclass(frozen=True, slots=True)
 class SetLed:
-    """Brightness 0…32 of one light by its number (thymio-robot.md section 8.2)."""
+    """Brightness 0…32 of one light by its number (docs/spec/thymio-robot.md section 8.2)."""
 
     number: int
     level: int

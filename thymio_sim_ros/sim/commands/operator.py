@@ -28,7 +28,7 @@ __all__ = [
 ]
 
 BUTTONS = ("backward", "left", "center", "forward", "right")
-"""The five buttons, in the order of the firmware's variables (thymio-robot.md section 4)."""
+"""The five buttons, in the order of the firmware's variables (docs/spec/thymio-robot.md section 4)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ class PlayTone:
 
 @dataclass(frozen=True, slots=True)
 class PlaySystemSound:
-    """One of the robot's own sounds 0…7 (thymio-robot.md section 9); another number is a short tone."""
+    """One of the robot's own sounds 0…7 (docs/spec/thymio-robot.md section 9); another number is a short tone."""
 
     number: int
 

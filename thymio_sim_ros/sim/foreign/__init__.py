@@ -1,4 +1,4 @@
-"""Playgrounds of other simulators, as data of our format (playground-formats.md).
+"""Playgrounds of other simulators, as data of our format (docs/spec/playground-formats.md).
 
 A converter takes what was parsed and gives a `Conversion`; `sim/source.py` chooses it, `sim/playground.py` checks
 the result as if a person had written it, and names the place in the original when something is wrong.

@@ -1,4 +1,4 @@
-"""Aseba's XML playgrounds, as data of our format (playground-formats.md part 1).
+"""Aseba's XML playgrounds, as data of our format (docs/spec/playground-formats.md section 1).
 
 Centimetres and radians, the origin at the lower left corner of the world. Elements are read by groups, so that an
 activation may name a door that comes later. What the simulator takes for granted is kept: missing numbers are 0,
@@ -26,7 +26,7 @@ WALL_HEIGHT_M = 0.1
 LEAST_MOVE_S = 0.01
 """A door that opens at once."""
 KG_PER_MASS = 0.27 / 200
-"""Aseba's masses have no unit; there the robot has 200 (thymio-robot.md section 1)."""
+"""Aseba's masses have no unit; there the robot has 200 (docs/spec/thymio-robot.md section 1)."""
 LEAST_MASS_KG, MOST_MASS_KG = 0.001, 1000.0
 LEAST_HEIGHT_M = 0.001
 """Of a thing without a height: it stands in the way and is not seen."""

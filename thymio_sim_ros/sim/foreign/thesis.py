@@ -1,4 +1,6 @@
-"""JSON playgrounds of the web simulation of the bachelor thesis, as data of our format (playground-formats.md part 2).
+"""JSON playgrounds of the web simulation of the bachelor thesis, as data of our format.
+
+Source: docs/spec/playground-formats.md section 2.
 
 Its scene has X to the right, Z towards the viewer, Y up, and units of 20 mm: x = X, y = -Z, z = Y, each times 0.02;
 a turn about Y keeps its sign. Read as the recommendations say: unknown keys are passed over with a note.

@@ -1,8 +1,8 @@
 """The body of a door: it slides between two places and pushes what is in its way.
 
 Its way goes as half a cosine: (1 - cos(π p / T)) / 2 of it is done when it has been opening for p of its T seconds
-(playground-formats.md section 1.2); a door that turns back half-way goes back the same way. What cannot get out of its
-way stops it: it goes back by a tick, rests, and tries again.
+(docs/spec/playground-formats.md section 1.2); a door that turns back half-way goes back the same way. What cannot get
+out of its way stops it: it goes back by a tick, rests, and tries again.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The body of a box or cylinder that can be pushed.
 
 It rubs on the floor by Coulomb's law with the real g, and a little by its speed; it may bounce off a robot, but off
-nothing else (thymio-robot.md section 11, last line).
+nothing else (docs/spec/thymio-robot.md section 11, last line).
 The floor holds its turning as if all of its weight lay at the load's lever.
 """
 

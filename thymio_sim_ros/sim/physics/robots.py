@@ -5,7 +5,7 @@ its path follows arcs to the third order. pymunk moves bodies first and solves c
 that touches something is therefore pushed by a force, which that solution takes into account: it would give the robot
 the speed of its wheels within a tick, as the reference does by decree, but never exceeds what the tyres can hold, so
 that heavy things stall it. Wheels at rest resist a push in the same way, and two robots share the difference of their
-speeds. Wheels hold the heading (thymio-robot.md section 11).
+speeds. Wheels hold the heading (docs/spec/thymio-robot.md section 11).
 """
 
 from __future__ import annotations
@@ -26,7 +26,10 @@ __all__ = ["MOMENT_KG_M2", "PUSH_N_S_M", "ROBOT_TYPE", "RobotBody", "Teller"]
 ROBOT_TYPE = 1
 """pymunk's collision type of robots."""
 MOMENT_KG_M2 = 1.0
-"""Far above the real one: wheels hold the heading of a robot that hits a wall (thymio-robot.md section 11)."""
+"""Far above the real one: wheels hold the heading of a robot that hits a wall.
+
+Source: docs/spec/thymio-robot.md section 11.
+"""
 PUSH_N_S_M = thymio2.MASS_KG / TICK_S
 """Force for each m/s that a robot in contact lacks: enough to make up for it in one tick."""
 _AT_REST_M_S = 1e-6

@@ -33,7 +33,10 @@ _SLOP_M = 0.0002
 _ITERATIONS = 40
 """Of the solver: with fewer, mirrored worlds do not push mirrored."""
 _DRAG_PER_S = 0.01
-"""Of its speed a thing loses this part each second, beside its friction (playground-formats.md section 1.3)."""
+"""Of its speed a thing loses this part each second, beside its friction.
+
+Source: docs/spec/playground-formats.md section 1.3.
+"""
 _DROWSY_S = 0.1
 """What has been at rest for so long costs nothing until it is touched."""
 

@@ -1,4 +1,6 @@
-"""The accelerometer, 16 times a second the mean of the time since: proper acceleration (thymio-robot.md section 7.3).
+"""The accelerometer, 16 times a second the mean of the time since: proper acceleration.
+
+Source: docs/spec/thymio-robot.md section 7.3.
 
 At rest it is g upwards. For a robot whose left side is lifted by the roll r and whose front is lowered by the pitch p,
 with g seen in its frame: forward -g sin p, left g sin r cos p, up g cos r cos p. To this comes what its motion

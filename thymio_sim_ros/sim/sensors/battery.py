@@ -1,4 +1,4 @@
-"""The battery, once a second and when it is set (thymio-robot.md section 7.4), no noise.
+"""The battery, once a second and when it is set (docs/spec/thymio-robot.md section 7.4), no noise.
 
 Two words are V * 198.9 each, a third tells whether a charger is connected. `charge` grows evenly from 3.4 V, where
 the last light goes out, to 4.1 V of a full lithium cell (own choice of the upper end; section 8.4 gives the lower).

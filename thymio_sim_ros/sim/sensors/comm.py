@@ -1,4 +1,4 @@
-"""The receiving half of infrared communication, ten frames a second (thymio-robot.md section 7.5), no noise.
+"""The receiving half of infrared communication, ten frames a second (docs/spec/thymio-robot.md section 7.5), no noise.
 
 A robot that is enabled sends from all seven proximity sensors at once. A sensor that sees some of another robot's
 emitters measures the intensity m / (1 + 1 / S) of that robot, with m = 4600 and

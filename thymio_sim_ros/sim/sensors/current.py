@@ -1,4 +1,4 @@
-"""Current and integrator of the motors' control, told when they change (thymio-robot.md section 2.1).
+"""Current and integrator of the motors' control, told when they change (docs/spec/thymio-robot.md section 2.1).
 
 With motors that follow at once the control loop is in its steady state: its output is the pwm of the speed aimed at,
 its integral three times that, within ±4806. The current grows with the voltage that no turning takes up, which is what

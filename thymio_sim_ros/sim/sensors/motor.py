@@ -1,4 +1,4 @@
-"""Speed and angle of the wheels (thymio-robot.md section 2): as commanded, less what an obstacle takes.
+"""Speed and angle of the wheels (docs/spec/thymio-robot.md section 2): as commanded, less what an obstacle takes.
 
 The pwm is that of the speed, or of the control loop where motors have one (section 2.1).
 """

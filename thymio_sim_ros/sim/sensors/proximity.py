@@ -1,4 +1,4 @@
-"""Seven horizontal proximity sensors with rays over 30 degrees (thymio-robot.md section 7.1).
+"""Seven horizontal proximity sensors with rays over 30 degrees (docs/spec/thymio-robot.md section 7.1).
 
 F is `units.proximity_response`; d are the distances of a sensor's rays, from right to left, and a the angles between
 ray and axis. Noise is added, then the count is clamped. A wall across the axis gives F of its distance in every model.

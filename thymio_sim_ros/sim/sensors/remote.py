@@ -1,4 +1,7 @@
-"""The receiver of the remote control: every new RC5 frame, repeated ones left out (thymio-robot.md section 5)."""
+"""The receiver of the remote control: every new RC5 frame, repeated ones left out.
+
+Source: docs/spec/thymio-robot.md section 5.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The microphone, 61 blocks a second of 128 8-bit samples (thymio-robot.md sections 3 and 7.4), no noise.
+"""The microphone, 61 blocks a second of 128 8-bit samples (docs/spec/thymio-robot.md sections 3 and 7.4), no noise.
 
 mic.intensity is the largest minus the smallest sample of a block, 0…255, mic._mean their sum; in silence all samples
 are 128. What is heard: the operator's noise and all sounds of the world by their distances (`sim/sound.py`), energies
@@ -25,7 +25,7 @@ from thymio_sim_ros.sim.view import GroupView, SensorView
 __all__ = ["BLOCK_NS", "SENSOR"]
 
 BLOCK_NS = 16_384_000
-"""128 samples at 7812.5 Hz (thymio-robot.md section 9)."""
+"""128 samples at 7812.5 Hz (docs/spec/thymio-robot.md section 9)."""
 
 _SILENCE = 128
 """A sample at rest: the middle of 8 bits. Own choice."""

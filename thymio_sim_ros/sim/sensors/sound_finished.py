@@ -1,4 +1,7 @@
-"""Tells that a sound came to its natural end, not that it was stopped or replaced (thymio-robot.md section 5)."""
+"""Tells that a sound came to its natural end, not that it was stopped or replaced.
+
+Source: docs/spec/thymio-robot.md section 5.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A knock: a contact that begins faster than 2 cm/s, or the operator's hand (thymio-robot.md section 7.3).
+"""A knock: a contact that begins faster than 2 cm/s, or the operator's hand (docs/spec/thymio-robot.md section 7.3).
 
 So is the landing after a fall, for which it looks as often as the accelerometer measures. acc._tap becomes 1; a program
 clears it.

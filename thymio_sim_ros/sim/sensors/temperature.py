@@ -1,4 +1,7 @@
-"""Temperature, once a second: what the operator sets, in tenths of a degree (thymio-robot.md section 7.4), no noise."""
+"""Temperature, once a second: what the operator sets, in tenths of a degree, no noise.
+
+Source: docs/spec/thymio-robot.md section 7.4.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A block with an area that opens a door while a robot is in it (playground-formats.md section 1.2)."""
+"""A block with an area that opens a door while a robot is in it (docs/spec/playground-formats.md section 1.2)."""
 
 from __future__ import annotations
 

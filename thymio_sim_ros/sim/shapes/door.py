@@ -1,4 +1,7 @@
-"""A door that slides between two places while somebody stands on an activation of it (playground-formats.md 1.2)."""
+"""A door that slides between two places while somebody stands on an activation of it.
+
+Source: docs/spec/playground-formats.md section 1.2.
+"""
 
 from __future__ import annotations
 

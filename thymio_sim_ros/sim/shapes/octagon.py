@@ -1,4 +1,4 @@
-"""A regular octagon of ground, with or without walls (playground-formats.md part 2: octagons)."""
+"""A regular octagon of ground, with or without walls (docs/spec/playground-formats.md section 2: octagons)."""
 
 from __future__ import annotations
 

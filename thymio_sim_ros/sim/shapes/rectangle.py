@@ -1,4 +1,4 @@
-"""A rectangular piece of ground, with or without walls (playground-formats.md part 2: planes)."""
+"""A rectangular piece of ground, with or without walls (docs/spec/playground-formats.md section 2: planes)."""
 
 from __future__ import annotations
 

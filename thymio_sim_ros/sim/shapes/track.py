@@ -1,7 +1,7 @@
 """A painted track: straight pieces between points, joined by arcs where a corner radius is given.
 
 It is paint, neither an obstacle nor ground. Without a radius every piece is a rectangle of its own and
-corners stay open on their outer side, as in the thesis (playground-formats.md 2.2).
+corners stay open on their outer side, as in the thesis (docs/spec/playground-formats.md section 2.2).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The U of the thesis: three boxes, open to +x (playground-formats.md part 2: uShapes)."""
+"""The U of the thesis: three boxes, open to +x (docs/spec/playground-formats.md section 2: uShapes)."""
 
 from __future__ import annotations
 

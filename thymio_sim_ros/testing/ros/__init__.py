@@ -2,7 +2,7 @@
 
 All nodes live in the test's own process and thread: ours on one executor, each node under test on its own. Waiting
 is always for a condition with a deadline, and simulated time is stepped, so that a slow machine changes nothing
-(ros-packaging.md section 7).
+(docs/spec/ros-packaging.md section 7).
 """
 
 from __future__ import annotations

@@ -13,7 +13,10 @@ from thymio_sim_ros.nodes.leftovers import remove_half_made_ports
 __all__ = ["NoDomainError", "reserved"]
 
 DOMAINS = range(1, 101)
-"""Domain ids whose ports are below the ephemeral ones (ros-packaging.md section 4), but for the default domain."""
+"""Domain ids whose ports are below the ephemeral ones, but for the default domain.
+
+Source: docs/spec/ros-packaging.md section 4.
+"""
 
 DOMAIN_PORT = 17400
 """Loopback port of domain 0; who holds port + id has the domain."""
@@ -21,7 +24,10 @@ DOMAIN_PORT = 17400
 DISCOVERY_PORT = 7400
 PORTS_PER_DOMAIN = 250
 PARTICIPANT_PORTS = (0, *range(10, 32, 2))
-"""UDP ports of a domain (ros-packaging.md section 4): discovery by multicast, then its first participants'."""
+"""UDP ports of a domain: discovery by multicast, then its first participants'.
+
+Source: docs/spec/ros-packaging.md section 4.
+"""
 
 _turns = itertools.count(os.getpid())
 
