@@ -112,7 +112,8 @@ class Peer:
         self.socket.sendall(request(self.services[name], self.calls, payload))
         while True:
             body = self.next(began + ANSWER_S - time.monotonic())
-            if body[:1] == b"\x03" and struct.unpack_from("<I", body, 5)[0] == self.calls:
+            # A ping of the server has four random bytes.
+            if len(body) > 8 and body[0] == 3 and struct.unpack_from("<I", body, 5)[0] == self.calls:
                 return time.monotonic() - began
 
 
