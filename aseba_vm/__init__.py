@@ -10,15 +10,16 @@ True
 42
 """
 
-from aseba_vm import aesl, outbox, targets
+from aseba_vm import aesl, targets
 from aseba_vm.bytecode import EventEntry, SubEntry
-from aseba_vm.compiler import Program, Stages, compile, compile_stages
 from aseba_vm.debug import Debugger
 from aseba_vm.dispatch import FirmwareDispatch, PlaygroundDispatch
 from aseba_vm.errors import AeslError, AsebaError, CompileError, SourcePos, TargetError
-from aseba_vm.nativecall import Native, NativeCall, NativeFault
+from aseba_vm.frontend.pipeline import Program, Stages, compile, compile_stages
+from aseba_vm.frontend.syntax_tree import Memory
+from aseba_vm.machine import machine_messages
+from aseba_vm.machine.native_call import Native, NativeCall, NativeFault
 from aseba_vm.target import LocalEvent, NativeFunction, Parameter, TargetDescription, Variable
-from aseba_vm.tree import Memory
 from aseba_vm.vm import VirtualMachine
 
 __all__ = [
@@ -47,6 +48,6 @@ __all__ = [
     "aesl",
     "compile",
     "compile_stages",
-    "outbox",
+    "machine_messages",
     "targets",
 ]

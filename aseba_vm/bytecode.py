@@ -11,6 +11,9 @@ from enum import IntEnum
 
 from aseba_vm.errors import SourcePos
 
+MAX_EMITTED = 516
+"""Most words that an event carries (docs/spec/aseba-bytecode-vm.md section 10.1)."""
+
 
 class Op(IntEnum):
     """The top 4 bits of an instruction."""

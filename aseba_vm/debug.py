@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from aseba_vm.bytecode import EventEntry, SubEntry, instructions
-from aseba_vm.compiler import Program
-from aseba_vm.outbox import ExecutionState
+from aseba_vm.frontend.pipeline import Program
+from aseba_vm.machine.machine_messages import ExecutionState
 from aseba_vm.vm import VirtualMachine
 
 MOST_STEPS = 100_000

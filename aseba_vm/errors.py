@@ -75,7 +75,7 @@ class CompileError(AsebaError):
     """A program that is refused: the first error met, in the order of docs/spec/aseba-language.md section 11.
 
     ``kind`` is a stable identifier, ``arguments`` its ordered values, ``pos`` the place or None; ``hint`` says what was
-    probably meant, if that is known (:mod:`aseba_vm.hints`).
+    probably meant, if that is known (:mod:`aseba_vm.frontend.hints`).
     """
 
     def __init__(self, kind: str, arguments: tuple[Argument, ...] = (), pos: SourcePos | None = None) -> None:

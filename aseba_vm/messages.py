@@ -149,7 +149,7 @@ MESSAGES: Mapping[str, str] = {
     "fault-jump-out-of-range": "damaged program: jump outside the code",
     "fault-emit-too-long": "damaged program: an event has too many values",
     "fault-breakpoint-out-of-range": "a breakpoint lies outside the code",
-    # hints: what was probably meant (aseba_vm/hints.py)
+    # hints: what was probably meant (aseba_vm/frontend/hints.py)
     "check-summary": "{0} files checked: {1} with errors, {2} with warnings",
     "fmt-summary": "{0} files read: {1} with an irregular layout, {2} refused",
     "fmt-different": "the layout is not regular",

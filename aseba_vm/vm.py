@@ -3,21 +3,21 @@
 Source: docs/spec/aseba-bytecode-vm.md section 10.
 
 The machine never raises for what a program does: a fault stops it, is told in the outbox and kept in ``fault``.
-:mod:`aseba_vm.interpreter` holds the loop, :mod:`aseba_vm.engine` the quicker ways.
+:mod:`aseba_vm.machine.interpreter` holds the loop, :mod:`aseba_vm.jit.tiering` the quicker ways.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from aseba_vm.codememory import CodeMemory
-from aseba_vm.compiler import Program
-from aseba_vm.costs import NO_COSTS, Costs
-from aseba_vm.engine import AUTO, Engine, new_engine
-from aseba_vm.interpreter import ACTIVE, interpret
-from aseba_vm.nativecall import DequeFault, DivisionFault, Native, NativeCall, NativeFault, Signature, wrap
-from aseba_vm.natives import NATIVES
-from aseba_vm.outbox import (
+from aseba_vm.frontend.pipeline import Program
+from aseba_vm.frontend.symbols import INIT_EVENT
+from aseba_vm.jit.tiering import AUTO, Engine, new_engine
+from aseba_vm.machine.code_memory import CodeMemory
+from aseba_vm.machine.costs import NO_COSTS, Costs
+from aseba_vm.machine.data_memory import Variables
+from aseba_vm.machine.interpreter import ACTIVE, interpret
+from aseba_vm.machine.machine_messages import (
     BadCode,
     BreakpointSet,
     DivisionByZero,
@@ -29,9 +29,9 @@ from aseba_vm.outbox import (
     OutOfBounds,
     VariablesRead,
 )
-from aseba_vm.symbols import INIT_EVENT
+from aseba_vm.machine.native_call import DequeFault, DivisionFault, Native, NativeCall, NativeFault, Signature, wrap
+from aseba_vm.machine.natives import NATIVES
 from aseba_vm.target import TargetDescription
-from aseba_vm.variables import Variables
 
 STEP_BY_STEP = 2
 RUNNING = 4
@@ -61,7 +61,7 @@ class VirtualMachine:
         arguments and leaves a NativeCalled. ``on_reset`` is the node's share in a reset. ``kills_long_events``: an
         event that reaches the limit of ``run`` is abandoned, as in the 2.x fork, not continued. ``costs`` are what
         natives and events take of that limit, and add to ``instructions``. ``engine`` says how events are run, one of
-        :data:`aseba_vm.engine.ENGINES`; they differ in time only.
+        :data:`aseba_vm.jit.tiering.ENGINES`; they differ in time only.
         """
         self.target = target
         self.node_id = node_id
@@ -297,7 +297,7 @@ class VirtualMachine:
         if self.tracer is not None:
             self.tracer(self.pc)
 
-    # -- engines (see aseba_vm.engine)
+    # -- engines (see aseba_vm.jit.tiering)
 
     def use_engine(self, name: str) -> None:
         """Choose how events run from now on. Raises ValueError for a name that is not in ``ENGINES``."""

@@ -17,8 +17,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from aseba_vm import VirtualMachine, compile
-from aseba_vm.engine import INTERPRETER
-from aseba_vm.nativecall import Signature
+from aseba_vm.jit.tiering import INTERPRETER
+from aseba_vm.machine.native_call import Signature
 from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.device.costs import BYTES_PER_INSTRUCTION, COSTS
 from thymio_sim_ros.device.device import AsebaDevice

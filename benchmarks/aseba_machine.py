@@ -23,14 +23,14 @@ from functools import cache
 from pathlib import Path
 
 from aseba_vm import VirtualMachine, compile
-from aseba_vm.blocks import Known, Memories
-from aseba_vm.engine import INTERPRETER, PYTHON, WASM, Translation
-from aseba_vm.engine_wasm import is_available
-from aseba_vm.host import Host, PythonHost
-from aseba_vm.nativecall import Signature
+from aseba_vm.jit.basic_blocks import Known, Memories
+from aseba_vm.jit.host import Host, PythonHost
+from aseba_vm.jit.tiering import INTERPRETER, PYTHON, WASM, Translation
+from aseba_vm.jit.wasm_backend import is_available
+from aseba_vm.jit.wasm_host import WasmHost
+from aseba_vm.machine.data_memory import Variables
+from aseba_vm.machine.native_call import Signature
 from aseba_vm.targets import THYMIO_II
-from aseba_vm.variables import Variables
-from aseba_vm.wasm_host import WasmHost
 
 BEHAVIOUR = """
 var speed = 200

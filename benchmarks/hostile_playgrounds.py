@@ -4,7 +4,7 @@ Run: python benchmarks/hostile_playgrounds.py [--port PORT]. It starts `thymio-s
 sends each playground as the parameter /simulator.playground, and prints: bytes, seconds until the answer,
 the longest call of the other viewer meanwhile, memory of the process at its highest so far, and the answer. The last
 line is how long Ctrl-C takes while a playground is loading. Larger texts than 4 MB do not pass the bridge;
-tests/sim/test_source.py measures those.
+tests/sim/playground/test_format_detection.py measures those.
 """
 
 from __future__ import annotations

@@ -33,10 +33,10 @@ from thymio_sim_ros.device.layout import PLAYGROUND
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim import world as world_module
-from thymio_sim_ros.sim.playground import Playground
-from thymio_sim_ros.sim.readings import ProximityReading
+from thymio_sim_ros.sim.model.readings import ProximityReading
+from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_HALF_CONE_RAD as HALF_CONE_RAD
+from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors, proximity
-from thymio_sim_ros.sim.thymio2 import PROXIMITY_HALF_CONE_RAD as HALF_CONE_RAD
 
 PORT = 33790
 STEP_NS = 30_000_000

@@ -21,9 +21,9 @@ from pathlib import Path
 from simulator_enki import Enki, driver
 from simulator_scene import crowd, targets
 
-from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.commands import MotorTargets
-from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.model.clock import TICK_NS
+from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.world import World
 
 TICKS = 3

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from simulator_scene import side_m
 
-from thymio_sim_ros.sim.ground import Ground
-from thymio_sim_ros.sim.playground import Playground
-from thymio_sim_ros.sim.primitives import Box
+from thymio_sim_ros.sim.ground.sampling import Ground
+from thymio_sim_ros.sim.model.primitives import Box
+from thymio_sim_ros.sim.playground.reader import Playground
 
 _SOURCE = Path(__file__).with_suffix(".cpp")
 _HEADER = Path("/usr/include/enki/PhysicalEngine.h")

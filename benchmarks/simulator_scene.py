@@ -11,8 +11,8 @@ import json
 import math
 from collections.abc import Iterator
 
-from thymio_sim_ros.sim import playground
-from thymio_sim_ros.sim.playground import Playground, RobotStart
+from thymio_sim_ros.sim.playground import reader
+from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 
 CELL_M = 0.6
 BOX_M = (0.08, 0.05, 0.1)
@@ -56,7 +56,7 @@ def crowd(count: int) -> Playground:
             mass = {"mass_kg": BOX_KG} if index % 4 == 0 else {}
             shapes.append({"kind": "box", "color": "#9fa3bd", **place, **size, **mass})
     data = {"format": 1, "title": "crowd", "shapes": shapes, "robots": []}
-    return dataclasses.replace(playground.loads(json.dumps(data), f"{count} robots"), robots=tuple(robots))
+    return dataclasses.replace(reader.loads(json.dumps(data), f"{count} robots"), robots=tuple(robots))
 
 
 def targets() -> Iterator[int]:

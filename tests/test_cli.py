@@ -21,7 +21,7 @@ from thymio_sim_ros import cli, runlog
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
 from thymio_sim_ros.interruption import Interruption
 from thymio_sim_ros.replay import replay
-from thymio_sim_ros.sim.tones import SAMPLE_NS
+from thymio_sim_ros.sim.audio.synthesis import SAMPLE_NS
 
 
 def refused(capsys, *arguments):

@@ -13,8 +13,8 @@ import pytest
 
 from tests.sim.builders import PLAYGROUNDS
 from thymio_sim_ros.cli import main
-from thymio_sim_ros.sim import playground
-from thymio_sim_ros.sim.playground import PlaygroundError
+from thymio_sim_ros.sim.playground import reader
+from thymio_sim_ros.sim.playground.reader import PlaygroundError
 
 MAZE = (
     '<aseba-playground><color name="w" r="1" g="1" b="1"/><world w="100" h="100" color="w"/>'
@@ -33,7 +33,7 @@ def maze(tmp_path: Path) -> Path:
 def test_the_result_is_our_json_on_standard_output(maze: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["convert", str(maze)]) == 0
     written = capsys.readouterr()
-    assert playground.loads(written.out, "maze") == playground.load(maze)
+    assert reader.loads(written.out, "maze") == reader.load(maze)
     assert written.err == ""
 
 
@@ -45,7 +45,7 @@ def test_the_result_is_utf_8_whatever_the_terminal_has(maze: Path) -> None:
     with out.open("wb") as file:
         environment = os.environ | {"PYTHONIOENCODING": "latin-1"}
         assert subprocess.run([*program, maze], stdout=file, env=environment, check=False).returncode == 0
-    assert playground.load(out).description == "Größe 5 €"
+    assert reader.load(out).description == "Größe 5 €"
 
 
 @pytest.mark.process
@@ -63,11 +63,11 @@ def test_two_large_pictures_can_be_read_again(tmp_path: Path) -> None:
     path.write_text(json.dumps({"format": 1, "title": "Big", "shapes": shapes, "robots": []}))
     assert main(["convert", str(path), "-o", str(out)]) == 0
     assert out.stat().st_size > 10_000_000
-    assert playground.load(out).shapes == playground.load(path).shapes
+    assert reader.load(out).shapes == reader.load(path).shapes
     shapes += [{**shape, "name": f"q{i}"} for i, shape in enumerate(shapes * 2)]
     path.write_text(json.dumps({"format": 1, "title": "Big", "shapes": shapes, "robots": []}))
     with pytest.raises(PlaygroundError, match=r"shapes\[\d\]\.image: found more than 24000000 bytes of pictures"):
-        playground.load(path)
+        reader.load(path)
 
 
 def test_the_result_goes_into_a_file(maze: Path, capsys: pytest.CaptureFixture[str]) -> None:

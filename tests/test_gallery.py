@@ -6,8 +6,8 @@ import pytest
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.gallery import Gallery
-from thymio_sim_ros.sim import playground as playgrounds
-from thymio_sim_ros.sim.playground import PlaygroundError
+from thymio_sim_ros.sim.playground import reader as playgrounds
+from thymio_sim_ros.sim.playground.reader import PlaygroundError
 
 EMPTY = '{"format": 1, "title": "%s"}'
 

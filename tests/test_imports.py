@@ -39,7 +39,7 @@ MESSAGES = frozenset({
 ROS = MESSAGES | {"rclpy", "ament_index_python", "rosidl_parser", "rosidl_runtime_py"}
 ALL_OF_OURS = frozenset(PACKAGES)
 DECLARATIONS = _names(
-    "sim.commands", "sim.readings", "sim.units", "sim.sensors", "sim.actuators", "sim.aseba_face", "sim.tones"
+    "sim.commands", "sim.model", "sim.sensors", "sim.actuators", "sim.plugin_api", "sim.audio.synthesis"
 )
 
 # The longest name that fits a module decides.
@@ -47,8 +47,8 @@ RULES = {
     "aseba_vm": Rule(_names("aseba_vm"), never=NO_WALL_CLOCK),
     f"{OURS}.sim": Rule(_names("sim", "registry"), frozenset({"numpy"}), NO_WALL_CLOCK),
     # the one place where the core measures wall time: a picture that takes too long to draw is refused
-    f"{OURS}.sim.svg_process": Rule(_names("sim"), never=NO_WALL_CLOCK - {"time"}),
-    f"{OURS}.sim.svg_worker": Rule(frozenset(), frozenset({"resvg_py"}), NO_WALL_CLOCK),
+    f"{OURS}.sim.formats.svg_process": Rule(_names("sim"), never=NO_WALL_CLOCK - {"time"}),
+    f"{OURS}.sim.formats.svg_worker": Rule(frozenset(), frozenset({"resvg_py"}), NO_WALL_CLOCK),
     # one compiler of WebAssembly for the process: that of the machine
     f"{OURS}.sim.kernel": Rule(_names("sim.kernel", "aseba_vm"), frozenset({"numpy"}), NO_WALL_CLOCK),
     f"{OURS}.sim.physics": Rule(_names("sim"), frozenset({"numpy", "pymunk"}), NO_WALL_CLOCK),

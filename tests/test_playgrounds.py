@@ -15,12 +15,13 @@ import pytest
 
 from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.runner import Runner
-from thymio_sim_ros.sim import playground, thymio2
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
-from thymio_sim_ros.sim.geometry import Point, Pose, convex_hulls_overlap
-from thymio_sim_ros.sim.ground import Ground
-from thymio_sim_ros.sim.playground import Playground
-from thymio_sim_ros.sim.primitives import Box, Disc, Print
+from thymio_sim_ros.sim.ground.sampling import Ground
+from thymio_sim_ros.sim.model import robot_constants
+from thymio_sim_ros.sim.model.geometry import Point, Pose, convex_hulls_overlap
+from thymio_sim_ros.sim.model.primitives import Box, Disc, Print
+from thymio_sim_ros.sim.playground import reader
+from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.shapes import all_shapes
 from thymio_sim_ros.sim.shapes.track import Track
 from thymio_sim_ros.sim.world import World
@@ -35,7 +36,7 @@ LANGUAGES = ["de", "fr", "it"]
 
 
 def loaded(name: str) -> Playground:
-    return playground.load(FOLDER / f"{name}.json")
+    return reader.load(FOLDER / f"{name}.json")
 
 
 def steps(world: World, seconds: float) -> None:
@@ -52,14 +53,14 @@ def test_their_names_stay_as_they_are() -> None:
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_playground_loads_and_runs(path: Path) -> None:
-    world = World(playground.load(path))
+    world = World(reader.load(path))
     world.step()
     assert world.robots
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_playground_has_a_title_and_a_description(path: Path) -> None:
-    shown = playground.headline(path)
+    shown = reader.headline(path)
     assert shown.title
     assert shown.description.endswith(".")
     assert [language for language, _ in shown.translations] == LANGUAGES
@@ -68,7 +69,7 @@ def test_a_shipped_playground_has_a_title_and_a_description(path: Path) -> None:
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_playground_leaves_nothing_to_remark(path: Path) -> None:
-    assert playground.load(path).notes == ()
+    assert reader.load(path).notes == ()
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
@@ -81,7 +82,7 @@ def test_the_schema_is_a_valid_one() -> None:
 
 
 def test_the_published_schema_is_the_one_of_the_shapes() -> None:
-    assert json.loads(SCHEMA.read_text()) == playground.schema()
+    assert json.loads(SCHEMA.read_text()) == reader.schema()
 
 
 def test_the_schema_refuses_what_the_loader_refuses() -> None:
@@ -131,7 +132,7 @@ def test_robots_start_with_both_ground_sensors_on_the_line(name: str) -> None:
     seen = [
         ground.sample(*robot.pose.place(place)).reflectance
         for robot in world.robots
-        for place in thymio2.GROUND_SENSORS
+        for place in robot_constants.GROUND_SENSORS
     ]
     assert max(seen) < 0.3
 
@@ -260,7 +261,7 @@ def test_the_gate_has_a_door_and_a_plate_on_either_side() -> None:
 def test_the_example_of_the_readme_loads() -> None:
     text = (FOLDER / "README.md").read_text()
     example = text.split("```json")[1].split("```")[0]
-    assert playground.loads(example, "README.md").title == "My square"
+    assert reader.loads(example, "README.md").title == "My square"
 
 
 def test_the_readme_lists_every_playground() -> None:

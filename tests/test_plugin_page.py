@@ -17,8 +17,9 @@ from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.loading import load_playground, read_program, shipped_behaviours
 from thymio_sim_ros.runner import Runner
-from thymio_sim_ros.sim import actuators, playground, sensors, shapes
-from thymio_sim_ros.sim.primitives import Disc
+from thymio_sim_ros.sim import actuators, sensors, shapes
+from thymio_sim_ros.sim.model.primitives import Disc
+from thymio_sim_ros.sim.playground import reader
 from thymio_sim_ros.sim.world import World
 
 Variant = Callable[[str, str, str], AbstractContextManager[None]]
@@ -89,7 +90,7 @@ def test_the_behaviour_finds_the_north_with_the_sensor_and_hops_with_the_actuato
 def test_the_shape_becomes_primitives_and_part_of_the_schema() -> None:
     posts = [solid for solid in load_playground("slalom_field")[1].solids if isinstance(solid.outline, Disc)]
     assert [post.pose.x_m for post in posts] == pytest.approx([-0.5, -0.25, 0.0, 0.25, 0.5])
-    kinds = playground.schema()["properties"]["shapes"]["items"]["oneOf"]
+    kinds = reader.schema()["properties"]["shapes"]["items"]["oneOf"]
     assert "slalom" in [kind["properties"]["kind"]["const"] for kind in kinds]
 
 
@@ -181,15 +182,15 @@ def test_a_shape_that_raises_refuses_the_playground_with_its_key(variant: Varian
     broken = "raise KeyError(name)\n        number = "
     with variant("thymio_extras/slalom.py", "number = ", broken):
         path = resources.find_playground("slalom_field")
-        with pytest.raises(playground.PlaygroundError, match=r"shapes\[1\]: found KeyError: 'posts'"):
-            playground.load(path)
+        with pytest.raises(reader.PlaygroundError, match=r"shapes\[1\]: found KeyError: 'posts'"):
+            reader.load(path)
 
 
 def test_a_shape_with_a_field_that_no_file_has_is_left_out(variant: Variant, caplog: pytest.LogCaptureFixture) -> None:
     with variant("thymio_extras/slalom.py", "    x_m: Coordinate\n", "    x_m: float\n"):
         assert "slalom" not in {kind.name for kind in shapes.all_shapes()}
         assert "a field of type <class 'float'> found" in caplog.text
-        assert "slalom" not in str(playground.schema()["properties"]["shapes"])
+        assert "slalom" not in str(reader.schema()["properties"]["shapes"])
 
 
 @pytest.mark.usefixtures("extras")

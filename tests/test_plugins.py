@@ -13,13 +13,14 @@ import pytest
 from tests.sim.builders import FLOOR, make, run, send
 from thymio_sim_ros import registry
 from thymio_sim_ros.registry import RegistryError
-from thymio_sim_ros.sim import actuators, playground, sensors, shapes
+from thymio_sim_ros.sim import actuators, sensors, shapes
 from thymio_sim_ros.sim.commands import BUTTONS, LED_GROUPS, MotorTargets
+from thymio_sim_ros.sim.playground import reader
 from thymio_sim_ros.sim.world import World
 
 TOY_SENSOR = """
-from thymio_sim_ros.sim.aseba_face import AsebaFace
-from thymio_sim_ros.sim.readings import ButtonsReading
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.model.readings import ButtonsReading
 from thymio_sim_ros.sim.sensors import Sensor
 
 SENSOR = Sensor(
@@ -32,7 +33,7 @@ SENSOR = Sensor(
 
 TOY_WOKEN_SENSOR = """
 from thymio_sim_ros.sim.commands import MotorTargets
-from thymio_sim_ros.sim.readings import ButtonsReading
+from thymio_sim_ros.sim.model.readings import ButtonsReading
 from thymio_sim_ros.sim.sensors import NEVER_NS, Sensor
 
 SENSOR = Sensor("ear", NEVER_NS, lambda view: ButtonsReading(view.now_ns, ()), wakes_on=(MotorTargets,))
@@ -40,7 +41,7 @@ SENSOR = Sensor("ear", NEVER_NS, lambda view: ButtonsReading(view.now_ns, ()), w
 
 TOY_FEELING_SENSOR = """
 from thymio_sim_ros.sim.commands import MotorTargets
-from thymio_sim_ros.sim.readings import ButtonsReading
+from thymio_sim_ros.sim.model.readings import ButtonsReading
 from thymio_sim_ros.sim.sensors import Sensor
 
 SENSOR = Sensor(
@@ -55,9 +56,9 @@ SENSOR = Sensor(
 TOY_SHAPE = """
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.fields import Coordinate, Extent
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.primitives import Disc, Primitive, Solid
+from thymio_sim_ros.sim.model.fields import Coordinate, Extent
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.primitives import Disc, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
 
 
@@ -79,7 +80,7 @@ from dataclasses import dataclass
 
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.commands import MotorTargets
-from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.model.geometry import Pose
 
 
 @dataclass(frozen=True)
@@ -257,9 +258,7 @@ def test_a_new_shape_file_is_enough(add_plugin: Callable[[ModuleType, str, str],
     add_plugin(shapes, "gate", TOY_SHAPE)
     loaded = make([FLOOR, {"kind": "gate", "x_m": 0.3}])
     assert [solid.pose.y_m for solid in loaded.solids] == [0.15, -0.15]
-    kinds = [
-        item["properties"]["kind"]["const"] for item in playground.schema()["properties"]["shapes"]["items"]["oneOf"]
-    ]
+    kinds = [item["properties"]["kind"]["const"] for item in reader.schema()["properties"]["shapes"]["items"]["oneOf"]]
     assert "gate" in kinds
 
 

@@ -36,8 +36,8 @@ from thymio_sim_ros.sim.commands import (
     Tap,
     Tilt,
 )
-from thymio_sim_ros.sim.placement import PlacementError
-from thymio_sim_ros.sim.playground import RobotStart
+from thymio_sim_ros.sim.playground.placement import PlacementError
+from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
 CRATE = {**box(-0.5, 0.0, 0.06, 0.06), "name": "crate", "mass_kg": 0.1}

@@ -10,7 +10,7 @@ import pytest
 from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.run_sound import run_with_sound
 from thymio_sim_ros.runner import Runner
-from thymio_sim_ros.sim import playground as playgrounds
+from thymio_sim_ros.sim.playground import reader as playgrounds
 
 TWO = json.dumps(
     {

@@ -13,8 +13,8 @@ import pytest
 from tests.sim.builders import FLOOR, make, run, send
 from thymio_sim_ros.runlog import Begun, Checked, Ended, RunLog, RunLogError, read
 from thymio_sim_ros.sim.commands import MotorTargets
-from thymio_sim_ros.sim.journal import Posted, Removed, Reset, Spawned, WorldOptions
-from thymio_sim_ros.sim.playground import RobotStart
+from thymio_sim_ros.sim.input_recorder import Posted, Removed, Reset, Spawned, WorldOptions
+from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
 

@@ -9,16 +9,16 @@ from pathlib import Path
 
 import pytest
 
-from aseba_vm.engine import INTERPRETER
+from aseba_vm.jit.tiering import INTERPRETER
 from tests.aseba_vm.engines import TRANSLATORS
 from tests.tracks import farthest_in_laps
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runner import BUDGET, MOST_ROUNDS, Runner
-from thymio_sim_ros.sim import playground as playgrounds
 from thymio_sim_ros.sim.commands import BodyTwist, MoveRobot, WheelVelocities
-from thymio_sim_ros.sim.playground import RobotStart
+from thymio_sim_ros.sim.playground import reader as playgrounds
+from thymio_sim_ros.sim.playground.reader import RobotStart
 
 RUNAWAYS = sorted((Path(__file__).parent / "data" / "runaway").glob("*.aesl"))
 

@@ -19,7 +19,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import thymio_sim_ros
-from aseba_vm.output import STANDARD_OUTPUT, end_by, standard_output
+from aseba_vm.cli.output import STANDARD_OUTPUT, end_by, standard_output
 from thymio_sim_ros import convert, foxglove_layout, resources
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
 from thymio_sim_ros.bridge.thread import check_free
@@ -33,8 +33,8 @@ from thymio_sim_ros.device.settings import Settings, SettingsError
 from thymio_sim_ros.greeting import greeting, patience, qr_code
 from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_shares
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
-from thymio_sim_ros.sim.playground import Playground, PlaygroundError
-from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
+from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
+from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
 from thymio_sim_ros.suite import ADDRESS, Suite
 
 EXAMPLE = """\

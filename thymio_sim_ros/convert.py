@@ -10,8 +10,8 @@ from pathlib import Path
 
 from thymio_sim_ros import resources
 from thymio_sim_ros.loading import load_playground
-from thymio_sim_ros.sim.playground import PlaygroundError, schema
-from thymio_sim_ros.sim.playground_text import dumps
+from thymio_sim_ros.sim.playground.reader import PlaygroundError, schema
+from thymio_sim_ros.sim.playground.writer import dumps
 
 __all__ = ["run"]
 

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from aseba_vm.output import standard_output
+from aseba_vm.cli.output import standard_output
 from thymio_sim_ros.studio_layout import APPS, SHIPPED, render
 
 __all__ = ["hint", "run"]

@@ -6,8 +6,8 @@ import threading
 from pathlib import Path
 
 from thymio_sim_ros import resources
-from thymio_sim_ros.sim import playground as playgrounds
-from thymio_sim_ros.sim import playground_text
+from thymio_sim_ros.sim.playground import reader as playgrounds
+from thymio_sim_ros.sim.playground import writer
 
 __all__ = ["Gallery"]
 
@@ -31,6 +31,6 @@ class Gallery:
             version = path.stat().st_mtime_ns if path.exists() else 0
             known = self._texts.get(path)
             if known is None or known[0] != version:
-                text = playground_text.dumps(playgrounds.load(path)).encode()
+                text = writer.dumps(playgrounds.load(path)).encode()
                 known = self._texts[path] = (version, text)
             return known[1]

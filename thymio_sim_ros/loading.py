@@ -12,15 +12,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from aseba_vm import AeslError
+from aseba_vm.aesl.text_decoding import decoded
 from aseba_vm.errors import TextError
-from aseba_vm.textfile import decoded
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.fleet import Member, Share, share_out
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.program import ThymioProgram, load_file, load_program, parse
-from thymio_sim_ros.sim import playground as playgrounds
-from thymio_sim_ros.sim.playground import Playground, PlaygroundError
-from thymio_sim_ros.sim.source import MAX_BYTES, is_recognized
+from thymio_sim_ros.sim.playground import reader as playgrounds
+from thymio_sim_ros.sim.playground.format_detection import MAX_BYTES, is_recognized
+from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
 
 NO_PROGRAM = "none"
 """In place of a program's name: the robot does nothing by itself."""
@@ -42,7 +42,7 @@ def is_playground_text(value: str) -> bool:
 def load_playground(value: str) -> tuple[str, Playground]:
     """(name, playground) from a shipped name, a path, the text itself, or a file as data:;name=my.json;base64,...
 
-    Files and texts may be of any format that is read (sim/source.py).
+    Files and texts may be of any format that is read (sim/playground/format_detection.py).
     Raises PlaygroundError for what the file says, ResourceError for a file that is not there, OSError.
     """
     upload = _UPLOAD.fullmatch(value)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from thymio_sim_ros.runlog import Begun, Checked, Ended, Line, RunLogError, digest, read
-from thymio_sim_ros.sim.clock import TICK_NS
-from thymio_sim_ros.sim.journal import Input, Posted, Removed, Reset, Spawned
+from thymio_sim_ros.sim.input_recorder import Input, Posted, Removed, Reset, Spawned
+from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.world import World
 
 __all__ = ["Replay", "replay"]

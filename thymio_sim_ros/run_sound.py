@@ -7,9 +7,9 @@ from pathlib import Path
 
 from thymio_sim_ros.device import wav
 from thymio_sim_ros.runner import Runner
-from thymio_sim_ros.sim.readings import LoudspeakerReading
-from thymio_sim_ros.sim.sound_stream import SoundStream, mixed
-from thymio_sim_ros.sim.tones import SAMPLE_NS
+from thymio_sim_ros.sim.audio.mixer import SoundStream, mixed
+from thymio_sim_ros.sim.audio.synthesis import SAMPLE_NS
+from thymio_sim_ros.sim.model.readings import LoudspeakerReading
 from thymio_sim_ros.sim.world import StepResult
 
 __all__ = ["run_with_sound"]

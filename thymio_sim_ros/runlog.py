@@ -29,12 +29,12 @@ from typing import Any, TextIO
 import thymio_sim_ros
 from thymio_sim_ros import command_json
 from thymio_sim_ros.command_json import CommandJsonError
-from thymio_sim_ros.sim import fields
-from thymio_sim_ros.sim import playground as playgrounds
-from thymio_sim_ros.sim.fields import FieldError
-from thymio_sim_ros.sim.journal import Input, Posted, Removed, Reset, Spawned, WorldOptions
-from thymio_sim_ros.sim.playground import Playground, PlaygroundError, RobotStart
-from thymio_sim_ros.sim.playground_text import dumps
+from thymio_sim_ros.sim.input_recorder import Input, Posted, Removed, Reset, Spawned, WorldOptions
+from thymio_sim_ros.sim.model import fields
+from thymio_sim_ros.sim.model.fields import FieldError
+from thymio_sim_ros.sim.playground import reader as playgrounds
+from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError, RobotStart
+from thymio_sim_ros.sim.playground.writer import dumps
 from thymio_sim_ros.sim.world import World
 
 __all__ = ["Begun", "Checked", "Ended", "Line", "RunLog", "RunLogError", "digest", "made_by", "read"]

@@ -16,10 +16,10 @@ from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.program import ThymioProgram
 from thymio_sim_ros.runlog import RunLog
-from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, PressButton
-from thymio_sim_ros.sim.playground import Playground
-from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
+from thymio_sim_ros.sim.model.clock import TICK_NS
+from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
+from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.world import StepResult, World
 
 __all__ = ["Runner"]

@@ -58,5 +58,5 @@ def _run(program: str, on_interrupt: Callable[[int, FrameType | None], None] | s
     """
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is ignored, as in the background
         signal.signal(signal.SIGINT, on_interrupt)
-    import_module("aseba_vm.output").open_standard_streams()
+    import_module("aseba_vm.cli.output").open_standard_streams()
     return int(import_module(program).main())

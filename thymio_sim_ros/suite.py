@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
-from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
+from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 
 HTTP_PORT = 8080
 FOXGLOVE_PORT = 8765

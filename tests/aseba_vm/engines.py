@@ -1,7 +1,7 @@
 """The engines that can work here: without wasmtime there is none that uses WebAssembly."""
 
-from aseba_vm.engine import AUTO, ENGINES, INTERPRETER, WASM
-from aseba_vm.engine_wasm import is_available
+from aseba_vm.jit.tiering import AUTO, ENGINES, INTERPRETER, WASM
+from aseba_vm.jit.wasm_backend import is_available
 
 AVAILABLE = [name for name in ENGINES if name != WASM or is_available()]
 TRANSLATORS = [name for name in AVAILABLE if name not in (AUTO, INTERPRETER)]

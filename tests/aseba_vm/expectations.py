@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from aseba_vm import CompileError, Program, VirtualMachine, aesl, compile
-from aseba_vm.outbox import Emitted, Message, NativeCalled
-from aseba_vm.warn import CompileWarning
+from aseba_vm.frontend.lint import CompileWarning
+from aseba_vm.machine.machine_messages import Emitted, Message, NativeCalled
 from tests.aseba_vm.vectors import targets
 
 FOLDER = Path(__file__).parents[1] / "data" / "programs"

@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 
 from aseba_vm import AeslError, aesl, compile
 from aseba_vm.aesl import Network, Node, Plugin
+from aseba_vm.aesl.network import select
 from aseba_vm.messages import MESSAGES
-from aseba_vm.network import select
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.vectors import SHIPPED
 

@@ -4,7 +4,7 @@ import pytest
 
 from aseba_vm import VirtualMachine, compile
 from aseba_vm.debug import Debugger, Use
-from aseba_vm.outbox import DivisionByZero, ExecutionState
+from aseba_vm.machine.machine_messages import DivisionByZero, ExecutionState
 from aseba_vm.targets import THYMIO_II
 
 SOURCE = """\

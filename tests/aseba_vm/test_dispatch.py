@@ -4,7 +4,7 @@ import pytest
 
 from aseba_vm import VirtualMachine, compile
 from aseba_vm.dispatch import MOST_WAITING, FirmwareDispatch, PlaygroundDispatch
-from aseba_vm.outbox import EventKilled
+from aseba_vm.machine.machine_messages import EventKilled
 from aseba_vm.targets import THYMIO_II
 
 SOURCE = """\

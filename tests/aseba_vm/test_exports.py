@@ -10,7 +10,7 @@ IMPORTING = f"""
 import sys
 before = set(sys.modules)
 sys.path.insert(0, {ROOT!r})
-import aseba_vm, aseba_vm.__main__
+import aseba_vm, aseba_vm.cli.main
 print(*{{name.partition('.')[0] for name in set(sys.modules) - before}})
 """
 

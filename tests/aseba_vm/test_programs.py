@@ -3,11 +3,11 @@
 import pytest
 
 from aseba_vm.bytecode import BINARY_OPERATORS, UNARY_OPERATORS, Op, instructions
-from aseba_vm.compiler import compile
 from aseba_vm.errors import CompileError
-from aseba_vm.lexer import KEYWORDS, SYMBOLS, tokenise
+from aseba_vm.frontend.lexer import KEYWORDS, SYMBOLS, tokenise
+from aseba_vm.frontend.pipeline import compile
+from aseba_vm.machine.natives import NATIVES
 from aseba_vm.messages import MESSAGES
-from aseba_vm.natives import NATIVES
 from tests.aseba_vm.engines import AVAILABLE
 from tests.aseba_vm.expectations import FOLDER, Scenario
 

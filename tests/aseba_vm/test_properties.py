@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from aseba_vm import CompileError, compile
 from aseba_vm.bytecode import Instruction, Op, describe, instructions
-from aseba_vm.layout import formatted
-from aseba_vm.lexer import KEYWORDS, SYMBOLS
+from aseba_vm.frontend.formatter import formatted
+from aseba_vm.frontend.lexer import KEYWORDS, SYMBOLS
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.programs import Writer
 from tests.aseba_vm.vectors import compiled

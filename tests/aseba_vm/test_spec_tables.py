@@ -8,9 +8,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from aseba_vm.identifiers import LETTER_OR_DIGIT
+from aseba_vm.frontend.identifiers import LETTER_OR_DIGIT
+from aseba_vm.machine.fixed_point_trigonometry import ARCTANGENT, SINE
 from aseba_vm.messages import MESSAGES
-from aseba_vm.trigonometry import ARCTANGENT, SINE
 
 SPEC = Path(__file__).parents[2] / "docs" / "spec"
 

@@ -24,7 +24,15 @@ def lines(name, count):
 
 def run(folder):
     """Run the tests of vectors on a folder; return exit code, and how many passed and failed."""
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/aseba_vm/test_vectors.py"]
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "tests/aseba_vm/test_vectors.py",
+    ]
     ended = subprocess.run(
         [*command, "--vectors", str(folder)], cwd=ROOT, capture_output=True, text=True, timeout=300, check=False
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from aseba_vm import CompileError, aesl
-from aseba_vm.engine import INTERPRETER
+from aseba_vm.jit.tiering import INTERPRETER
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.engines import AVAILABLE
 from tests.aseba_vm.vectors import Replay, as_answer, as_list, compiled, targets

@@ -3,7 +3,8 @@ import re
 
 import pytest
 
-from aseba_vm import TargetDescription, Variable, VirtualMachine, compile, interpreter, operations, outbox, vm
+from aseba_vm import TargetDescription, Variable, VirtualMachine, compile, vm
+from aseba_vm.machine import interpreter, machine_messages, operations
 from aseba_vm.targets import THYMIO_II
 from aseba_vm.vm import ACTIVE, STEP_BY_STEP
 
@@ -77,14 +78,14 @@ def test_a_long_event_may_be_killed_instead():
     machine.start_local(8)
     machine.run(50)
     assert not machine.is_active
-    assert isinstance(machine.take_messages()[-1], outbox.EventKilled)
+    assert isinstance(machine.take_messages()[-1], machine_messages.EventKilled)
 
 
 def test_an_emitted_event_is_left_in_the_outbox():
     machine, _ = machine_with("onevent tap emit ping [3, -4] emit pong")
     machine.start_local(8)
     machine.run()
-    assert machine.take_messages() == (outbox.Emitted(0, (3, -4)), outbox.Emitted(1, ()))
+    assert machine.take_messages() == (machine_messages.Emitted(0, (3, -4)), machine_messages.Emitted(1, ()))
     assert machine.take_messages() == ()
 
 
@@ -100,7 +101,7 @@ def test_a_global_event_kills_the_running_one():
     machine.receive(0, 1, [])
     machine.run(10)
     machine.receive(0, 1, [])
-    assert [type(message) for message in machine.take_messages()] == [outbox.EventKilled]
+    assert [type(message) for message in machine.take_messages()] == [machine_messages.EventKilled]
 
 
 def test_a_local_event_waits_for_the_running_one():
@@ -150,9 +151,9 @@ def test_every_fault_has_a_sentence():
         )
     )
     assert "stack-underflow" in reasons
-    assert {outbox.BadCode(0, reason).sentence for reason in reasons} & reasons == set()
-    assert outbox.NodeSpecific(0, "sqrt-of-negative").sentence == "square root of a negative number"
-    assert outbox.NodeSpecific(0, "no card").sentence == "no card"
+    assert {machine_messages.BadCode(0, reason).sentence for reason in reasons} & reasons == set()
+    assert machine_messages.NodeSpecific(0, "sqrt-of-negative").sentence == "square root of a negative number"
+    assert machine_messages.NodeSpecific(0, "no card").sentence == "no card"
 
 
 def test_resuming_forgets_the_fault():
@@ -215,7 +216,7 @@ def test_a_machine_has_room_for_sixteen_breakpoints():
     machine = VirtualMachine(THYMIO_II)
     for pc in range(17):
         machine.set_breakpoint(pc)
-    assert machine.take_messages()[-1] == outbox.BreakpointSet(16, is_set=False)
+    assert machine.take_messages()[-1] == machine_messages.BreakpointSet(16, is_set=False)
     machine.clear_breakpoint(0)
     assert machine.breakpoints == tuple(range(1, 16))
     machine.clear_breakpoints()

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from aseba_vm import Program, TargetDescription, VirtualMachine, compile
-from aseba_vm.natives import NATIVES
-from aseba_vm.outbox import (
+from aseba_vm.machine.machine_messages import (
     BadCode,
     BreakpointSet,
     DivisionByZero,
@@ -25,6 +24,7 @@ from aseba_vm.outbox import (
     OutOfBounds,
     VariablesRead,
 )
+from aseba_vm.machine.natives import NATIVES
 
 SHIPPED = Path(__file__).parents[1] / "data" / "vectors"
 FILES = ("aseba-compile", "aseba-errors", "aseba-execution", "aseba-execution-2x", "aseba-aesl")

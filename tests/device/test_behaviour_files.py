@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aseba_vm.__main__ import main
+from aseba_vm.cli.main import main
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.behaviour_host import ENTRIES, MENU, built_in
 

@@ -8,8 +8,8 @@ from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.layout import extend, target
 from thymio_sim_ros.sim.actuators import Actuator
-from thymio_sim_ros.sim.aseba_face import ActuatorFace, AsebaFace, Native, Output
 from thymio_sim_ros.sim.commands import MotorTargets, SetLeds
+from thymio_sim_ros.sim.plugin_api.aseba_binding import ActuatorFace, AsebaFace, Native, Output
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 
 

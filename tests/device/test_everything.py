@@ -17,6 +17,7 @@ from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.sim.audio.synthesis import BLOCK_NS, TRIANGLE
 from thymio_sim_ros.sim.commands import (
     LEDS_GIVEN_BACK,
     Command,
@@ -33,7 +34,6 @@ from thymio_sim_ros.sim.commands import (
     SetWave,
     StopSound,
 )
-from thymio_sim_ros.sim.tones import BLOCK_NS, TRIANGLE
 
 DATA = Path(__file__).parents[1] / "data" / "device"
 SOURCE = (DATA / "everything.aesl").read_text()

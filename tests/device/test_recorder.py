@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from thymio_sim_ros.device import recorder
 from thymio_sim_ros.device.recorder import Recorder
-from thymio_sim_ros.sim.tones import BLOCK_NS, BLOCK_SAMPLES
+from thymio_sim_ros.sim.audio.synthesis import BLOCK_NS, BLOCK_SAMPLES
 
 
 def test_a_record_has_128_samples_for_each_whole_tick() -> None:

@@ -12,7 +12,6 @@ from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.program import load_program
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.runner import Runner
-from thymio_sim_ros.sim import playground
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.commands import (
     Clap,
@@ -25,6 +24,7 @@ from thymio_sim_ros.sim.commands import (
     Tap,
     Tilt,
 )
+from thymio_sim_ros.sim.playground import reader as playground
 
 EVENTS = [event.name for event in target().local_events]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from thymio_sim_ros.nodes.audience import Audience, Heard
-from thymio_sim_ros.sim.clock import NEVER_NS
+from thymio_sim_ros.sim.model.clock import NEVER_NS
 
 MS = 1_000_000
 

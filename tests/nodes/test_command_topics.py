@@ -18,6 +18,7 @@ from std_msgs.msg import (
 from thymio_sim_ros.nodes.command_topics import ROWS, topic_of
 from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.sim.actuators import all_actuators, leds, loudspeaker
+from thymio_sim_ros.sim.audio.synthesis import TRIANGLE
 from thymio_sim_ros.sim.commands import (
     LED_GROUPS,
     EnableComm,
@@ -39,7 +40,6 @@ from thymio_sim_ros.sim.commands import (
     StopGesture,
     StopSound,
 )
-from thymio_sim_ros.sim.tones import TRIANGLE
 
 BY_TOPIC = {row.topic: row for row in ROWS}
 

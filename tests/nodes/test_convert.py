@@ -13,10 +13,10 @@ from visualization_msgs.msg import Marker
 from thymio_sim_ros.nodes import convert, patches, sensor_topics
 from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.names import RobotNames, ros_names, topic_word
-from thymio_sim_ros.sim import readings, units
-from thymio_sim_ros.sim.geometry import Pose, Tilt
-from thymio_sim_ros.sim.geometry import Twist as BodyMotion
-from thymio_sim_ros.sim.primitives import Stroke
+from thymio_sim_ros.sim.model import readings, units
+from thymio_sim_ros.sim.model.geometry import Pose, Tilt
+from thymio_sim_ros.sim.model.geometry import Twist as BodyMotion
+from thymio_sim_ros.sim.model.primitives import Stroke
 from thymio_sim_ros.sim.sensors import all_sensors
 
 ALONE = RobotNames("")

@@ -14,7 +14,7 @@ from thymio_sim_ros.nodes.markers import playground_markers
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.transforms import origin_of
 from thymio_sim_ros.resources import playgrounds
-from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.model.geometry import Pose
 
 
 @pytest.mark.parametrize("name", ["", "thymio_2"])

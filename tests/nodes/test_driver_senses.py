@@ -13,7 +13,7 @@ from std_msgs.msg import Bool, ColorRGBA, Empty, Float32, Int8, Int16
 from tests.nodes.aseba_tools import Status, get_variables, set_parameters
 from thymio_sim_ros.nodes.driver_senses import proximity_count
 from thymio_sim_ros.nodes.names import PROXIMITY
-from thymio_sim_ros.sim.units import PROXIMITY_FULL, proximity_response, units_to_speed
+from thymio_sim_ros.sim.model.units import PROXIMITY_FULL, proximity_response, units_to_speed
 
 COUNTS = (
     "var prox_n = 0\nvar tap_n = 0\nvar mic_n = 0\nvar rc_n = 0\nvar comm_n = 0\nvar left_n = 0\nmic.threshold = 10\n"

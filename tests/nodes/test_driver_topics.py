@@ -25,7 +25,7 @@ from thymio_sim_ros.sim.commands import (
     StopGesture,
     StopSound,
 )
-from thymio_sim_ros.sim.readings import CommReading
+from thymio_sim_ros.sim.model.readings import CommReading
 
 NOW = Moment(0, 0)
 

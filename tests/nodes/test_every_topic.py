@@ -35,8 +35,8 @@ from std_msgs.msg import (
 from thymio_sim_ros.nodes import command_topics, qos, reference, robot_ports, sensor_topics, world_ports, world_services
 from thymio_sim_ros.nodes.robot_inputs import robot_inputs
 from thymio_sim_ros.sim import commands
+from thymio_sim_ros.sim.audio.synthesis import TRIANGLE
 from thymio_sim_ros.sim.commands import LED_GROUPS
-from thymio_sim_ros.sim.tones import TRIANGLE
 
 PAIR = json.dumps(
     {

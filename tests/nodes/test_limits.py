@@ -29,9 +29,9 @@ from tests.nodes.test_every_topic import SENT
 from thymio_sim_ros.nodes.command_topics import MOST_SAMPLES
 from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.nodes.robot_inputs import WORLD, Moment, robot_inputs
+from thymio_sim_ros.sim.audio.synthesis import HIGHEST_HZ, LOWEST_HZ
 from thymio_sim_ros.sim.commands import LED_GROUPS
-from thymio_sim_ros.sim.thymio2 import MAX_SPEED_M_S, WHEEL_RADIUS_M
-from thymio_sim_ros.sim.tones import HIGHEST_HZ, LOWEST_HZ
+from thymio_sim_ros.sim.model.robot_constants import MAX_SPEED_M_S, WHEEL_RADIUS_M
 
 INPUTS = {one.topic: one for one in robot_inputs()}
 FULL_RAD_S = MAX_SPEED_M_S / WHEEL_RADIUS_M

@@ -14,7 +14,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 from thymio_sim_ros.nodes.life import StartError
 from thymio_sim_ros.replay import replay
 from thymio_sim_ros.sim.commands import MoveObject
-from thymio_sim_ros.sim.playground import RobotStart
+from thymio_sim_ros.sim.playground.reader import RobotStart
 
 GREY = "#808080"
 PUSHING = json.dumps(

@@ -19,9 +19,9 @@ from std_srvs.srv import SetBool
 from thymio_sim_ros.nodes import simulator_node, world_ports
 from thymio_sim_ros.nodes.robot_ports import RobotPorts
 from thymio_sim_ros.nodes.simulator_node import MOST_PUT_OFF
-from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.commands import BodyTwist
-from thymio_sim_ros.sim.playground import RobotStart
+from thymio_sim_ros.sim.model.clock import TICK_NS
+from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
 MS = 1_000_000

@@ -12,7 +12,7 @@ from std_msgs.msg import Bool, Empty, Float32, Float32MultiArray, Int8, Int16, I
 from thymio_sim_ros.nodes import sensor_topics
 from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.names import RobotNames
-from thymio_sim_ros.sim import readings
+from thymio_sim_ros.sim.model import readings
 from thymio_sim_ros.sim.sensors import all_sensors
 
 ROWS = {row.topic: row for sensor in all_sensors() for row in sensor_topics.rows_of(sensor)}

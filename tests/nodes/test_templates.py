@@ -13,9 +13,9 @@ from thymio_sim_ros.nodes import reference, sensor_topics
 from thymio_sim_ros.nodes.convert import ConvertOptions
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.templates import Patch, Span, Template
-from thymio_sim_ros.sim import readings
 from thymio_sim_ros.sim.commands import LED_GROUPS
-from thymio_sim_ros.sim.geometry import Pose, Tilt, Twist
+from thymio_sim_ros.sim.model import readings
+from thymio_sim_ros.sim.model.geometry import Pose, Tilt, Twist
 
 PATCHED = [(sensor, row) for sensor in reference.own_sensors() for row in sensor_topics.rows_of(sensor) if row.patch]
 

@@ -14,7 +14,7 @@ from thymio_sim_ros.bridge import Tokens
 from thymio_sim_ros.nodes import web_node
 from thymio_sim_ros.nodes.life import StartError
 from thymio_sim_ros.nodes.web_node import WebPage, WebParams
-from thymio_sim_ros.sim import playground as playgrounds
+from thymio_sim_ros.sim.playground import reader as playgrounds
 
 
 @pytest.fixture

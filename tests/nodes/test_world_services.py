@@ -13,7 +13,7 @@ from rcl_interfaces.srv import GetParameters, SetParameters
 from std_msgs.msg import Header, String
 from std_srvs.srv import Trigger
 
-from thymio_sim_ros.sim import playground as playgrounds
+from thymio_sim_ros.sim.playground import reader as playgrounds
 
 GREY = "#808080"
 ROOM = json.dumps(

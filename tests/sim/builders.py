@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from thymio_sim_ros.sim import playground
-from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.commands import Command
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.playground import Playground
-from thymio_sim_ros.sim.readings import Reading
+from thymio_sim_ros.sim.model.clock import TICK_NS
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.readings import Reading
+from thymio_sim_ros.sim.playground import reader
+from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.world import StepResult, World
 
 REPOSITORY = Path(__file__).parents[2]
@@ -26,12 +26,12 @@ ROBOT = {"name": "thymio", "x_m": 0.0, "y_m": 0.0}
 def make(shapes: Sequence[Mapping[str, Any]] = (FLOOR,), robots: Sequence[Mapping[str, Any]] = (ROBOT,)) -> Playground:
     """A playground of shapes and robots."""
     data = {"format": 1, "title": "test", "shapes": list(shapes), "robots": list(robots)}
-    return playground.loads(json.dumps(data), "test")
+    return reader.loads(json.dumps(data), "test")
 
 
 def shipped(name: str) -> Playground:
     """A playground of the repository."""
-    return playground.load(PLAYGROUNDS / f"{name}.json")
+    return reader.load(PLAYGROUNDS / f"{name}.json")
 
 
 def run(world: World, seconds: float) -> list[StepResult]:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from thymio_sim_ros.sim.geometry import LEVEL, Point, Pose, Tilt, Twist
-from thymio_sim_ros.sim.ground import GroundSample
-from thymio_sim_ros.sim.noise import Noise
+from thymio_sim_ros.sim.audio.propagation import Sound
+from thymio_sim_ros.sim.ground.sampling import GroundSample
+from thymio_sim_ros.sim.mechanics.wheels import Wheels
+from thymio_sim_ros.sim.model.geometry import LEVEL, Point, Pose, Tilt, Twist
+from thymio_sim_ros.sim.model.noise import Noise
+from thymio_sim_ros.sim.model.primitives import Color
 from thymio_sim_ros.sim.physics import Contact
-from thymio_sim_ros.sim.primitives import Color
-from thymio_sim_ros.sim.rays import Obstacle, Surroundings
-from thymio_sim_ros.sim.sound import Sound
-from thymio_sim_ros.sim.wheels import Wheels
+from thymio_sim_ros.sim.raycast.scalar import Obstacle, Surroundings
 
 S = TypeVar("S")
 ORIGIN, AT_REST = Pose(0.0, 0.0, 0.0), Twist(0.0, 0.0)

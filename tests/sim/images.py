@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import base64
 
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.pictures import Pixels, encode_png
-from thymio_sim_ros.sim.primitives import Print
+from thymio_sim_ros.sim.formats.image_io import Pixels, encode_png
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.primitives import Print
 
 WHITE, BLACK, RED, CLEAR = (255, 255, 255, 255), (0, 0, 0, 255), (255, 0, 0, 255), (0, 0, 0, 0)
 

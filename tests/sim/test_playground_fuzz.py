@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.sim.builders import PLAYGROUNDS
-from thymio_sim_ros.sim import playground
-from thymio_sim_ros.sim.playground import Playground, PlaygroundError
-from thymio_sim_ros.sim.playground_text import dumps
+from thymio_sim_ros.sim.playground import reader
+from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
+from thymio_sim_ros.sim.playground.writer import dumps
 from thymio_sim_ros.sim.shapes import all_shapes
 
 ASEBA = (
@@ -35,7 +35,7 @@ VALUES = st.recursive(
 def loaded(data: str | bytes) -> Playground | None:
     """What comes of it; any other error fails the test."""
     try:
-        return playground.loads(data, "fuzz.json")
+        return reader.loads(data, "fuzz.json")
     except PlaygroundError as error:
         told = (error.path == "fuzz.json", bool(error.found), bool(error.expected))
     assert told == (True, True, True)
@@ -79,7 +79,7 @@ def test_json_of_any_kind(value: Any) -> None:
 def test_a_shipped_playground_with_one_value_changed(path: Path, place: int, value: Any) -> None:
     found = loaded(changed(path.read_text(), place, value))
     if found is not None:
-        assert playground.loads(dumps(found), found.name) == found
+        assert reader.loads(dumps(found), found.name) == found
 
 
 @given(st.sampled_from([kind.name for kind in all_shapes()]), st.dictionaries(st.text(max_size=8), VALUES, max_size=4))

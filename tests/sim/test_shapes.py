@@ -9,9 +9,9 @@ import pytest
 
 from tests.sim.builders import GREY, make
 from tests.sim.images import BLACK, WHITE, png_uri
-from thymio_sim_ros.sim.geometry import Point, Pose, is_convex
-from thymio_sim_ros.sim.playground import Playground
-from thymio_sim_ros.sim.primitives import Box, Disc, Load, Print, Slide, Solid
+from thymio_sim_ros.sim.model.geometry import Point, Pose, is_convex
+from thymio_sim_ros.sim.model.primitives import Box, Disc, Load, Print, Slide, Solid
+from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.shapes import all_shapes
 
 WALLS = {"height_m": 0.12, "thickness_m": 0.02}

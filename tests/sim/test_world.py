@@ -29,8 +29,8 @@ from thymio_sim_ros.sim.commands import (
     Tap,
     Tilt,
 )
-from thymio_sim_ros.sim.geometry import LEVEL, Pose
-from thymio_sim_ros.sim.playground import Playground, RobotStart
+from thymio_sim_ros.sim.model.geometry import LEVEL, Pose
+from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.world import StepResult, World
 
 FROZEN = "faf1f1fa5ad798f6"

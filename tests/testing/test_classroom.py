@@ -8,7 +8,7 @@ import pytest
 
 from thymio_sim_ros.device.program import ProgramError
 from thymio_sim_ros.resources import ResourceError
-from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.testing import Classroom, Event
 
 DRIVE = "motor.left.target = 200\nmotor.right.target = 200"

@@ -19,7 +19,7 @@ from tests.web_ui.page_support import (
     wait_until_still,
 )
 from tests.web_ui.test_page_access import AXE, FINDINGS
-from thymio_sim_ros.sim import playground as playgrounds
+from thymio_sim_ros.sim.playground import reader as playgrounds
 
 pytestmark = MARKS
 

@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 
 from thymio_sim_ros import webbuild
-from thymio_sim_ros.sim import playground as playgrounds
-from thymio_sim_ros.sim import playground_text
-from thymio_sim_ros.sim.playground import PlaygroundError
+from thymio_sim_ros.sim.playground import reader as playgrounds
+from thymio_sim_ros.sim.playground import writer
+from thymio_sim_ros.sim.playground.reader import PlaygroundError
 
 jsonschema = pytest.importorskip("jsonschema")
 
@@ -43,7 +43,7 @@ def read(text: str) -> playgrounds.Playground | None:
 def test_what_is_built_is_taken_and_stays_the_same_when_it_is_written_again():
     for case in cases()[::4]:
         built = playgrounds.loads(case["text"], "built.json")
-        again = playgrounds.loads(playground_text.dumps(built), "built.json")
+        again = playgrounds.loads(writer.dumps(built), "built.json")
         assert (again.shapes, again.robots) == (built.shapes, built.robots)
         names = [item["name"] for key in ("shapes", "robots") for item in json.loads(case["text"])[key]]
         assert [item.name for item in (*built.shapes, *built.robots)] == names

@@ -11,8 +11,8 @@ from functools import cache
 from typing import NamedTuple
 
 from thymio_sim_ros.device.layout import THYMIO, fitting, target
-from thymio_sim_ros.sim.aseba_face import Native
 from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.plugin_api.aseba_binding import Native
 
 
 @dataclass(frozen=True, slots=True)

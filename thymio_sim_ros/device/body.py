@@ -10,6 +10,7 @@ from collections.abc import Callable
 from thymio_sim_ros.device.card import Card
 from thymio_sim_ros.device.recorder import Recorder
 from thymio_sim_ros.device.settings import Settings
+from thymio_sim_ros.sim.audio.synthesis import SYSTEM_SOUNDS
 from thymio_sim_ros.sim.commands import (
     Command,
     PlaySamples,
@@ -17,7 +18,6 @@ from thymio_sim_ros.sim.commands import (
     SetVolume,
     StopSound,
 )
-from thymio_sim_ros.sim.tones import SYSTEM_SOUNDS
 
 __all__ = ["RESTART", "SWITCH_OFF", "Body"]
 

@@ -1,4 +1,4 @@
-"""What natives and events cost a program, in instructions (`aseba_vm.costs`).
+"""What natives and events cost a program, in instructions (`aseba_vm.machine.costs`).
 
 The unit is an instruction on the interpreter, the slowest engine: 0.25 µs of a core where this was measured. A budget
 of 5000 is then at most a few milliseconds of processor time, whatever a program does in it. `benchmarks/aseba_costs.py`
@@ -8,8 +8,8 @@ besides.
 
 from __future__ import annotations
 
-from aseba_vm.costs import Cost, Costs
-from aseba_vm.natives import NATIVES
+from aseba_vm.machine.costs import Cost, Costs
+from aseba_vm.machine.natives import NATIVES
 
 __all__ = ["BYTES_PER_INSTRUCTION", "COSTS"]
 

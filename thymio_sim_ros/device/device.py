@@ -12,9 +12,9 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from aseba_vm import VirtualMachine
-from aseba_vm.costs import NO_COSTS
+from aseba_vm.machine.costs import NO_COSTS
+from aseba_vm.machine.machine_messages import BadCode, DivisionByZero, Emitted, NodeSpecific, OutOfBounds
 from aseba_vm.messages import LANGUAGES
-from aseba_vm.outbox import BadCode, DivisionByZero, Emitted, NodeSpecific, OutOfBounds
 from thymio_sim_ros.device.body import RESTART, Body
 from thymio_sim_ros.device.breakpoints import Breakpoints, LineDebugger
 from thymio_sim_ros.device.card import Card
@@ -30,8 +30,8 @@ from thymio_sim_ros.device.own_rules import PERIOD_NS, OwnRules
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.device.settings import Settings
 from thymio_sim_ros.device.status import FAULT, INIT, OFF, PAUSED, RUNNING, STOPPED, DeviceStatus
+from thymio_sim_ros.sim.audio.synthesis import SHUT_DOWN
 from thymio_sim_ros.sim.commands import Command, PlaySystemSound
-from thymio_sim_ros.sim.tones import SHUT_DOWN
 
 __all__ = ["AsebaDevice", "DeviceStatus", "EmittedEvent"]
 

@@ -11,10 +11,10 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from aseba_vm import AeslError, CompileError, Program, SourcePos, aesl, compile
-from aseba_vm.aesl_reader import MAX_EVENT_WORDS
+from aseba_vm.aesl.reader import MAX_EVENT_WORDS
 from aseba_vm.errors import Hint
-from aseba_vm.identifiers import LETTER_OR_DIGIT
-from aseba_vm.lexer import KEYWORDS
+from aseba_vm.frontend.identifiers import LETTER_OR_DIGIT
+from aseba_vm.frontend.lexer import KEYWORDS
 from aseba_vm.messages import LANGUAGES, MESSAGES, wording
 from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros.device.help import help_of

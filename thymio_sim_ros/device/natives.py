@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from aseba_vm import Native, NativeCall
-from aseba_vm.nativecall import NativeFault
+from aseba_vm.machine.native_call import NativeFault
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.body import RESTART, SWITCH_OFF, Body
 from thymio_sim_ros.device.costs import BYTES_PER_INSTRUCTION
 from thymio_sim_ros.device.load import Meter
-from thymio_sim_ros.sim import aseba_face
 from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.plugin_api import aseba_binding
 
 __all__ = ["BODY_NATIVES", "native_functions"]
 
@@ -32,7 +32,7 @@ def native_functions(send: Send, body: Body, meter: Meter) -> dict[str, Native]:
     return actuators | {name: _serving(name, serve, body, meter) for name, serve in BODY_NATIVES.items()}
 
 
-def _commanding(native: aseba_face.Native, send: Send, meter: Meter) -> Native:
+def _commanding(native: aseba_binding.Native, send: Send, meter: Meter) -> Native:
     def call_native(call: NativeCall) -> None:
         meter.count_call(native.name, sum(call.sizes))
         words = call.words()

@@ -8,7 +8,7 @@ from functools import lru_cache
 from itertools import pairwise
 
 from aseba_vm import CompileError, aesl
-from aseba_vm.lexer import Token, tokenise
+from aseba_vm.frontend.lexer import Token, tokenise
 
 __all__ = ["Symbol", "outline"]
 

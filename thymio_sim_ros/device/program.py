@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 from aseba_vm import AeslError, CompileError, Program, aesl, compile
+from aseba_vm.aesl.network import Selection, is_other_device, with_vpl_events
+from aseba_vm.aesl.network import select as select_nodes
 from aseba_vm.messages import MESSAGES, wording
-from aseba_vm.network import Selection, is_other_device, with_vpl_events
-from aseba_vm.network import select as select_nodes
 from thymio_sim_ros.device.layout import THYMIO, target
 
 __all__ = [

@@ -5,7 +5,7 @@ For each tick of the sound (128 samples) the record holds a square wave whose sw
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.tones import BLOCK_NS, BLOCK_SAMPLES, SILENCE
+from thymio_sim_ros.sim.audio.synthesis import BLOCK_NS, BLOCK_SAMPLES, SILENCE
 
 __all__ = ["Recorder"]
 

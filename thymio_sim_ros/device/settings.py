@@ -8,9 +8,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from aseba_vm.output import rewrite_file
+from aseba_vm.cli.output import rewrite_file
+from thymio_sim_ros.sim.audio.synthesis import VOLUME_OFF
 from thymio_sim_ros.sim.commands import MotorTargets
-from thymio_sim_ros.sim.tones import VOLUME_OFF
 
 __all__ = ["PARTS", "Settings", "SettingsError"]
 

@@ -12,7 +12,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.validate_namespace import validate_namespace
 
-from aseba_vm.lexer import is_name
+from aseba_vm.frontend.lexer import is_name
 from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.options import DeviceOptions

@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from thymio_sim_ros.sim.clock import NEVER_NS, TICK_NS, next_due_ns
+from thymio_sim_ros.sim.model.clock import NEVER_NS, TICK_NS, next_due_ns
 from thymio_sim_ros.sim.sensors import all_sensors
 
 __all__ = ["Audience", "Heard"]

@@ -33,9 +33,9 @@ from thymio_sim_ros.nodes.limits import Beyond
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.actuators.leds import LED_NUMBERS
 from thymio_sim_ros.sim.actuators.pen import PEN_WIDTHS_M
+from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL
+from thymio_sim_ros.sim.audio.synthesis import VOLUME_OFF, WAVE_LENGTH
 from thymio_sim_ros.sim.commands import Command
-from thymio_sim_ros.sim.sound import FULL_LEVEL
-from thymio_sim_ros.sim.tones import VOLUME_OFF, WAVE_LENGTH
 
 __all__ = ["BODY_LEDS", "ROWS", "CommandRow", "led_topic", "topic_of"]
 

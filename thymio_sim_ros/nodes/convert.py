@@ -31,9 +31,9 @@ from thymio_sim_ros.nodes import patches
 from thymio_sim_ros.nodes.headers import SECOND_NS, stamped
 from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
 from thymio_sim_ros.nodes.patches import LASER_OFFSET_M, PROXIMITY_MIN_M
-from thymio_sim_ros.sim import readings
-from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt, Twist
-from thymio_sim_ros.sim.tones import VOLUME_OFF
+from thymio_sim_ros.sim.audio.synthesis import VOLUME_OFF
+from thymio_sim_ros.sim.model import readings
+from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt, Twist
 
 # The driver's constants of a Range (docs/spec/ros-interface.md section 3).
 PROXIMITY_MAX_M, PROXIMITY_FOV_RAD = 0.14, 0.3

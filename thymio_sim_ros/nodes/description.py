@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from thymio_sim_ros.nodes.names import PROXIMITY, SIDES, RobotNames
-from thymio_sim_ros.sim import thymio2
+from thymio_sim_ros.sim.model import robot_constants
 
 LASER_HEIGHT_M = 0.035
 GROUND_SENSOR_HEIGHT_M = 0.009
@@ -44,9 +44,11 @@ class FixedFrame:
 def fixed_frames() -> tuple[FixedFrame, ...]:
     """Sensor frames where the simulated sensors really sit, x along the view."""
     frames = [FixedFrame("base_footprint", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]
-    for name, (x_m, y_m, yaw_rad) in zip(PROXIMITY, thymio2.PROXIMITY_POSES, strict=True):
-        frames.append(FixedFrame(f"proximity_{name}_link", (x_m, y_m, thymio2.PROXIMITY_HEIGHT_M), (0.0, 0.0, yaw_rad)))
-    for side, (x_m, y_m) in zip(SIDES, thymio2.GROUND_SENSORS, strict=True):
+    for name, (x_m, y_m, yaw_rad) in zip(PROXIMITY, robot_constants.PROXIMITY_POSES, strict=True):
+        frames.append(
+            FixedFrame(f"proximity_{name}_link", (x_m, y_m, robot_constants.PROXIMITY_HEIGHT_M), (0.0, 0.0, yaw_rad))
+        )
+    for side, (x_m, y_m) in zip(SIDES, robot_constants.GROUND_SENSORS, strict=True):
         frames.append(FixedFrame(f"ground_{side}_link", (x_m, y_m, GROUND_SENSOR_HEIGHT_M), (0.0, math.pi / 2, 0.0)))
     frames.append(FixedFrame("laser_link", (0.0, 0.0, LASER_HEIGHT_M), (0.0, 0.0, 0.0)))
     return tuple(frames)
@@ -54,12 +56,12 @@ def fixed_frames() -> tuple[FixedFrame, ...]:
 
 def wheel_position(side: str) -> tuple[float, float, float]:
     """Centre of a wheel in `base_link`, metres."""
-    return (0.0, WHEEL_SIDE[side] * thymio2.WHEEL_TRACK_M / 2, thymio2.WHEEL_RADIUS_M)
+    return (0.0, WHEEL_SIDE[side] * robot_constants.WHEEL_TRACK_M / 2, robot_constants.WHEEL_RADIUS_M)
 
 
 def urdf(names: RobotNames) -> str:
     """The description of one robot, link and joint names with its prefix."""
-    height = thymio2.BODY_HEIGHT_M
+    height = robot_constants.BODY_HEIGHT_M
     parts = [
         '<?xml version="1.0"?>',
         f'<robot name="{names.name or "thymio"}">',
@@ -79,7 +81,7 @@ def urdf(names: RobotNames) -> str:
     for side in SIDES:
         x, y, z = wheel_position(side)
         link, joint = names.frame(f"{side}_wheel_link"), names.frame(f"{side}_wheel_joint")
-        radius, thickness = thymio2.WHEEL_RADIUS_M, thymio2.WHEEL_WIDTH_M
+        radius, thickness = robot_constants.WHEEL_RADIUS_M, robot_constants.WHEEL_WIDTH_M
         parts += [
             f'<link name="{link}">',
             _visual((0, 0, 0), f'<cylinder radius="{radius}" length="{thickness}"/>', "grey", roll=math.pi / 2),
@@ -106,13 +108,13 @@ def _box(x: float, y: float, z: float) -> str:
 
 def _slabs() -> list[tuple[float, float, float]]:
     """The hull as boxes across the robot: rear x, front x, width in m; the round front in steps."""
-    radius, half_width = thymio2.HULL_RADIUS_M, thymio2.HULL_WIDTH_M / 2
+    radius, half_width = robot_constants.HULL_RADIUS_M, robot_constants.HULL_WIDTH_M / 2
     corner = math.sqrt(radius**2 - half_width**2)
     edges = [corner + (radius - corner) * step / FRONT_STEPS for step in range(FRONT_STEPS + 1)]
     round_part = [
         (rear, front, 2 * math.sqrt(radius**2 - ((rear + front) / 2) ** 2)) for rear, front in itertools.pairwise(edges)
     ]
-    return [(thymio2.HULL_REAR_X_M, corner, 2 * half_width), *round_part]
+    return [(robot_constants.HULL_REAR_X_M, corner, 2 * half_width), *round_part]
 
 
 def _visual(xyz: tuple[float, float, float], geometry: str, material: str = "white", *, roll: float = 0.0) -> str:

@@ -21,9 +21,9 @@ from std_msgs.msg import Bool, Empty, Float32, Int8, Int16
 
 from thymio_sim_ros.nodes import qos
 from thymio_sim_ros.nodes.names import PROXIMITY, SIDES, RobotNames
-from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.commands import BUTTONS, MotorTargets
-from thymio_sim_ros.sim.thymio2 import WHEEL_TRACK_M
+from thymio_sim_ros.sim.model import units
+from thymio_sim_ros.sim.model.robot_constants import WHEEL_TRACK_M
 
 __all__ = ["Feed", "proximity_count", "subscribe", "twist_of"]
 

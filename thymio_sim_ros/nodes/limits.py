@@ -13,10 +13,11 @@ from typing import Any
 from geometry_msgs.msg import Twist, TwistStamped
 from std_msgs.msg import ColorRGBA, Float32, Float32MultiArray, Float64MultiArray, Int8, Int16, Int16MultiArray
 
-from thymio_sim_ros.sim import commands, thymio2
+from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.actuators.comm import FULL_PAYLOAD
 from thymio_sim_ros.sim.actuators.motors import wanted_speeds
-from thymio_sim_ros.sim.tones import HIGHEST_HZ, LOWEST_HZ, SYSTEM_SOUNDS
+from thymio_sim_ros.sim.audio.synthesis import HIGHEST_HZ, LOWEST_HZ, SYSTEM_SOUNDS
+from thymio_sim_ros.sim.model import robot_constants
 
 __all__ = [
     "LONGEST_TONE_S",
@@ -74,10 +75,10 @@ def wheels(message: Float64MultiArray) -> str:
 
 def _speeds(command: commands.BodyTwist | commands.WheelVelocities) -> str:
     fastest = max(abs(speed) for speed in wanted_speeds(command))
-    if fastest <= thymio2.MAX_SPEED_M_S * (1.0 + _ROUNDING):
+    if fastest <= robot_constants.MAX_SPEED_M_S * (1.0 + _ROUNDING):
         return ""
     return (
-        f"a wheel would need {fastest:.3g} m/s, expected at most {thymio2.MAX_SPEED_M_S:.3g};"
+        f"a wheel would need {fastest:.3g} m/s, expected at most {robot_constants.MAX_SPEED_M_S:.3g};"
         " both wheels are slowed down together"
     )
 
@@ -91,7 +92,7 @@ def _outside(values: Iterable[float], low: float, high: float, what: str) -> str
 
 def targets(message: Int16MultiArray) -> str:
     """Targets of motors beyond full speed."""
-    return _outside(message.data, -thymio2.FULL_TARGET, thymio2.FULL_TARGET, "target")
+    return _outside(message.data, -robot_constants.FULL_TARGET, robot_constants.FULL_TARGET, "target")
 
 
 def color(message: ColorRGBA) -> str:

@@ -17,11 +17,11 @@ from visualization_msgs.msg import Marker, MarkerArray, UVCoordinate
 
 from thymio_sim_ros.nodes.convert import quaternion
 from thymio_sim_ros.nodes.names import MAP_FRAME
-from thymio_sim_ros.sim import pictures
-from thymio_sim_ros.sim.geometry import Point
-from thymio_sim_ros.sim.mosaic import Tile, mosaic
-from thymio_sim_ros.sim.pictures import Pixels
-from thymio_sim_ros.sim.primitives import Box, Color, Disc, Drawable, Floor, Paint, Print, Solid
+from thymio_sim_ros.sim.formats import image_io
+from thymio_sim_ros.sim.formats.image_io import Pixels
+from thymio_sim_ros.sim.ground.rect_tiling import Tile, mosaic
+from thymio_sim_ros.sim.model.geometry import Point
+from thymio_sim_ros.sim.model.primitives import Box, Color, Disc, Drawable, Floor, Paint, Print, Solid
 
 LAYER_M = 0.0002
 """Each paint lies this much above the one before, so that a viewer need not guess which covers which."""
@@ -108,7 +108,7 @@ def _print(printed: Print, number: int, height_m: float, tiles: int) -> Marker:
             marker.points.append(PointMsg(x=u - 0.5, y=v - 0.5))
             marker.uv_coordinates.append(UVCoordinate(u=u, v=v))
     marker.texture_resource = f"embedded://{printed.name}"
-    marker.texture = CompressedImage(format="png", data=pictures.encode_png(pixels, most=MOST_TEXELS))
+    marker.texture = CompressedImage(format="png", data=image_io.encode_png(pixels, most=MOST_TEXELS))
     return marker
 
 

@@ -9,8 +9,8 @@ from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
 from thymio_sim_ros.nodes import command_topics, sensor_topics
 from thymio_sim_ros.nodes.names import is_hidden
 from thymio_sim_ros.sim.actuators import all_actuators
-from thymio_sim_ros.sim.aseba_face import Native
 from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.plugin_api.aseba_binding import Native
 from thymio_sim_ros.sim.sensors import Sensor
 
 __all__ = ["migration"]

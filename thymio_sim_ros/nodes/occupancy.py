@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from geometry_msgs.msg import Point
 from nav_msgs.msg import OccupancyGrid
 
-from thymio_sim_ros.sim.occupancy import grid
-from thymio_sim_ros.sim.primitives import Floor, Solid
+from thymio_sim_ros.sim.ground.occupancy import grid
+from thymio_sim_ros.sim.model.primitives import Floor, Solid
 
 __all__ = ["occupancy"]
 

@@ -14,9 +14,9 @@ from thymio_sim_ros.nodes import command_values, limits, qos
 from thymio_sim_ros.nodes.command_topics import CommandRow
 from thymio_sim_ros.nodes.command_values import CommandError
 from thymio_sim_ros.sim import commands
+from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL
 from thymio_sim_ros.sim.commands import Command
-from thymio_sim_ros.sim.sound import FULL_LEVEL
-from thymio_sim_ros.sim.units import GROUND_FULL
+from thymio_sim_ros.sim.model.units import GROUND_FULL
 
 __all__ = ["ROWS"]
 

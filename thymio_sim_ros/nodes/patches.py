@@ -9,9 +9,9 @@ from itertools import chain
 from typing import Any, TypeAlias
 
 from thymio_sim_ros.nodes.templates import Patch, Span
-from thymio_sim_ros.sim import readings, thymio2, units
 from thymio_sim_ros.sim.commands import LED_FULL, LED_GROUPS
-from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt, Twist
+from thymio_sim_ros.sim.model import readings, robot_constants, units
+from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt, Twist
 
 __all__ = [
     "BATTERY",
@@ -93,13 +93,16 @@ def ray_lines(reading: readings.ProximityReading) -> tuple[list[Point], list[Col
     colors: list[Color] = []
     for (x, y, dx, dy), range_m in zip(_RAYS, reading.ranges_m, strict=True):
         is_free = math.isinf(range_m)
-        length = thymio2.PROXIMITY_RANGE_M if is_free else range_m
-        ends += ((x, y, thymio2.PROXIMITY_HEIGHT_M), (x + length * dx, y + length * dy, thymio2.PROXIMITY_HEIGHT_M))
+        length = robot_constants.PROXIMITY_RANGE_M if is_free else range_m
+        ends += (
+            (x, y, robot_constants.PROXIMITY_HEIGHT_M),
+            (x + length * dx, y + length * dy, robot_constants.PROXIMITY_HEIGHT_M),
+        )
         colors += (_FREE if is_free else _HIT,) * 2
     return ends, colors
 
 
-_RAYS = tuple((x, y, math.cos(yaw), math.sin(yaw)) for x, y, yaw in thymio2.PROXIMITY_POSES)
+_RAYS = tuple((x, y, math.cos(yaw), math.sin(yaw)) for x, y, yaw in robot_constants.PROXIMITY_POSES)
 _FREE: Color = (0.45, 0.75, 1.0, 0.6)
 _HIT: Color = (1.0, 0.3, 0.2, 1.0)
 """Colors of rays that meet nothing and of those that do."""

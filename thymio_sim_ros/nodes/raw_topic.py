@@ -18,7 +18,7 @@ from std_msgs.msg import Int16MultiArray
 from thymio_sim_ros.nodes import direct, sensor_topics
 from thymio_sim_ros.nodes.audience import Audience, Heard
 from thymio_sim_ros.nodes.names import raw_topic
-from thymio_sim_ros.sim.readings import Reading
+from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.sensors import all_sensors
 
 __all__ = ["Decoder", "RawTopic", "Told", "encode"]

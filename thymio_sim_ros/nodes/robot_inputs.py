@@ -24,7 +24,7 @@ from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.limits import Beyond
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
-from thymio_sim_ros.sim.geometry import Pose, wrap_angle
+from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
 
 __all__ = ["Moment", "RobotInput", "robot_inputs"]
 

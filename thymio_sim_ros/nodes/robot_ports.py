@@ -28,9 +28,9 @@ from thymio_sim_ros.nodes.templates import Template
 from thymio_sim_ros.nodes.warner import Warner
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
-from thymio_sim_ros.sim.geometry import Pose, Tilt, Twist
-from thymio_sim_ros.sim.placement import PlacementError
-from thymio_sim_ros.sim.readings import PoseReading, Reading
+from thymio_sim_ros.sim.model.geometry import Pose, Tilt, Twist
+from thymio_sim_ros.sim.model.readings import PoseReading, Reading
+from thymio_sim_ros.sim.playground.placement import PlacementError
 from thymio_sim_ros.sim.sensors import all_sensors
 
 __all__ = ["DESCRIBED", "DESCRIPTION", "SERVICES", "PortOptions", "RobotPorts", "first_words"]

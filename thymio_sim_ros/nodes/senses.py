@@ -12,7 +12,7 @@ from visualization_msgs.msg import Marker
 from thymio_sim_ros.nodes import patches
 from thymio_sim_ros.nodes.headers import stamped
 from thymio_sim_ros.nodes.names import RobotNames
-from thymio_sim_ros.sim import readings
+from thymio_sim_ros.sim.model import readings
 
 ACCELERATION_VARIANCE = 0.07
 TEMPERATURE_VARIANCE = 0.01

@@ -33,9 +33,9 @@ from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames, raw_topic
 from thymio_sim_ros.nodes.templates import Patch
 from thymio_sim_ros.sim import commands
-from thymio_sim_ros.sim.readings import LoudspeakerReading, PenReading, Reading
+from thymio_sim_ros.sim.audio.synthesis import TRIANGLE
+from thymio_sim_ros.sim.model.readings import LoudspeakerReading, PenReading, Reading
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.tones import TRIANGLE
 
 JOINTS, TRUTH = "joint_states", "_ground_truth/odom"
 

@@ -20,11 +20,11 @@ from thymio_sim_ros.nodes.sim_answers import (
     resource,
 )
 from thymio_sim_ros.nodes.world_services import Controlled
-from thymio_sim_ros.sim import fields
 from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
-from thymio_sim_ros.sim.fields import FieldError
-from thymio_sim_ros.sim.placement import PlacementError
-from thymio_sim_ros.sim.playground import RobotStart
+from thymio_sim_ros.sim.model import fields
+from thymio_sim_ros.sim.model.fields import FieldError
+from thymio_sim_ros.sim.playground.placement import PlacementError
+from thymio_sim_ros.sim.playground.reader import RobotStart
 
 __all__ = ["SPAWNABLE", "Entities"]
 

@@ -16,8 +16,8 @@ from thymio_sim_ros import resources
 from thymio_sim_ros.nodes.sim_answers import FAILED, UNSUPPORTED, Act, Offer, RefusedError, answering, resource
 from thymio_sim_ros.nodes.sim_entities import SPAWNABLE, Entities
 from thymio_sim_ros.nodes.world_services import STOPPED_BY_ITSELF, Controlled, presently
-from thymio_sim_ros.sim import playground as playgrounds
-from thymio_sim_ros.sim.playground import PlaygroundError
+from thymio_sim_ros.sim.playground import reader as playgrounds
+from thymio_sim_ros.sim.playground.reader import PlaygroundError
 
 __all__ = ["OFFERS", "PACKAGE", "STEPS", "SimInterfaces", "offered"]
 

@@ -41,12 +41,12 @@ from thymio_sim_ros.nodes.transforms import TRANSFORMING, Transforms, frames_of
 from thymio_sim_ros.nodes.world_ports import Pace, SceneMessages, WorldPorts, WorldState
 from thymio_sim_ros.nodes.world_services import WorldServices
 from thymio_sim_ros.runlog import RunLog
-from thymio_sim_ros.sim.clock import TICK_NS, Pacer
-from thymio_sim_ros.sim.columns import rows_of
 from thymio_sim_ros.sim.commands import Command
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.ground import Ground
-from thymio_sim_ros.sim.playground import Playground, PlaygroundError, RobotStart
+from thymio_sim_ros.sim.ground.sampling import Ground
+from thymio_sim_ros.sim.model.clock import TICK_NS, Pacer
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError, RobotStart
+from thymio_sim_ros.sim.plugin_api.reading_table import rows_of
 from thymio_sim_ros.sim.world import World
 
 __all__ = ["Simulator", "SimulatorParams", "main"]

@@ -14,14 +14,14 @@ from thymio_sim_ros.nodes.patches import PROXIMITY_MIN_M
 from thymio_sim_ros.nodes.robot_ports import DESCRIPTION, PortOptions
 from thymio_sim_ros.nodes.sensor_topics import JOINTS, TRUTH
 from thymio_sim_ros.nodes.transforms import TransformOptions
-from thymio_sim_ros.sim import fields
-from thymio_sim_ros.sim.clock import TICK_NS
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
-from thymio_sim_ros.sim.fields import FieldError
-from thymio_sim_ros.sim.playground import Playground, RobotStart
+from thymio_sim_ros.sim.model import fields
+from thymio_sim_ros.sim.model.clock import TICK_NS
+from thymio_sim_ros.sim.model.fields import FieldError
+from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
+from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.sensors import NEVER_NS, all_sensors
 from thymio_sim_ros.sim.sensors.proximity import SENSOR as SCANNER
-from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
 
 __all__ = ["SimulatorParams"]
 

@@ -21,8 +21,8 @@ from thymio_sim_ros.nodes.description import fixed_frames, wheel_position
 from thymio_sim_ros.nodes.names import MAP_FRAME, SIDES, RobotNames
 from thymio_sim_ros.nodes.patches import rotation, wheel_rotation
 from thymio_sim_ros.nodes.tf_messages import Transform
-from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
-from thymio_sim_ros.sim.readings import PoseReading, Reading
+from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
+from thymio_sim_ros.sim.model.readings import PoseReading, Reading
 
 __all__ = ["TRANSFORMING", "TransformOptions", "Transforms", "frames_of", "origin_of"]
 

@@ -25,9 +25,9 @@ from thymio_sim_ros.nodes.markers import playground_markers
 from thymio_sim_ros.nodes.names import MAP_FRAME, RobotNames
 from thymio_sim_ros.nodes.occupancy import occupancy
 from thymio_sim_ros.nodes.templates import Patch, Template
-from thymio_sim_ros.sim import playground as playgrounds
-from thymio_sim_ros.sim.playground import Playground, PlaygroundError
-from thymio_sim_ros.sim.scene import ObjectSnapshot
+from thymio_sim_ros.sim.playground import reader as playgrounds
+from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
+from thymio_sim_ros.sim.playground.scene import ObjectSnapshot
 from thymio_sim_ros.sim.world import World
 
 CLOCK_GAP = 0.9

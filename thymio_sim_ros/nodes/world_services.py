@@ -21,10 +21,11 @@ from thymio_sim_ros.nodes import convert, qos
 from thymio_sim_ros.nodes.headers import SECOND_NS
 from thymio_sim_ros.nodes.names import RobotNames
 from thymio_sim_ros.nodes.warner import Warner
-from thymio_sim_ros.sim import fields, playground_text
 from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
-from thymio_sim_ros.sim.fields import FieldError
-from thymio_sim_ros.sim.playground import RobotStart
+from thymio_sim_ros.sim.model import fields
+from thymio_sim_ros.sim.model.fields import FieldError
+from thymio_sim_ros.sim.playground import writer
+from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
 __all__ = ["PLACE", "PLACED", "SERVICES", "Controlled", "WorldServices", "presently"]
@@ -220,7 +221,7 @@ class WorldServices:
         return response
 
     def _get_playground(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        response.success, response.message = True, playground_text.dumps(self._simulator.world.playground)
+        response.success, response.message = True, writer.dumps(self._simulator.world.playground)
         return response
 
     def _place(self, message: TransformStamped) -> None:

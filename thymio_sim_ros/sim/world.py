@@ -12,22 +12,28 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from thymio_sim_ros.sim.actuators import all_actuators
-from thymio_sim_ros.sim.clock import TICK_NS, Schedule, SimClock
+from thymio_sim_ros.sim.batch.robot_batch import CROWD, Crowd
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, MoveObject, MoveRobot, SetMotorModel, SetPen
-from thymio_sim_ros.sim.crowd import CROWD, Crowd
-from thymio_sim_ros.sim.fields import FieldError, as_color, read, write
-from thymio_sim_ros.sim.footing import Footing
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.ground import Ground
-from thymio_sim_ros.sim.journal import Input, Journal, Posted, Removed, Reset, Spawned, WorldOptions
+from thymio_sim_ros.sim.ground.floor_support import Footing
+from thymio_sim_ros.sim.ground.sampling import Ground
+from thymio_sim_ros.sim.input_recorder import Input, Journal, Posted, Removed, Reset, Spawned, WorldOptions
+from thymio_sim_ros.sim.model.clock import TICK_NS, Schedule, SimClock
+from thymio_sim_ros.sim.model.fields import FieldError, as_color, read, write
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.readings import Reading
+from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.physics import Contact, MovableBody, Physics
-from thymio_sim_ros.sim.placement import Footprint, Occupied, PlacementError, footprint_of, footprint_of_robot
-from thymio_sim_ros.sim.playground import Playground, RobotStart
-from thymio_sim_ros.sim.readings import Reading
-from thymio_sim_ros.sim.robot import Robot, Shared
-from thymio_sim_ros.sim.scene import ObjectSnapshot, Scene, Snapshot
+from thymio_sim_ros.sim.playground.placement import (
+    Footprint,
+    Occupied,
+    PlacementError,
+    footprint_of,
+    footprint_of_robot,
+)
+from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
+from thymio_sim_ros.sim.playground.scene import ObjectSnapshot, Scene, Snapshot
+from thymio_sim_ros.sim.robot.robot import Robot, Shared
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
-from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS
 
 __all__ = ["TICK_NS", "StepResult", "World"]
 

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 
 from thymio_sim_ros.sim.commands import LED_FULL, LED_GROUPS
-from thymio_sim_ros.sim.geometry import Pose, wrap_angle
+from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
 from thymio_sim_ros.testing.thymio import Thymio
 
 __all__ = ["Check", "emitted", "no_contact", "reached", "shows", "slower_than"]

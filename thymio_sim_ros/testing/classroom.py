@@ -13,8 +13,8 @@ import pytest
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.program import ThymioProgram, load_program
 from thymio_sim_ros.runner import Runner
-from thymio_sim_ros.sim.clock import TICK_NS
-from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.model.clock import TICK_NS
+from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.world import World
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.report import robot_lines

@@ -6,19 +6,19 @@ import itertools
 import math
 from collections.abc import Sequence
 
-from thymio_sim_ros.sim import thymio2
-from thymio_sim_ros.sim.geometry import Point
-from thymio_sim_ros.sim.playground import Playground
+from thymio_sim_ros.sim.model import robot_constants
+from thymio_sim_ros.sim.model.geometry import Point
+from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.shapes.track import Track
 from thymio_sim_ros.testing.checks import Check
 from thymio_sim_ros.testing.thymio import Thymio
 
 __all__ = ["Line", "followed_line"]
 
-EYES: Point = (thymio2.GROUND_SENSORS[0][0], 0.0)
+EYES: Point = (robot_constants.GROUND_SENSORS[0][0], 0.0)
 """The middle between the ground sensors, in the robot's frame."""
 
-_BESIDE_M = thymio2.GROUND_SENSORS[0][1]
+_BESIDE_M = robot_constants.GROUND_SENSORS[0][1]
 """How far each of them is from there."""
 
 EVERY = 5

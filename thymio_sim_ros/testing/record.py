@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.robot import Robot
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.robot.robot import Robot
 
 __all__ = ["SECOND_NS", "Event", "Moment", "Record", "Touch"]
 

@@ -24,9 +24,9 @@ from thymio_sim_ros.sim.commands import (
     Tap,
     Tilt,
 )
-from thymio_sim_ros.sim.fields import as_color
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.primitives import Stroke
+from thymio_sim_ros.sim.model.fields import as_color
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.primitives import Stroke
 from thymio_sim_ros.sim.world import World
 from thymio_sim_ros.testing.record import Event, Moment, Record, Touch
 

@@ -19,7 +19,7 @@ from typing import Any, cast
 from aiohttp import web
 
 from thymio_sim_ros.resources import PAGE_BUILD_HINT
-from thymio_sim_ros.sim.playground import PlaygroundError
+from thymio_sim_ros.sim.playground.reader import PlaygroundError
 from thymio_sim_ros.web.connections import Connections, Phase, Place
 from thymio_sim_ros.web.content import TYPES, Content, Document
 from thymio_sim_ros.web.settings import Settings

@@ -8,7 +8,7 @@ import { check, describe, Fault, needed, optional, RULES } from "./rules.js";
 /** @typedef {Readonly<{ title: string, description: string, translations: Readonly<Record<string, any>>, items: readonly Item[] }>} Playground */
 
 export const FORMAT = 1;
-/** As the simulator's (sim/playground.py). */
+/** As the simulator's (sim/playground/reader.py). */
 export const MOST = { shapes: 1000, robots: 1000, translations: 50 };
 const LANGUAGE = /^[a-z]{2,3}(-[A-Za-z0-9]{2,8})*$/;
 

@@ -1,5 +1,5 @@
 // Plane geometry: poses, convex outlines, and whether they overlap. Metres, radians, counter-clockwise. Pure.
-// The tests of overlap are those of thymio_sim_ros/sim/geometry.py, so that page and simulator judge alike.
+// The tests of overlap are those of thymio_sim_ros/sim/model/geometry.py, so that page and simulator judge alike.
 
 /** @typedef {readonly [number, number]} Point */
 /** @typedef {{ x: number, y: number, yaw: number }} Pose */

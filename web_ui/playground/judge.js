@@ -1,5 +1,5 @@
 // What must be true of a playground as a whole, and whether an item can be where it is. Pure.
-// The rules are those of thymio_sim_ros/sim/playground_checks.py: what passes here, the simulator takes.
+// The rules are those of thymio_sim_ros/sim/playground/checks.py: what passes here, the simulator takes.
 
 import { holds, overlap } from "./geometry.js";
 import { kindNamed } from "./kinds/index.js";
@@ -10,7 +10,7 @@ import { check, Fault, needed, RULES } from "./rules.js";
 /** @typedef {import("./document.js").Playground} Playground */
 /** @typedef {import("./rules.js").Phrase} Phrase */
 
-/** As the simulator's (sim/playground.py). */
+/** As the simulator's (sim/playground/reader.py). */
 const MOST_PARTS = 10_000;
 
 /**

@@ -1,4 +1,4 @@
-// What shapes are made of. Pure; the same parts as thymio_sim_ros/sim/primitives.py has.
+// What shapes are made of. Pure; the same parts as thymio_sim_ros/sim/model/primitives.py has.
 
 import { placed, rectangle } from "./geometry.js";
 

@@ -8,7 +8,7 @@ import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, make, post_wall, send, sense
 from thymio_sim_ros.sim.commands import SetAmbientLight, SetGround, SetProximity
-from thymio_sim_ros.sim.units import proximity_distance
+from thymio_sim_ros.sim.model.units import proximity_distance
 from thymio_sim_ros.sim.world import World
 
 ALONE, AT_ONCE = 10**9, 1

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from tests.sim.builders import FLOOR, make, send
 from tests.sim.fake_view import FakeView
-from thymio_sim_ros.sim import geometry
 from thymio_sim_ros.sim.actuators.hand import ACTUATOR, HandState
 from thymio_sim_ros.sim.commands import MoveRobot, ResetOdometry, Tilt
-from thymio_sim_ros.sim.geometry import Pose
+from thymio_sim_ros.sim.model import geometry
+from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.world import World
 
 

@@ -7,6 +7,7 @@ import math
 import pytest
 
 from tests.sim.fake_view import FakeView
+from thymio_sim_ros.sim.actuators._led_patterns import GESTURES
 from thymio_sim_ros.sim.actuators.leds import ACTUATOR, LED_NUMBERS, LedState
 from thymio_sim_ros.sim.commands import (
     LED_GESTURES,
@@ -20,7 +21,6 @@ from thymio_sim_ros.sim.commands import (
     ShowOnLeds,
     StopGesture,
 )
-from thymio_sim_ros.sim.gestures import GESTURES
 
 
 def test_every_group_has_a_native_of_its_size() -> None:

@@ -9,6 +9,7 @@ import pytest
 from tests.sim.builders import FLOOR, make, readings, run, send
 from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.loudspeaker import ACTUATOR, LoudspeakerState
+from thymio_sim_ros.sim.audio.synthesis import BLOCK_NS, SAMPLE_NS, TRIANGLE
 from thymio_sim_ros.sim.commands import (
     Command,
     PlaySamples,
@@ -19,7 +20,6 @@ from thymio_sim_ros.sim.commands import (
     SetWave,
     StopSound,
 )
-from thymio_sim_ros.sim.tones import BLOCK_NS, SAMPLE_NS, TRIANGLE
 from thymio_sim_ros.sim.world import World
 
 SECOND_NS = 1_000_000_000

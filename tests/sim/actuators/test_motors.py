@@ -10,7 +10,7 @@ from tests.sim.builders import FLOOR, make, post_wall, readings, run, send
 from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.motors import ACTUATOR, MotorState, wheel_speeds
 from thymio_sim_ros.sim.commands import BodyTwist, MotorTargets, WheelVelocities
-from thymio_sim_ros.sim.noise import Noise
+from thymio_sim_ros.sim.model.noise import Noise
 from thymio_sim_ros.sim.world import World
 
 SECOND_NS = 1_000_000_000

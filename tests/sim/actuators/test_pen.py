@@ -12,8 +12,8 @@ from tests.sim.builders import FLOOR, make, readings, run, send, sense
 from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.pen import ACTUATOR, PenState
 from thymio_sim_ros.sim.commands import BodyTwist, MotorTargets, MoveRobot, SetPen
-from thymio_sim_ros.sim.geometry import Point, Pose
-from thymio_sim_ros.sim.primitives import Color
+from thymio_sim_ros.sim.model.geometry import Point, Pose
+from thymio_sim_ros.sim.model.primitives import Color
 from thymio_sim_ros.sim.world import World
 
 BLACK, RED = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)

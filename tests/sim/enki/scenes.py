@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from tests.sim.builders import GREY, make
-from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.commands import MotorTargets
-from thymio_sim_ros.sim.playground import RobotStart
-from thymio_sim_ros.sim.primitives import Disc, Polygon, Solid
+from thymio_sim_ros.sim.model import robot_constants
+from thymio_sim_ros.sim.model.primitives import Disc, Polygon, Solid
+from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
 SHIPPED = Path(__file__).parents[2] / "data" / "enki"
@@ -107,7 +107,7 @@ def _thing(thing: Mapping[str, Any], name: str) -> dict[str, Any]:
     else:
         shape["radius_m"] = thing["radius"]
     if thing.get("mass") is not None:
-        shape["mass_kg"] = thing["mass"] * thymio2.MASS_KG / 200
+        shape["mass_kg"] = thing["mass"] * robot_constants.MASS_KG / 200
         shape["friction"] = thing.get("dry_friction", 0.25) / 100
         shape["restitution"] = thing.get("elasticity", 0.9) * 0.9
     return shape

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from tests.sim.enki.scenes import Scene
-from thymio_sim_ros.sim import thymio2
-from thymio_sim_ros.sim.geometry import Point, Pose
-from thymio_sim_ros.sim.ground import Ground
-from thymio_sim_ros.sim.primitives import Floor, Paint
+from thymio_sim_ros.sim.ground.sampling import Ground
+from thymio_sim_ros.sim.model import robot_constants
+from thymio_sim_ros.sim.model.geometry import Point, Pose
+from thymio_sim_ros.sim.model.primitives import Floor, Paint
 from thymio_sim_ros.sim.sensors.ground import response
 
 
@@ -20,11 +20,11 @@ def test_a_ground_reads_as_measured(scene: Scene) -> None:
     ground = ground_of(scene)
     start = scene["robots"][0]
     pose = Pose(start["x"], start["y"], start["theta"])
-    places = [pose.place(place) for place in thymio2.GROUND_SENSORS]
+    places = [pose.place(place) for place in robot_constants.GROUND_SENSORS]
     samples = [ground.sample(*place) for place in places]
     assert [response(sample) for sample in samples] == pytest.approx(scene["noiseless"], abs=2)
     poses = np.array([(pose.x_m, pose.y_m, pose.yaw_rad)])
-    reflectances, floors = ground.sample_under(poses, np.array(thymio2.GROUND_SENSORS))
+    reflectances, floors = ground.sample_under(poses, np.array(robot_constants.GROUND_SENSORS))
     assert list(zip(reflectances[0].tolist(), floors[0].tolist(), strict=True)) == [
         (sample.reflectance, sample.floor) for sample in samples
     ]

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from tests.sim.enki.scenes import Scene, mean_rows, play
-from thymio_sim_ros.sim.units import units_to_speed
+from thymio_sim_ros.sim.model.units import units_to_speed
 
 SEEDS = range(8)
 ROUNDED = 1e-5

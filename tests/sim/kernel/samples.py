@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from thymio_sim_ros.sim.kernel.language import Floats, Ints, Words
+from thymio_sim_ros.sim.kernel.compiler import Floats, Ints, Words
 
 KERNELS = (
     "square", "arithmetic", "integers", "logic", "loops", "nested", "words", "choose", "early", "beyond",

@@ -8,11 +8,11 @@ import random
 import numpy as np
 import pytest
 
-from thymio_sim_ros.sim.noise import Noise, NormalBank
+from thymio_sim_ros.sim.model.noise import Noise, NormalBank
+from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS, PROXIMITY_RANGE_M
+from thymio_sim_ros.sim.model.units import PROXIMITY_FULL
 from thymio_sim_ros.sim.sensors import proximity
-from thymio_sim_ros.sim.sensors._counts import ProximityCounts
-from thymio_sim_ros.sim.thymio2 import PROXIMITY_MODELS, PROXIMITY_RANGE_M
-from thymio_sim_ros.sim.units import PROXIMITY_FULL
+from thymio_sim_ros.sim.sensors._proximity_binding import ProximityCounts
 
 USERS = 5
 

@@ -8,17 +8,17 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
+from tests.sim.batch.test_robot_batch import busy
 from tests.sim.builders import shipped
-from tests.sim.test_crowd import busy
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.physics.lookout import Lookout
-from thymio_sim_ros.sim.playground import Playground
-from thymio_sim_ros.sim.primitives import Box, Solid
-from thymio_sim_ros.sim.rays import obstacle_of
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.primitives import Box, Solid
+from thymio_sim_ros.sim.physics.broadphase_batch import Lookout
+from thymio_sim_ros.sim.playground.reader import Playground
+from thymio_sim_ros.sim.raycast.scalar import obstacle_of
 from thymio_sim_ros.sim.world import World
 
-WHERE = ("physics.fleet", "physics.lookout", "wheels")
+WHERE = ("physics.batch_driver", "physics.broadphase_batch", "mechanics.wheels")
 
 
 def steps(monkeypatch: pytest.MonkeyPatch, scene: Playground, elsewhere: Pose, *, is_compiled: bool) -> Iterator[bytes]:

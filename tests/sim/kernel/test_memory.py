@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.sim.kernel import samples
-from thymio_sim_ros.sim.kernel.language import KernelError
+from thymio_sim_ros.sim.kernel.compiler import KernelError
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 
 

@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 from tests.sim.builders import FLOOR, GREY, box, make
-from thymio_sim_ros.sim import thymio2
 from thymio_sim_ros.sim.commands import MotorTargets
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.placement import Footprint, Occupied, footprint_of, footprint_of_robot
-from thymio_sim_ros.sim.primitives import Box, Disc, Solid
+from thymio_sim_ros.sim.model import robot_constants
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.primitives import Box, Disc, Solid
+from thymio_sim_ros.sim.playground.placement import Footprint, Occupied, footprint_of, footprint_of_robot
 from thymio_sim_ros.sim.world import World
 
 OVERLAP_M = 0.002
@@ -68,8 +68,8 @@ def core(solid: Solid) -> Footprint:
 
 def core_of_robot(name: str, pose: Pose) -> Footprint:
     middle = 0.025
-    hull = [((x - middle) * 0.96 + middle, y * 0.96) for x, y in thymio2.hull()]
-    return Footprint(name, (pose.x_m, pose.y_m), thymio2.HULL_RADIUS_M, pose.place_all(hull))
+    hull = [((x - middle) * 0.96 + middle, y * 0.96) for x, y in robot_constants.hull()]
+    return Footprint(name, (pose.x_m, pose.y_m), robot_constants.HULL_RADIUS_M, pose.place_all(hull))
 
 
 @pytest.mark.parametrize("robots", [1, 4, 12])

@@ -9,8 +9,8 @@ import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, box, make, pose_close, run, send
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.physics import singles
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.physics import scalar_driver
 from thymio_sim_ros.sim.world import World
 
 
@@ -124,7 +124,7 @@ def test_gliding_is_what_the_engine_does(monkeypatch: pytest.MonkeyPatch) -> Non
         return poses
 
     gliding = go()
-    monkeypatch.setattr(singles, "quiet_ticks", lambda robot, nearby, at_least, is_alone: 0)
+    monkeypatch.setattr(scalar_driver, "quiet_ticks", lambda robot, nearby, at_least, is_alone: 0)
     for glided, stepped in zip(gliding, go(), strict=True):
         assert pose_close(glided, stepped, 1e-9)
 

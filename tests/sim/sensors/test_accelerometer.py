@@ -9,12 +9,12 @@ import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, make, post_wall, readings, run, send
 from tests.sim.fake_view import FakeView
-from thymio_sim_ros.sim import geometry
 from thymio_sim_ros.sim.commands import BodyTwist, MotorTargets, MoveRobot, Tilt
-from thymio_sim_ros.sim.geometry import Pose, Twist
-from thymio_sim_ros.sim.noise import Noise
+from thymio_sim_ros.sim.model import geometry
+from thymio_sim_ros.sim.model.geometry import Pose, Twist
+from thymio_sim_ros.sim.model.noise import Noise
+from thymio_sim_ros.sim.model.readings import AccelerometerReading
 from thymio_sim_ros.sim.physics import Contact
-from thymio_sim_ros.sim.readings import AccelerometerReading
 from thymio_sim_ros.sim.sensors import accelerometer
 from thymio_sim_ros.sim.world import World
 

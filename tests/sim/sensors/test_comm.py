@@ -10,7 +10,7 @@ import pytest
 
 from tests.sim.builders import FLOOR, box, make, run
 from thymio_sim_ros.sim.commands import EnableComm, MotorTargets, SetCommPayload
-from thymio_sim_ros.sim.readings import CommReading
+from thymio_sim_ros.sim.model.readings import CommReading
 from thymio_sim_ros.sim.sensors import comm
 from thymio_sim_ros.sim.world import World
 

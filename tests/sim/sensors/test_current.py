@@ -6,10 +6,10 @@ import pytest
 
 from tests.sim.builders import FLOOR, make, post_wall, readings, run, send
 from tests.sim.fake_view import FakeView
-from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.commands import MotorTargets, SetMotorModel
+from thymio_sim_ros.sim.mechanics.wheels import Wheels
+from thymio_sim_ros.sim.model import units
 from thymio_sim_ros.sim.sensors import current
-from thymio_sim_ros.sim.wheels import Wheels
 from thymio_sim_ros.sim.world import World
 
 

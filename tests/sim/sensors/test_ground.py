@@ -9,11 +9,11 @@ import pytest
 from tests.sim.builders import FLOOR, ROBOT, make, sense
 from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.room import RoomState
+from thymio_sim_ros.sim.batch.robot_batch import CROWD
 from thymio_sim_ros.sim.commands import SetAmbientLight
-from thymio_sim_ros.sim.crowd import CROWD
-from thymio_sim_ros.sim.ground import GroundSample
-from thymio_sim_ros.sim.noise import Noise
-from thymio_sim_ros.sim.readings import GroundReading
+from thymio_sim_ros.sim.ground.sampling import GroundSample
+from thymio_sim_ros.sim.model.noise import Noise
+from thymio_sim_ros.sim.model.readings import GroundReading
 from thymio_sim_ros.sim.sensors.ground import SENSOR
 from thymio_sim_ros.sim.world import World
 

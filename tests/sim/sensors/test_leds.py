@@ -11,7 +11,7 @@ from thymio_sim_ros.sim.commands import (
     LED_GROUPS,
     SetLeds,
 )
-from thymio_sim_ros.sim.readings import LedReading
+from thymio_sim_ros.sim.model.readings import LedReading
 from thymio_sim_ros.sim.sensors import leds
 from thymio_sim_ros.sim.world import World
 

@@ -9,9 +9,9 @@ from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.commands import (
     MotorTargets,
 )
-from thymio_sim_ros.sim.readings import MotorReading
+from thymio_sim_ros.sim.mechanics.wheels import Wheels
+from thymio_sim_ros.sim.model.readings import MotorReading
 from thymio_sim_ros.sim.sensors import motor
-from thymio_sim_ros.sim.wheels import Wheels
 from thymio_sim_ros.sim.world import World
 
 

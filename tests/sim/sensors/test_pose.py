@@ -12,10 +12,10 @@ from thymio_sim_ros.sim.commands import (
     MoveRobot,
     ResetOdometry,
 )
-from thymio_sim_ros.sim.geometry import Pose, Twist
-from thymio_sim_ros.sim.readings import PoseReading
+from thymio_sim_ros.sim.mechanics.wheels import Wheels
+from thymio_sim_ros.sim.model.geometry import Pose, Twist
+from thymio_sim_ros.sim.model.readings import PoseReading
 from thymio_sim_ros.sim.sensors import pose
-from thymio_sim_ros.sim.wheels import Wheels
 from thymio_sim_ros.sim.world import World
 
 

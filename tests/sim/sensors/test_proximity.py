@@ -12,12 +12,12 @@ from hypothesis.strategies import floats
 
 from tests.sim.builders import FLOOR, ROBOT, box, make, post_wall, sense
 from tests.sim.fake_view import FakeView
-from thymio_sim_ros.sim import thymio2
-from thymio_sim_ros.sim.noise import Noise
-from thymio_sim_ros.sim.rays import ConvexObstacle, DiscObstacle
-from thymio_sim_ros.sim.readings import ProximityReading
+from thymio_sim_ros.sim.model import robot_constants
+from thymio_sim_ros.sim.model.noise import Noise
+from thymio_sim_ros.sim.model.readings import ProximityReading
+from thymio_sim_ros.sim.model.units import PROXIMITY_FULL
+from thymio_sim_ros.sim.raycast.scalar import ConvexObstacle, DiscObstacle
 from thymio_sim_ros.sim.sensors.proximity import SENSOR
-from thymio_sim_ros.sim.units import PROXIMITY_FULL
 from thymio_sim_ros.sim.world import World
 
 FRONT = 2
@@ -123,7 +123,7 @@ def test_noise_spreads_counts_as_measured() -> None:
     noise = Noise(1, "thymio", "proximity")
     counts = [measure(FakeView(obstacles=(wall_ahead(0.05),), noise=noise)).words[FRONT] for _ in range(2000)]
     assert statistics.mean(counts) == pytest.approx(3366, abs=0.5)
-    assert statistics.stdev(counts) == pytest.approx(thymio2.PROXIMITY_NOISE, rel=0.1)
+    assert statistics.stdev(counts) == pytest.approx(robot_constants.PROXIMITY_NOISE, rel=0.1)
 
 
 def test_noise_never_leaves_the_limits() -> None:

@@ -8,10 +8,10 @@ from tests.sim.builders import FLOOR, ROBOT, make, readings, run, send
 from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.microphone import MicrophoneState
 from thymio_sim_ros.sim.actuators.room import RoomState
+from thymio_sim_ros.sim.audio.propagation import Sound
 from thymio_sim_ros.sim.commands import Clap, PlayTone, SetNoiseLevel, SetSoundThreshold
-from thymio_sim_ros.sim.readings import SoundReading
+from thymio_sim_ros.sim.model.readings import SoundReading
 from thymio_sim_ros.sim.sensors import sound
-from thymio_sim_ros.sim.sound import Sound
 from thymio_sim_ros.sim.world import StepResult, World
 
 PAIR = ({**ROBOT, "name": "a"}, {**ROBOT, "name": "b", "x_m": 0.5})

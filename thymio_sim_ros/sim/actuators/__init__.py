@@ -14,9 +14,9 @@ from functools import partial
 from typing import Any
 
 from thymio_sim_ros import registry
-from thymio_sim_ros.sim.aseba_face import NO_ACTUATOR_FACE, ActuatorFace
-from thymio_sim_ros.sim.guards import Guard
-from thymio_sim_ros.sim.view import ActuatorView, GroupActuatorView
+from thymio_sim_ros.sim.plugin_api.aseba_binding import NO_ACTUATOR_FACE, ActuatorFace
+from thymio_sim_ros.sim.plugin_api.plugin_isolation import Guard
+from thymio_sim_ros.sim.plugin_api.view import ActuatorView, GroupActuatorView
 
 __all__ = ["Actuator", "all_actuators"]
 

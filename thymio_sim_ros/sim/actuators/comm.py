@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from thymio_sim_ros.sim.actuators import Actuator
-from thymio_sim_ros.sim.aseba_face import ActuatorFace, Native, Output
 from thymio_sim_ros.sim.commands import Command, EnableComm, SetCommPayload
+from thymio_sim_ros.sim.plugin_api.aseba_binding import ActuatorFace, Native, Output
 
 __all__ = ["ACTUATOR", "FULL_PAYLOAD", "CommState"]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from thymio_sim_ros.sim import geometry
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.commands import MoveRobot, ResetOdometry, Tap, Tilt
-from thymio_sim_ros.sim.view import ActuatorView
+from thymio_sim_ros.sim.model import geometry
+from thymio_sim_ros.sim.plugin_api.view import ActuatorView
 
 __all__ = ["ACTUATOR", "HandState"]
 

@@ -9,9 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.actuators import Actuator
-from thymio_sim_ros.sim.aseba_face import ActuatorFace, Native, Output
+from thymio_sim_ros.sim.actuators._led_patterns import Gesture
 from thymio_sim_ros.sim.commands import (
     LED_FULL,
     LED_GROUPS,
@@ -24,8 +23,9 @@ from thymio_sim_ros.sim.commands import (
     ShowOnLeds,
     StopGesture,
 )
-from thymio_sim_ros.sim.gestures import Gesture
-from thymio_sim_ros.sim.view import ActuatorView
+from thymio_sim_ros.sim.model import units
+from thymio_sim_ros.sim.plugin_api.aseba_binding import ActuatorFace, Native, Output
+from thymio_sim_ros.sim.plugin_api.view import ActuatorView
 
 __all__ = ["ACTUATOR", "LED_NUMBERS", "LedState"]
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim import tones
 from thymio_sim_ros.sim.actuators import Actuator
-from thymio_sim_ros.sim.aseba_face import ActuatorFace, Native
+from thymio_sim_ros.sim.audio import synthesis
+from thymio_sim_ros.sim.audio.synthesis import BLOCK_NS, BLOCK_SAMPLES, SAMPLE_NS, VOLUME_OFF, WAVE_LENGTH, Note
 from thymio_sim_ros.sim.commands import (
     Command,
     PlaySamples,
@@ -21,8 +21,8 @@ from thymio_sim_ros.sim.commands import (
     SetWave,
     StopSound,
 )
-from thymio_sim_ros.sim.tones import BLOCK_NS, BLOCK_SAMPLES, SAMPLE_NS, VOLUME_OFF, WAVE_LENGTH, Note
-from thymio_sim_ros.sim.view import ActuatorView
+from thymio_sim_ros.sim.plugin_api.aseba_binding import ActuatorFace, Native
+from thymio_sim_ros.sim.plugin_api.view import ActuatorView
 
 __all__ = ["ACTUATOR", "LoudspeakerState"]
 
@@ -43,7 +43,7 @@ class LoudspeakerState:
     themselves. `alarm_ns` is when the alarm sounds again, None without one.
     """
 
-    wave: tuple[int, ...] = tones.TRIANGLE
+    wave: tuple[int, ...] = synthesis.TRIANGLE
     shift: int = 0
     note: Note | None = None
     samples: bytes = b""
@@ -105,9 +105,9 @@ def _apply(
 ) -> None:
     match command:
         case PlayTone(frequency_hz, duration_ns):
-            state.play((tones.tone(frequency_hz, duration_ns),), b"", now_ns)
+            state.play((synthesis.tone(frequency_hz, duration_ns),), b"", now_ns)
         case PlaySystemSound(number):
-            state.play(tones.system_sound(number), b"", now_ns)
+            state.play(synthesis.system_sound(number), b"", now_ns)
         case PlaySamples(samples):
             state.play((), samples or _NO_SOUND, now_ns)
         case StopSound():
@@ -131,7 +131,7 @@ def _apply(
 def _update(state: LoudspeakerState, view: ActuatorView, _dt_s: float) -> None:
     if state.alarm_ns is not None and view.now_ns >= state.alarm_ns:
         state.alarm_ns += ALARM_NS
-        state.play(tones.system_sound(tones.ALARM), b"", view.now_ns)
+        state.play(synthesis.system_sound(synthesis.ALARM), b"", view.now_ns)
         view.wake(LoudspeakerState)
     if not state.is_silent:
         changes = state.changes
@@ -166,6 +166,6 @@ ACTUATOR = Actuator(
             Native("sound.freq", ("Hz", "1/60s"), _frequency, "Play a tone; 0: until stopped, negative: stop"),
             Native("sound.wave", (f"wave:{WAVE_LENGTH}",), _wave, "Set the wave of tones"),
         ),
-        at_reset=(StopSound(), SetWave(tones.TRIANGLE)),
+        at_reset=(StopSound(), SetWave(synthesis.TRIANGLE)),
     ),
 )

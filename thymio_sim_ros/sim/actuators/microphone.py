@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from thymio_sim_ros.sim.actuators import Actuator
-from thymio_sim_ros.sim.aseba_face import ActuatorFace, Output
 from thymio_sim_ros.sim.commands import Command, SetSoundThreshold
+from thymio_sim_ros.sim.plugin_api.aseba_binding import ActuatorFace, Output
 
 __all__ = ["ACTUATOR", "MicrophoneState"]
 

@@ -3,7 +3,7 @@
 Targets of a program persist. A ROS command holds until it times out, after which the targets hold again;
 newer targets end it at once. Each wheel slips by a new random factor every tick.
 Model "ideal": motors follow without delay. Model "firmware": the robot's own control loop with its lag
-(`sim/motor_control.py`).
+(`sim/mechanics/motor_control.py`).
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thymio_sim_ros.sim import thymio2, units
 from thymio_sim_ros.sim.actuators import Actuator
-from thymio_sim_ros.sim.aseba_face import ActuatorFace, Output
 from thymio_sim_ros.sim.commands import BodyTwist, Command, MotorTargets, SetMotorModel, WheelVelocities
-from thymio_sim_ros.sim.motor_control import WheelControl
-from thymio_sim_ros.sim.view import ActuatorView, GroupActuatorView
-from thymio_sim_ros.sim.wheels import WheelArrays
+from thymio_sim_ros.sim.mechanics.motor_control import WheelControl
+from thymio_sim_ros.sim.mechanics.wheels import WheelArrays
+from thymio_sim_ros.sim.model import robot_constants, units
+from thymio_sim_ros.sim.plugin_api.aseba_binding import ActuatorFace, Output
+from thymio_sim_ros.sim.plugin_api.view import ActuatorView, GroupActuatorView
 
 __all__ = ["ACTUATOR", "MotorState", "wanted_speeds"]
 
@@ -41,16 +41,16 @@ class MotorState:
 def wanted_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
     """Left and right in m/s as a command has them, whether a wheel can turn so fast or not."""
     if isinstance(command, BodyTwist):
-        turn = command.angular_rad_s * thymio2.WHEEL_TRACK_M / 2
+        turn = command.angular_rad_s * robot_constants.WHEEL_TRACK_M / 2
         return command.linear_m_s - turn, command.linear_m_s + turn
-    return command.left_rad_s * thymio2.WHEEL_RADIUS_M, command.right_rad_s * thymio2.WHEEL_RADIUS_M
+    return command.left_rad_s * robot_constants.WHEEL_RADIUS_M, command.right_rad_s * robot_constants.WHEEL_RADIUS_M
 
 
 def wheel_speeds(command: WheelVelocities | BodyTwist) -> tuple[float, float]:
     """Left and right in m/s; both are scaled down together when one would be above the limit."""
     left, right = wanted_speeds(command)
     largest = max(abs(left), abs(right))
-    scale = thymio2.MAX_SPEED_M_S / largest if largest > thymio2.MAX_SPEED_M_S else 1.0
+    scale = robot_constants.MAX_SPEED_M_S / largest if largest > robot_constants.MAX_SPEED_M_S else 1.0
     return (left * scale, right * scale)
 
 
@@ -80,16 +80,16 @@ def _time_out(state: MotorState, now_ns: int) -> bool:
 def _update(state: MotorState, view: ActuatorView, dt_s: float) -> None:
     _time_out(state, view.now_ns)
     noise, wheels = view.noise, view.wheels
-    slip = (noise.uniform(*thymio2.SLIP), noise.uniform(*thymio2.SLIP))
+    slip = (noise.uniform(*robot_constants.SLIP), noise.uniform(*robot_constants.SLIP))
     wheels.control = state.control
     speeds = state.speeds_m_s if state.control is None else _controlled(state, wheels.speeds_m_s, dt_s)
-    wheels.drive(speeds, slip, thymio2.MAX_SPEED_M_S)
+    wheels.drive(speeds, slip, robot_constants.MAX_SPEED_M_S)
 
 
 def _controlled(state: MotorState, wheels_m_s: Sequence[float], dt_s: float) -> tuple[float, float]:
     """Speeds in m/s that the control loops give to wheels at their speeds."""
     assert state.control is not None
-    unit_m_s = thymio2.MAX_SPEED_M_S / thymio2.FULL_TARGET
+    unit_m_s = robot_constants.MAX_SPEED_M_S / robot_constants.FULL_TARGET
     left, right = (
         wheel.tick(target_m_s / unit_m_s, speed_m_s / unit_m_s, dt_s) * unit_m_s
         for wheel, target_m_s, speed_m_s in zip(state.control, state.speeds_m_s, wheels_m_s, strict=True)
@@ -145,7 +145,7 @@ def _update_all(states: Sequence[MotorState], group: GroupActuatorView, dt_s: fl
         commanded, turning = commanded.copy(), wheels.speeds.T.tolist()
         for number in together.controlled:
             commanded[:, number] = _controlled(states[number], turning[number], dt_s)
-    wheels.drive(commanded, group.noise.draw(*thymio2.SLIP, 2), thymio2.MAX_SPEED_M_S)
+    wheels.drive(commanded, group.noise.draw(*robot_constants.SLIP, 2), robot_constants.MAX_SPEED_M_S)
 
 
 def _targets(words: Sequence[int]) -> Command:

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 
 from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.commands import SetPen
-from thymio_sim_ros.sim.geometry import Point
-from thymio_sim_ros.sim.primitives import Color, Stroke
-from thymio_sim_ros.sim.view import ActuatorView
+from thymio_sim_ros.sim.model.geometry import Point
+from thymio_sim_ros.sim.model.primitives import Color, Stroke
+from thymio_sim_ros.sim.plugin_api.view import ActuatorView
 
 __all__ = ["ACTUATOR", "PEN_WIDTHS_M", "PenState"]
 

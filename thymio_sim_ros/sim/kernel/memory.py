@@ -14,9 +14,9 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from aseba_vm.wasm_calls import caller
-from aseba_vm.wasm_runtime import Runtime, is_usable
-from thymio_sim_ros.sim.kernel.language import Kernel, KernelError, parameters, translate
+from aseba_vm.jit.wasm_calls import caller
+from aseba_vm.jit.wasm_runtime import Runtime, is_usable
+from thymio_sim_ros.sim.kernel.compiler import Kernel, KernelError, parameters, translate
 
 __all__ = ["KernelMemory", "is_available"]
 

@@ -6,11 +6,11 @@
 
 from __future__ import annotations
 
+from thymio_sim_ros.sim.physics.batch_driver import Fleet
 from thymio_sim_ros.sim.physics.contact import Contact
-from thymio_sim_ros.sim.physics.doors import DoorBody
-from thymio_sim_ros.sim.physics.fleet import Fleet
-from thymio_sim_ros.sim.physics.movables import MovableBody
-from thymio_sim_ros.sim.physics.robots import RobotBody
+from thymio_sim_ros.sim.physics.door_body import DoorBody
+from thymio_sim_ros.sim.physics.movable_body import MovableBody
+from thymio_sim_ros.sim.physics.robot_body import RobotBody
 from thymio_sim_ros.sim.physics.space import Physics
 
 __all__ = ["Contact", "DoorBody", "Fleet", "MovableBody", "Physics", "RobotBody"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.clock import TICK_NS
+from thymio_sim_ros.sim.model.clock import TICK_NS
 
 __all__ = ["ROBOT_BOUNCE", "SUB_STEPS", "SUB_STEP_S", "TICK_S", "Contact"]
 

@@ -12,19 +12,19 @@ from types import MappingProxyType
 
 import pymunk
 
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.nearby import Mover, Nearby
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.primitives import Disc, Solid, Trigger
+from thymio_sim_ros.sim.physics.batch_driver import Fleet
+from thymio_sim_ros.sim.physics.broadphase_batch import Lookout
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, Contact
-from thymio_sim_ros.sim.physics.doors import DoorBody
-from thymio_sim_ros.sim.physics.fleet import Fleet
-from thymio_sim_ros.sim.physics.gates import Gates
-from thymio_sim_ros.sim.physics.lookout import Lookout
-from thymio_sim_ros.sim.physics.movables import AT_REST_M_S, MovableBody
-from thymio_sim_ros.sim.physics.robots import RobotBody
-from thymio_sim_ros.sim.physics.singles import Singles
-from thymio_sim_ros.sim.physics.touches import Touches
-from thymio_sim_ros.sim.primitives import Disc, Solid, Trigger
-from thymio_sim_ros.sim.rays import Obstacle, Surroundings, obstacle_of
+from thymio_sim_ros.sim.physics.contact_tracker import Touches
+from thymio_sim_ros.sim.physics.door_body import DoorBody
+from thymio_sim_ros.sim.physics.door_controller import Gates
+from thymio_sim_ros.sim.physics.movable_body import AT_REST_M_S, MovableBody
+from thymio_sim_ros.sim.physics.robot_body import RobotBody
+from thymio_sim_ros.sim.physics.scalar_driver import Singles
+from thymio_sim_ros.sim.raycast.broadphase import Mover, Nearby
+from thymio_sim_ros.sim.raycast.scalar import Obstacle, Surroundings, obstacle_of
 
 __all__ = ["Physics"]
 

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from thymio_sim_ros import registry
-from thymio_sim_ros.sim.aseba_face import NO_SENSOR_FACE, AsebaFace
-from thymio_sim_ros.sim.clock import NEVER_NS
-from thymio_sim_ros.sim.guards import quiet_sensor
-from thymio_sim_ros.sim.readings import Reading
-from thymio_sim_ros.sim.view import GroupView, SensorView
+from thymio_sim_ros.sim.model.clock import NEVER_NS
+from thymio_sim_ros.sim.model.readings import Reading
+from thymio_sim_ros.sim.plugin_api.aseba_binding import NO_SENSOR_FACE, AsebaFace
+from thymio_sim_ros.sim.plugin_api.plugin_isolation import quiet_sensor
+from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 
 __all__ = ["NEVER_NS", "Sensor", "all_sensors"]
 

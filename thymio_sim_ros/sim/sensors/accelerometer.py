@@ -16,16 +16,16 @@ import math
 
 import numpy as np
 
-from thymio_sim_ros.sim.aseba_face import AsebaFace
-from thymio_sim_ros.sim.columns import Later
-from thymio_sim_ros.sim.fall import FALL_NS
-from thymio_sim_ros.sim.geometry import LEVEL, Pose, Tilt
+from thymio_sim_ros.sim.mechanics.fall import FALL_NS
+from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
+from thymio_sim_ros.sim.model.readings import AccelerometerReading
+from thymio_sim_ros.sim.model.robot_constants import ACC_NOISE, ACC_PER_G, GRAVITY_M_S2
+from thymio_sim_ros.sim.model.units import acceleration_to_units, accelerations_to_units
 from thymio_sim_ros.sim.physics import Contact
-from thymio_sim_ros.sim.readings import AccelerometerReading
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.reading_table import Later
+from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.thymio2 import ACC_NOISE, ACC_PER_G, GRAVITY_M_S2
-from thymio_sim_ros.sim.units import acceleration_to_units, accelerations_to_units
-from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR", "gravity"]
 

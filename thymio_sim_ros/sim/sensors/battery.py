@@ -6,13 +6,13 @@ the last light goes out, to 4.1 V of a full lithium cell (own choice of the uppe
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.actuators.power import PowerState
-from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.commands import ConnectCharger, SetBattery
-from thymio_sim_ros.sim.readings import BatteryReading
+from thymio_sim_ros.sim.model import units
+from thymio_sim_ros.sim.model.readings import BatteryReading
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.view import SensorView
 
 __all__ = ["SENSOR"]
 

@@ -10,11 +10,11 @@ firmware's wait for a fourth scan is left out: an operator's finger does not bou
 from __future__ import annotations
 
 from thymio_sim_ros.sim.actuators.buttons import ButtonState
-from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.commands import BUTTONS, PressButton
-from thymio_sim_ros.sim.readings import ButtonCountsReading
+from thymio_sim_ros.sim.model.readings import ButtonCountsReading
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.view import SensorView
 
 __all__ = ["SENSOR", "is_touched"]
 

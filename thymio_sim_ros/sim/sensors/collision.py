@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from thymio_sim_ros.sim.model.readings import CollisionReading
 from thymio_sim_ros.sim.physics import Contact
-from thymio_sim_ros.sim.readings import CollisionReading
+from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR"]
 

@@ -19,13 +19,13 @@ from __future__ import annotations
 import math
 
 from thymio_sim_ros.sim.actuators.comm import CommState
-from thymio_sim_ros.sim.aseba_face import AsebaFace
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.rays import Surroundings
-from thymio_sim_ros.sim.readings import CommReading
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.readings import CommReading
+from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_HEIGHT_M, PROXIMITY_POSES
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.view import SensorView
+from thymio_sim_ros.sim.raycast.scalar import Surroundings
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.thymio2 import PROXIMITY_HEIGHT_M, PROXIMITY_POSES
-from thymio_sim_ros.sim.view import SensorView
 
 __all__ = ["RANGE_M", "SENSOR", "intensity", "strength"]
 

@@ -14,13 +14,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from thymio_sim_ros.sim import units
-from thymio_sim_ros.sim.aseba_face import AsebaFace
-from thymio_sim_ros.sim.readings import CurrentReading
+from thymio_sim_ros.sim.model import units
+from thymio_sim_ros.sim.model.readings import CurrentReading
+from thymio_sim_ros.sim.model.robot_constants import FULL_TARGET, INTEGRATOR_LIMIT, MAX_SPEED_M_S, PWM_PER_SPEED_UNIT
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sensors._change import are_news, is_news
-from thymio_sim_ros.sim.thymio2 import FULL_TARGET, INTEGRATOR_LIMIT, MAX_SPEED_M_S, PWM_PER_SPEED_UNIT
-from thymio_sim_ros.sim.view import GroupView, SensorView
+from thymio_sim_ros.sim.sensors._publish_on_change import are_news, is_news
 
 __all__ = ["SENSOR"]
 

@@ -12,16 +12,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.actuators.cover import CoverState, covered
 from thymio_sim_ros.sim.actuators.room import RoomState
-from thymio_sim_ros.sim.aseba_face import AsebaFace
-from thymio_sim_ros.sim.columns import Later
-from thymio_sim_ros.sim.ground import GroundSample
-from thymio_sim_ros.sim.readings import GroundReading
+from thymio_sim_ros.sim.ground.sampling import GroundSample
+from thymio_sim_ros.sim.model import units
+from thymio_sim_ros.sim.model.readings import GroundReading
+from thymio_sim_ros.sim.model.robot_constants import GROUND_NOISE, GROUND_SENSORS
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.reading_table import Later
+from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.thymio2 import GROUND_NOISE, GROUND_SENSORS
-from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR", "response"]
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from thymio_sim_ros.sim.actuators.leds import LedState
-from thymio_sim_ros.sim.readings import LedReading
+from thymio_sim_ros.sim.model.readings import LedReading
+from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR"]
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from thymio_sim_ros.sim.actuators.loudspeaker import ACTUATOR, LoudspeakerState
-from thymio_sim_ros.sim.readings import LoudspeakerReading
+from thymio_sim_ros.sim.audio.synthesis import SAMPLE_NS
+from thymio_sim_ros.sim.model.readings import LoudspeakerReading
+from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import NEVER_NS, Sensor
-from thymio_sim_ros.sim.tones import SAMPLE_NS
-from thymio_sim_ros.sim.view import SensorView
 
 __all__ = ["SENSOR"]
 

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from thymio_sim_ros.sim import units
-from thymio_sim_ros.sim.aseba_face import AsebaFace
-from thymio_sim_ros.sim.columns import Later
-from thymio_sim_ros.sim.readings import MotorReading
+from thymio_sim_ros.sim.model import units
+from thymio_sim_ros.sim.model.readings import MotorReading
+from thymio_sim_ros.sim.model.robot_constants import WHEEL_RADIUS_M
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.reading_table import Later
+from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.thymio2 import WHEEL_RADIUS_M
-from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR"]
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from thymio_sim_ros.sim.actuators.pen import PenState
-from thymio_sim_ros.sim.readings import PenReading
+from thymio_sim_ros.sim.model.readings import PenReading
+from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.view import SensorView
 
 __all__ = ["SENSOR"]
 

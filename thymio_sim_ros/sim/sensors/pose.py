@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.columns import Later
-from thymio_sim_ros.sim.geometry import Pose, Twist
-from thymio_sim_ros.sim.readings import PoseReading
+from thymio_sim_ros.sim.mechanics.wheels import twist_of
+from thymio_sim_ros.sim.model.geometry import Pose, Twist
+from thymio_sim_ros.sim.model.readings import PoseReading
+from thymio_sim_ros.sim.plugin_api.reading_table import Later
+from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.view import GroupView, SensorView
-from thymio_sim_ros.sim.wheels import twist_of
 
 __all__ = ["SENSOR"]
 

@@ -22,28 +22,28 @@ from functools import reduce
 
 import numpy as np
 
-from thymio_sim_ros.sim import thymio2, units
 from thymio_sim_ros.sim.actuators.cover import CoverState, covered
-from thymio_sim_ros.sim.aseba_face import AsebaFace
-from thymio_sim_ros.sim.columns import Later
 from thymio_sim_ros.sim.kernel.memory import is_available
-from thymio_sim_ros.sim.raycaster import Fan, Values
-from thymio_sim_ros.sim.readings import ProximityReading
-from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sensors._counts import ProximityCounts
-from thymio_sim_ros.sim.sensors._kernels import COS_CONE
-from thymio_sim_ros.sim.thymio2 import (
+from thymio_sim_ros.sim.model import robot_constants, units
+from thymio_sim_ros.sim.model.readings import ProximityReading
+from thymio_sim_ros.sim.model.robot_constants import (
     PROXIMITY_HEIGHT_M,
     PROXIMITY_NOISE,
     PROXIMITY_POSES,
     PROXIMITY_RANGE_M,
 )
-from thymio_sim_ros.sim.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.reading_table import Later
+from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.raycast.batch import Fan, Values
+from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.sensors._proximity_binding import ProximityCounts
+from thymio_sim_ros.sim.sensors._proximity_kernel import COS_CONE
 
 __all__ = ["SENSOR", "response", "responses"]
 
 _COUNT = len(PROXIMITY_POSES)
-_CONE_RAD = thymio2.PROXIMITY_HALF_CONE_RAD
+_CONE_RAD = robot_constants.PROXIMITY_HALF_CONE_RAD
 _RAYS = {"default": 3, "enki": 3, "cone": 9}
 _ANGLES_RAD = {
     model: tuple(-_CONE_RAD + 2 * _CONE_RAD * ray / (count - 1) for ray in range(count))

@@ -1,9 +1,9 @@
 """The microphone, 61 blocks a second of 128 8-bit samples (docs/spec/thymio-robot.md sections 3 and 7.4), no noise.
 
 mic.intensity is the largest minus the smallest sample of a block, 0…255, mic._mean their sum; in silence all samples
-are 128. What is heard: the operator's noise and all sounds of the world by their distances (`sim/sound.py`), energies
-added. The event `mic` comes with every block that is louder than mic.threshold, unless that is 0. Quieter blocks are
-told when they differ from the last one told, and once a second.
+are 128. What is heard: the operator's noise and all sounds of the world by their distances
+(`sim/audio/propagation.py`), energies added. The event `mic` comes with every block that is louder than mic.threshold,
+unless that is 0. Quieter blocks are told when they differ from the last one told, and once a second.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ import numpy as np
 
 from thymio_sim_ros.sim.actuators.microphone import MicrophoneState
 from thymio_sim_ros.sim.actuators.room import RoomState
-from thymio_sim_ros.sim.aseba_face import AsebaFace
-from thymio_sim_ros.sim.readings import SoundReading
+from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL, heard
+from thymio_sim_ros.sim.model.readings import SoundReading
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sensors._change import are_news, is_news
-from thymio_sim_ros.sim.sound import FULL_LEVEL, heard
-from thymio_sim_ros.sim.view import GroupView, SensorView
+from thymio_sim_ros.sim.sensors._publish_on_change import are_news, is_news
 
 __all__ = ["BLOCK_NS", "SENSOR"]
 

@@ -6,10 +6,10 @@ Source: docs/spec/thymio-robot.md section 5.
 from __future__ import annotations
 
 from thymio_sim_ros.sim.actuators.loudspeaker import LoudspeakerState
-from thymio_sim_ros.sim.aseba_face import AsebaFace
-from thymio_sim_ros.sim.readings import SoundFinishedReading
+from thymio_sim_ros.sim.model.readings import SoundFinishedReading
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import NEVER_NS, Sensor
-from thymio_sim_ros.sim.view import SensorView
 
 __all__ = ["SENSOR"]
 

@@ -11,13 +11,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from thymio_sim_ros.sim.actuators.hand import HandState
-from thymio_sim_ros.sim.aseba_face import AsebaFace
 from thymio_sim_ros.sim.commands import Tap
+from thymio_sim_ros.sim.model.readings import TapReading
+from thymio_sim_ros.sim.model.robot_constants import TAP_SPEED_M_S
 from thymio_sim_ros.sim.physics import Contact
-from thymio_sim_ros.sim.readings import TapReading
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.thymio2 import TAP_SPEED_M_S
-from thymio_sim_ros.sim.view import GroupView, SensorView
 
 __all__ = ["SENSOR"]
 

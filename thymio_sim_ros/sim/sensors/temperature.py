@@ -5,12 +5,12 @@ Source: docs/spec/thymio-robot.md section 7.4.
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim import units
 from thymio_sim_ros.sim.actuators.room import RoomState
-from thymio_sim_ros.sim.aseba_face import AsebaFace
-from thymio_sim_ros.sim.readings import TemperatureReading
+from thymio_sim_ros.sim.model import units
+from thymio_sim_ros.sim.model.readings import TemperatureReading
+from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
+from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.view import SensorView
 
 __all__ = ["SENSOR"]
 

@@ -1,6 +1,6 @@
 """Kinds of shapes, one file each: fields with their units, and the primitives that they become.
 
-A module exports SHAPE, a `ShapeKind` whose `form` is a frozen dataclass with rules from `sim/fields.py`.
+A module exports SHAPE, a `ShapeKind` whose `form` is a frozen dataclass with rules from `sim/model/fields.py`.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from thymio_sim_ros import registry
-from thymio_sim_ros.sim.fields import json_schema
-from thymio_sim_ros.sim.primitives import Primitive
+from thymio_sim_ros.sim.model.fields import json_schema
+from thymio_sim_ros.sim.model.primitives import Primitive
 
 __all__ = ["Shape", "ShapeKind", "all_shapes"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.fields import Extent, Shade
+from thymio_sim_ros.sim.model.fields import Extent, Shade
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim import primitives
-from thymio_sim_ros.sim.fields import (
+from thymio_sim_ros.sim.model import primitives
+from thymio_sim_ros.sim.model.fields import (
     OBJECT_FRICTION,
     OBJECT_RESTITUTION,
     Angle,
@@ -17,8 +17,8 @@ from thymio_sim_ros.sim.fields import (
     Shade,
     as_color,
 )
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.primitives import Load, Primitive, Solid
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.primitives import Load, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
 
 

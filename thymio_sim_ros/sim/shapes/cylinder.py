@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.fields import (
+from thymio_sim_ros.sim.model.fields import (
     OBJECT_FRICTION,
     OBJECT_RESTITUTION,
     Coordinate,
@@ -15,8 +15,8 @@ from thymio_sim_ros.sim.fields import (
     Shade,
     as_color,
 )
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.primitives import Disc, Load, Primitive, Solid
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.primitives import Disc, Load, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
 
 

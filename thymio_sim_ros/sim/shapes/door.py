@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim import primitives
-from thymio_sim_ros.sim.fields import Angle, Coordinate, Duration, Extent, Shade, as_color
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.primitives import Primitive, Slide, Solid
+from thymio_sim_ros.sim.model import primitives
+from thymio_sim_ros.sim.model.fields import Angle, Coordinate, Duration, Extent, Shade, as_color
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.primitives import Primitive, Slide, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
 
 

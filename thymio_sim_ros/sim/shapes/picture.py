@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from thymio_sim_ros.sim import pictures, primitives
-from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Image
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.primitives import Primitive
+from thymio_sim_ros.sim.formats import image_io
+from thymio_sim_ros.sim.model import primitives
+from thymio_sim_ros.sim.model.fields import Angle, Coordinate, Extent, Image
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.primitives import Primitive
 from thymio_sim_ros.sim.shapes import ShapeKind
 
 
@@ -27,7 +28,7 @@ class Picture:
 
     def primitives(self, name: str) -> tuple[Primitive, ...]:
         """One picture; FieldError for one that cannot be read."""
-        pixels = pictures.decode(self.image, key="image", width_m=self.size_x_m)
+        pixels = image_io.decode(self.image, key="image", width_m=self.size_x_m)
         size_y_m = self.size_x_m * pixels.rows / pixels.columns if self.size_y_m is None else self.size_y_m
         pose = Pose(self.x_m, self.y_m, self.yaw_rad)
         return (primitives.Print(name, pose, self.size_x_m, size_y_m, pixels.columns, pixels.rows, pixels.rgba),)

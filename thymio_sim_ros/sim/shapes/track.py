@@ -10,9 +10,9 @@ import itertools
 import math
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.fields import Extent, Points, Radius, Shade, as_color
-from thymio_sim_ros.sim.geometry import Point
-from thymio_sim_ros.sim.primitives import Paint, Primitive
+from thymio_sim_ros.sim.model.fields import Extent, Points, Radius, Shade, as_color
+from thymio_sim_ros.sim.model.geometry import Point
+from thymio_sim_ros.sim.model.primitives import Paint, Primitive
 from thymio_sim_ros.sim.shapes import ShapeKind
 
 _ARC_STEP_RAD = math.radians(5)

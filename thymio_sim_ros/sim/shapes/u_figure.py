@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.fields import Angle, Coordinate, Extent, Shade, as_color
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.primitives import Box, Primitive, Solid
+from thymio_sim_ros.sim.model.fields import Angle, Coordinate, Extent, Shade, as_color
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.primitives import Box, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
 
 _PARTS = (

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.fields import Coordinate, Extent, Shade, as_color
-from thymio_sim_ros.sim.geometry import Pose
-from thymio_sim_ros.sim.primitives import Box, Primitive, Solid
+from thymio_sim_ros.sim.model.fields import Coordinate, Extent, Shade, as_color
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.primitives import Box, Primitive, Solid
 from thymio_sim_ros.sim.shapes import ShapeKind
 
 

@@ -15,7 +15,7 @@ from thymio_sim_ros.nodes.aseba_node import AsebaRuntime
 from thymio_sim_ros.nodes.device_ports import DevicePorts
 from thymio_sim_ros.nodes.names import full_name
 from thymio_sim_ros.nodes.simulator_node import Simulator
-from thymio_sim_ros.sim.clock import TICK_NS
+from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.world import World
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.report import robot_lines

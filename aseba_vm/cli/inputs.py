@@ -1,0 +1,90 @@
+"""What the command line is given: a file's text, the program in it, and what the program is compiled with."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from aseba_vm import aesl
+from aseba_vm.aesl.network import select, with_vpl_events
+from aseba_vm.aesl.text_decoding import TextFile, decoded
+from aseba_vm.cli.output import named
+from aseba_vm.errors import AeslError, CompileError
+from aseba_vm.frontend.pipeline import Stages, compile_stages
+from aseba_vm.target import TargetDescription
+
+Definitions = tuple[tuple[str, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A program and its definitions, and places in its file; ``is_guessed``: its node has a name of its own."""
+
+    name: str
+    node: aesl.Node
+    events: Definitions = ()
+    constants: Definitions = ()
+    is_guessed: bool = False
+
+    def compiled(self, target: TargetDescription) -> Stages:
+        """Compile. Raises CompileError."""
+        return compile_stages(self.node.code, target, self.events, self.constants)
+
+    def stages(self, target: TargetDescription) -> Stages:
+        """Compile. Raises SourceError, which has its place in the file."""
+        try:
+            return self.compiled(target)
+        except CompileError as error:
+            raise SourceError(self, error) from error
+
+    def place(self, offset: int) -> tuple[int, int]:
+        """Row and column in the file, from 0."""
+        return self.node.place(offset)
+
+
+class SourceError(Exception):
+    """A program that is refused, with the file it stands in."""
+
+    def __init__(self, source: Source, error: CompileError) -> None:
+        super().__init__(source, error)
+        self.source = source
+        self.error = error
+
+
+def read_text(name: str) -> TextFile:
+    """Return the text of a file; ``-`` is the standard input. Raises OSError, TextError."""
+    with named(name):
+        data = sys.stdin.buffer.read() if name == "-" else Path(name).read_bytes()
+    return decoded(data)
+
+
+def network_of(text: str, name: str) -> aesl.Network:
+    """Return what a text says; a bare program becomes that of a node. Raises AeslError."""
+    return aesl.loads(text, strict=True) if aesl.is_aesl(text) else aesl.bare(text, name)
+
+
+def sources_of(
+    network: aesl.Network,
+    file: str,
+    kind: str,
+    node: str | None,
+    events: Sequence[tuple[str, int]],
+    constants: Sequence[tuple[str, int]],
+) -> list[Source]:
+    """Return the programs of a file for a kind of device, or of the nodes of one name.
+
+    Raises AeslError if no node has that name.
+    """
+    network = with_vpl_events(network)
+    definitions = (*network.events, *events), (*network.constants, *constants)
+    selection = select(network, {kind}) if node is None else None
+    if selection is not None:
+        return [Source(file, each, *definitions, each in selection.guessed) for each in selection.nodes]
+    found = [Source(file, each, *definitions) for each in network.nodes if each.name == node]
+    if not found:
+        row, col = network.nodes[0].place(0)
+        names = ", ".join(dict.fromkeys(f"'{program.name}'" for program in network.nodes))
+        raise AeslError("aesl-other-robot", (str(node), names), row + 1, col + 1)
+    return found

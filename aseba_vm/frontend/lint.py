@@ -1,0 +1,112 @@
+"""What compiles and is probably not meant. Warnings never change the bytecode."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from aseba_vm.bytecode import Op, Segment
+from aseba_vm.errors import SourcePos
+from aseba_vm.frontend.syntax_tree import (
+    Access,
+    Block,
+    For,
+    If,
+    Node,
+    OnEvent,
+    Return,
+    Sub,
+    Subscript,
+    Tree,
+    children,
+    position_of,
+    walk,
+)
+from aseba_vm.messages import wording
+
+
+@dataclass(frozen=True, slots=True)
+class CompileWarning:
+    """A doubt about a program: a stable identifier, its arguments, the place."""
+
+    kind: str
+    arguments: tuple[str, ...]
+    pos: SourcePos
+
+    def __str__(self) -> str:
+        return wording(self.kind, self.arguments)
+
+    def located(self, name: str) -> str:
+        """Return the message after the name of the file and the place, counted from 1."""
+        return f"{name}:{self.pos}: warning: {self}"
+
+
+def find_warnings(tree: Tree, segments: Sequence[Segment]) -> tuple[CompileWarning, ...]:
+    """Return the doubts about a program, given its tree as parsed and its code, in order of place."""
+    found = [*_subroutines(tree, segments), *_far_blocks(segments)]
+    for node in walk(tree.body):
+        match node:
+            case Block():
+                found += _unreachable(node)
+            case If(is_edge=True):
+                found += _constant_when(node)
+            case For():
+                found += _endless_for(node)
+            case Subscript():
+                found += _vector_index(node)
+    return tuple(sorted(found, key=lambda warning: (warning.pos.offset, warning.kind)))
+
+
+def _unreachable(block: Block) -> Iterator[CompileWarning]:
+    """The first statement after each ``return`` of the same block."""
+    for before, after in zip(block.statements, block.statements[1:], strict=False):
+        pos = position_of(after)
+        if isinstance(before, Return) and not isinstance(after, OnEvent | Sub) and pos is not None:
+            yield CompileWarning("warning-unreachable", (), pos)
+
+
+def _constant_when(node: If) -> Iterator[CompileWarning]:
+    """A condition without variables: such a ``when`` is no edge trigger (docs/spec/aseba-language.md section 7)."""
+    if not any(isinstance(part, Access | Subscript) for part in walk(node.condition)):
+        yield CompileWarning("warning-constant-when", (), node.pos)
+
+
+def _endless_for(loop: For) -> Iterator[CompileWarning]:
+    """A step that jumps over the end of the 16-bit range (docs/spec/aseba-language.md section 7)."""
+    start, end = loop.start.value, loop.end.value
+    last = start + int((end - start) / loop.step) * loop.step
+    if start != end and not -0x8000 <= last + loop.step <= 0x7FFF:
+        yield CompileWarning("warning-endless-for", (str(last),), loop.pos)
+
+
+def _vector_index(node: Subscript) -> Iterator[CompileWarning]:
+    """Arrays in an index, of which only the first word counts (docs/spec/aseba-language.md section 6.1)."""
+    parts: list[Node] = [node.index]
+    while parts:
+        part = parts.pop()
+        if isinstance(part, Access) and part.last > part.first:
+            yield CompileWarning("warning-vector-index", (part.variable.name,), part.pos)
+        elif not isinstance(part, Subscript):
+            parts += children(part)
+
+
+def _subroutines(tree: Tree, segments: Sequence[Segment]) -> Iterator[CompileWarning]:
+    """Subroutines that nobody calls, or that may run on into the code after them.
+
+    Source: docs/spec/aseba-bytecode-vm.md section 7.
+    """
+    called = {code.operand for segment in segments for code in segment.code if code.op is Op.CALL}
+    for segment in segments:
+        if not segment.is_sub:
+            continue
+        sub = tree.subs[segment.number]
+        if sub.index not in called:
+            yield CompileWarning("warning-uncalled-subroutine", (sub.name,), sub.pos)
+        if segment.falls_through:
+            yield CompileWarning("warning-fall-through", (sub.name,), sub.pos)
+
+
+def _far_blocks(segments: Sequence[Segment]) -> Iterator[CompileWarning]:
+    for segment in segments:
+        for pos in segment.far_blocks:
+            yield CompileWarning("warning-far-jump", (), pos)

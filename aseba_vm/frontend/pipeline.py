@@ -1,0 +1,167 @@
+"""All passes in order: text to program, every stage kept if asked for (docs/spec/aseba-bytecode-vm.md section 3)."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from aseba_vm.bytecode import EventEntry, Segment, SubEntry, instructions, link
+from aseba_vm.errors import CompileError
+from aseba_vm.frontend.codegen import check_stack, emit
+from aseba_vm.frontend.folding import optimise
+from aseba_vm.frontend.hints import Attempt, find_hint
+from aseba_vm.frontend.lexer import Token, tokenise
+from aseba_vm.frontend.lint import CompileWarning, find_warnings
+from aseba_vm.frontend.lowering import expand
+from aseba_vm.frontend.parser import parse
+from aseba_vm.frontend.syntax_tree import Memory, Tree
+from aseba_vm.frontend.type_check import check_sizes, check_types
+from aseba_vm.target import TargetDescription
+
+
+@dataclass(frozen=True, slots=True)
+class Stages:
+    """What each pass made of a program."""
+
+    tokens: tuple[Token, ...]
+    tree: Tree
+    expanded: Tree
+    optimised: Tree
+    segments: tuple[Segment, ...]
+
+    def dump(self, stage: str) -> str:
+        """Return a stage as text: ``tokens``, ``tree``, ``expanded``, ``optimised`` or ``code``."""
+        match stage:
+            case "tokens":
+                return "\n".join(map(str, self.tokens))
+            case "tree":
+                return self.tree.dump()
+            case "expanded":
+                return self.expanded.dump()
+            case "optimised":
+                return self.optimised.dump()
+            case "code":
+                return "\n".join(segment.dump() for segment in self.segments)
+        raise ValueError(f"no stage is called {stage!r}")
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A compiled program.
+
+    ``words`` are unsigned, ``lines`` the source row (from 0) of each word or None where the reference has no value,
+    ``variables`` those of the program by address, ``allocated`` the words of variable memory in use, ``stack`` the
+    estimated depth of each event (in table order) and then of each subroutine, ``stack_need`` that of the deepest event
+    with all it calls, ``warnings`` what is probably not meant.
+    """
+
+    words: tuple[int, ...]
+    lines: tuple[int | None, ...]
+    variables: tuple[Memory, ...]
+    events: tuple[EventEntry, ...]
+    subs: tuple[SubEntry, ...]
+    allocated: int
+    stack: tuple[int, ...]
+    stack_need: int = 0
+    warnings: tuple[CompileWarning, ...] = ()
+
+    @property
+    def addresses(self) -> dict[str, tuple[int, int]]:
+        """Address and size of each variable of the program by name."""
+        return {variable.name: (variable.address, variable.size) for variable in self.variables}
+
+    def row_of(self, pc: int) -> int | None:
+        """Return the source row of a word of bytecode, None outside the code or where no row is known."""
+        first = 2 * len(self.events) + 1
+        return self.lines[pc] if first <= pc < len(self.lines) else None
+
+    def addresses_of(self, row: int) -> tuple[int, ...]:
+        """Return the addresses of the instructions of a source row, in order: the first is the place to stop at."""
+        start = 2 * len(self.events) + 1
+        return tuple(pc for pc, _ in instructions(self.words, start) if self.lines[pc] == row)
+
+    def segment_of(self, pc: int) -> EventEntry | SubEntry | None:
+        """Return the event or subroutine whose code holds the address."""
+        entries: list[EventEntry | SubEntry] = sorted((*self.events, *self.subs), key=lambda entry: entry.address)
+        place = bisect_right([entry.address for entry in entries], pc)
+        return entries[place - 1] if place and pc < len(self.words) else None
+
+
+def compile_stages(
+    source: str,
+    target: TargetDescription,
+    events: Sequence[tuple[str, int]] = (),
+    constants: Sequence[tuple[str, int]] = (),
+) -> Stages:
+    """Run all passes and keep what each one made. Raises CompileError, with a hint where one is known."""
+    result = _attempt(source, target, events, constants)
+    if isinstance(result, Stages):
+        return result
+
+    def again(text: str) -> Attempt | None:
+        other = _attempt(text, target, events, constants)
+        return other if isinstance(other, Attempt) else None
+
+    result.error.hint = find_hint(source, target, result, again)
+    raise result.error
+
+
+def _attempt(
+    source: str,
+    target: TargetDescription,
+    events: Sequence[tuple[str, int]],
+    constants: Sequence[tuple[str, int]],
+) -> Attempt | Stages:
+    """Run all passes; return what they made, or the error and the pass that found it."""
+    stage = 0
+    try:
+        if target.variables_end > target.variables_size:
+            raise CompileError("target-too-small")
+        tokens = tokenise(source)
+        stage = 1
+        tree = parse(tokens, target, events, constants)
+        stage = 2
+        check_sizes(tree)
+        expanded = expand(tree, target.variables_size)
+        check_types(expanded)
+        optimised = optimise(expanded)
+        segments = emit(optimised)
+        check_stack(segments, target.stack_size)
+    except CompileError as error:
+        return Attempt(stage, error)
+    return Stages(tokens, tree, expanded, optimised, segments)
+
+
+def compile(  # noqa: A001  # the word of the field; hides the built-in one in this module only
+    source: str,
+    target: TargetDescription,
+    events: Sequence[tuple[str, int]] = (),
+    constants: Sequence[tuple[str, int]] = (),
+) -> Program:
+    """Compile a program for a target.
+
+    ``events`` are the global events (name, number of words) and ``constants`` the constants (name, value) that the
+    nodes of a network share. Raises CompileError for the first fault found.
+    """
+    return assemble(compile_stages(source, target, events, constants), target)
+
+
+def assemble(stages: Stages, target: TargetDescription) -> Program:
+    """Link the code of a compiled program. Raises CompileError if it does not fit."""
+    image = link(stages.segments)
+    if len(image.words) > target.bytecode_size:
+        raise CompileError("bytecode-too-large")
+    events = sorted((segment for segment in stages.segments if not segment.is_sub), key=lambda part: part.number)
+    subs = [segment for segment in stages.segments if segment.is_sub]
+    return Program(
+        words=image.words,
+        lines=image.lines,
+        variables=stages.tree.variables,
+        events=image.events,
+        subs=image.subs,
+        allocated=stages.tree.allocated,
+        stack=tuple(segment.depth for segment in (*events, *subs)),
+        stack_need=check_stack(stages.segments, target.stack_size),
+        warnings=find_warnings(stages.tree, stages.segments),
+    )

@@ -1,0 +1,319 @@
+"""The program as a tree of immutable nodes, and its dump.
+
+The parser builds a tree in which an expression is a vector; :mod:`aseba_vm.frontend.lowering` turns it into a tree of
+scalars: ``Assignment`` takes the place of ``Compound`` and of the assignments of ``For``, ``Word`` that of ``Access``,
+``Element`` that of ``Subscript``, and ``Listing`` is gone. Positions are those that errors and rows of words need.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+from typing import get_args
+
+from aseba_vm.errors import CompileError, SourcePos
+
+COMPARISONS = frozenset(("==", "!=", "<", "<=", ">", ">="))
+CONNECTIVES = frozenset(("or", "and"))
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """A named range of the variable memory: a variable, or temporary words (without a name)."""
+
+    name: str
+    address: int
+    size: int
+
+    def __str__(self) -> str:
+        return f"{self.name or 'temporary'}@{self.address}[{self.size}]"
+
+
+# -- expressions -------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A constant, 32 bits signed."""
+
+    value: int
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """The words first..last of a variable, both constant and not yet checked; a whole variable is 0..size-1."""
+
+    variable: Memory
+    first: int
+    last: int
+    pos: SourcePos
+    is_slice: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Subscript:
+    """One word at an index computed at run time. ``fault`` is why the index could not be evaluated, if it failed."""
+
+    variable: Memory
+    index: Expression
+    fault: CompileError | None
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """A list: the words of its items one after the other."""
+
+    items: tuple[Expression, ...]
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """``-``, ``~``, ``abs`` or ``not`` of each word."""
+
+    operator: str
+    operand: Expression
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """An operation, comparison or connective, word by word."""
+
+    operator: str
+    left: Expression
+    right: Expression
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """Scalar stage: the word at an address."""
+
+    address: int
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """Scalar stage: one word of a variable at a computed index."""
+
+    variable: Memory
+    index: Expression
+    pos: SourcePos
+
+
+Expression = Number | Access | Subscript | Listing | Unary | Binary | Word | Element
+
+
+# -- statements --------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Statements in order."""
+
+    statements: tuple[Statement, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """left = right."""
+
+    left: Expression
+    right: Expression
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class Compound:
+    """left op= right; without right side, left++ or left--."""
+
+    operator: str
+    left: Expression
+    right: Expression | None
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class If:
+    """``if`` or ``when``. An ``elseif`` is an If as ``otherwise``; ``end_row`` is known without ``elseif`` only."""
+
+    is_edge: bool
+    condition: Expression
+    then: Block
+    otherwise: Block | If | None
+    pos: SourcePos
+    end_row: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class While:
+    """A loop; ``pos`` is that of its keyword."""
+
+    condition: Expression
+    body: Block
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class For:
+    """A counted loop over constants, before it is lowered to a While."""
+
+    variable: Expression
+    start: Number
+    end: Number
+    step: int
+    body: Block
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class Emit:
+    """A global event with the words at an address, after ``setup`` has computed them."""
+
+    number: int
+    address: int
+    size: int
+    setup: tuple[Assignment, ...]
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """An argument of a native: its address, after ``setup`` has computed the words."""
+
+    address: int
+    setup: tuple[Assignment, ...]
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class ElementArgument:
+    """An argument of a native: an element at a computed index, checked with the help of a temporary word."""
+
+    variable: Memory
+    index: Expression
+    temporary: int
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A native function: number, sizes in list order (docs/spec/aseba-bytecode-vm.md section 6), arguments."""
+
+    number: int
+    sizes: tuple[int, ...]
+    arguments: tuple[Argument | ElementArgument, ...]
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class CallSub:
+    """A call of a subroutine by name."""
+
+    name: str
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class Return:
+    """The end of the handler or subroutine."""
+
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class OnEvent:
+    """Marker: what follows belongs to the event."""
+
+    number: int
+    name: str
+    pos: SourcePos
+
+
+@dataclass(frozen=True, slots=True)
+class Sub:
+    """Marker: what follows belongs to the subroutine."""
+
+    index: int
+    name: str
+    pos: SourcePos
+
+
+Statement = Block | Assignment | Compound | If | While | For | Emit | Call | CallSub | Return | OnEvent | Sub
+Node = Expression | Statement | Argument | ElementArgument
+
+#: The fields of each kind of node that may hold nodes.
+_FIELDS: Mapping[type, tuple[str, ...]] = {
+    kind: tuple(field.name for field in fields(kind) if field.name not in ("operator", "pos", "number", "name"))
+    for kind in get_args(Node)
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Tree:
+    """A program between two passes.
+
+    ``variables`` are those of the program, ``allocated`` the words in use with those of the target,
+    ``temporaries`` the words in use at the end of the memory, ``subs`` names to markers in order.
+    """
+
+    body: Block
+    variables: tuple[Memory, ...]
+    allocated: int
+    temporaries: int
+    subs: tuple[Sub, ...]
+
+    def dump(self) -> str:
+        """Return one line per node, indented by depth, with the position (from 1) where there is one."""
+        return "\n".join(_lines(self.body))
+
+
+def children(node: Node) -> tuple[Node, ...]:
+    """Return the nodes directly below a node, in order."""
+    found: list[Node] = []
+    for name in _FIELDS[type(node)]:
+        value = getattr(node, name)
+        if isinstance(value, Node):
+            found.append(value)
+        elif isinstance(value, tuple):
+            found.extend(item for item in value if isinstance(item, Node))
+    return tuple(found)
+
+
+def walk(root: Node) -> Iterator[Node]:
+    """Yield a node and all below it, parents first, in order."""
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        yield node
+        stack.extend(reversed(children(node)))
+
+
+def position_of(node: Node) -> SourcePos | None:
+    """Return the place of a node; a block has none."""
+    return None if isinstance(node, Block) else node.pos
+
+
+def _lines(root: Node) -> Iterator[str]:
+    stack: list[tuple[int, Node]] = [(0, root)]
+    while stack:
+        depth, node = stack.pop()
+        words = [type(node).__name__]
+        for field in fields(node):
+            value = getattr(node, field.name)
+            is_child = isinstance(value, Node) or (isinstance(value, tuple) and value and isinstance(value[0], Node))
+            if (
+                not is_child
+                and field.name not in ("pos", "fault")
+                and value is not None
+                and value is not False
+                and value != ()
+            ):
+                words.append(f"{field.name}={value}")
+        pos = position_of(node)
+        yield f"{'  ' * depth}{' '.join(words)}{f'  ({pos})' if pos else ''}"
+        stack.extend((depth + 1, child) for child in reversed(children(node)))

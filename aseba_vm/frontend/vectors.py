@@ -1,0 +1,150 @@
+"""Expressions as vectors: their size, their address, their scalar elements.
+
+Source: docs/spec/aseba-language.md sections 6 and 11.
+
+Used while parsing (sizes of arguments, constants) and by the passes that check and expand. An element that does not
+exist stays in place as ``Missing`` until the scalar assignment that needs it, so that errors keep their order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from aseba_vm.errors import CompileError, SourcePos
+from aseba_vm.frontend.syntax_tree import Access, Binary, Element, Expression, Listing, Subscript, Unary, Word
+from aseba_vm.frontend.trampoline import Task, run
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """In place of an element: the error of whoever needs it."""
+
+    error: CompileError
+
+
+Scalar = Expression | Missing
+
+
+def size_of(expression: Expression) -> int:
+    """Return the number of words. Raises CompileError for unequal operands and the end of a slice."""
+    return run(_size(expression))
+
+
+def _size(expression: Expression) -> Task[int]:
+    match expression:
+        case Access(variable, first, last, pos, is_slice):
+            if is_slice and not 0 <= last < variable.size:
+                raise CompileError("index-out-of-bounds", (variable.name, last, variable.size), pos)
+            return last - first + 1
+        case Subscript(_, Listing(items), _, pos):
+            total = 0
+            for item in items:
+                total += yield _size(item)
+            raise CompileError("illegal-index" if total > 2 else "list-as-index", (), pos)
+        case Unary(_, operand, _):
+            size: int = yield _size(operand)
+            return size
+        case Binary(_, left, right, pos):
+            size = yield _size(left)
+            other: int = yield _size(right)
+            if size != other:
+                raise CompileError("size-mismatch", (size, other), pos)
+            return size
+        case Listing(items):
+            size = 0
+            for item in items:
+                size += yield _size(item)
+            return size
+    return 1
+
+
+def check_address(expression: Expression) -> None:
+    """Check the start of the leftmost part, as asking for its address does. Raises CompileError."""
+    while True:
+        match expression:
+            case Unary(_, operand, _):
+                expression = operand
+            case Binary(_, left, _, _):
+                expression = left
+            case Listing(items):
+                expression = items[0]
+            case Access():
+                missing = out_of_bounds(expression)
+                if missing is not None:
+                    raise missing
+                return
+            case _:
+                return
+
+
+def out_of_bounds(access: Access) -> CompileError | None:
+    """Return the error of an access that starts outside its variable."""
+    if 0 <= access.first < access.variable.size:
+        return None
+    return CompileError("index-out-of-bounds", (access.variable.name, access.first, access.variable.size), access.pos)
+
+
+def elements(expression: Expression, count: int) -> list[Scalar]:
+    """Return the first ``count`` elements as scalar expressions, or fewer if there are fewer."""
+    return run(_elements(expression, count, False))
+
+
+def first_element(expression: Expression) -> Expression:
+    """Return element 0. Raises CompileError if it does not exist."""
+    return needed(elements(expression, 1)[0])
+
+
+def first_constant(expression: Expression) -> Expression:
+    """Return element 0 with a word that is never constant in place of each element at a computed index.
+
+    Those indexes were evaluated when they were read; doing it again at each level would take quadratic time.
+    Raises CompileError if the element does not exist or one of the indexes could not be evaluated.
+    """
+    return needed(run(_elements(expression, 1, True))[0])
+
+
+def needed(scalar: Scalar) -> Expression:
+    """Return an element that is now needed. Raises CompileError if it does not exist."""
+    if isinstance(scalar, Missing):
+        raise scalar.error
+    return scalar
+
+
+def _elements(expression: Expression, count: int, is_opaque: bool) -> Task[list[Scalar]]:
+    match expression:
+        case Access(variable, first, last, pos):
+            error = out_of_bounds(expression)
+            if error is not None:
+                return [Missing(error)] * min(count, last - first + 1)
+            end = min(last + 1, variable.size, first + count)
+            return [Word(variable.address + index, pos) for index in range(first, end)]
+        case Subscript(variable, index, fault, pos):
+            if isinstance(index, Listing):
+                total = yield _size(index)
+                return [Missing(CompileError("illegal-index" if total > 2 else "list-as-index", (), pos))]
+            if is_opaque:
+                return [Word(variable.address, pos) if fault is None else Missing(fault)]
+            first_index: list[Scalar] = yield _elements(index, 1, False)
+            inner = first_index[0]
+            return [inner if isinstance(inner, Missing) else Element(variable, inner, pos)]
+        case Unary(operator, operand, pos):
+            operands: list[Scalar] = yield _elements(operand, count, is_opaque)
+            return [item if isinstance(item, Missing) else Unary(operator, item, pos) for item in operands]
+        case Binary(operator, left, right, pos):
+            lefts: list[Scalar] = yield _elements(left, count, is_opaque)
+            rights: list[Scalar] = yield _elements(right, count, is_opaque)
+            return [_paired(operator, one, two, pos) for one, two in zip(lefts, rights, strict=False)]
+        case Listing(items):
+            gathered: list[Scalar] = []
+            for item in items:
+                gathered += yield _elements(item, count - len(gathered), is_opaque)
+                if len(gathered) >= count:
+                    break
+            return gathered
+    return [expression]
+
+
+def _paired(operator: str, left: Scalar, right: Scalar, pos: SourcePos) -> Scalar:
+    if isinstance(left, Missing):
+        return left
+    return right if isinstance(right, Missing) else Binary(operator, left, right, pos)

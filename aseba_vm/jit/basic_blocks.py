@@ -1,0 +1,258 @@
+"""Bytecode as basic blocks of statements over expression trees: what both translators start from.
+
+The stack of the machine becomes trees again. A statement is the least that has an effect; between statements the
+machine's state is known: ``pc``, and on the stack only ``pending``, constants and temporaries. So whatever cannot be
+translated, or goes wrong while running, is left *before* the statement, and the interpreter does it again, exactly
+(see :mod:`aseba_vm.jit.tiering`). Only code that can be reached from the event table is decoded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from aseba_vm.bytecode import EDGE, LENGTH, MAX_EMITTED, Op, signed, signed12
+from aseba_vm.jit.ir import (
+    Assign,
+    AssignIndex,
+    Binary,
+    Branch,
+    Call,
+    Const,
+    Emit,
+    End,
+    Enter,
+    Expr,
+    Index,
+    Jump,
+    Leave,
+    Load,
+    Place,
+    Return,
+    Statement,
+    Stop,
+    Temp,
+    Unary,
+    arguments,
+    words_of,
+)
+from aseba_vm.machine.costs import FREE, Cost
+from aseba_vm.machine.native_call import Signature
+
+_BINARY_COUNT = 18
+_UNARY_COUNT = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Statements executed one after the other, and what follows. ``depth`` is the most the stack grows by."""
+
+    pc: int
+    statements: tuple[Statement, ...]
+    end: End
+    depth: int
+
+
+@dataclass(frozen=True, slots=True)
+class Memories:
+    """What of a machine the translation depends on: sizes in words, the natives, the cost of an event."""
+
+    variables: int
+    bytecode: int
+    stack: int
+    natives: tuple[Signature, ...]
+    emit: Cost = FREE
+
+
+@dataclass(frozen=True, slots=True)
+class Blocks:
+    """The blocks of a program by address, and the addresses of its branches in order.
+
+    ``jumps``: the addresses of all JUMP instructions with their targets. ``operands``: the words that are not
+    instructions; ``is_fragile``: one of them could, executed as an instruction, change itself.
+    """
+
+    by_address: dict[int, Block]
+    branches: tuple[int, ...]
+    jumps: dict[int, int]
+    is_fragile: bool
+    operands: dict[int, int]
+    memories: Memories
+
+
+def find_blocks(words: Sequence[int], memories: Memories) -> Blocks | None:
+    """Return the blocks of a program, or None if its branches change words that have another meaning too."""
+    size = len(words)
+    if not size:
+        return None
+    first = min(words[0], size - 1)
+    events = [words[index + 1] for index in range(1, first, 2) if index + 1 < size]
+    leaders = {address for address in events if address < size}
+    instructions = _reach(words, leaders)
+    branches = tuple(sorted(pc for pc in instructions if words[pc] >> 12 == Op.BRANCH))
+    operands = {
+        place: words[place] for pc in instructions for place in range(pc + 1, min(pc + LENGTH[words[pc] >> 12], size))
+    }
+    if any(pc in operands or pc <= first for pc in branches):
+        return None
+    builder = _Builder(words, memories, leaders)
+    return Blocks(
+        by_address={pc: builder.block(pc) for pc in sorted(leaders)},
+        branches=branches,
+        jumps={pc: pc + signed12(words[pc]) for pc in instructions if words[pc] >> 12 == Op.JUMP},
+        is_fragile=any(word >> 12 == Op.BRANCH for word in operands.values()),
+        operands=operands,
+        memories=memories,
+    )
+
+
+def _reach(words: Sequence[int], leaders: set[int]) -> set[int]:
+    """Return the addresses of the instructions that can be reached; add those where blocks begin to ``leaders``."""
+    size = len(words)
+    found: set[int] = set()
+    waiting = sorted(leaders)
+    while waiting:
+        pc = waiting.pop()
+        while pc < size and pc not in found:
+            found.add(pc)
+            word = words[pc]
+            op = word >> 12
+            targets: tuple[int, ...] = ()
+            if op == Op.JUMP:
+                targets = (pc + signed12(word),)
+            elif op == Op.BRANCH:
+                targets = (pc + signed(words[pc + 1] if pc + 1 < size else 0), pc + 2)
+            elif op == Op.CALL:
+                targets = (word & 0xFFF, pc + 1)
+            for target in targets:
+                if 0 <= target < size:
+                    leaders.add(target)
+                    waiting.append(target)
+            if targets or op in (Op.STOP, Op.RET, Op.UNKNOWN):
+                break
+            pc += LENGTH[op]
+    return found
+
+
+class _Builder:
+    """Executes a block symbolically."""
+
+    def __init__(self, words: Sequence[int], memories: Memories, leaders: set[int]) -> None:
+        self.words = [*words, 0, 0]
+        self.size = len(words)
+        self.memories = memories
+        self.leaders = leaders
+
+    def block(self, start: int) -> Block:
+        self.stack: list[Expr] = []
+        self.statements: list[Statement] = []
+        self.place = Place(start, ())
+        self.cost = 0
+        self.depth = 0
+        self.temps = 0
+        pc = start
+        end: End | None = None
+        while end is None:
+            if pc >= self.size:
+                end = Leave(self.place, 0)
+            elif pc != start and pc in self.leaders:
+                end = Leave(self.place, 0) if self.cost or self.stack else Jump(self.place, 0, -1, pc)
+            else:
+                self.cost += 1
+                end = self._instruction(pc)
+                self.depth = max(self.depth, len(self.stack))
+                pc += LENGTH[self.words[pc] >> 12]
+        return Block(start, tuple(self.statements), end, self.depth)
+
+    def _instruction(self, pc: int) -> End | None:
+        """Execute one instruction; return the end of the block if this is it."""
+        word, second, third = self.words[pc : pc + 3]
+        op, operand = word >> 12, word & 0xFFF
+        stack = self.stack
+        memory = self.memories.variables
+        match op:
+            case Op.PUSH:
+                stack.append(Const(signed12(word)))
+            case Op.PUSHL:
+                stack.append(Const(signed(second)))
+            case Op.LOAD if operand < memory:
+                stack.append(Load(operand))
+            case Op.STORE if stack and operand < memory:
+                value = stack.pop()
+                self.statements.append(Assign(self.place, self.cost, self._keep(), operand, value))
+                self._begin(pc + 1)
+            case Op.LOADX if stack and operand + second <= memory:
+                stack.append(Index(operand, second, stack.pop()))
+            case Op.STOREX if len(stack) > 1 and operand + second <= memory:
+                index, value = stack.pop(), stack.pop()
+                place, keep = self.place, self._keep()
+                self.statements.append(AssignIndex(place, self.cost, keep, operand, second, index, value))
+                self._begin(pc + 2)
+            case Op.UNARY if stack and operand < _UNARY_COUNT:
+                stack.append(Unary(operand, stack.pop()))
+            case Op.BINARY if len(stack) > 1 and operand < _BINARY_COUNT:
+                right, left = stack.pop(), stack.pop()
+                stack.append(Binary(operand, left, right))
+            case Op.EMIT if second + third <= memory and third <= MAX_EMITTED:
+                self.cost += self.memories.emit.of(third)
+                self.statements.append(Emit(self.place, self.cost, self._keep(), operand, second, third))
+                self._begin(pc + 3)
+            case Op.NATIVE if operand < len(self.memories.natives):
+                return self._native(pc, operand)
+            case _:
+                return self._end(pc, op, word, second)
+        return None
+
+    def _native(self, pc: int, number: int) -> End | None:
+        signature = self.memories.natives[number]
+        count = signature.count
+        if len(self.stack) < count:
+            return Leave(self.place, 0)
+        popped = tuple(self.stack[len(self.stack) - count :][::-1])
+        del self.stack[len(self.stack) - count :]
+        words = words_of(popped, signature) if signature.cost.per_word else 0
+        if words is None:  # only the call itself knows what it costs
+            return Leave(self.place, 0)
+        place, cost = self.place, self.cost + signature.cost.of(words)
+        known = arguments(popped, signature) or ()
+        if any(address + size > self.memories.variables for address, size in known):
+            return Leave(place, 0)
+        keep = self._keep()
+        self._begin(pc + 1)
+        self.statements.append(Call(place, cost, keep, number, popped, pc, self.place))
+        return None
+
+    def _end(self, pc: int, op: int, word: int, second: int) -> End:
+        stack, place, cost = self.stack, self.place, self.cost
+        if op == Op.BRANCH and len(stack) == 2 and word & 0xFF < _BINARY_COUNT:
+            left, right = stack
+            operator, is_edge = word & 0xFF, bool(word & EDGE)
+            return Branch(place, cost, pc, operator, left, right, is_edge, pc + 2, pc + signed(second))
+        if not stack:
+            target = pc + signed12(word)
+            if op == Op.STOP:
+                return Stop(place, cost)
+            if op == Op.JUMP and 0 <= target < self.size:
+                return Jump(place, cost, pc, target)
+            if op == Op.CALL and word & 0xFFF < self.size:
+                self.depth = max(self.depth, 1)
+                return Enter(place, cost, word & 0xFFF, pc + 1)
+            if op == Op.RET:
+                return Return(place, cost)
+        return Leave(place, 0)
+
+    def _keep(self) -> tuple[tuple[Temp, Expr], ...]:
+        """Replace what is still on the stack by temporaries; return their values. Constants stay."""
+        kept: list[tuple[Temp, Expr]] = []
+        for place, expression in enumerate(self.stack):
+            if not isinstance(expression, Const | Temp):
+                temp = Temp(self.temps)
+                self.temps += 1
+                kept.append((temp, expression))
+                self.stack[place] = temp
+        return tuple(kept)
+
+    def _begin(self, pc: int) -> None:
+        """Begin the next statement."""
+        self.place = Place(pc, tuple(atom for atom in self.stack if isinstance(atom, Const | Temp)))
+        self.cost = 0

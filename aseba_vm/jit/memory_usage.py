@@ -1,0 +1,109 @@
+"""Which words of memory a translated function uses, and how: what it may keep in variables of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from aseba_vm.jit.ir import (
+    Assign,
+    AssignIndex,
+    Binary,
+    Branch,
+    Call,
+    Const,
+    Emit,
+    Expr,
+    Index,
+    Known,
+    Load,
+    Statement,
+    Temp,
+    Unary,
+    arguments,
+)
+from aseba_vm.jit.structured_ir import If, Loop, Node
+
+LONGEST_EMIT = 8
+"""Words of an event that are looked at one by one."""
+
+
+class Survey:
+    """Which words and branches a function uses, and how."""
+
+    def __init__(self, natives: Sequence[Known]) -> None:
+        self.natives = natives
+        self.scalars: set[int] = set()
+        self.stored: set[int] = set()
+        self.shared: set[int] = set()
+        self.branches: set[int] = set()
+
+    def visit(self, nodes: Iterable[Node]) -> None:
+        """Look at nodes and those inside."""
+        for node in nodes:
+            match node:
+                case If(branch, then, otherwise):
+                    self._branch(branch)
+                    self.visit(then)
+                    self.visit(otherwise)
+                case Loop(_, before, branch, body):
+                    self._branch(branch)
+                    self.visit(before)
+                    self.visit(body)
+                case Assign() | AssignIndex() | Emit() | Call():
+                    self._statement(node)
+
+    def _branch(self, branch: Branch) -> None:
+        self.branches.add(branch.pc)
+        self._expressions(branch.left, branch.right)
+
+    def _statement(self, node: Statement) -> None:
+        self._expressions(*(expression for _, expression in node.keep))
+        match node:
+            case Assign(address=address, value=value):
+                self.scalars.add(address)
+                self.stored.add(address)
+                self._expressions(value)
+            case AssignIndex(base=base, size=size, element=index, value=value):
+                self.shared.update(range(base, base + size))
+                self._expressions(index, value)
+            case Emit(address=address, length=count):
+                words = range(address, address + count)
+                (self.scalars if count <= LONGEST_EMIT else self.shared).update(words)
+            case Call(popped=popped):
+                self._expressions(*popped)
+                if not needs_barrier(node, self.natives):
+                    for address, size in arguments(node.popped, self.natives[node.number].signature) or ():
+                        self.shared.update(range(address, address + size))
+
+    def _expressions(self, *waiting: Expr) -> None:
+        stack = list(waiting)
+        while stack:
+            match stack.pop():
+                case Load(address):
+                    self.scalars.add(address)
+                case Index(base, size, index):
+                    self.shared.update(range(base, base + size))
+                    stack.append(index)
+                case Unary(_, operand):
+                    stack.append(operand)
+                case Binary(_, left, right):
+                    stack += (left, right)
+                case Const() | Temp():
+                    pass
+
+
+def needs_barrier(node: Call, natives: Sequence[Known]) -> bool:
+    """Tell whether a native may touch more of memory than arguments known beforehand."""
+    native = natives[node.number]
+    return not native.is_confined or arguments(node.popped, native.signature) is None
+
+
+def runs(places: Iterable[int]) -> list[tuple[int, int]]:
+    """Return first and last of each run of neighbours."""
+    found: list[tuple[int, int]] = []
+    for place in sorted(places):
+        if found and found[-1][1] == place - 1:
+            found[-1] = (found[-1][0], place)
+        else:
+            found.append((place, place))
+    return found

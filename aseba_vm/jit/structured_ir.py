@@ -1,0 +1,248 @@
+"""Blocks as structured code: loops and conditions again, from the shapes that the compiler makes.
+
+Source: docs/spec/aseba-bytecode-vm.md section 6.
+
+What has another shape becomes an :class:`Exit` to an address, where other translated code or the interpreter goes on;
+so any program can be translated, only some profit less. The budget of instructions is checked at :class:`Check` and
+at the head of each loop, for the longest way to the next check.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from aseba_vm.jit.basic_blocks import Blocks
+from aseba_vm.jit.ir import Branch, Enter, Jump, Leave, Place, Return, Statement, Stop
+
+MAX_NESTING = 14
+MAX_NODES = 4000
+_MAX_CALLS = 32
+_CHECK_EVERY = 250
+
+STOPPED = 0
+INTERPRET = 1
+GO_ON = 2
+
+
+@dataclass(slots=True)
+class Exit:
+    """Leave translated code: the event ends, the interpreter has to go on, or other translated code may."""
+
+    place: Place
+    kind: int
+    cost: int = 0
+
+
+@dataclass(slots=True)
+class Cost:
+    """Instructions without an effect of their own: jumps."""
+
+    cost: int
+
+
+@dataclass(slots=True)
+class Check:
+    """Leave unless ``need`` instructions are left."""
+
+    pc: int
+    need: int
+
+
+@dataclass(slots=True)
+class If:
+    """A condition; each arm is a list of nodes."""
+
+    branch: Branch
+    then: list[Node]
+    otherwise: list[Node]
+
+    @property
+    def is_broken(self) -> bool:
+        """Tell whether there is no code to go to if the condition is false."""
+        first = self.otherwise[0] if self.otherwise else None
+        return isinstance(first, Exit) and first.cost < 0
+
+
+@dataclass(slots=True)
+class Loop:
+    """``before`` and the condition, then ``body``, again and again; ``need`` is that of the longest turn."""
+
+    pc: int
+    before: list[Node]
+    branch: Branch
+    body: list[Node]
+    need: int = 0
+
+
+@dataclass(slots=True)
+class Visit:
+    """A call of a subroutine."""
+
+    end: Enter
+
+
+@dataclass(slots=True)
+class Back:
+    """The end of a subroutine."""
+
+    cost: int
+
+
+Node = Statement | Exit | Cost | Check | If | Loop | Visit | Back
+
+
+@dataclass(slots=True)
+class Routine:
+    """The code of a subroutine, or of an event (``is_sub`` false), with what running it takes."""
+
+    pc: int
+    is_sub: bool
+    nodes: list[Node] = field(default_factory=list)
+    need: int = 0
+    depth: int = 0
+    has_checks: bool = False
+
+
+class Structure:
+    """Builds the routine at ``entry`` and the subroutines it calls, into ``routines``; the first is the entry's."""
+
+    def __init__(self, blocks: Blocks, entry: int) -> None:
+        self.blocks = blocks
+        self.subs: dict[int, Routine] = {}
+        self._open: list[int] = []
+        self._nodes = 0
+        self.main = self._routine(entry, is_sub=False)
+
+    @property
+    def is_too_large(self) -> bool:
+        """Tell whether the code grew beyond reason, as only odd programs make it."""
+        return self._nodes > MAX_NODES
+
+    def _routine(self, pc: int, *, is_sub: bool) -> Routine:
+        self._open.append(pc)
+        routine = Routine(pc, is_sub)
+        routine.nodes, _ = self._sequence(routine, pc, None, None, 0)
+        self._open.pop()
+        routine.need = self._need(routine, routine.nodes, 0)
+        return routine
+
+    def _sequence(
+        self, routine: Routine, pc: int, end: int | None, jump: int | None, nesting: int
+    ) -> tuple[list[Node], bool]:
+        """Return the nodes from ``pc`` to ``end`` (or to the JUMP at ``jump``), and whether they run to there."""
+        nodes: list[Node] = []
+        while pc != end:
+            block = self.blocks.by_address.get(pc)
+            if block is None or nesting > MAX_NESTING or self._nodes > MAX_NODES:
+                nodes.append(Exit(Place(pc, ()), GO_ON))
+                return nodes, False
+            self._nodes += 1 + len(block.statements)
+            routine.depth = max(routine.depth, block.depth)
+            last = block.end
+            if isinstance(last, Branch):
+                pc = self._condition(routine, nodes, pc, end, nesting)
+                continue
+            nodes += block.statements
+            match last:
+                case Jump(_, cost, at, target):
+                    if cost:
+                        nodes.append(Cost(cost))
+                    if cost and (at == jump or target == end):
+                        return nodes, True
+                    if cost:
+                        nodes.append(Exit(Place(target, ()), GO_ON))
+                        return nodes, False
+                    pc = target
+                case Enter(place, _, target, back):
+                    if not self._visit(routine, target):
+                        nodes.append(Exit(place, INTERPRET))
+                        return nodes, False
+                    nodes.append(Visit(last))
+                    pc = back
+                case Stop(place, cost):
+                    nodes.append(Exit(place, STOPPED, cost))
+                    return nodes, False
+                case Return(place, cost):
+                    nodes.append(Back(cost) if routine.is_sub else Exit(place, INTERPRET))
+                    return nodes, False
+                case Leave(place):
+                    nodes.append(Exit(place, INTERPRET))
+                    return nodes, False
+        return nodes, True
+
+    def _visit(self, routine: Routine, target: int) -> bool:
+        """Make the subroutine at ``target`` available; tell whether it can be called."""
+        if target in self._open or len(self._open) > _MAX_CALLS:
+            return False
+        if target not in self.subs:
+            self.subs[target] = self._routine(target, is_sub=True)
+        routine.depth = max(routine.depth, 1 + self.subs[target].depth)
+        return True
+
+    def _condition(self, routine: Routine, nodes: list[Node], pc: int, end: int | None, nesting: int) -> int:
+        """Append the block at ``pc`` that ends in a branch, with what hangs on it; return where the code goes on."""
+        block = self.blocks.by_address[pc]
+        branch = block.end
+        assert isinstance(branch, Branch)
+        target = branch.otherwise
+        outside: list[Node] = [Exit(Place(target, ()), GO_ON)]
+        if target not in self.blocks.by_address:
+            outside = [Exit(branch.place, INTERPRET, -branch.cost)]
+        if target < branch.then or (end is not None and target > end) or target not in self.blocks.by_address:
+            nodes += block.statements
+            nodes.append(If(branch, [], outside))
+            return branch.then
+        jump = target - 1
+        to = self.blocks.jumps.get(jump)
+        if to == pc and not branch.is_edge:
+            body, _ = self._sequence(routine, branch.then, target, jump, nesting + 1)
+            nodes.append(Loop(pc, list(block.statements), branch, body))
+            routine.has_checks = True
+            return target
+        nodes += block.statements
+        if (
+            to is not None
+            and to > target
+            and not branch.is_edge
+            and (end is None or to <= end)
+            and to in self.blocks.by_address
+        ):
+            then, _ = self._sequence(routine, branch.then, target, jump, nesting + 1)
+            otherwise, _ = self._sequence(routine, target, to, None, nesting + 1)
+            nodes.append(If(branch, then, otherwise))
+            return to
+        then, _ = self._sequence(routine, branch.then, target, None, nesting + 1)
+        nodes.append(If(branch, then, []))
+        return target
+
+    def _need(self, routine: Routine, nodes: list[Node], after: int) -> int:
+        """Return the most instructions to the next check, given those ``after`` the nodes; insert checks."""
+        need = after
+        for place in range(len(nodes) - 1, -1, -1):
+            node = nodes[place]
+            match node:
+                case Exit() | Back():
+                    need = max(node.cost, 0)
+                case If():
+                    then = self._need(routine, node.then, need)
+                    need = node.branch.cost + max(then, self._need(routine, node.otherwise, need))
+                case Loop():
+                    turn = max(self._need(routine, node.body, 0), need)
+                    node.need = self._need(routine, node.before, node.branch.cost + turn)
+                    need = 0
+                case Visit():
+                    sub = self.subs[node.end.target]
+                    if sub.has_checks:
+                        nodes.insert(place + 1, Check(node.end.back, need))
+                        need = 0
+                        routine.has_checks = True
+                    need += 1 + sub.need
+                case Check():
+                    need = 0
+                case _:
+                    need += node.cost
+                    if need > _CHECK_EVERY and not isinstance(node, Cost) and not node.place.pending:
+                        nodes.insert(place, Check(node.place.pc, need))
+                        need = 0
+                        routine.has_checks = True
+        return need

@@ -1,0 +1,378 @@
+"""The engine: decides what runs interpreted and what translated, and keeps the two at one state.
+
+Translated code runs whole statements. It leaves before a statement that it cannot do, that would fail, or that the
+budget does not cover; the interpreter then does that statement as always, so that every fault, every address and every
+count is the interpreter's own. What branches remember is kept beside the bytecode while translated code runs
+and written into it (:meth:`Engine.settle`) before anybody else looks.
+
+Programs start interpreted; a place where runs begin often, or a run that is long, is translated. Machines with the same
+program share its translation.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections import OrderedDict
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, Protocol
+
+from aseba_vm.bytecode import WAS_TRUE
+from aseba_vm.jit import python_backend, wasm_backend
+from aseba_vm.jit.basic_blocks import Blocks, Memories, find_blocks
+from aseba_vm.jit.host import Host, PythonHost, Run
+from aseba_vm.jit.ir import Known
+from aseba_vm.jit.structured_ir import GO_ON, INTERPRET, STOPPED, Structure
+from aseba_vm.jit.wasm_host import WasmHost
+from aseba_vm.jit.wasm_natives import FAULTS
+from aseba_vm.machine.code_memory import CodeMemory
+from aseba_vm.machine.costs import Costs
+from aseba_vm.machine.data_memory import Variables
+from aseba_vm.machine.interpreter import ACTIVE
+from aseba_vm.machine.machine_messages import Emitted, Message
+from aseba_vm.machine.native_call import Native, NativeFault, Signature
+from aseba_vm.machine.natives import NATIVES
+from aseba_vm.target import TargetDescription
+
+AUTO = "auto"
+INTERPRETER = "interpreter"
+PYTHON = "python"
+WASM = "wasm"
+ENGINES = (AUTO, INTERPRETER, PYTHON, WASM)
+"""Names of engines: the best there is, once a program proves hot; no translation; translation at once, to Python or
+WebAssembly (which needs wasmtime)."""
+
+
+_KEPT_PROGRAMS = 64
+_WARM_RUNS = 2
+_WARM_INSTRUCTIONS = 2000
+_WEIRD_STRETCH = 256
+_LONGEST_STRETCH = 10_000_000
+"""Instructions after which translated code comes back, so that a user can interrupt a program without an end."""
+
+
+class Machine(Protocol):
+    """What the engine needs of a machine: its state, its interpreter, its natives."""
+
+    target: TargetDescription
+    costs: Costs
+    variables: Variables
+    stack: list[int]
+    pc: int
+    sp: int
+    flags: int
+    instructions: int
+    surcharge: int
+    random_state: int
+    outbox: list[Message]
+    code: CodeMemory
+
+    @property
+    def bytecode(self) -> tuple[int, ...]:
+        """The words of the bytecode memory, settled."""
+
+    def interpret(self, limit: int) -> int:
+        """Execute until ``limit`` is spent; return what was."""
+
+    def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
+        """Call a native; return False if its arguments lie outside memory."""
+
+    def refuse(self, pc: int, fault: NativeFault) -> None:
+        """Stop for what a native at ``pc`` refused."""
+
+
+class Entry(NamedTuple):
+    """Translated code for :meth:`Host.make`, the budget it needs to begin, the words it may push."""
+
+    code: Any
+    need: int
+    depth: int
+
+
+class Ready(NamedTuple):
+    """Translated code of one machine: what runs it, the budget it needs, the highest stack it may begin with."""
+
+    run: Run
+    need: int
+    highest: int
+
+
+class Translation:
+    """A program and its translations by address; None where it cannot be translated."""
+
+    def __init__(
+        self, words: tuple[int, ...], memories: Memories, natives: tuple[Known, ...], *, is_wasm: bool
+    ) -> None:
+        """Find the blocks of a program; what they become is made when asked for."""
+        self._is_wasm = is_wasm
+        self.natives = natives
+        self.blocks: Blocks | None = find_blocks(words, memories)
+        self._entries: dict[int, Entry | None] = {}
+        self.canonical = self.without_memory(words)
+
+    def without_memory(self, words: tuple[int, ...]) -> tuple[int, ...]:
+        """Return words as they are when no branch remembers anything."""
+        kept = list(words)
+        for pc in self.blocks.branches if self.blocks is not None else ():
+            kept[pc] &= ~WAS_TRUE
+        return tuple(kept)
+
+    def entry(self, pc: int) -> Entry | None:
+        """Return the translation of the block at ``pc`` and what follows."""
+        if pc not in self._entries:
+            self._entries[pc] = self._translate(pc)
+        return self._entries[pc]
+
+    def _translate(self, pc: int) -> Entry | None:
+        assert self.blocks is not None
+        structure = Structure(self.blocks, pc)
+        if structure.is_too_large:
+            return None
+        translate = wasm_backend.translate if self._is_wasm else python_backend.translate
+        try:
+            code = translate(self.blocks, structure, self.natives)
+        except Exception:  # a defect of ours, or a wasmtime that we don't know: the interpreter can run everything
+            logging.getLogger(__name__).exception("no translation at %d: the interpreter runs it", pc)
+            return None
+        return Entry(code, structure.main.need, structure.main.depth)
+
+
+_NOTHING = Translation((), Memories(0, 0, 0, ()), (), is_wasm=False)
+_translations: OrderedDict[object, Translation] = OrderedDict()
+
+
+def _translation(
+    words: tuple[int, ...], memories: Memories, natives: tuple[Known, ...], *, is_wasm: bool
+) -> Translation:
+    """Return the translation of a program, the same for the same program."""
+    key = (words, memories, natives, is_wasm)
+    found = _translations.pop(key, None)
+    if found is None:
+        found = Translation(words, memories, natives, is_wasm=is_wasm)
+        while len(_translations) >= _KEPT_PROGRAMS:
+            _translations.popitem(last=False)
+    _translations[key] = found
+    return found
+
+
+def _known(signature: Signature, functions: Mapping[str, Native]) -> Known:
+    name = signature.native.name
+    function = functions.get(name)
+    is_standard = function is not None and function is NATIVES.get(name)
+    return Known(signature, function is None or (is_standard and name.startswith("math.")), is_standard)
+
+
+class Engine:
+    """Runs the events of one machine."""
+
+    def __init__(
+        self, machine: Machine, natives: Mapping[str, Native], *, is_eager: bool, is_wasm: bool | None
+    ) -> None:
+        """``is_eager``: translate at once. ``is_wasm``: to WebAssembly; None: if that is possible."""
+        self._machine = machine
+        self._is_eager = is_eager
+        self._is_wasm = is_wasm
+        target = machine.target
+        signatures = tuple(Signature.of(native, machine.costs.of(native.name)) for native in target.natives)
+        self._natives = tuple(_known(signature, natives) for signature in signatures)
+        self._memories = Memories(
+            target.variables_size, target.bytecode_size, target.stack_size, signatures, machine.costs.emit
+        )
+        self._translation = _NOTHING
+        self._host: Host | None = None
+        self._is_known = False
+        self._is_settled = True
+        self._heat: dict[int, int] = {}
+        self._made: dict[int, Ready] = {}
+        self._ready: dict[int, Ready] = {}
+        self._failure: BaseException | None = None
+
+    def forget(self) -> None:
+        """The bytecode may have changed."""
+        self.doubt()
+        self._heat.clear()
+
+    def settle(self) -> None:
+        """Write into the bytecode what the branches remember."""
+        if self._is_settled:
+            return
+        self._is_settled = True
+        assert self._translation.blocks is not None
+        assert self._host is not None
+        self._machine.code.remember(zip(self._translation.blocks.branches, self._host.memory, strict=True))
+
+    def close(self) -> None:
+        """Settle and give the machine's memory back."""
+        self.settle()
+        self.forget()
+        if self._host is not None:
+            self._host.close()
+            self._host = None
+
+    def run(self, limit: int) -> int:
+        """Execute the active event until ``limit`` is spent; return what was."""
+        machine = self._machine
+        ready = self._ready.get(machine.pc)
+        left = limit
+        if ready is None and not self._is_eager and not self._is_warm(machine.pc):
+            left -= self._interpret(min(left, _WARM_INSTRUCTIONS))
+            ready = None
+        while left > 0 and machine.flags & ACTIVE:
+            if ready is None:
+                ready = self._ready.get(machine.pc) or self._prepared(machine.pc)
+            if ready is None or machine.sp > ready.highest:
+                left -= self._interpret(min(left, _WEIRD_STRETCH))
+            elif left < ready.need:
+                left -= self._interpret(left)
+            else:
+                left -= self._translated(ready.run, left if left < _LONGEST_STRETCH else _LONGEST_STRETCH)
+            ready = None
+        return limit - left
+
+    def _prepared(self, pc: int) -> Ready | None:
+        """Return the translation from an address on; None if there has to be another way."""
+        translation = self._translation if self._is_known else self._prepare()
+        entry = (
+            translation.entry(pc) if translation.blocks is not None and pc in translation.blocks.by_address else None
+        )
+        if entry is None:
+            return None
+        if pc not in self._made:
+            assert self._host is not None
+            self._made[pc] = Ready(self._host.make(entry.code), entry.need, self._memories.stack - entry.depth - 1)
+        self._ready[pc] = self._made[pc]
+        return self._made[pc]
+
+    def _prepare(self) -> Translation:
+        """Return the translation of the program that is in the machine now."""
+        self._is_known = True
+        words = self._machine.bytecode
+        known = self._translation
+        if known.blocks is None or self._host is None or known.without_memory(words) != known.canonical:
+            if self._is_wasm is None:
+                self._is_wasm = wasm_backend.is_available()
+            self._translation = _translation(words, self._memories, self._natives, is_wasm=self._is_wasm)
+            self._made.clear()
+            if self._translation.blocks is not None:
+                if self._host is None:
+                    self._host = self._new_host(words)
+                self._host.begin(len(self._translation.blocks.branches))
+        self._load()
+        return self._translation
+
+    def _new_host(self, words: tuple[int, ...]) -> Host:
+        """Return where translated code is to run; in Python if WebAssembly was not asked for by name and fails."""
+        if self._is_wasm:
+            try:
+                return WasmHost(self)
+            except Exception:
+                if self._is_eager:
+                    raise
+                logging.getLogger(__name__).exception("no memory for WebAssembly: events are translated to Python")
+                self._is_wasm = False
+                self._translation = _translation(words, self._memories, self._natives, is_wasm=False)
+        return PythonHost(self)
+
+    def _load(self) -> None:
+        """Read from the bytecode what the branches remember."""
+        if self._translation.blocks is not None and self._host is not None:
+            words = self._machine.code.words
+            self._host.memory[:] = [words[pc] >> 9 & 1 for pc in self._translation.blocks.branches]
+
+    def doubt(self) -> None:
+        """Look at the bytecode anew before translated code runs again: somebody else has executed, or changed it."""
+        self._is_known = False
+        self._ready.clear()
+
+    def _is_warm(self, pc: int) -> bool:
+        """Count a run that begins at ``pc``; tell whether there were many."""
+        heat = self._heat.get(pc, 0) + 1
+        self._heat[pc] = heat
+        return heat > _WARM_RUNS
+
+    def _interpret(self, limit: int) -> int:
+        self.settle()
+        try:
+            return self._machine.interpret(limit)
+        finally:
+            self._look_again()
+
+    def _look_again(self) -> None:
+        """Take over what the interpreter has changed in the bytecode."""
+        blocks = self._translation.blocks
+        if blocks is not None and self._is_known:
+            self._load()
+            if blocks.is_fragile and any(self._machine.code.words[pc] != word for pc, word in blocks.operands.items()):
+                self.doubt()
+
+    def _translated(self, run: Run, left: int) -> int:
+        machine = self._machine
+        self._is_settled = False
+        rest, pc, kind, words = run(left)
+        machine.pc = pc
+        if machine.surcharge:
+            rest -= machine.surcharge
+            machine.surcharge = 0
+        done = left - rest
+        machine.instructions += done
+        if words:
+            sp = machine.sp
+            machine.stack[sp + 1 : sp + 1 + len(words)] = words
+            machine.sp = sp + len(words)
+        if kind == STOPPED:
+            machine.flags &= ~ACTIVE
+        elif kind == INTERPRET:
+            if self._failure is not None:
+                failure, self._failure = self._failure, None
+                raise failure
+            if machine.flags & ACTIVE and rest > 0:
+                done += self._interpret(1)
+        elif kind != GO_ON:
+            raise RuntimeError(f"translated code trapped at {pc}: a defect of the translator")
+        return done
+
+    # -- what translated code needs (aseba_vm.jit.host.Machine)
+
+    @property
+    def variables(self) -> Variables:
+        """The machine's."""
+        return self._machine.variables
+
+    @property
+    def random_state(self) -> int:
+        """The machine's."""
+        return self._machine.random_state
+
+    @random_state.setter
+    def random_state(self, value: int) -> None:
+        self._machine.random_state = value
+
+    def call_native(self, number: int, pc: int, popped: tuple[int, ...]) -> int:
+        """Call a native; what it raises is raised when translated code has been left."""
+        machine = self._machine
+        try:
+            if not machine.invoke(number, pc, popped):
+                return 2
+        except BaseException as failure:
+            self._failure = failure
+            return 1
+        return 0 if machine.flags & ACTIVE and self._is_known and not machine.surcharge else 1
+
+    def refuse_translated(self, pc: int, reason: int) -> None:
+        """Let the event end with one of ``FAULTS``, counted from 1."""
+        for fault in FAULTS[reason - 1]():
+            self._machine.refuse(pc, fault)
+
+    def emit(self, number: int, words: tuple[int, ...]) -> None:
+        """Emit an event."""
+        self._machine.outbox.append(Emitted(number, words))
+
+
+def new_engine(name: str, machine: Machine, natives: Mapping[str, Native]) -> Engine | None:
+    """Return an engine by name, None to interpret. Raises ValueError for a name that cannot be used."""
+    if name not in ENGINES:
+        raise ValueError(f"engine {name!r} is not one of {', '.join(ENGINES)}")
+    if name == WASM and not wasm_backend.is_available():
+        raise ValueError(f"engine {name!r} needs the package wasmtime, which the extra [fast] installs")
+    if name == INTERPRETER:
+        return None
+    return Engine(machine, natives, is_eager=name != AUTO, is_wasm=None if name == AUTO else name == WASM)

@@ -1,0 +1,190 @@
+"""What WebAssembly modules of one machine share: its memory, the way to natives, and how they are called.
+
+The machine's variables live in that memory, so that nothing is copied between Python and translated code. Below are
+the places in it, in bytes.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import struct
+import weakref
+from collections.abc import Callable, MutableSequence
+from typing import Any, NamedTuple
+
+from aseba_vm.jit.host import Machine, Run
+from aseba_vm.jit.wasm_calls import callee, caller
+from aseba_vm.jit.wasm_runtime import Runtime
+
+VARIABLES = 0
+BRANCHES = 0x20000
+"""What branches remember, a word each."""
+EXIT = 0x40000
+"""The budget on the way in; on the way out what is left of it, then address, kind, and whether there is more."""
+EMITTED = EXIT + 24
+"""Bytes of events in their buffer."""
+RANDOM = EXIT + 28
+"""State of the generator of random numbers."""
+INNER = EXIT + 32
+"""What is left of the budget when a subroutine is left for good."""
+REQUEST = EXIT + 40
+"""What a native needs: its number (or REFUSED and what went wrong), its address, how many words it pops; the answer."""
+STACK = EXIT + 64
+"""Words to push when code is left, four bytes each."""
+TABLES = 0x58000
+"""Tables of natives."""
+ARGUMENTS = 0x60000
+"""Words that a native pops, four bytes each."""
+EVENTS = 0x70000
+"""Buffer of events: number and count, then the words."""
+PAGES = 8
+
+_EVENTS_SIZE = PAGES * 0x10000 - EVENTS
+REFUSED = 0x10000
+
+_EXIT_FORMAT = struct.Struct("<qiii")
+_EVENT = struct.Struct("<HH")
+
+EMIT = f"""
+(func $emit (param $number i32) (param $address i32) (param $count i32) (local $at i32)
+  (local.set $at (i32.load (i32.const {EMITTED})))
+  (if (i32.gt_u (i32.add (local.get $at) (i32.shl (local.get $count) (i32.const 1))) (i32.const {_EVENTS_SIZE - 4}))
+    (then (call $flush) (local.set $at (i32.const 0))))
+  (i32.store16 offset={EVENTS} (local.get $at) (local.get $number))
+  (i32.store16 offset={EVENTS + 2} (local.get $at) (local.get $count))
+  (memory.copy (i32.add (local.get $at) (i32.const {EVENTS + 4}))
+    (i32.shl (local.get $address) (i32.const 1)) (i32.shl (local.get $count) (i32.const 1)))
+  (i32.store (i32.const {EMITTED})
+    (i32.add (i32.add (local.get $at) (i32.const 4)) (i32.shl (local.get $count) (i32.const 1)))))
+"""
+"""Function that puts an event into the buffer."""
+
+IMPORTS = f"""
+(import "" "request" (func $request))
+(import "" "flush" (func $flush))
+(import "" "memory" (memory {PAGES} {PAGES}))
+(func $native (param $number i32) (param $pc i32) (param $count i32) (result i32)
+  (i32.store (i32.const {REQUEST}) (local.get $number))
+  (i32.store (i32.const {REQUEST + 4}) (local.get $pc))
+  (i32.store (i32.const {REQUEST + 8}) (local.get $count))
+  (call $request)
+  (i32.load (i32.const {REQUEST + 12})))
+"""
+"""What every module begins with."""
+
+
+class Code(NamedTuple):
+    """A module, and whether it uses the generator of random numbers."""
+
+    module: Any
+    is_random: bool
+
+
+class WasmHost:
+    """The memory of one machine and what its modules may call."""
+
+    def __init__(self, machine: Machine) -> None:
+        """Move the variables of a machine into a new memory."""
+        runtime = Runtime.get()
+        wasmtime = runtime.wasmtime
+        self._wasmtime = wasmtime
+        self._machine = machine
+        self._store = wasmtime.Store(runtime.engine)
+        memory = wasmtime.Memory(self._store, wasmtime.MemoryType(wasmtime.Limits(PAGES, PAGES)))
+        self._base = ctypes.addressof(memory.data_ptr(self._store).contents)
+        self._request = self._array(ctypes.c_int32, REQUEST, 4)
+        self._arguments = self._array(ctypes.c_int32, ARGUMENTS, (EVENTS - ARGUMENTS) // 4)
+        self._random = self._array(ctypes.c_uint32, RANDOM, 1)
+        self._events = memoryview(self._array(ctypes.c_ubyte, EVENTS, _EVENTS_SIZE)).cast("B")
+        self._emitted = self._array(ctypes.c_int32, EMITTED, 1)
+        self._exit = memoryview(self._array(ctypes.c_ubyte, EXIT, _EXIT_FORMAT.size)).cast("B")
+        self._budget = self._array(ctypes.c_int64, EXIT, 1)
+        self._stack = self._array(ctypes.c_int32, STACK, (TABLES - STACK) // 4)
+        own = weakref.ref(self)
+        self._imports = [
+            callee(wasmtime, self._store, _of(own, WasmHost._serve)),
+            callee(wasmtime, self._store, _of(own, WasmHost._drain)),
+            memory,
+        ]
+        self._is_random = False
+        self.memory: MutableSequence[int] = []
+        self._is_open = True
+        machine.variables.move_to(self._array(ctypes.c_int16, VARIABLES, len(machine.variables)), self)
+        runtime.serve(self)
+
+    def close(self) -> None:
+        """Give the variables back and free the memory."""
+        if self._is_open:
+            self._is_open = False
+            self._machine.variables.move_home()
+            self.memory = self.memory[:]
+            self._store.close()
+
+    def begin(self, branches: int) -> None:
+        """Make room for what the branches of a program remember."""
+        self.memory = self._array(ctypes.c_int16, BRANCHES, branches)
+
+    def make(self, code: Code) -> Run:
+        """Return the function of a module for this machine."""
+        run = self._wasmtime.Instance(self._store, code.module, self._imports).exports(self._store)["run"]
+        call = caller(self._wasmtime, self._store, run)
+        budget, way_out, unpack = self._budget, self._exit, _EXIT_FORMAT.unpack_from
+
+        def run_module(left: int) -> tuple[int, int, int, Any]:
+            budget[0] = left
+            call()
+            found: tuple[int, int, int, int] = unpack(way_out)
+            return self._all_of(found) if found[3] else found
+
+        def run_random(left: int) -> tuple[int, int, int, Any]:
+            self._is_random = True
+            self._random[0] = self._machine.random_state
+            found = run_module(left)
+            self._machine.random_state = self._random[0]
+            self._is_random = False
+            return found
+
+        return run_random if code.is_random else run_module
+
+    def _serve(self) -> None:
+        """Call a native for translated code."""
+        if self._emitted[0]:
+            self._drain()
+        number, pc, count = self._request[:3]
+        if number >= REFUSED:
+            self._machine.refuse_translated(pc, number - REFUSED)
+            return
+        if self._is_random:
+            self._machine.random_state = self._random[0]
+        self._request[3] = self._machine.call_native(number, pc, tuple(self._arguments[:count]))
+        if self._is_random:
+            self._random[0] = self._machine.random_state
+
+    def _all_of(self, found: tuple[int, int, int, int]) -> tuple[int, int, int, Any]:
+        """Fetch the words of the stack and the events."""
+        left, pc, kind, count = found
+        self._drain()
+        return left, pc, kind, tuple(self._stack[: count & 0xFFF])
+
+    def _drain(self) -> None:
+        """Hand over the events in the buffer, in order."""
+        end = self._emitted[0]
+        self._emitted[0] = at = 0
+        while at < end:
+            number, count = _EVENT.unpack_from(self._events, at)
+            self._machine.emit(number, struct.unpack_from(f"<{count}h", self._events, at + 4))
+            at += 4 + 2 * count
+
+    def _array(self, kind: Any, place: int, size: int) -> Any:
+        return (kind * size).from_address(self._base + place)
+
+
+def _of(own: weakref.ref[WasmHost], method: Callable[[WasmHost], None]) -> Callable[[], None]:
+    """Return a function that calls a method and keeps nobody alive."""
+
+    def call() -> None:
+        host = own()
+        if host is not None:
+            method(host)
+
+    return call

@@ -1,0 +1,65 @@
+"""Bytecode memory: words, decoded when they are written, so that the machine meets operations ready to be executed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from aseba_vm.bytecode import LENGTH, WAS_TRUE, Op
+from aseba_vm.machine.operations import STOP, Decoded, decoded
+
+
+class CodeMemory:
+    """``words`` are unsigned; ``operations`` holds at each address what begins there. Change words by methods only."""
+
+    __slots__ = ("_events", "operations", "words")
+
+    def __init__(self, size: int) -> None:
+        """Build a memory of zeros."""
+        self._events: dict[int, int] | None = None
+        self.words: list[int] = [0] * size
+        self.operations: list[Decoded] = [(STOP, 0, 0)] * size
+
+    def address_of(self, event: int) -> int:
+        """Return the address of the code of an event, 0 if there is none."""
+        if self._events is None:
+            words = self.words
+            places = range(1, min(words[0], len(words) - 1), 2) if words else range(0)
+            self._events = {words[place]: words[place + 1] for place in reversed(places)}
+        return self._events.get(event, 0)
+
+    def write(self, start: int, words: Sequence[int]) -> None:
+        """Write words that fit."""
+        self.words[start : start + len(words)] = [word & 0xFFFF for word in words]
+        self._decode(start, start + len(words))
+
+    def turn(self, pc: int) -> None:
+        """Turn what the BRANCH at ``pc`` remembers over."""
+        self.words[pc] ^= WAS_TRUE
+        self._decode(pc, pc + 1)
+
+    def remember(self, memories: Iterable[tuple[int, int]]) -> None:
+        """Let BRANCHes remember their conditions: address, 0 or 1."""
+        for pc, value in memories:
+            if self.words[pc] >> 9 & 1 != value:
+                self.turn(pc)
+
+    def clear_edges(self) -> None:
+        """Let branches forget, from the word on where the reference starts its scan.
+
+        Source: docs/spec/aseba-bytecode-vm.md section 10.4.
+        """
+        words = self.words
+        pc = 2 * words[0] + 1 if words else 0
+        while pc < len(words):
+            word = words[pc]
+            if word >> 12 == Op.BRANCH and word & WAS_TRUE:
+                self.turn(pc)
+            pc += LENGTH[word >> 12]
+
+    def _decode(self, start: int, end: int) -> None:
+        """Decode the operations that words start..end-1 belong to."""
+        if start == 0 or start < self.words[0]:
+            self._events = None
+        words = [*self.words[max(start - 2, 0) : end], *self.words[end : end + 2], 0, 0]
+        for place, pc in enumerate(range(max(start - 2, 0), end)):
+            self.operations[pc] = decoded(words[place], words[place + 1], words[place + 2])

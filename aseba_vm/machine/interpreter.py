@@ -1,0 +1,258 @@
+"""The interpreter: one loop over decoded operations, the oracle of the translators.
+
+Source: docs/spec/aseba-bytecode-vm.md sections 7 to 10.3.
+
+The loop meets operations with their operands ready (:mod:`aseba_vm.machine.code_memory`); a BRANCH that remembers its
+condition rewrites its own word. Arithmetic is exact in Python and cut to 16 bits in
+:func:`aseba_vm.machine.native_call.wrap`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from aseba_vm.bytecode import MAX_EMITTED
+from aseba_vm.machine.code_memory import CodeMemory
+from aseba_vm.machine.data_memory import Variables
+from aseba_vm.machine.machine_messages import BadCode, DivisionByZero, Emitted, Fault, Message, OutOfBounds
+from aseba_vm.machine.operations import (
+    BAD,
+    BINARY,
+    CALL,
+    EMIT,
+    IF,
+    IF_FALSE,
+    IF_TRUE,
+    JUMP,
+    LOAD,
+    LOADX,
+    NATIVE,
+    PUSH,
+    RET,
+    STOP,
+    STORE,
+    STOREX,
+    UNARY,
+    WHEN,
+    WHEN_FALSE,
+    WHEN_TRUE,
+)
+from aseba_vm.target import TargetDescription
+
+ACTIVE = 1
+"""Flag of a machine that executes an event."""
+
+
+class Machine(Protocol):
+    """What the loop works on."""
+
+    target: TargetDescription
+    code: CodeMemory
+    variables: Variables
+    stack: list[int]
+    pc: int
+    sp: int
+    flags: int
+    instructions: int
+    surcharge: int
+    outbox: list[Message]
+
+    def count_popped(self, number: int) -> int:
+        """Return how many words a native pops."""
+
+    def price(self, number: int, popped: Sequence[int]) -> int:
+        """Return what a call of a native takes of the budget, beyond its instruction."""
+
+    def price_of_emit(self, words: int) -> int:
+        """Return what an event takes of the budget, beyond its instruction."""
+
+    def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
+        """Call a native; return False if its arguments lie outside memory."""
+
+    def stop_on(self, fault: Fault) -> None:
+        """End the event."""
+
+
+def interpret(machine: Machine, limit: int) -> int:
+    """Execute instructions while the event is active and less than ``limit`` is spent; return what was spent.
+
+    An instruction takes one of the budget, a native or an event what it costs besides: the last may go beyond.
+    """
+    spent = _stretch(machine, limit)
+    while spent < limit and machine.flags & ACTIVE:
+        spent += _stretch(machine, limit - spent)
+    return spent
+
+
+def _stretch(machine: Machine, limit: int) -> int:
+    """Execute until ``limit`` is spent, the event ends, or an operation took more than its instruction."""
+    code, variables, stack = machine.code.operations, machine.variables.words, machine.stack
+    size = len(code)
+    pc, sp = machine.pc, machine.sp
+    executed = 0
+    kind = BAD
+    try:
+        for executed in range(limit):  # counts for the lines after the loop
+            kind, first, second = code[pc]
+            if kind == LOAD:
+                stack[sp + 1] = variables[first]
+                sp += 1
+                pc += 1
+            elif kind == PUSH:
+                stack[sp + 1] = first
+                sp += 1
+                pc += second
+            elif kind == STORE:
+                if sp < 0:
+                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                variables[first] = stack[sp]
+                sp -= 1
+                pc += 1
+            elif kind == BINARY:
+                if sp < 1:
+                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                right = stack[sp]
+                sp -= 1
+                stack[sp] = first(stack[sp], right)
+                pc += 1
+            elif kind in IF:
+                if sp < 1:
+                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                sp -= 2
+                if first(stack[sp + 1], stack[sp + 2]):
+                    if kind == IF_FALSE:
+                        machine.code.turn(pc)
+                    pc += 2
+                else:
+                    if kind == IF_TRUE:
+                        machine.code.turn(pc)
+                    pc += second
+                    if not 0 <= pc < size:
+                        return _bad(machine, pc - second, sp, executed, "jump-out-of-range")
+            elif kind == JUMP:
+                pc += first
+                if not 0 <= pc < size:
+                    return _bad(machine, pc - first, sp, executed, "jump-out-of-range")
+            elif kind == LOADX:
+                if sp < 0:
+                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                index = stack[sp] & 0xFFFF
+                if index >= second:
+                    machine.stop_on(OutOfBounds(pc, second, index))
+                    break
+                stack[sp] = variables[first + index]
+                pc += 2
+            elif kind == STOREX:
+                if sp < 1:
+                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                index = stack[sp] & 0xFFFF
+                if index >= second:
+                    machine.stop_on(OutOfBounds(pc, second, index))
+                    break
+                variables[first + index] = stack[sp - 1]
+                sp -= 2
+                pc += 2
+            elif kind in WHEN:
+                if sp < 1:
+                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                sp -= 2
+                is_true = bool(first(stack[sp + 1], stack[sp + 2]))
+                if is_true != (kind == WHEN_TRUE):
+                    machine.code.turn(pc)
+                if is_true and kind == WHEN_FALSE:
+                    pc += 2
+                else:
+                    pc += second
+                    if not 0 <= pc < size:
+                        return _bad(machine, pc - second, sp, executed, "jump-out-of-range")
+            elif kind == UNARY:
+                if sp < 0:
+                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                stack[sp] = first(stack[sp])
+                pc += 1
+            elif kind == STOP:
+                machine.flags &= ~ACTIVE
+                break
+            elif kind == CALL:
+                stack[sp + 1] = pc + 1
+                sp += 1
+                if first >= size:
+                    return _bad(machine, pc, sp, executed, "jump-out-of-range")
+                pc = first
+            elif kind == RET:
+                if sp < 0:
+                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                if not 0 <= stack[sp] < size:
+                    return _bad(machine, pc, sp, executed, "jump-out-of-range")
+                pc = stack[sp]
+                sp -= 1
+            elif kind == EMIT:
+                address, count = second
+                if count > MAX_EMITTED:
+                    return _bad(machine, pc, sp, executed, "emit-too-long")
+                if address + count > len(variables):
+                    return _bad(machine, pc, sp, executed, "variable-out-of-range")
+                machine.outbox.append(Emitted(first, tuple(variables[address : address + count])))
+                pc += 3
+                price = machine.price_of_emit(count)
+                if price:
+                    executed += price
+                    break
+            elif kind == NATIVE:
+                try:
+                    reason, sp = _call(machine, first, pc, sp)
+                except BaseException:  # the native failed after it took its arguments: the next is the one after it
+                    machine.pc, machine.sp = pc + 1, sp - machine.count_popped(first)
+                    machine.instructions += executed + 1 + machine.surcharge
+                    machine.surcharge = 0
+                    raise
+                if reason:
+                    return _bad(machine, pc, sp, executed, reason)
+                pc += 1
+                if machine.surcharge:
+                    executed += machine.surcharge
+                    machine.surcharge = 0
+                    break
+                if not machine.flags & ACTIVE:
+                    break
+            else:
+                return _bad(machine, pc, sp, executed, first)
+    except ZeroDivisionError:
+        machine.stop_on(DivisionByZero(pc))
+        if kind == BINARY:
+            stack[sp] = 0
+            pc += 1
+        else:
+            pc += 2
+    except IndexError:
+        if not 0 <= pc < size:
+            return _bad(machine, pc, sp, executed, "jump-out-of-range")
+        is_full = sp + 1 >= len(stack) and kind in (LOAD, PUSH, CALL)
+        return _bad(machine, pc, sp, executed, "stack-overflow" if is_full else "variable-out-of-range")
+    machine.pc, machine.sp = pc, sp
+    executed += 1
+    machine.instructions += executed
+    return executed
+
+
+def _call(machine: Machine, number: int, pc: int, sp: int) -> tuple[str, int]:
+    """Call a native; return why it could not be, or an empty text, and the new index of the stack."""
+    if number >= len(machine.target.natives):
+        return "unknown-native", sp
+    count = machine.count_popped(number)
+    if sp + 1 < count:
+        return "stack-underflow", sp
+    popped = machine.stack[sp - count + 1 : sp + 1][::-1]
+    machine.surcharge = machine.price(number, popped)
+    if machine.invoke(number, pc, popped):
+        return "", sp - count
+    machine.surcharge = 0
+    return "variable-out-of-range", sp - count
+
+
+def _bad(machine: Machine, pc: int, sp: int, executed: int, reason: str) -> int:
+    machine.pc, machine.sp = pc, sp
+    machine.instructions += executed
+    machine.stop_on(BadCode(pc, reason))
+    return executed

@@ -1,0 +1,166 @@
+"""What a native function is given, and how it refuses (docs/spec/aseba-bytecode-vm.md section 11)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from aseba_vm.machine.costs import FREE, Cost
+from aseba_vm.machine.data_memory import Variables
+from aseba_vm.machine.machine_messages import NativeCalled
+from aseba_vm.target import NativeFunction
+
+
+def wrap(value: int) -> int:
+    """Cut a number to 16 bits, two's complement: the one place where that happens."""
+    return ((value + 0x8000) & 0xFFFF) - 0x8000
+
+
+def wrap32(value: int) -> int:
+    """Cut a number to 32 bits, two's complement."""
+    return ((value + 0x80000000) & 0xFFFFFFFF) - 0x80000000
+
+
+class NativeFault(Exception):  # noqa: N818  # a fault, in the words of section 11
+    """Raised by a native that cannot do its work; the event ends and the reason is told."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(reason)
+        self.reason = reason
+
+
+class DivisionFault(NativeFault):
+    """A division by zero inside a native."""
+
+    def __init__(self) -> None:
+        super().__init__("division-by-zero")
+
+
+class DequeFault(NativeFault):
+    """A deque was given a wrong index or too many values."""
+
+    def __init__(self) -> None:
+        super().__init__("deque")
+
+
+class Machine(Protocol):
+    """The part of the machine that natives may touch."""
+
+    variables: Variables
+    random_state: int
+    node_id: int
+
+    def charge(self, instructions: int) -> None:
+        """Take more of the budget."""
+
+
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """A native ready to be called: how many words it pops, and for each parameter its size.
+
+    A size that is not fixed is minus its place among the words popped. ``cost``: what a call takes of the budget.
+    """
+
+    native: NativeFunction
+    count: int
+    sizes: tuple[int, ...]
+    cost: Cost = FREE
+
+    @classmethod
+    def of(cls, native: NativeFunction, cost: Cost = FREE) -> Signature:
+        """Derive the signature from the declaration."""
+        count = len(native.parameters)
+        places: dict[int, int] = {}
+        for place, index in enumerate(native.free_sizes, start=count):
+            places[_size_key(native, index)] = place
+        sizes = tuple(
+            parameter.size if parameter.size > 0 else -places[_size_key(native, index)]
+            for index, parameter in enumerate(native.parameters)
+        )
+        return cls(native, count + len(places), sizes, cost)
+
+    def price(self, popped: Sequence[int]) -> int:
+        """Return what a call with the words it pops takes of the budget, beyond its instruction."""
+        if not self.cost.per_word:
+            return self.cost.base
+        return self.cost.of(sum([size if size > 0 else popped[-size] & 0xFFFF for size in self.sizes]))
+
+
+def _size_key(native: NativeFunction, index: int) -> int:
+    """What parameters of one size have in common: the template, or the parameter itself."""
+    return native.parameters[index].size or index + 1
+
+
+class NativeCall:
+    """One call: address and size of each argument, and access to the words.
+
+    ``memory`` is the whole variable memory, ``faults`` what was reported so far (a native may go on after a fault).
+    """
+
+    __slots__ = ("addresses", "faults", "machine", "memory", "native", "sizes")
+
+    def __init__(self, machine: Machine, signature: Signature, popped: Sequence[int]) -> None:
+        """``popped`` are the words of the stack from the top: addresses, then sizes in list order."""
+        self.machine = machine
+        self.memory = machine.variables.words
+        self.native = signature.native
+        self.faults: list[NativeFault] = []
+        self.addresses = tuple([word & 0xFFFF for word in popped[: len(signature.sizes)]])
+        self.sizes = signature.sizes
+        if len(popped) > len(self.sizes):
+            self.sizes = tuple([size if size > 0 else popped[-size] & 0xFFFF for size in self.sizes])
+
+    @property
+    def is_inside_memory(self) -> bool:
+        """Tell whether every argument lies inside the variable memory."""
+        end = len(self.memory)
+        for address, size in zip(self.addresses, self.sizes, strict=True):  # noqa: SIM110  # twice as quick as all()
+            if address + size > end:
+                return False
+        return True
+
+    def read(self, argument: int) -> list[int]:
+        """Return a copy of the words of an argument."""
+        address = self.addresses[argument]
+        return list(self.memory[address : address + self.sizes[argument]])
+
+    def words(self) -> list[int]:
+        """Return a copy of the words of all arguments, one after the other."""
+        memory, found = self.memory, []
+        for address, size in zip(self.addresses, self.sizes, strict=True):
+            if size == 1:
+                found.append(memory[address])
+            else:
+                found += memory[address : address + size]
+        return found
+
+    def value(self, argument: int) -> int:
+        """Return the first word of an argument."""
+        return self.memory[self.addresses[argument]]
+
+    def write(self, argument: int, values: Sequence[int]) -> None:
+        """Store values, cut to 16 bits, from the first word of an argument on; no more than it has."""
+        address, size = self.addresses[argument], self.sizes[argument]
+        words = [wrap(value) for value in values[:size]]
+        self.memory[address : address + len(words)] = words
+
+    def charge(self, instructions: int) -> None:
+        """Take more of the budget than the declared cost, for work whose amount only the call itself knows."""
+        self.machine.charge(instructions)
+
+    def report(self, fault: NativeFault) -> None:
+        """Note a fault without ending the native."""
+        self.faults.append(fault)
+
+    def record(self, number: int) -> NativeCalled:
+        """Return the call as a value."""
+        arguments = tuple(
+            (address, size, tuple(self.memory[address : address + size]))
+            for address, size in zip(self.addresses, self.sizes, strict=True)
+        )
+        return NativeCalled(number, self.native.name, arguments)
+
+
+Native = Callable[[NativeCall], None]
+"""A function that does the work of a native of the target."""

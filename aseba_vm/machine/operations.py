@@ -1,0 +1,118 @@
+"""The operations of the machine: arithmetic by operator, words decoded for the loop.
+
+Source: docs/spec/aseba-bytecode-vm.md sections 1 and 10.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from aseba_vm.bytecode import EDGE, WAS_TRUE, Op, signed, signed12
+from aseba_vm.machine.native_call import wrap
+
+# Kinds of decoded operations, frequent ones first: the order in which the loop asks.
+LOAD = 0
+PUSH = 1
+STORE = 2
+BINARY = 3
+IF_FALSE = 4
+IF_TRUE = 5
+JUMP = 6
+LOADX = 7
+STOREX = 8
+WHEN_FALSE = 9
+WHEN_TRUE = 10
+UNARY = 11
+STOP = 12
+CALL = 13
+RET = 14
+EMIT = 15
+NATIVE = 16
+BAD = 17
+IF = (IF_FALSE, IF_TRUE)
+WHEN = (WHEN_FALSE, WHEN_TRUE)
+
+Decoded = tuple[int, Any, Any]
+"""Kind, and two operands whose meaning depends on it."""
+
+
+def _divide(left: int, right: int) -> int:
+    quotient = abs(left) // abs(right)
+    return wrap(quotient if (left < 0) == (right < 0) else -quotient)
+
+
+def _remainder(left: int, right: int) -> int:
+    remainder = abs(left) % abs(right)
+    return -remainder if left < 0 else remainder
+
+
+#: In the order of the numbers of the operators.
+_BINARY_FUNCTIONS: Sequence[Callable[[int, int], int]] = (
+    lambda left, right: wrap(left << (right & 31)),
+    lambda left, right: left >> (right & 31),
+    lambda left, right: wrap(left + right),
+    lambda left, right: wrap(left - right),
+    lambda left, right: wrap(left * right),
+    _divide,
+    _remainder,
+    lambda left, right: left | right,
+    lambda left, right: left ^ right,
+    lambda left, right: left & right,
+    lambda left, right: 1 if left == right else 0,
+    lambda left, right: 1 if left != right else 0,
+    lambda left, right: 1 if left > right else 0,
+    lambda left, right: 1 if left >= right else 0,
+    lambda left, right: 1 if left < right else 0,
+    lambda left, right: 1 if left <= right else 0,
+    lambda left, right: 1 if left or right else 0,
+    lambda left, right: 1 if left and right else 0,
+)
+
+_UNARY_FUNCTIONS: Sequence[Callable[[int], int]] = (
+    lambda value: wrap(-value),
+    lambda value: wrap(abs(value)),
+    lambda value: ~value,
+)
+
+
+def decoded(word: int, second: int, third: int) -> Decoded:
+    """Return kind and operands of the operation that begins with ``word``, given the two words after it."""
+    op, operand = word >> 12, word & 0xFFF
+    match op:
+        case Op.STOP:
+            return (STOP, 0, 0)
+        case Op.PUSH:
+            return (PUSH, signed12(word), 1)
+        case Op.PUSHL:
+            return (PUSH, signed(second), 2)
+        case Op.LOAD:
+            return (LOAD, operand, 0)
+        case Op.STORE:
+            return (STORE, operand, 0)
+        case Op.LOADX:
+            return (LOADX, operand, second)
+        case Op.STOREX:
+            return (STOREX, operand, second)
+        case Op.UNARY if operand < len(_UNARY_FUNCTIONS):
+            return (UNARY, _UNARY_FUNCTIONS[operand], 0)
+        case Op.UNARY:
+            return (BAD, "unknown-unary-operator", 0)
+        case Op.BINARY if operand < len(_BINARY_FUNCTIONS):
+            return (BINARY, _BINARY_FUNCTIONS[operand], 0)
+        case Op.BRANCH if operand & 0xFF < len(_BINARY_FUNCTIONS):
+            kind = WHEN_FALSE if operand & EDGE else IF_FALSE
+            return (kind + bool(operand & WAS_TRUE), _BINARY_FUNCTIONS[operand & 0xFF], signed(second))
+        case Op.BINARY | Op.BRANCH:
+            return (BAD, "unknown-binary-operator", 0)
+        case Op.JUMP:
+            return (JUMP, signed12(word), 0)
+        case Op.EMIT:
+            return (EMIT, operand, (second, third))
+        case Op.NATIVE:
+            return (NATIVE, operand, 0)
+        case Op.CALL:
+            return (CALL, operand, 0)
+        case Op.RET:
+            return (RET, 0, 0)
+    return (BAD, "unknown-instruction", 0)

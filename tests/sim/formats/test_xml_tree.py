@@ -1,0 +1,68 @@
+"""XML from strangers: a tree with lines, or one precise refusal."""
+
+from __future__ import annotations
+
+import pytest
+
+from thymio_sim_ros.sim.formats.xml_tree import MAX_DEPTH, XmlError, parse
+
+
+def refused(text: str | bytes) -> XmlError:
+    with pytest.raises(XmlError) as caught:
+        parse(text)
+    return caught.value
+
+
+def test_elements_know_their_lines_attributes_and_text() -> None:
+    root = parse('<?xml version="1.0"?>\n<!DOCTYPE a>\n<a>\n <b c="1">text</b>\n</a>')
+    (child,) = root.children
+    assert (root.tag, child.tag, child.line, dict(child.attributes), child.text) == ("a", "b", 4, {"c": "1"}, "text")
+
+
+def test_names_are_those_without_a_name_space_but_for_one() -> None:
+    link = "http://www.w3.org/1999/xlink"
+    root = parse(f'<s:a xmlns:s="urn:x" xmlns:any="{link}" s:b="1" s:href="#2" any:href="#3" b="4" xml:id="5"/>')
+    assert (root.tag, root.attributes) == ("a", {"b": "4", "xlink:href": "#3"})
+
+
+def test_attributes_in_the_name_space_of_svg_keep_it() -> None:
+    root = parse('<a xmlns:s="http://www.w3.org/2000/svg" s:style="1" style="2"/>')
+    assert root.attributes == {"svg:style": "1", "style": "2"}
+
+
+def test_text_is_that_directly_in_an_element() -> None:
+    root = parse("<a>1<b>2</b>3<c/><![CDATA[4]]></a>")
+    assert (root.text, [element.text for element in root.walk()]) == ("134", ["134", "2", ""])
+
+
+def test_broken_xml_is_refused_at_its_line() -> None:
+    assert refused("<a>\n<b></a>").line == 2
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '<!DOCTYPE a [<!ENTITY x "y">]><a>&x;</a>',
+        '<!DOCTYPE a [<!ENTITY x SYSTEM "file:///etc/hostname">]><a>&x;</a>',
+        '<!DOCTYPE a [<!ENTITY % x SYSTEM "http://127.0.0.1/x.dtd"> %x;]><a/>',
+    ],
+)
+def test_entities_are_refused(text: str) -> None:
+    assert "entity" in refused(text).found
+
+
+def test_a_document_type_elsewhere_is_not_fetched() -> None:
+    text = '<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://127.0.0.1:9/svg11.dtd"><svg/>'
+    assert parse(text).tag == "svg"
+
+
+@pytest.mark.parametrize(
+    "text", ["", "text", "<a/><b/>", b"\xff\xff", b'<?xml version="1.0" encoding="nonsense"?><a/>']
+)
+def test_what_is_no_xml_is_refused(text: str | bytes) -> None:
+    assert refused(text).line >= 1
+
+
+def test_depth_and_number_of_elements_are_limited() -> None:
+    assert "without measure" in refused("<a>" * (MAX_DEPTH + 1)).found
+    assert "without measure" in refused("<a>" + "<b/>" * 100_001).found

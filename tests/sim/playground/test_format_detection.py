@@ -1,0 +1,223 @@
+"""Which format a file has, archives, and what is never unpacked nor read."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import os
+import struct
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from tests.sim.builders import FLOOR, ROBOT
+from tests.sim.images import BLACK, WHITE, png
+from thymio_sim_ros.sim.model.primitives import Print
+from thymio_sim_ros.sim.playground import format_detection, reader
+from thymio_sim_ros.sim.playground.reader import PlaygroundError
+
+WORLD = (
+    '<aseba-playground><color name="w" r="1" g="1" b="1"/>'
+    '<world w="100" h="100" color="w" groundTexture="ground.png"/><robot x="50" y="50"/></aseba-playground>'
+)
+OURS = json.dumps(
+    {
+        "format": 1,
+        "title": "Ours",
+        "shapes": [FLOOR, {"kind": "picture", "image": "ground.png", "size_x_m": 1}],
+        "robots": [ROBOT],
+    }
+)
+PICTURE = png([[WHITE, BLACK]])
+
+
+def archive(method: int = zipfile.ZIP_DEFLATED, /, **files: bytes | str) -> bytes:
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", method) as packed:
+        for name, content in files.items():
+            packed.writestr(name, content)
+    return out.getvalue()
+
+
+def refused(data: bytes) -> PlaygroundError:
+    with pytest.raises(PlaygroundError) as caught:
+        reader.loads(data, "mine.zip")
+    return caught.value
+
+
+@pytest.mark.parametrize("home", ["", "maze/"])
+@pytest.mark.parametrize(("inner", "text"), [("world.xml", WORLD), ("mine.json", OURS), ("mine.playground", WORLD)])
+def test_an_archive_holds_a_playground_and_its_pictures(home: str, inner: str, text: str) -> None:
+    data = archive(**{home + inner: text, home + "ground.png": PICTURE})
+    loaded = reader.loads(data, "mine.playground")
+    assert (loaded.name, [type(mark) for mark in loaded.paints]) == ("mine", [Print])
+
+
+def test_an_archive_is_read_by_its_path_too(tmp_path: Path) -> None:
+    path = tmp_path / "maze.playground"
+    path.write_bytes(archive(**{"world.xml": WORLD, "ground.png": PICTURE}))
+    assert reader.load(path).title == "maze"
+
+
+def test_a_playground_file_finds_its_picture_in_its_folder(tmp_path: Path) -> None:
+    (tmp_path / "maze.playground").write_text(WORLD)
+    (tmp_path / "ground.png").write_bytes(PICTURE)
+    assert len(reader.load(tmp_path / "maze.playground").paints) == 1
+
+
+def test_a_text_alone_cannot_have_a_picture_beside_it() -> None:
+    with pytest.raises(PlaygroundError, match=r"groundTexture \(shapes\[1\].image\): found the file 'ground.png'"):
+        reader.loads(WORLD, "mine.playground")
+
+
+def test_a_byte_order_mark_does_no_harm() -> None:
+    text = b"\xef\xbb\xbf" + json.dumps({"format": 1, "title": "x", "shapes": [FLOOR]}).encode()
+    assert reader.loads(text, "mine").title == "x"
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"readme.txt": "nothing"},
+        {"a.json": OURS, "b.json": OURS},
+        {},
+    ],
+)
+def test_an_archive_without_one_playground_is_refused(files: dict[str, str]) -> None:
+    assert refused(archive(**files) if files else b"PK\x03\x04").path == "mine.zip"
+
+
+@pytest.mark.parametrize("name", ["../secret.png", "/etc/secret.png", "..\\secret.png", "folder/../ground.png"])
+def test_a_picture_outside_the_archive_is_refused(name: str) -> None:
+    data = archive(**{"world.xml": WORLD.replace("ground.png", name), name: PICTURE, "ground.png": PICTURE})
+    assert "shapes[1].image" in refused(data).key
+
+
+def test_a_picture_that_is_missing_in_the_archive_is_named() -> None:
+    error = refused(archive(**{"world.xml": WORLD}))
+    assert (error.found, error.expected) == ("'ground.png'", "a file in the archive")
+
+
+def test_an_archive_that_unpacks_without_measure_is_not_unpacked() -> None:
+    assert "more than 32000000 bytes" in refused(archive(**{"world.xml": " " * 50_000_000})).found
+    bomb = archive(**{"world.xml": WORLD, "ground.png": b"\0" * 50_000_000})
+    assert "expected" in str(refused(bomb))
+
+
+def test_an_archive_of_too_many_files_is_refused() -> None:
+    assert "201 files" in refused(archive(**{f"{i}.txt": "" for i in range(201)})).found
+
+
+def test_a_damaged_archive_is_refused() -> None:
+    data = bytearray(archive(**{"world.xml": WORLD}))
+    data[45:60] = b"\xff" * 15
+    assert refused(bytes(data)).path == "mine.zip"
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_an_archive_damaged_anywhere_is_refused_or_read(method: int) -> None:
+    whole = archive(method, **{"world.xml": WORLD, "ground.png": PICTURE})
+    for place in range(len(whole)):
+        for value in (0x00, 0x7F, 0xFF):
+            data = bytearray(whole)
+            data[place] = value
+            with contextlib.suppress(PlaygroundError):  # any other error fails the test
+                reader.loads(bytes(data), "mine.zip")
+
+
+def test_an_encrypted_archive_is_refused() -> None:
+    data = bytearray(archive(**{"world.xml": WORLD}))
+    for signature, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
+        start = data.index(signature) + offset
+        struct.pack_into("<H", data, start, 1)
+    assert "cannot be unpacked" in refused(bytes(data)).found
+
+
+def test_other_json_is_taken_for_ours() -> None:
+    assert refused(b'{"answer": 42}').key == "format"
+
+
+def test_a_file_that_is_too_large_is_refused() -> None:
+    assert "more than" in refused(b" " * (format_detection.MAX_BYTES + 1)).found
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('{"title": "NaN",\n "format": NaN}', "t: line 2, column 12: found NaN, expected finite numbers"),
+        ('{"format": [1, -Infinity]}', "t: line 1, column 16: found -Infinity, expected finite numbers"),
+        ('{"a\\ud800": 1}', "t: found half a character in the key 'a\\ud800', expected whole characters"),
+        ('{"\\ud83e\\udd16": {"x": 1,\n "y": 1, "x": 2}}', "t: line 2, column 10: found the key 'x' twice, expected"),
+        ('{"x": {"x": "x", "a": ["x"]}, "x": 1}', "t: line 1, column 31: found the key 'x' twice, expected every"),
+        ('{"format": 1,\n', "t: line 2, column 1: found the end of the text, expected JSON (Expecting property name"),
+        (
+            '{"format": 1 "title": ""}',
+            "t: line 1, column 14: found '\"title\": \"\"}', expected JSON (Expecting ',' delimi",
+        ),
+    ],
+)
+def test_a_fault_of_the_text_is_told_with_its_place(text: str, message: str) -> None:
+    with pytest.raises(PlaygroundError) as caught:
+        reader.loads(text, "t")
+    assert str(caught.value).startswith(message)
+
+
+MEMORY = """
+import resource, time
+from thymio_sim_ros.loading import load_playground
+from thymio_sim_ros.sim.playground.reader import PlaygroundError
+text = {text}
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+begin = time.process_time()
+try:
+    load_playground(text)
+except PlaygroundError as error:
+    assert len(str(error)) < 5000, len(str(error))
+    print(time.process_time() - begin, (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024)
+"""
+HUGE = {
+    "text": """'{"format":1,"title":"x","description":"' + "a" * 20_000_000 + '"}'""",
+    "wide text": """'{"format":1,"title":"x","description":"' + "a" * 20_000_000 + chr(0x1f600) + '"}'""",
+    "escapes": """'{"format":1,"title":"x","description":"' + "\\\\n" * 10_000_000 + '"}'""",
+    "key": """'{"format":1,"' + "a" * 20_000_000 + '":1}'""",
+    "picture": """'{"format":1,"shapes":[{"image":"data:' + "a" * 20_000_000 + '"}]}'""",
+    "text before a fault": """'{"title":"' + "a" * 20_000_000 + '","x":NaN}'""",
+    "lists": """'{"shapes":[' + "[]," * 6_600_000""",
+    "nested lists": """'{"shapes":' + "[" * 20_000_000""",
+    "quotes": """'{' + '""' * 10_000_000""",
+    "numbers": """'{"shapes":[' + "1," * 990_000 + "1]}" """,
+    "text of XML": """"<aseba-playground><a>" + "a\\n" * 10_000_000 + "</a></aseba-playground>" """,
+    "attribute of XML": """'<a b="' + "a " * 10_000_000 + '"/>'""",
+    "tag of XML": """"<" + "a" * 20_000_000 + "/>" """,
+    "nested XML": """"<a>" * 6_000_000""",
+    "elements of XML": """"<a>" + "<b/>" * 5_000_000""",
+}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="measures memory as POSIX does")
+@pytest.mark.parametrize("kind", HUGE)
+def test_a_huge_text_is_refused_at_little_cost(kind: str) -> None:
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    code = MEMORY.format(text=HUGE[kind])
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    seconds, megabytes = map(float, done.stdout.split())
+    assert megabytes < 150
+    assert seconds < 5  # of a busy machine; 1 s is the aim
+
+
+@pytest.mark.parametrize(("open_", "close"), [("[", "]"), ('{"a":', "}")])
+@pytest.mark.parametrize("depth", [50, 500, 5_000, 50_000])
+def test_nested_json_is_refused_with_a_short_error(open_: str, close: str, depth: int) -> None:
+    nested = open_ * depth + "1" + close * depth
+    for text in (nested, f'{{"format":1,"title":{nested}}}', f'{{"format":1,"shapes":[{nested}]}}'):
+        assert len(str(refused(text.encode()))) < 1000
+
+
+def test_a_text_that_is_too_long_is_refused_with_its_place() -> None:
+    error = refused(b'{"format": 1,\n "title": "' + b"a" * format_detection.MAX_TEXT + b'"}')
+    assert (error.key, error.found) == ("line 2, column 11", f"a text of {format_detection.MAX_TEXT + 2} bytes")

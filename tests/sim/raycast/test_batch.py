@@ -1,0 +1,153 @@
+"""Rays of all robots at once; the rays of `Surroundings`, one by one, are the oracle."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from thymio_sim_ros.sim.model import robot_constants
+from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.raycast.batch import Fan, Raycaster
+from thymio_sim_ros.sim.raycast.scalar import ConvexObstacle, DiscObstacle, Obstacle, Surroundings
+
+ANGLES = (-0.3, -0.1, 0.0, 0.25)
+FAN = Fan(
+    [(0.05, 0.03), (-0.02, 0.0)],
+    [[(math.cos(yaw + angle), math.sin(yaw + angle)) for angle in ANGLES] for yaw in (0.4, math.pi)],
+    range_m=0.2,
+    height_m=0.03,
+)
+
+
+def box(pose: Pose, half_x: float, half_y: float, height_m: float = 0.1) -> ConvexObstacle:
+    corners = ((-half_x, -half_y), (half_x, -half_y), (half_x, half_y), (-half_x, half_y))
+    return ConvexObstacle(pose.place_all(corners), height_m)
+
+
+def one_by_one(poses: Sequence[Pose], obstacles: Sequence[Obstacle], fan: Fan) -> list[list[float]]:
+    """Distances of every ray of every sensor of every robot."""
+    hulls = [ConvexObstacle(pose.place_all(robot_constants.hull()), robot_constants.HULL_HEIGHT_M) for pose in poses]
+    found = []
+    for index, pose in enumerate(poses):
+        high = [obstacle for obstacle in obstacles if obstacle.height_m >= fan.height_m]
+        around = Surroundings([*high, *hulls[:index], *hulls[index + 1 :]])
+        turn = Pose(0.0, 0.0, pose.yaw_rad)
+        for sensor, place in enumerate(fan.places.T.tolist()):
+            rays = [turn.place(tuple(ray)) for ray in fan.directions[:, sensor].T.tolist()]
+            found.append(list(around.fan(*pose.place(tuple(place)), rays, fan.range_m)))
+    return found
+
+
+def all_at_once(caster: Raycaster, poses: Sequence[Pose], fan: Fan) -> list[list[float]]:
+    sensors, distances = caster.cast(
+        np.array([(pose.x_m, pose.y_m, pose.yaw_rad) for pose in poses]).reshape(-1, 3), fan
+    )
+    found = np.full((len(poses) * fan.directions.shape[1], fan.directions.shape[2]), math.inf)
+    found[sensors] = distances
+    assert np.isfinite(distances).any(axis=1).all()
+    rows: list[list[float]] = found.tolist()
+    return rows
+
+
+def close(one: list[list[float]], other: list[list[float]]) -> bool:
+    return all(a == pytest.approx(b, abs=1e-9, rel=0) for a, b in zip(one, other, strict=True))
+
+
+def scatter(dice: random.Random, count: int, side: float) -> list[Pose]:
+    return [Pose(dice.uniform(0, side), dice.uniform(0, side), dice.uniform(-4, 4)) for _ in range(count)]
+
+
+def things(dice: random.Random, count: int, side: float) -> list[Obstacle]:
+    """Boxes, thin walls, discs, triangles and hexagons, some too low to be seen."""
+    found: list[Obstacle] = []
+    for pose in scatter(dice, count, side):
+        height = dice.choice((0.02, 0.05, 0.1))
+        match dice.randrange(4):
+            case 0:
+                found.append(box(pose, dice.uniform(0.01, 0.1), dice.uniform(0.01, 0.1), height))
+            case 1:
+                found.append(box(pose, dice.uniform(0.2, side), 0.005, height))
+            case 2:
+                found.append(DiscObstacle(pose.x_m, pose.y_m, dice.uniform(0.005, 0.1), height))
+            case _:
+                sides, radius = dice.choice((3, 6)), dice.uniform(0.02, 0.1)
+                turns = [math.tau * side / sides for side in range(sides)]
+                corners = pose.place_all([(radius * math.cos(turn), radius * math.sin(turn)) for turn in turns])
+                found.append(ConvexObstacle(corners, height))
+    return found
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_random_scenes_agree_with_rays_one_by_one(seed: int) -> None:
+    dice = random.Random(seed)
+    obstacles, poses = things(dice, 12, 1.5), scatter(dice, dice.choice((1, 2, 15)), 1.5)
+    assert close(all_at_once(Raycaster(obstacles), poses, FAN), one_by_one(poses, obstacles, FAN))
+
+
+def test_rays_along_the_sides_of_a_box_agree() -> None:
+    fan = Fan([(0.0, 0.0)], [[(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]], 0.5, 0.0)
+    obstacles = [
+        box(Pose(0.3, 0.0, 0.0), 0.1, 0.1),
+        box(Pose(0.0, 0.3, 0.0), 0.2, 0.1),
+        box(Pose(-0.3, 0.2, 0.0), 0.1, 0.1),
+    ]
+    found = all_at_once(Raycaster(obstacles), [Pose(0.0, 0.0, 0.0)], fan)
+    assert found == [pytest.approx([0.2, 0.2, math.inf, math.inf])]
+
+
+def test_while_robots_wander_what_is_near_stays_up_to_date() -> None:
+    dice = random.Random(3)
+    obstacles, poses = things(dice, 20, 2.0), scatter(dice, 10, 2.0)
+    caster = Raycaster(obstacles)
+    for _ in range(60):
+        poses = [
+            Pose(p.x_m + dice.uniform(-0.02, 0.03), p.y_m + dice.uniform(-0.02, 0.03), p.yaw_rad + dice.uniform(-1, 1))
+            for p in poses
+        ]
+        assert close(all_at_once(caster, poses, FAN), one_by_one(poses, obstacles, FAN))
+
+
+def test_things_that_move_are_seen_where_they_are() -> None:
+    dice = random.Random(4)
+    fixed, loose, poses = things(dice, 5, 1.0), things(dice, 5, 1.0), scatter(dice, 6, 1.0)
+    caster = Raycaster(fixed, loose)
+    for step in range(5):
+        loose = things(dice, 5, 1.0) if step % 2 else loose
+        caster.move(dict(enumerate(loose)))
+        assert close(all_at_once(caster, poses, FAN), one_by_one(poses, [*fixed, *loose], FAN))
+
+
+def test_what_is_gone_or_fallen_is_not_seen_and_sees_nothing() -> None:
+    dice = random.Random(6)
+    loose, poses = things(dice, 8, 1.0), scatter(dice, 6, 1.0)
+    caster = Raycaster([], loose)
+    caster.move({0: None}, fallen={2})
+    left = [pose for index, pose in enumerate(poses) if index != 2]
+    found = all_at_once(caster, poses, FAN)
+    assert found[4:6] == [[math.inf] * 4] * 2
+    assert close(found[:4] + found[6:], one_by_one(left, loose[1:], FAN))
+    caster.move(dict(enumerate(loose)), fallen={3})
+    left = [pose for index, pose in enumerate(poses) if index != 3]
+    found = all_at_once(caster, poses, FAN)
+    assert found[6:8] == [[math.inf] * 4] * 2
+    assert close(found[:6] + found[8:], one_by_one(left, loose, FAN))
+    caster.move({})
+    assert close(all_at_once(caster, poses, FAN), one_by_one(poses, loose, FAN))
+
+
+def test_two_fans_of_different_reach_may_take_turns() -> None:
+    dice = random.Random(5)
+    far = Fan([(0.0, 0.0)], [[(1.0, 0.0), (0.6, 0.8)]], range_m=0.9, height_m=0.09)
+    obstacles, poses = things(dice, 12, 1.5), scatter(dice, 6, 1.5)
+    caster = Raycaster(obstacles)
+    for fan in (FAN, far, FAN):
+        assert close(all_at_once(caster, poses, fan), one_by_one(poses, obstacles, fan))
+
+
+def test_without_robots_or_things_nothing_is_seen() -> None:
+    assert all_at_once(Raycaster([]), [], FAN) == []
+    assert all_at_once(Raycaster([]), [Pose(0.0, 0.0, 0.0)], FAN) == [[math.inf] * 4] * 2

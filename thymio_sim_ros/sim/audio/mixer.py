@@ -1,0 +1,76 @@
+"""What a loudspeaker says, as samples: one mono stream at 7812.5 Hz of simulated time, made from its readings.
+
+A sound begins at the first sample not before it, a tone goes through its wave from the beginning, and the volume takes
+bits away (docs/spec/thymio-robot.md section 9).
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from thymio_sim_ros.sim.audio.synthesis import SAMPLE_NS, SILENCE, VOLUME_OFF, WAVE_LENGTH
+from thymio_sim_ros.sim.model.clock import TICK_NS
+from thymio_sim_ros.sim.model.readings import LoudspeakerReading
+
+__all__ = ["Samples", "SoundStream", "mixed"]
+
+_PART = 7813
+"""Samples that are mixed at once, about a second."""
+
+Samples = npt.NDArray[np.int64]
+"""Samples −128…127."""
+
+
+class SoundStream:
+    """The stream of one robot. Invariant: what was heard is in the order of its times."""
+
+    def __init__(self) -> None:
+        self._heard: list[LoudspeakerReading] = []
+        self._firsts: list[int] = []
+
+    def hear(self, reading: LoudspeakerReading) -> None:
+        """The next reading of the robot's loudspeaker."""
+        goes_on = bool(self._heard) and self._heard[-1].began_ns == reading.began_ns
+        begins_ns = reading.stamp_ns - TICK_NS if goes_on else reading.began_ns
+        self._heard.append(reading)
+        self._firsts.append(-(-begins_ns // SAMPLE_NS))
+
+    def samples(self, first: int, count: int) -> Samples:
+        """So many samples from number `first` on; sample 0 belongs to time 0."""
+        stream = np.zeros(count, dtype=np.int64)
+        number = max(0, bisect_right(self._firsts, first) - 1)
+        while number < len(self._firsts) and self._firsts[number] < first + count:
+            begin = max(first, self._firsts[number])
+            end = self._firsts[number + 1] if number + 1 < len(self._firsts) else first + count
+            end = min(end, first + count)
+            if begin < end:
+                stream[begin - first : end - first] = _said(self._heard[number], begin, end)
+            number += 1
+        return stream
+
+
+def _said(reading: LoudspeakerReading, begin: int, end: int) -> Samples:
+    """Samples number `begin` to `end` of one sound, and silence after it."""
+    places = np.arange(begin, end) + reading.began_ns // -SAMPLE_NS
+    said = np.zeros(end - begin, dtype=np.int64)
+    if reading.frequency_hz:
+        step = reading.frequency_hz * WAVE_LENGTH * SAMPLE_NS / 1e9
+        said = np.array(reading.wave, dtype=np.int64)[(places * step).astype(np.int64) % WAVE_LENGTH]
+    elif reading.samples:
+        heard = np.frombuffer(reading.samples, dtype=np.uint8).astype(np.int64) - SILENCE
+        inside = places < len(heard)
+        said[inside] = heard[places[inside]]
+    return np.zeros_like(said) if reading.shift >= VOLUME_OFF else (said / (1 << reading.shift)).astype(np.int64)
+
+
+def mixed(streams: Sequence[SoundStream], first: int, end: int) -> Iterator[bytes]:
+    """All streams together from sample `first` to `end`, limited to what unsigned 8 bits hold, part after part."""
+    for begin in range(first, end, _PART):
+        total = np.zeros(min(_PART, end - begin), dtype=np.int64)
+        for stream in streams:
+            total += stream.samples(begin, len(total))
+        yield (np.clip(total, -SILENCE, SILENCE - 1) + SILENCE).astype(np.uint8).tobytes()

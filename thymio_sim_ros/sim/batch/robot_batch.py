@@ -1,0 +1,172 @@
+"""All robots of a world as one: they move as a fleet, and plug-ins that can serve all of them in one go do so.
+
+Readings are those of robot by robot (counts may differ where rounding is a matter of the last bit): every sensor has
+its own generator on every robot, and draws from it in the same order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Sequence
+from itertools import chain
+from typing import Any, TypeVar
+
+import numpy as np
+
+from thymio_sim_ros.sim.batch.batch_view import Group
+from thymio_sim_ros.sim.ground.floor_support import Footing
+from thymio_sim_ros.sim.mechanics.wheels import WheelArrays
+from thymio_sim_ros.sim.model.noise import UniformBank
+from thymio_sim_ros.sim.model.readings import Reading
+from thymio_sim_ros.sim.plugin_api.reading_table import Columns
+from thymio_sim_ros.sim.plugin_api.view import GroupActuatorView
+from thymio_sim_ros.sim.raycast.batch import Fan, Indices, Raycaster, Values
+from thymio_sim_ros.sim.robot.robot import Robot, Shared
+
+__all__ = ["CROWD", "Crowd"]
+
+Act = Callable[[Sequence[Any], GroupActuatorView, float], None]
+
+S = TypeVar("S")
+
+CROWD = 14
+"""From so many robots on, all at once is quicker (measured, docs/performance.md)."""
+
+_NOWHERE_M = -1e6
+
+
+class _Actors:
+    """The robots as one actuator sees them; satisfies `GroupActuatorView`."""
+
+    __slots__ = ("_clock", "memory", "noise", "wheels")
+
+    def __init__(self, shared: Shared, wheels: WheelArrays, noise: UniformBank) -> None:
+        self._clock, self.wheels, self.noise = shared.clock, wheels, noise
+        self.memory: dict[str, Any] = {}
+
+    @property
+    def now_ns(self) -> int:
+        return self._clock.now_ns
+
+
+class Crowd:
+    """The robots of a world, which stay the same until it disbands."""
+
+    def __init__(self, robots: Iterable[Robot], shared: Shared) -> None:
+        self.shared = shared
+        self._caster = Raycaster(shared.physics.fixed, shared.physics.loose())
+        self._robots = tuple(robots)
+        self._names = tuple(robot.name for robot in self._robots)
+        self._states: dict[type[Any], list[Any]] = {}
+        self._order = {robot: index for index, robot in enumerate(self._robots)}
+        self._banks: list[UniformBank] = []
+        self._sensors = [sensor for sensor, _ in self._robots[0].sensors]
+        self._views = [
+            [view for _, view in column] for column in zip(*(robot.sensors for robot in self._robots), strict=True)
+        ]
+        self._groups = {
+            number: Group(self, self._robots, self._views[number])
+            for number, sensor in enumerate(self._sensors)
+            if sensor.measure_all is not None
+        }
+        self.fleet = shared.physics.gather()
+        self.wheels = WheelArrays([robot.wheels for robot in self._robots])
+        for robot in self._robots:
+            robot.shared_wheels = self.wheels
+        self._sure = np.zeros((3, len(self._robots)))
+        """Where each robot has looked for an edge, and the square of how far away that may be at least."""
+        self._acts: list[tuple[Act, list[Any], _Actors]] = []
+        for tasks in zip(*(robot.tasks for robot in self._robots), strict=True):
+            if (update_all := tasks[0].update_all) is not None:
+                even = UniformBank([task.view.noise for task in tasks])
+                self._banks.append(even)
+                self._acts.append((update_all, [task.state for task in tasks], _Actors(shared, self.wheels, even)))
+
+    def __len__(self) -> int:
+        return len(self._robots)
+
+    def disband(self) -> None:
+        """Every robot acts and moves alone again."""
+        self.shared.physics.disband()
+        self.wheels.tell()
+        for robot in self._robots:
+            robot.shared_wheels = None
+        for bank in self._banks:
+            bank.give_back()
+        for group in self._groups.values():
+            group.give_back()
+
+    @property
+    def poses(self) -> Values:
+        """Where they really are now: rows x, y, yaw; who has fallen is far from any floor."""
+        poses = self.fleet.poses
+        fallen = self.fleet.fallen
+        if len(fallen):
+            poses = poses.copy()
+            poses[fallen] = [(_NOWHERE_M, index, 0.0) for index in fallen]
+        return poses
+
+    def states(self, kind: type[S]) -> list[S]:
+        """The state of one actuator of every robot."""
+        found = self._states.get(kind)
+        if found is None:
+            found = self._states[kind] = [robot.state(kind) for robot in self._robots]
+        return found
+
+    def act(self, dt_s: float) -> None:
+        """Run the actuators for one tick."""
+        for robot in self._in_order(self.shared.busy):
+            robot.act(dt_s, is_in_crowd=True)
+        for update_all, states, group in self._acts:
+            update_all(states, group, dt_s)
+        self.fleet.driven = self.wheels.ground
+
+    def roll(self, dt_s: float) -> None:
+        """Count on the wheels what the bodies have moved."""
+        self.wheels.roll(self.fleet.covered, dt_s)
+
+    def look_down(self, footing: Footing) -> None:
+        """Let those fall who have no floor under their origins; the others look again when they have gone that far."""
+        places = self.fleet.poses.T[:2]
+        ways = places - self._sure[:2]
+        ways *= ways
+        for index in (ways[0] + ways[1] >= self._sure[2]).nonzero()[0].tolist():
+            x, y = places[:, index].tolist()
+            self._sure[:, index] = x, y, self._robots[index].balance.stand(footing, x, y) ** 2
+
+    def cast(self, fan: Fan) -> tuple[Indices, Values]:
+        """What the rays of all robots meet now (`Raycaster.cast`)."""
+        self._caster.move(self.shared.physics.moved(), self.fleet.fallen.tolist())
+        return self._caster.cast(self.poses, fan)
+
+    def measure(self, due: Sequence[int]) -> Columns:
+        """The readings of the sensors with these numbers, and of those woken."""
+        woken = {self._order[robot]: robot.take_woken() for robot in self._in_order(self.shared.woken)}
+        awake: Sequence[int] = sorted({*due, *chain.from_iterable(woken.values())}) if woken else due
+        columns: list[tuple[str, Sequence[Reading | None]]] = []
+        for number in awake:
+            sensor = self._sensors[number]
+            if number not in due:
+                some = [index for index, numbers in woken.items() if number in numbers]
+                column: Sequence[Reading | None] = self._sense(number, some)
+            elif sensor.measure_all is not None:
+                column = sensor.measure_all(self._groups[number])
+            else:
+                column = [sensor.measure(view) for view in self._views[number]]
+            columns.append((sensor.name, column))
+        return Columns(self._names, columns)
+
+    def _sense(self, number: int, some: Sequence[int]) -> Sequence[Reading | None]:
+        """The readings of one sensor of some robots."""
+        column: list[Reading | None] = [None] * len(self._robots)
+        group = self._groups.get(number)
+        for index in some:
+            if group is not None:
+                group.notes.lend(index)
+            column[index] = self._robots[index].sense(number)
+            if group is not None:
+                group.notes.take_back(index)
+        return column
+
+    def _in_order(self, some: Collection[Robot]) -> list[Robot]:
+        """Some robots in the order of all."""
+        return [robot for robot in self._robots if robot in some] if some else []

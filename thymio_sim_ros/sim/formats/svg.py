@@ -1,0 +1,260 @@
+"""An SVG picture as pixels, drawn by resvg; refused where its cost or its look would depend on something else.
+
+It may hold neither text (fonts differ from machine to machine, and with them the readings), nor pictures and references
+to elsewhere, nor filters, masks, blend modes and markers (their cost has no limit), whether by elements, by attributes
+or by CSS. These checks give clear messages; the limits of the process that draws (`svg_process`) hold for all the rest.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from thymio_sim_ros.sim.formats import css, svg_process, xml_tree
+from thymio_sim_ros.sim.formats.css import Style
+from thymio_sim_ros.sim.formats.svg_process import DrawError
+from thymio_sim_ros.sim.formats.svg_worker import CSS_DPI
+from thymio_sim_ros.sim.formats.xml_tree import Element, XmlError
+from thymio_sim_ros.sim.model.fields import FieldError
+from thymio_sim_ros.sim.model.optional_import import imported
+
+__all__ = ["draw"]
+
+PIXEL_M = 0.001
+"""An SVG is drawn this fine, like the ground; its edges are smooth all the same."""
+MAX_SIDE = 4096
+MAX_PIXELS = 6_000_000
+MAX_PARTS = 20_000
+"""Elements that are drawn, repeated ones counted each time."""
+MAX_DEPTH = 40
+"""Elements inside one another, references counted; each may hold a picture of its own while it is drawn."""
+
+_REFUSED = {
+    "text": "paths (in Inkscape: Path, Object to Path)",
+    "image": "shapes and paths, or a PNG instead of the SVG",
+    "foreignObject": "shapes and paths",
+    "script": "no programs",
+    "marker": "no markers, or markers turned into paths",
+    "filter": "no filters",
+    "mask": "no masks, or clip paths in their place",
+    "animate": "nothing that moves",
+    "animateTransform": "nothing that moves",
+    "set": "nothing that moves",
+}
+_EFFECTS = {
+    "filter": "no filters",
+    "backdrop-filter": "no filters",
+    "mask": "no masks, or clip paths in their place",
+    "mask-image": "no masks, or clip paths in their place",
+    "mask-border": "no masks, or clip paths in their place",
+    "mask-border-source": "no masks, or clip paths in their place",
+    "mask-box-image": "no masks, or clip paths in their place",
+    "mix-blend-mode": "no blend modes",
+    "isolation": "no isolated groups",
+    "marker": "no markers, or markers turned into paths",
+    "marker-start": "no markers, or markers turned into paths",
+    "marker-mid": "no markers, or markers turned into paths",
+    "marker-end": "no markers, or markers turned into paths",
+}
+"""Properties that are refused, as attributes and in CSS, but with a value of `_WITHOUT_EFFECT`."""
+_WITHOUT_EFFECT = frozenset({"none", "auto", "normal", "initial", "unset"})
+"""Inkscape writes `filter:none;mix-blend-mode:normal;isolation:auto` into every style."""
+MAX_STYLES = 300_000
+"""Characters of CSS, equal styles counted once."""
+_HREFS = ("href", "xlink:href")
+_LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(px|pt|pc|mm|cm|in|q)?\s*", re.IGNORECASE)
+_INCHES = {"px": 1 / 96, "pt": 1 / 72, "pc": 1 / 6, "in": 1.0, "mm": 1 / 25.4, "cm": 1 / 2.54, "q": 1 / 101.6}
+"""Units of lengths; without one it is px."""
+_ROOT = re.compile(rb"""(<[^\s/>]+)((?:\s+[^\s=>/]+\s*=\s*(?:"[^"]*"|'[^']*'))*)(\s*/?>)""")
+"""The root's start: its name, its attributes, its end."""
+_SIDES = re.compile(rb"""\s(?:width|height)\s*=\s*(?:"[^"]*"|'[^']*')""")
+
+
+@dataclass(frozen=True, slots=True)
+class _Weight:
+    """Elements that are drawn, and how many of them lie inside one another."""
+
+    parts: int
+    depth: int
+
+
+_ENDLESS = _Weight(MAX_PARTS + 1, 1)
+
+
+def draw(data: bytes, key: str, width_m: float, *, seconds: float) -> tuple[bytes, float]:
+    """An SVG as the PNG that resvg draws, finely enough for `width_m`, and the seconds that it took.
+
+    FieldError names `key`, also for one that cannot be drawn within `seconds`.
+    """
+    try:
+        root = xml_tree.parse(data)
+    except XmlError as error:
+        raise FieldError(f"{key} (SVG line {error.line})", error.found, error.expected) from error
+    _check(root, key)
+    size = _size(root, key)
+    ratio = size[1] / size[0]
+    columns = round(min(MAX_SIDE, max(1.0, width_m / PIXEL_M)))
+    columns = max(1, math.floor(min(columns, MAX_SIDE / ratio, math.sqrt(MAX_PIXELS / ratio))))
+    rows = max(1, round(columns * ratio))
+    resvg = imported("resvg_py", "resvg-py", key)
+    try:
+        text = _resized(data.decode("utf-8"), root, size, columns, rows)
+    except ValueError as error:
+        raise FieldError(key, f"an SVG that cannot be drawn ({error})", "a whole SVG in UTF-8") from error
+    try:
+        return svg_process.draw(text, resvg, seconds=seconds)
+    except DrawError as error:
+        raise FieldError(key, error.found, error.expected) from error
+
+
+def _check(root: Element, key: str) -> None:
+    if root.tag != "svg":
+        raise FieldError(key, f"<{root.tag}>", "<svg>")
+    styles = _Styles(key)
+    for element in root.walk():
+        where = f"{key} (SVG line {element.line})"
+        if element.tag in _REFUSED:
+            raise FieldError(where, f"<{element.tag}>", _REFUSED[element.tag])
+        for target in _targets(element):
+            if not target.startswith("#"):
+                raise FieldError(where, f"a reference to '{target[:40]}'", "references inside the picture")
+        _check_style(element, styles, where)
+    by_id: dict[str, list[Element]] = {}
+    for element in root.walk():
+        by_id.setdefault(element.attributes.get("id", ""), []).append(element)
+    _weigh(root, by_id, styles, {}, key)
+
+
+class _Styles:
+    """The CSS of one picture. Equal texts are parsed once: drawing programs repeat their styles on each element."""
+
+    def __init__(self, key: str) -> None:
+        self._key = key
+        self._known: dict[str, Style] = {}
+        self._size = 0
+
+    def parse(self, text: str) -> Style:
+        """What a text of CSS says; FieldError when all texts together are too long."""
+        found = self._known.get(text)
+        if found is None:
+            self._size += len(text)
+            if self._size > MAX_STYLES:
+                raise FieldError(self._key, f"more than {MAX_STYLES} characters of CSS", "fewer or shorter styles")
+            found = self._known[text] = css.parse(text, _EFFECTS)
+        return found
+
+    def urls(self, element: Element) -> Iterator[str]:
+        """Targets of every `url(…)` in the attributes of an element."""
+        for name, value in element.attributes.items():
+            if name == "style" or "\\" in value or "url" in value.lower():
+                yield from self.parse(value).urls
+
+
+def _check_style(element: Element, styles: _Styles, where: str) -> None:
+    """Refuse what an element's attributes or its style sheet ask for that has no limit or lies elsewhere."""
+    for name, value in element.attributes.items():
+        if name.startswith("svg:"):
+            raise FieldError(where, f"the attribute {name} with a name space", "attributes without one")
+        if name in _EFFECTS and value.strip().lower() not in _WITHOUT_EFFECT:
+            raise FieldError(where, f'{name}="{value[:40]}"', _EFFECTS[name])
+    for target in styles.urls(element):
+        if not target.startswith("#"):
+            raise FieldError(where, f"a reference to '{target[:40]}'", "references inside the picture")
+    texts = [element.attributes["style"]] if "style" in element.attributes else []
+    if element.tag == "style":
+        texts.append(element.text)
+        sheet = styles.parse(element.text)
+        if "import" in sheet.rules:
+            raise FieldError(where, "@import in <style>", "styles inside the picture")
+        if sheet.urls:
+            raise FieldError(where, "url(…) in <style>", "references in the attributes of elements")
+    for text in texts:
+        for declaration in styles.parse(text).declarations:
+            if not (len(declaration.value) == 1 and declaration.value[0] in _WITHOUT_EFFECT):
+                found = f"'{declaration.name}' in a style"
+                raise FieldError(where, found, _EFFECTS[declaration.name])
+
+
+def _weigh(
+    element: Element,
+    by_id: dict[str, list[Element]],
+    styles: _Styles,
+    known: dict[int, _Weight],
+    key: str,
+    above: int = 0,
+) -> _Weight:
+    """What it costs to draw an element, with all that it repeats, fills or cuts itself with.
+
+    Each thing is drawn anew for each reference to it, and what lies inside one another is held at the same time;
+    both could grow without measure. A circle of references has no end at all.
+    """
+    if above > MAX_DEPTH:
+        raise FieldError(key, f"elements more than {MAX_DEPTH} deep", "a simpler picture")
+    weight = known.get(id(element))
+    if weight is None:
+        known[id(element)] = _ENDLESS
+        named = [other for name in _references(element, styles) if name for other in by_id.get(name, ())]
+        inner = [_weigh(other, by_id, styles, known, key, above + 1) for other in (*element.children, *named)]
+        weight = known[id(element)] = _Weight(
+            1 + sum(one.parts for one in inner), 1 + max((one.depth for one in inner), default=0)
+        )
+    if weight.parts > MAX_PARTS:
+        raise FieldError(key, f"more than {MAX_PARTS} elements to draw", "a simpler picture")
+    if above + weight.depth > MAX_DEPTH:
+        raise FieldError(key, f"elements more than {MAX_DEPTH} deep", "a simpler picture")
+    return weight
+
+
+def _references(element: Element, styles: _Styles) -> list[str]:
+    """Ids of the elements that this one is drawn with."""
+    found = [target[1:] for target in styles.urls(element)]
+    if element.tag == "use":
+        found += (target[1:] for target in _targets(element))
+    return found
+
+
+def _targets(element: Element) -> list[str]:
+    """What it refers to; where both ways of saying so are used, renderers differ in which they take."""
+    return [element.attributes[key] for key in _HREFS if key in element.attributes]
+
+
+def _size(root: Element, key: str) -> tuple[float, float]:
+    """Width and height in px; of what is not given in absolute units, as much as the view box says."""
+    width, height = (_pixels(root.attributes.get(side, "")) for side in ("width", "height"))
+    box = re.split(r"[\s,]+", root.attributes.get("viewBox", "").strip())
+    across, down = map(_pixels, box[2:]) if len(box) == 4 else (math.nan, math.nan)
+    ratio = down / across if across > 0.0 else math.nan
+    if math.isnan(width):
+        width = across if math.isnan(height) or not ratio > 0.0 else height / ratio
+    if math.isnan(height):
+        height = width * ratio
+    ratio = height / width if width > 0.0 else math.nan
+    if not (math.isfinite(ratio) and ratio > 0.0):
+        raise FieldError(key, "an SVG without a size", "viewBox, or width and height, in <svg>")
+    if not 0.01 <= ratio <= 100:
+        raise FieldError(key, f"{width:g} x {height:g} px", "a width and a height of at most 100 to 1")
+    return width, height
+
+
+def _pixels(length: str) -> float:
+    """An absolute length; not a number for what is none."""
+    match = _LENGTH.fullmatch(length)
+    try:
+        return math.nan if match is None else float(match[1]) * CSS_DPI * _INCHES[(match[2] or "px").lower()]
+    except ValueError:  # 1.2.3
+        return math.nan
+
+
+def _resized(text: str, root: Element, size: tuple[float, float], columns: int, rows: int) -> str:
+    """The SVG so that it is drawn on so many pixels: resvg rounds sizes up before it makes them larger."""
+    data = text.encode("utf-8")
+    match = _ROOT.match(data, root.offset)
+    if match is None:
+        raise ValueError("its first element is not where it seems to be")
+    attributes = _SIDES.sub(b"", match[2]) + f' width="{columns}" height="{rows}"'.encode()
+    if "viewBox" not in root.attributes:
+        attributes += f' viewBox="0 0 {size[0]!r} {size[1]!r}"'.encode()
+    changed = data[: match.start()] + match[1] + attributes + match[3] + data[match.end() :]
+    return changed.decode("utf-8")

@@ -1,0 +1,96 @@
+"""SVG → PNG in a process of its own, so that a picture can neither stop this one nor take its memory.
+
+resvg draws with the interpreter's lock held and cannot be interrupted. A new interpreter (`svg_worker`) starts in 30
+ms, imports only resvg, and is killed when its time is up. A fork of this process would not work: it has threads.
+"""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from thymio_sim_ros.sim.formats import svg_worker
+
+__all__ = ["MAX_MEMORY", "MAX_SECONDS", "DrawError", "draw"]
+
+MAX_SECONDS = 2.0
+"""Wall time of all SVG pictures of a playground together, the start of their processes included."""
+MAX_MEMORY = 512 * 1024 * 1024
+"""Bytes of address space that drawing one may take, where the system can limit it."""
+
+_PYTHON = re.compile(r"(?:python|pypy)[0-9a-z.]*(?:-[a-z]+)?(?:\.exe)?", re.IGNORECASE)
+"""Names of interpreters: `sys.executable` of a program that embeds Python is that program."""
+
+
+class DrawError(Exception):
+    """An SVG that is not drawn: what was found, and what was expected."""
+
+    def __init__(self, found: str, expected: str) -> None:
+        super().__init__(f"found {found}, expected {expected}")
+        self.found = found
+        self.expected = expected
+
+
+def draw(text: str, resvg: ModuleType, *, seconds: float) -> tuple[bytes, float]:
+    """The PNG of an SVG, and the seconds that it took; DrawError for one that cannot be drawn within `seconds`."""
+    begin = time.monotonic()
+    too_long = DrawError(
+        f"SVG pictures that take longer than {MAX_SECONDS:g} s to draw", "simpler ones, or PNG pictures"
+    )
+    if seconds <= 0.0:
+        raise too_long
+    command = [_interpreter(), "-I", "-S", svg_worker.__file__, _folder(resvg), str(MAX_MEMORY)]
+    try:
+        done = subprocess.run(
+            command,
+            input=text.encode("utf-8"),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            timeout=seconds,
+            check=False,
+            **_apart(),
+        )
+    except subprocess.TimeoutExpired as error:
+        raise too_long from error
+    except OSError as error:
+        raise DrawError(f"an SVG, and no process to draw it in ({error})", "a Python that can start itself") from error
+    if done.returncode == 0:
+        return done.stdout, time.monotonic() - begin
+    if done.returncode == svg_worker.REFUSED:
+        reason = done.stdout.decode("utf-8", "replace")
+        raise DrawError(f"an SVG that cannot be drawn ({reason})", "a whole SVG in UTF-8")
+    if done.returncode in _OUT_OF_TIME:
+        raise too_long
+    raise DrawError(
+        f"an SVG whose drawing process ended by itself ({done.returncode})",
+        f"one that can be drawn in {MAX_MEMORY // 1024**2} MB of memory",
+    )
+
+
+_OUT_OF_TIME = [-number for number in (getattr(signal, "SIGXCPU", None), getattr(signal, "SIGKILL", None)) if number]
+
+
+def _interpreter() -> str:
+    if getattr(sys, "frozen", False) or not sys.executable or not _PYTHON.fullmatch(Path(sys.executable).name):
+        raise DrawError(
+            f"an SVG in a program without a Python of its own ({sys.executable or 'unknown'})",
+            "a PNG picture, or to run with python",
+        )
+    return sys.executable
+
+
+def _folder(resvg: ModuleType) -> str:
+    return str(Path(str(resvg.__file__)).parent.parent)
+
+
+def _apart() -> dict[str, Any]:
+    """A process that Ctrl-C in the terminal does not reach, and that opens no window."""
+    if sys.platform == "win32":
+        return {"creationflags": subprocess.CREATE_NO_WINDOW | subprocess.CREATE_NEW_PROCESS_GROUP}
+    return {"start_new_session": True}

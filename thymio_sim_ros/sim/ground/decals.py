@@ -1,0 +1,160 @@
+"""A print in the raster of the ground: which color each of the ground's pixels takes, and with few enough colors.
+
+Both work on bands of rows: a print of 25 million pixels would else take a gigabyte of intermediate values.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from thymio_sim_ros.sim.model.primitives import Floor, Mark, Print
+
+__all__ = ["Area", "area_of", "bands", "few_colors", "laid_on"]
+
+_Bytes = npt.NDArray[np.uint8]
+_Words = npt.NDArray[np.uint32]
+_Codes = npt.NDArray[np.uint32]
+
+_CODES = 1 << 24
+"""Colors of three bytes; tables over all of them are far faster than sorting the pixels of a large print."""
+_BAND_PIXELS = 1_000_000
+
+Area = tuple[int, int, int, int]
+"""Pixels of the ground: left, bottom, right, top; the last two not included."""
+
+
+def area_of(mark: Floor | Mark, pixel_m: float, origin: tuple[int, int], shape: tuple[int, int]) -> Area:
+    """The pixels of a ground round a mark. The ground has `shape` rows and columns, its first pixel at `origin`."""
+    xs = [x / pixel_m - origin[0] for x, _ in mark.vertices]
+    ys = [y / pixel_m - origin[1] for _, y in mark.vertices]
+    left, right = max(0, math.floor(min(xs))), min(shape[1], math.ceil(max(xs)))
+    bottom, top = max(0, math.floor(min(ys))), min(shape[0], math.ceil(max(ys)))
+    return (left, bottom, right, top) if left < right and bottom < top else (0, 0, 0, 0)
+
+
+def bands(
+    printed: Print, pixel_m: float, origin: tuple[int, int], shape: tuple[int, int]
+) -> Iterator[tuple[Area, _Words]]:
+    """The area of a print band by band from below, and its colors there by row (y) and column (x).
+
+    A color is the number 0xaabbggrr: opacity, blue, green, red; it is 0 outside of the print. A print finer than the
+    ground is averaged over whole blocks first.
+    """
+    left, bottom, right, top = area_of(printed, pixel_m, origin, shape)
+    if left >= right:
+        return
+    source = np.frombuffer(printed.rgba, dtype=np.uint8).reshape(printed.rows, printed.columns, 4)
+    size_x, size_y = printed.size_x_m / printed.columns, printed.size_y_m / printed.rows
+    merge_x, merge_y = max(1, math.floor(pixel_m / size_x + 1e-9)), max(1, math.floor(pixel_m / size_y + 1e-9))
+    words: _Words = _blocks(source, merge_x, merge_y).view("<u4")[..., 0]
+    x = (np.arange(left, right) + 0.5 + origin[0]) * pixel_m - printed.pose.x_m
+    cos, sin = math.cos(printed.pose.yaw_rad), math.sin(printed.pose.yaw_rad)
+    height = max(1, _BAND_PIXELS // (right - left))
+    for begin in range(bottom, top, height):
+        end = min(top, begin + height)
+        y = (np.arange(begin, end) + 0.5 + origin[1]) * pixel_m - printed.pose.y_m
+        colors = np.zeros((end - begin, right - left), dtype=np.uint32)
+        if sin == 0.0:  # and nearly all prints are
+            # Columns depend on x alone and rows on y alone.
+            column = np.floor((cos * x + printed.size_x_m / 2) / (size_x * merge_x)).astype(np.intp)
+            row = np.floor((printed.size_y_m / 2 - cos * y) / (size_y * merge_y)).astype(np.intp)
+            across = np.flatnonzero((column >= 0) & (column < words.shape[1]))
+            for line in np.flatnonzero((row >= 0) & (row < words.shape[0])).tolist() if len(across) else ():
+                colors[line, across[0] : across[-1] + 1] = words[row[line]].take(column[across])
+        else:
+            for line in range(end - begin):
+                column = np.floor((cos * x + sin * y[line] + printed.size_x_m / 2) / (size_x * merge_x)).astype(np.intp)
+                row = np.floor((printed.size_y_m / 2 + sin * x - cos * y[line]) / (size_y * merge_y)).astype(np.intp)
+                inside = (column >= 0) & (column < words.shape[1]) & (row >= 0) & (row < words.shape[0])
+                colors[line, inside] = words[row[inside], column[inside]]
+        yield (left, begin, right, end), colors
+
+
+def laid_on(words: _Words, under: npt.NDArray[np.uint16], palette: npt.NDArray[np.float64]) -> _Codes:
+    """Colors of a print, none of them clear, on a ground of these color numbers, as numbers 0xrrggbb.
+
+    Rows of `palette` are red, green, blue of each color number, 0…255.
+    """
+    codes = ((words & 0xFF) << 16 | words & 0xFF00 | words >> 16 & 0xFF).astype(np.uint32, copy=False)
+    mixed = np.flatnonzero(words < 0xFF000000)
+    if len(mixed):
+        parts = (words[mixed] >> 24) / 255
+        ground = palette[under[mixed]]
+        code = np.zeros(len(mixed), dtype=np.uint32)
+        for channel in range(3):
+            color = codes[mixed] >> (16 - 8 * channel) & 0xFF
+            code <<= 8
+            code |= np.rint(color * parts + ground[:, channel] * (1 - parts)).astype(np.uint32)
+        codes[mixed] = code
+    return codes
+
+
+def few_colors(codes: Sequence[_Codes], most: int) -> tuple[_Bytes, npt.NDArray[np.uint16]]:
+    """At most `most` colors, 65 536 or fewer, that stand for those of all pixels; and a table from code to color.
+
+    All that occur, if they are few enough; otherwise near ones are replaced by their mean.
+    """
+    occurs = np.zeros(_CODES, dtype=bool)
+    for part in codes:
+        occurs[part] = True
+    if np.count_nonzero(occurs) <= most:
+        distinct = np.flatnonzero(occurs)
+        table = np.zeros(_CODES, dtype=np.uint16)
+        table[distinct] = np.arange(len(distinct))
+        return np.stack([distinct >> 16, distinct >> 8 & 0xFF, distinct & 0xFF]).T.astype(np.uint8), table
+    cube: npt.NDArray[np.bool_] = occurs.reshape(256, 256, 256)
+    bits = 0
+    while bits == 0 or (np.count_nonzero(cube) > most and bits < 8):
+        # Eight neighbors in the cube of colors become one.
+        bits += 1
+        side = 256 >> bits
+        cube = np.asarray(cube.reshape(side, 2, side, 2, side, 2).any(axis=(1, 3, 5)))
+    side = len(cube)
+    total, sums = np.zeros(cube.size), np.zeros((3, cube.size))
+    for part in codes:
+        channels = (part >> 16, part >> 8 & 0xFF, part & 0xFF)
+        red, green, blue = (channel >> bits for channel in channels)
+        group = (red * side + green) * side + blue
+        total += np.bincount(group, minlength=cube.size)
+        for number, channel in enumerate(channels):
+            sums[number] += np.bincount(group, weights=channel, minlength=cube.size)
+    groups = np.flatnonzero(cube)
+    place = np.zeros(cube.size, dtype=np.uint16)
+    place[groups] = np.arange(len(groups))
+    places: npt.NDArray[np.uint16] = place.reshape(cube.shape)
+    for axis in range(3):
+        places = places.repeat(1 << bits, axis=axis)
+    return np.rint(sums[:, groups] / total[groups]).T.astype(np.uint8), places.ravel()
+
+
+def _blocks(source: _Bytes, across: int, down: int) -> _Bytes:
+    """Means over blocks of pixels, weighted by opacity; the last ones may be smaller."""
+    if across == down == 1:
+        return source
+    rows, columns = math.ceil(source.shape[0] / down), math.ceil(source.shape[1] / across)
+    merged = np.zeros((rows, columns, 4), dtype=np.uint8)
+    height = max(1, _BAND_PIXELS // (down * source.shape[1]))
+    for begin in range(0, rows, height):
+        merged[begin : begin + height] = _means(source[begin * down : (begin + height) * down], across, down)
+    return merged
+
+
+def _means(source: _Bytes, across: int, down: int) -> _Bytes:
+    rows, columns = math.ceil(source.shape[0] / down), math.ceil(source.shape[1] / across)
+    padded = np.zeros((rows * down, columns * across, 4), dtype=np.float32)
+    padded[: source.shape[0], : source.shape[1]] = source
+    padded[..., :3] *= padded[..., 3:] / 255
+    there = np.zeros((rows * down, columns * across), dtype=np.float32)
+    there[: source.shape[0], : source.shape[1]] = 1.0
+    sums = padded.reshape(rows, down, columns, across, 4).sum(axis=(1, 3))
+    number = there.reshape(rows, down, columns, across).sum(axis=(1, 3))
+    opacity = sums[..., 3] / number
+    part = np.where(opacity > 0, opacity / 255, 1.0) * number
+    merged: _Bytes = np.rint(np.dstack([*(sums[..., channel] / part for channel in range(3)), opacity])).astype(
+        np.uint8
+    )
+    return merged

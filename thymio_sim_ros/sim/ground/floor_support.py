@@ -1,0 +1,49 @@
+"""Where there is floor to stand on, and how far its edge is.
+
+A playground without any floor has no edges: there the ground is taken to go on for ever, though nobody can see it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from thymio_sim_ros.sim.model.geometry import Point
+from thymio_sim_ros.sim.model.primitives import Floor
+from thymio_sim_ros.sim.model.spatial_grid import Squares
+
+__all__ = ["Footing"]
+
+_Sides = tuple[tuple[float, float, float], ...]
+"""A convex polygon as sides (nx, ny, c): inside where n·p <= c."""
+
+
+class Footing:
+    """The floors of a playground."""
+
+    def __init__(self, floors: Sequence[Floor]) -> None:
+        self._is_endless = not floors
+        self._floors: Squares[_Sides] = Squares()
+        for floor in floors:
+            xs, ys = [x for x, _ in floor.vertices], [y for _, y in floor.vertices]
+            self._floors.add(_sides(floor.vertices), (min(xs), min(ys), max(xs), max(ys)))
+
+    def clearance_m(self, x_m: float, y_m: float) -> float:
+        """How far one can go from a place in any direction and surely stay on floor; below 0 where there is none."""
+        if self._is_endless:
+            return math.inf
+        largest = -math.inf
+        for sides in self._floors.near((x_m, y_m, x_m, y_m)):
+            largest = max(largest, min(c - nx * x_m - ny * y_m for nx, ny, c in sides))
+        return largest
+
+
+def _sides(vertices: Sequence[Point]) -> _Sides:
+    sides = []
+    for index, (bx, by) in enumerate(vertices):
+        ax, ay = vertices[index - 1]
+        length = math.hypot(bx - ax, by - ay)
+        if length > 0.0:
+            nx, ny = (by - ay) / length, (ax - bx) / length
+            sides.append((nx, ny, nx * ax + ny * ay))
+    return tuple(sides)

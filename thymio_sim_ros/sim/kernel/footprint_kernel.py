@@ -1,0 +1,103 @@
+"""Kernel: what footprints on the ground see. The sums of `Ground.sample_under`, operation by operation."""
+
+from __future__ import annotations
+
+import math
+
+from thymio_sim_ros.sim.kernel.compiler import Floats, Ints, Words
+
+__all__ = ["COUNTS", "KERNELS", "TAPS", "sample", "spots"]
+
+KERNELS = ("spots", "taps", "sample")
+
+TAPS = 9
+COUNTS = (
+    "places", "tile_shift", "tile_rows", "tile_columns", "first_tile_x", "first_tile_y", "rows", "columns", "origin_x",
+    "origin_y", "is_unknown",
+)  # fmt: skip
+"""What each of `counts` is: the last is an answer."""
+(
+    _PLACES, _SHIFT, _TILE_ROWS, _TILE_COLUMNS, _TILE_X, _TILE_Y, _ROWS, _COLUMNS, _ORIGIN_X, _ORIGIN_Y, _IS_UNKNOWN,
+) = range(len(COUNTS))  # fmt: skip
+_CELL, _PIXEL, _STEPS, _WEIGHTS = 0, 1, 2, 2 + TAPS
+"""Places in `sizes`."""
+_UNKNOWN, _MIXED = -2, -1
+_ALL = 1.0 - 1e-9
+_TAPS = TAPS
+
+
+def spots(robots: int, count: int, poses: Floats, turns: Floats, points: Floats, xs: Floats, ys: Floats) -> None:
+    """Where points of the robots' frames are; `turns` are cosines, then sines, of the robots' yaws."""
+    for robot in range(robots):
+        cos = turns[robot]
+        sin = turns[robots + robot]
+        for point in range(count):
+            along = points[2 * point]
+            aside = points[2 * point + 1]
+            xs[robot * count + point] = poses[3 * robot] + cos * along - sin * aside
+            ys[robot * count + point] = poses[3 * robot + 1] + sin * along + cos * aside
+
+
+def taps(cell: int, origin: int, size: int, sizes: Floats, found: Ints, first: int) -> None:
+    """Pixel of each tap of a cell along one axis, kept one pixel round the picture."""
+    middle = (cell + 0.5) * sizes[_CELL]
+    for tap in range(_TAPS):
+        pixel = math.floor((middle + sizes[_STEPS + tap]) / sizes[_PIXEL]) - origin
+        found[first + tap] = -1 if pixel < -1 else size if pixel > size else pixel
+
+
+def sample(
+    counts: Ints,
+    sizes: Floats,
+    xs: Floats,
+    ys: Floats,
+    tiles: Ints,
+    pixels: Words,
+    greys: Floats,
+    near: Ints,
+    reflectances: Floats,
+    floors: Floats,
+) -> None:
+    """Reflectance and part of floor at every place, unless a tile is not known. `near` holds the taps of one place."""
+    width = counts[_COLUMNS]
+    height = counts[_ROWS]
+    counts[_IS_UNKNOWN] = 0
+    for place in range(counts[_PLACES]):
+        cell_x = math.floor(xs[place] / sizes[_CELL])
+        cell_y = math.floor(ys[place] / sizes[_CELL])
+        column = (cell_x >> counts[_SHIFT]) - counts[_TILE_X]
+        row = (cell_y >> counts[_SHIFT]) - counts[_TILE_Y]
+        column = 0 if column < 0 else counts[_TILE_COLUMNS] - 1 if column >= counts[_TILE_COLUMNS] else column
+        row = 0 if row < 0 else counts[_TILE_ROWS] - 1 if row >= counts[_TILE_ROWS] else row
+        color = tiles[row * counts[_TILE_COLUMNS] + column]
+        if color == _UNKNOWN:
+            counts[_IS_UNKNOWN] = 1
+            return
+        if color != _MIXED:
+            reflectances[place] = greys[color]
+            floors[place] = 1.0 if color != 0 else 0.0
+            continue
+        taps(cell_x, counts[_ORIGIN_X], width, sizes, near, 0)
+        taps(cell_y, counts[_ORIGIN_Y], height, sizes, near, _TAPS)
+        grey = 0.0
+        missing = 0.0
+        for along in range(_TAPS):
+            row = near[_TAPS + along]
+            grey_across = 0.0
+            missing_across = 0.0
+            for across in range(_TAPS):
+                column = near[across]
+                color = 0
+                if 0 <= row < height and 0 <= column < width:
+                    color = pixels[row * width + column]
+                grey_across += sizes[_WEIGHTS + across] * greys[color]
+                if color == 0:
+                    missing_across += sizes[_WEIGHTS + across]
+            grey += sizes[_WEIGHTS + along] * grey_across
+            missing += sizes[_WEIGHTS + along] * missing_across
+        floor = 1.0
+        if missing > 0.0:
+            floor = 1.0 - missing if missing < _ALL else 0.0
+            grey = grey / floor if floor > 0.0 else 0.0
+        reflectances[place] = grey
+        floors[place] = floor

@@ -1,0 +1,39 @@
+"""The kernel of noise for one bank: its arrays, and how it is called."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from thymio_sim_ros.sim.kernel import rng_kernel
+from thymio_sim_ros.sim.kernel.memory import KernelMemory
+
+__all__ = ["Dealing"]
+
+Values = npt.NDArray[np.float64]
+
+
+class Dealing:
+    """Numbers drawn ahead: a row of `numbers` for each user, of which the first `used` are gone."""
+
+    def __init__(self, users: int, width: int, most: int) -> None:
+        """`most`: turns at once."""
+        memory, floats, ints = KernelMemory.holding(
+            [(users, width), (most,)], [(len(rng_kernel.COUNTS),), (users,), (most,)]
+        )
+        self.numbers, self._dealt = floats
+        self._counts, self.used, self._users = ints
+        self._counts[1] = width
+        self._memory = memory
+        self.most = most
+        self._call = memory.bind(
+            rng_kernel, rng_kernel.deal, self._counts, self._users, self.numbers, self.used, self._dealt
+        )
+
+    def deal(self, users: npt.NDArray[np.intp]) -> Values | None:
+        """A number for each turn of a user, to be read until the next call; None when one has too few left."""
+        turns = len(users)
+        self._users[:turns] = users
+        self._counts[0] = turns
+        self._call()
+        return None if self._counts[2] else self._dealt[:turns]

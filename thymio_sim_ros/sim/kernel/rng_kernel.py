@@ -1,0 +1,28 @@
+"""Kernel: numbers that were drawn ahead are dealt out to their users. What `NormalBank.draw` does, step by step."""
+
+from __future__ import annotations
+
+from thymio_sim_ros.sim.kernel.compiler import Floats, Ints
+
+__all__ = ["COUNTS", "KERNELS", "deal"]
+
+KERNELS = ("deal",)
+
+COUNTS = ("turns", "width", "is_short")
+"""What each of `counts` is: so many turns, so many numbers in a row; the last is an answer."""
+_TURNS, _WIDTH, _IS_SHORT = range(len(COUNTS))
+
+
+def deal(counts: Ints, users: Ints, numbers: Floats, used: Ints, dealt: Floats) -> None:
+    """The next number for each turn of a user, unless one has too few: then none is dealt."""
+    width = counts[_WIDTH]
+    counts[_IS_SHORT] = 0
+    for turn in range(counts[_TURNS]):
+        user = users[turn]
+        if used[user] >= width:
+            counts[_IS_SHORT] = 1
+            for earlier in range(turn):
+                used[users[earlier]] -= 1
+            return
+        dealt[turn] = numbers[user * width + used[user]]
+        used[user] += 1

@@ -1,0 +1,39 @@
+"""A robot that has lost the floor.
+
+Its origin, which is its centre of mass, was over nothing (docs/spec/thymio-robot.md section 1.1). It falls freely for
+as long as a thing needs from a table of 0.2 m, tips over in the direction in which it went, and then lies there, its
+wheels in the air, until somebody moves it. The height and the slant are own choices: no source has either.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from thymio_sim_ros.sim.model.geometry import LEVEL, Tilt
+
+__all__ = ["FALL_NS", "Fall"]
+
+FALL_NS = 200_000_000
+"""sqrt(2 h / g) of a height of 0.2 m."""
+_SLANT_RAD = math.radians(50)
+"""How a fallen robot lies."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fall:
+    """When a robot lost the floor, and which way it went then: 0 forwards, counter-clockwise, in its own frame."""
+
+    began_ns: int
+    course_rad: float
+
+    def is_free(self, now_ns: int) -> bool:
+        """Whether it is still in the air."""
+        return now_ns - self.began_ns < FALL_NS
+
+    def tilt(self, now_ns: int) -> Tilt:
+        """How it is tipped: evenly more while in the air, then as it lies."""
+        slant = _SLANT_RAD * min(1.0, (now_ns - self.began_ns) / FALL_NS)
+        if slant == 0.0:
+            return LEVEL
+        return Tilt(-slant * math.sin(self.course_rad), slant * math.cos(self.course_rad))

@@ -1,0 +1,198 @@
+"""Repeatable randomness: one generator for each robot and each of its sensors and actuators, and banks of many.
+
+Every generator is a sequence of even numbers in [0, 1); normal numbers are made of two of them at a time (Box and
+Muller). A bank draws ahead for many users at once and gives back what it has not used, so that the sequence of each
+stays the same.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import random
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from thymio_sim_ros.sim.kernel.memory import is_available
+from thymio_sim_ros.sim.kernel.rng_binding import Dealing
+
+__all__ = ["Noise", "NormalBank", "UniformBank"]
+
+Values = npt.NDArray[np.float64]
+
+_BLOCK = 128
+"""Numbers that a bank draws ahead for each user; even, since normal numbers come in pairs."""
+_WIDTH = 2 * _BLOCK
+"""Numbers that a bank of normal ones keeps for each user: a block that is being used, and the one behind it."""
+
+
+class Noise:
+    """The random numbers of one user. Invariant: they depend on (seed, robot, user) alone, not on other users."""
+
+    __slots__ = ("_ahead", "_enabled", "_pending", "_random")
+
+    def __init__(self, seed: int, robot: str, user: str, *, enabled: bool = True) -> None:
+        digest = hashlib.blake2b(f"{seed}/{robot}/{user}".encode(), digest_size=8).digest()
+        self._random = random.Random(int.from_bytes(digest, "big"))
+        self._enabled = enabled
+        self._pending: float | None = None
+        self._ahead: list[float] = []
+        """Numbers drawn but not used, the next one last."""
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it makes any noise."""
+        return self._enabled
+
+    def gauss(self, sigma: float) -> float:
+        """Normal around 0; exactly 0 when noise is off."""
+        if not self._enabled:
+            return 0.0
+        number = self._pending
+        if number is not None:
+            self._pending = None
+            return number * sigma
+        turn, length = self._draw() * math.tau, math.sqrt(-2.0 * math.log(1.0 - self._draw()))
+        self._pending = math.sin(turn) * length
+        return math.cos(turn) * length * sigma
+
+    def uniform(self, low: float, high: float) -> float:
+        """Even between low and high; their middle when noise is off."""
+        if not self._enabled:
+            return (low + high) / 2
+        return low + (high - low) * (self._ahead.pop() if self._ahead else self._random.random())
+
+    def draw_ahead(self, count: int) -> bytes | Values:
+        """The next numbers, as they are or as 8 bytes each for `evens`; to be given back unless used."""
+        if len(self._ahead) == 0:
+            return self._random.randbytes(8 * count)
+        return np.array([self._draw() for _ in range(count)])
+
+    def take_pending(self) -> float | None:
+        """The second normal number of a pair of which one is used."""
+        pending, self._pending = self._pending, None
+        return pending
+
+    def give_back(self, numbers: Sequence[float], pending: float | None = None) -> None:
+        """Numbers drawn ahead and not used, in order; and the rest of a pair of normal ones."""
+        self._ahead += reversed(numbers)
+        self._pending = pending
+
+    def _draw(self) -> float:
+        return self._ahead.pop() if self._ahead else self._random.random()
+
+
+def evens(blocks: Sequence[bytes | Values]) -> Values:
+    """Blocks of `Noise.draw_ahead` as rows of numbers: as `random.random` makes them of 32 bit words."""
+    raw = [block for block in blocks if isinstance(block, bytes)]
+    words = np.frombuffer(b"".join(raw), dtype="<u4").reshape(len(raw), len(raw[0]) // 4 if raw else 0)
+    made = iter(((words[:, 0::2] >> 5) * 67108864.0 + (words[:, 1::2] >> 6)) / 9007199254740992.0)
+    return np.array([next(made) if isinstance(block, bytes) else block for block in blocks])
+
+
+class UniformBank:
+    """Even numbers for many users who always draw the same number of them."""
+
+    def __init__(self, noises: Sequence[Noise]) -> None:
+        self._noises = noises
+        self._numbers = np.zeros((0, len(noises)))
+        self._used = 0
+        self._limits: tuple[float, float] | None = None
+        self._between = self._numbers
+        """The numbers as they are between these limits."""
+
+    def draw(self, low: float, high: float, count: int) -> Values:
+        """`Noise.uniform` so many times: a row for each time, a column for each user; not to be written to."""
+        if not self._noises or not self._noises[0].enabled:
+            return np.full((count, len(self._noises)), (low + high) / 2)
+        while self._used + count > len(self._numbers):
+            fresh = evens([noise.draw_ahead(_BLOCK) for noise in self._noises]).T
+            self._numbers = np.concatenate((self._numbers[self._used :], fresh))
+            self._used = 0
+            self._limits = None
+        if self._limits != (low, high):
+            self._limits = (low, high)
+            self._between = self._numbers * (high - low) + low
+        first, self._used = self._used, self._used + count
+        return self._between[first : self._used]
+
+    def give_back(self) -> None:
+        """Let every user draw for himself again."""
+        for noise, numbers in zip(self._noises, self._numbers[self._used :].T.tolist(), strict=True):
+            noise.give_back(numbers)
+        self._numbers, self._used, self._limits = np.zeros((0, len(self._noises))), 0, None
+
+
+class NormalBank:
+    """Normal numbers for many users."""
+
+    def __init__(self, noises: Sequence[Noise], *, is_compiled: bool | None = None) -> None:
+        """`is_compiled`: dealt out by a kernel, or with numpy; None: by a kernel where there is one. Same numbers."""
+        self._noises = noises
+        self._is_compiled = is_available() if is_compiled is None else is_compiled
+        self._dealing: Dealing | None = None
+        self._evens = np.zeros((len(noises), _WIDTH))
+        self._numbers = np.zeros((len(noises), _WIDTH))
+        self._used: npt.NDArray[np.integer] = np.full(len(noises), _WIDTH)
+        """How many of each row; a user who has used one of a pair starts with the other."""
+        for row, noise in enumerate(noises):
+            pending = noise.take_pending()
+            if pending is not None:
+                self._used[row], self._numbers[row, -1] = _WIDTH - 1, pending
+
+    def draw(self, users: npt.NDArray[np.intp], sigma: float) -> Values:
+        """`Noise.gauss` for each of these users, who stand in order; the same one at most `_BLOCK` times."""
+        if len(users) == 0 or not self._noises[0].enabled:
+            return np.zeros(len(users))
+        deal = self._deal_compiled if self._is_compiled else self._deal
+        dealt = deal(users)
+        if dealt is None:
+            self._refill(np.flatnonzero(self._used >= _BLOCK))
+            dealt = deal(users)
+            assert dealt is not None  # everybody has a block now
+        drawn: Values = dealt * sigma
+        return drawn
+
+    def give_back(self) -> None:
+        """Let every user draw for himself again."""
+        for row, (noise, used) in enumerate(zip(self._noises, self._used.tolist(), strict=True)):
+            pending = float(self._numbers[row, used]) if used % 2 else None
+            noise.give_back(self._evens[row, used + used % 2 :].tolist(), pending)
+        self._used[:] = _WIDTH
+
+    def _deal(self, users: npt.NDArray[np.intp]) -> Values | None:
+        """The next number for each turn of a user; None when one has too few left."""
+        before = np.arange(len(users)) - np.searchsorted(users, users)
+        counts = np.bincount(users, minlength=len(self._noises))
+        if (self._used + counts).max() > _WIDTH:
+            return None
+        dealt: Values = self._numbers[users, self._used[users] + before]
+        self._used += counts
+        return dealt
+
+    def _deal_compiled(self, users: npt.NDArray[np.intp]) -> Values | None:
+        """As `_deal`."""
+        dealing = self._dealing
+        if dealing is None or dealing.most < len(users):
+            dealing = Dealing(*self._numbers.shape, most=2 * len(users))
+            dealing.numbers[:], dealing.used[:] = self._numbers, self._used
+            self._numbers, self._used = dealing.numbers, dealing.used
+            self._dealing = dealing  # not before: whoever owned the numbers keeps them until they are copied
+        return dealing.deal(users)
+
+    def _refill(self, rows: npt.NDArray[np.intp]) -> None:
+        """A new block behind the last one of each of these users; the one before it is used.
+
+        Whoever can take one gets it, wanting or not: filling many at once costs little more than filling one.
+        """
+        fresh = evens([self._noises[row].draw_ahead(_BLOCK) for row in rows.tolist()])
+        turn, length = fresh[:, 0::2] * math.tau, np.sqrt(-2.0 * np.log(1.0 - fresh[:, 1::2]))
+        for values in (self._evens, self._numbers):
+            values[rows, :_BLOCK] = values[rows, _BLOCK:]
+        self._evens[rows, _BLOCK:] = fresh
+        numbers = np.empty(fresh.shape)
+        numbers[:, 0::2], numbers[:, 1::2] = np.cos(turn) * length, np.sin(turn) * length
+        self._numbers[rows, _BLOCK:] = numbers
+        self._used[rows] -= _BLOCK

@@ -1,0 +1,18 @@
+"""Packages that only some playgrounds need."""
+
+from __future__ import annotations
+
+import importlib
+from types import ModuleType
+
+from thymio_sim_ros.sim.model.fields import FieldError
+
+__all__ = ["imported"]
+
+
+def imported(name: str, package: str, key: str) -> ModuleType:
+    """A module of a package; FieldError names `key` and how to install it."""
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise FieldError(key, f"a picture that needs the package {package}", f"`pip install {package}`") from error

@@ -1,0 +1,130 @@
+"""The robots of a fleet that are in the engine's space: the sums of `RobotBody.push` and `settle` on arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from thymio_sim_ros.sim.model import robot_constants
+from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS
+from thymio_sim_ros.sim.physics.pymunk_batch_io import FORCES, SPEEDS, Reader, Setter
+from thymio_sim_ros.sim.physics.robot_body import MOMENT_KG_M2, PUSH_N_S_M, RobotBody
+
+__all__ = ["Engaged"]
+
+Values = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.intp]
+Flags = npt.NDArray[np.bool_]
+
+
+class Engaged:
+    """Some robots of a fleet, always the same; in its arrays each has a column.
+
+    Who touches nothing moves as the fleet reckons; the engine only has to find out when that ends. Those are held who
+    touch something, or have done so in this tick: what becomes of them is read from the engine.
+    """
+
+    def __init__(self, bodies: Sequence[RobotBody], numbers: Indices, setter: Setter) -> None:
+        """Those of the bodies with these numbers, whom the setter sets from now on."""
+        self.numbers = numbers
+        self._bodies = [bodies[number].body for number in numbers.tolist()]
+        self._rows: Indices = np.zeros(0, dtype=np.intp)
+        self._order = 0
+        """Where the reader has them, and in which order of its own."""
+        count = len(numbers)
+        self._setter = setter
+        setter.choose(self._bodies)
+        self._state = np.zeros((6, count))
+        """Rows x, y, yaw, vx, vy, rate of turn; of those who touch something, as the engine has them."""
+        for column, number in enumerate(numbers.tolist()):
+            if bodies[number].touching:
+                body = bodies[number].body
+                self._state[3:, column] = *body.velocity, body.angular_velocity
+        self._target, self._wanted = np.zeros((3, count)), np.zeros((6, count))
+        self._cos, self._sin, self._speed = np.zeros(count), np.zeros(count), np.zeros(count)
+        self._covered = np.zeros((2, count))
+        self._touching, self._held = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        self._is_anybody_touching = self.is_anybody_held = False
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    def begin_tick(self, driven: Values, rolling: Values, yaw: Values, touching: Flags | None) -> None:
+        """What the fleet knows of all its robots. `touching` is None when it is nobody.
+
+        Rows of `driven`: what each wheel wants; of `rolling`: speed, rate of turn, the turn in half a sub-step and in
+        a whole one.
+        """
+        numbers = self.numbers
+        self._driven = driven[:, numbers]
+        self._rolling = rolling[:, numbers]
+        self._target[2] = self._rolling[1]
+        self._yaw = yaw[numbers]
+        self._is_anybody_touching = self.is_anybody_held = touching is not None
+        if touching is not None:
+            self._touching = touching[numbers]
+            self._held = self._touching.copy()
+            self._covered[:] = 0.0
+
+    def push(self) -> None:
+        """As `RobotBody.push`."""
+        speed, _, half_turn, _ = self._rolling
+        heading = self._yaw + half_turn
+        if self._is_anybody_touching:
+            heading += self._touching * self._state[5] * SUB_STEP_S
+        target = self._target
+        np.cos(heading, out=self._cos)
+        np.sin(heading, out=self._sin)
+        np.multiply(speed, self._cos, out=target[0])
+        np.multiply(speed, self._sin, out=target[1])
+        if not self._is_anybody_touching:
+            self._setter.set(SPEEDS, target.T)
+            return
+        motion, wanted = self._state[3:], self._wanted
+        lack = (target - motion) * self._touching
+        push = lack[:2] * PUSH_N_S_M
+        force = np.hypot(push[0], push[1])
+        np.maximum(force, robot_constants.DRIVE_FORCE_N, out=force)
+        np.multiply(push, robot_constants.DRIVE_FORCE_N / force, out=wanted[3:5])
+        np.multiply(lack[2], MOMENT_KG_M2 / SUB_STEP_S, out=wanted[5])
+        wanted[:3] = target
+        np.copyto(wanted[:3], motion, where=self._touching)
+        self._setter.set(FORCES, wanted.T)
+
+    def settle(self, earlier: int, reader: Reader, touching: Flags | None) -> None:
+        """As `RobotBody.settle`; `touching` is that of the fleet if it has changed in this sub-step."""
+        if touching is not None:
+            self._touching = touching[self.numbers]
+            self._is_anybody_touching = bool(np.count_nonzero(self._touching))
+        if not (self._is_anybody_touching or self.is_anybody_held):
+            self._yaw = self._yaw + self._rolling[3]
+            return
+        reader.read()
+        if reader.order != self._order:
+            self._order, self._rows = reader.order, reader.rows(self._bodies)
+        if not self.is_anybody_held:
+            self.is_anybody_held = True
+            self._held = np.zeros(len(self), dtype=bool)
+        if touching is not None:
+            begun = self._touching & ~self._held
+            self._covered[:, begun] = self._driven[:, begun] * (earlier / SUB_STEPS)
+            self._held |= begun
+        self._state = state = reader.state[self._rows].T
+        self._yaw = state[2]
+        self._speed = speed = state[3] * self._cos + state[4] * self._sin
+        half = state[5] * (robot_constants.WHEEL_TRACK_M / 2)
+        self._covered[0] += (speed - half) / SUB_STEPS
+        self._covered[1] += (speed + half) / SUB_STEPS
+
+    def note(self, now: Values) -> Indices:
+        """Write what has become of those held to their columns of the fleet; their numbers.
+
+        Rows x, y, yaw, speed along the heading, rate of turn, speed over ground at the left and the right wheel.
+        """
+        state, held = self._state, self._held.nonzero()[0]
+        found = np.concatenate((state[:3], self._speed[None], state[5:], self._covered))
+        numbers: Indices = self.numbers[held]
+        now[:, numbers] = found[:, held]
+        return numbers

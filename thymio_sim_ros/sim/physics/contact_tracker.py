@@ -1,0 +1,89 @@
+"""Who touches what: kept in each robot's `touching`, as pymunk tells contacts that begin and end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pymunk
+
+from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE, Contact
+from thymio_sim_ros.sim.physics.robot_body import ROBOT_TYPE, RobotBody
+
+__all__ = ["Touches"]
+
+_THING_TYPE = 2
+"""pymunk's collision type of everything but robots."""
+
+
+class Touches:
+    """The contacts in a space. Invariant: every shape in it has a name here, every robot's shape its robot.
+
+    `news` is called with a robot when a contact of it begins or ends.
+    """
+
+    def __init__(self, space: pymunk.Space, news: Callable[[RobotBody], None], *, do_things_bounce: bool) -> None:
+        self._news = news
+        self._names: dict[pymunk.Shape, str] = {}
+        self._robots: dict[pymunk.Shape, RobotBody] = {}
+        space.on_collision(ROBOT_TYPE, _THING_TYPE, self._on_begin, separate=self._on_separate)
+        space.on_collision(ROBOT_TYPE, ROBOT_TYPE, self._on_begin, separate=self._on_separate)
+        if do_things_bounce:
+            space.on_collision(_THING_TYPE, _THING_TYPE, pre_solve=_bounce)
+
+    def watch(self, shape: pymunk.Shape, owner: RobotBody | str) -> None:
+        """A shape of a robot, or of a thing of this name, is going to be in the space."""
+        if isinstance(owner, RobotBody):
+            self._robots[shape] = owner
+            self._names[shape] = owner.name
+        else:
+            shape.collision_type = _THING_TYPE
+            self._names[shape] = owner
+
+    def forget(self, shape: pymunk.Shape) -> None:
+        """Nobody touches a shape any more."""
+        for robot in self._robots.values():
+            robot.touching.pop(shape, None)
+
+    def unwatch(self, shape: pymunk.Shape) -> None:
+        """A shape will not be in the space again."""
+        self.forget(shape)
+        self._robots.pop(shape, None)
+        del self._names[shape]
+
+    def _on_begin(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+        one, other = arbiter.shapes
+        points = arbiter.contact_point_set
+        x, y = _middle(points)
+        speed = max(0.0, (_velocity(one, (x, y)) - _velocity(other, (x, y))).dot(points.normal))
+        for mine, its in ((one, other), (other, one)):
+            robot = self._robots.get(mine)
+            if robot is not None:
+                self._news(robot)
+                robot.touching[its] = Contact(robot.name, self._names[its], x, y, speed, True)
+
+    def _on_separate(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+        one, other = arbiter.shapes
+        for mine, its in ((one, other), (other, one)):
+            robot = self._robots.get(mine)
+            if robot is not None:
+                self._news(robot)
+                robot.touching.pop(its, None)
+
+
+def _bounce(arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+    """Things bounce off each other as their elasticities say."""
+    arbiter.restitution *= ROBOT_BOUNCE * ROBOT_BOUNCE
+
+
+def _middle(points: pymunk.ContactPointSet) -> tuple[float, float]:
+    """The middle of a contact, whichever of its points and shapes come first."""
+    ends = [end for point in points.points for end in (point.point_a, point.point_b)]
+    return (math.fsum(end.x for end in ends) / len(ends), math.fsum(end.y for end in ends) / len(ends))
+
+
+def _velocity(shape: pymunk.Shape, point: tuple[float, float]) -> pymunk.Vec2d:
+    """Of a shape's body where it is touched."""
+    assert shape.body is not None
+    return shape.body.velocity_at_world_point(point)

@@ -1,0 +1,259 @@
+"""From the bytes of a file to the data of a playground: which format it is, and the files that belong to it.
+
+Ours is JSON with "format"; the thesis' JSON has other keys; a text that begins with "<" is Aseba's XML; a zip holds
+one of these and its pictures. Everything here comes from strangers: sizes are limited before anything is unpacked,
+and a file is looked for in one folder, or in one archive, and nowhere else.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import lzma
+import re
+import zipfile
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+from typing import NoReturn
+
+from thymio_sim_ros.sim.formats import xml_tree
+from thymio_sim_ros.sim.formats.html_entities import without_html_entities
+from thymio_sim_ros.sim.formats.image_io import MAX_PICTURE_BYTES
+from thymio_sim_ros.sim.formats.xml_tree import XmlError
+from thymio_sim_ros.sim.model.fields import FieldError, describe
+from thymio_sim_ros.sim.playground.importers import aseba, thesis
+
+__all__ = ["MAX_BYTES", "Beside", "Source", "folder", "is_recognized", "nothing_beside", "read_source", "unpacked_svg"]
+
+MAX_BYTES = 32_000_000
+"""Largest file; pictures inside it count."""
+MAX_ARCHIVE_FILES = 200
+MAX_TEXT = 100_000
+"""Bytes of a text in JSON, as it is written there; what a playground says is far shorter."""
+MAX_PICTURE_TEXT = 8_000_000
+"""Bytes of a picture in JSON, a data URI in ASCII; with room for `\\/`, as some write the slash."""
+MAX_PARTS = 1_000_000
+"""Values in JSON: each takes some fifty bytes, be it written with two."""
+
+Beside = Callable[[str], bytes]
+"""A file beside the playground by its name, or FieldError; one byte more than `MAX_PICTURE_BYTES` at most."""
+
+_ZIP = b"PK\x03\x04"
+_BOM = b"\xef\xbb\xbf"
+_GZIP = 16
+"""Added to the window size of zlib for data with a header of gzip."""
+_PLAYGROUND_ENDINGS = (".xml", ".playground", ".json")
+_CANNOT_UNPACK = (
+    zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, OSError, RuntimeError, ValueError,
+)  # fmt: skip
+"""What a damaged, encrypted or exotic archive raises; of places before its begin the file says ValueError."""
+_WORDS = re.compile(r'"(?:[^"\\]++|\\.)*+"|NaN|-?Infinity')
+"""Strings of JSON, and words that Python takes for numbers outside them."""
+_PARTS = re.compile(r'"(?:[^"\\]++|\\.)*+"|[{}]')
+_STRINGS = re.compile(rb'"(?:[^"\\]++|\\.)*+"?', re.DOTALL)
+_COLON = re.compile(r"\s*:")
+"""What makes a string a key."""
+_MARKS = re.compile(
+    rb'"format"\s*:\s*\d|"(?:%s)"\s*:|<aseba-playground' % "|".join(("playground", *thesis.KEYS)).encode()
+)
+"""What tells a playground from any other JSON or XML."""
+_HALVES = re.compile(r"[\ud800-\udfff]")
+"""Halves of characters: escapes may hold them, UTF-8 may not, and keys are told in errors and notes."""
+_SHOWN = 12
+"""Characters that an error shows."""
+_IN_FOLDER = "a file in the playground's folder"
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Data of our format, unchecked; the files beside it; for a converted file what was lost, and places in it.
+
+    `sets_free`: the simulator that the file is for pushes robots out of the things in which they start.
+    """
+
+    data: object
+    beside: Beside
+    notes: tuple[str, ...] = ()
+    places: Mapping[str, str] = field(default_factory=dict)
+    sets_free: bool = False
+
+
+def read_source(data: bytes, name: str, beside: Beside) -> Source:
+    """The playground in a file's bytes; `name` is its title if it has none. Raises FieldError."""
+    name = " ".join(name.encode("utf-8", "replace").decode("utf-8").split()) or "Playground"
+    if len(data) > MAX_BYTES:
+        raise FieldError("", f"more than {MAX_BYTES} bytes", "a smaller file")
+    if data.startswith(_ZIP):
+        data, beside = _unzip(data)
+    data = data.removeprefix(_BOM)
+    if data.lstrip().startswith(b"<"):
+        return _read_xml(data, name, beside)
+    _check_parts(data)
+    try:
+        parsed = _parse_json(data.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise FieldError("", f"a wrong byte at {error.start}", "UTF-8 text") from error
+    if isinstance(parsed, Mapping) and "format" not in parsed and parsed.keys() & {"playground", *thesis.KEYS}:
+        converted = thesis.convert(parsed, name)
+        return Source(converted.data(), beside, tuple(converted.notes), converted.places)
+    return Source(parsed, beside)
+
+
+def is_recognized(data: bytes) -> bool:
+    """Whether a file that cannot be read looks like a playground nevertheless, so that an error may quote from it."""
+    if data.startswith(_ZIP):
+        try:
+            data, _ = _unzip(data)
+        except FieldError:
+            return False
+    return _MARKS.search(data) is not None
+
+
+def nothing_beside(name: str) -> bytes:
+    """Of a text that came without a folder."""
+    raise FieldError("", f"the file '{name}'", "the picture itself as a data URI, or a zip that holds both")
+
+
+def folder(path: Path) -> Beside:
+    """Reads files of a folder, and of no other."""
+
+    def read_file(name: str) -> bytes:
+        try:
+            found = (path / name).resolve()
+            if "\\" in name or not found.is_relative_to(path.resolve()):
+                raise FieldError("", describe(name), _IN_FOLDER)
+            with found.open("rb") as file:
+                return file.read(MAX_PICTURE_BYTES + 1)
+        except (OSError, ValueError) as error:
+            raise FieldError("", f"{describe(name)}, which cannot be read", _IN_FOLDER) from error
+
+    return read_file
+
+
+def unpacked_svg(data: bytes) -> bytes:
+    """The SVG in an `.svgz` file, which is packed with gzip; FieldError without a key. One byte more than
+    `MAX_PICTURE_BYTES` at most is unpacked."""
+    unpacker = zlib.decompressobj(zlib.MAX_WBITS | _GZIP)
+    try:
+        unpacked = unpacker.decompress(data, MAX_PICTURE_BYTES + 1)
+    except zlib.error as error:
+        raise FieldError("", "an .svgz file that cannot be unpacked", "an SVG packed with gzip") from error
+    if not unpacker.eof and len(unpacked) <= MAX_PICTURE_BYTES:
+        raise FieldError("", "an .svgz file that is cut off", "a whole one")
+    return unpacked
+
+
+def _read_xml(data: bytes, name: str, beside: Beside) -> Source:
+    try:
+        root = xml_tree.parse(without_html_entities(data))
+    except XmlError as error:
+        raise FieldError(f"line {error.line}", error.found, error.expected) from error
+    converted = aseba.convert(root, name)
+    return Source(converted.data(), beside, tuple(converted.notes), converted.places, sets_free=True)
+
+
+def _unzip(data: bytes) -> tuple[bytes, Beside]:
+    """The playground's own file in an archive, and the files beside it there."""
+    try:
+        archive = zipfile.ZipFile(io.BytesIO(data))
+    except _CANNOT_UNPACK as error:
+        raise FieldError("", "a broken zip archive", "a whole one") from error
+    names = [entry.filename for entry in archive.infolist() if entry.filename and not entry.is_dir()]
+    if len(names) > MAX_ARCHIVE_FILES:
+        raise FieldError("", f"{len(names)} files in the archive", f"at most {MAX_ARCHIVE_FILES}")
+    fitting = [name for name in names if name.lower().endswith(_PLAYGROUND_ENDINGS) and "__MACOSX" not in name]
+    chosen = [name for name in fitting if PurePosixPath(name).name == "world.xml"] or fitting
+    if len(chosen) != 1:
+        found = ", ".join(chosen[:5]) or "no playground"
+        raise FieldError("", f"{found} in the archive", "one world.xml with its pictures")
+    (inner,) = chosen
+    home = PurePosixPath(inner).parent
+
+    def read_entry(name: str) -> bytes:
+        path = home / name
+        entry = str(path)
+        if "\\" in name or path.is_absolute() or ".." in path.parts or entry not in names:
+            raise FieldError("", describe(name), "a file in the archive")
+        return _extract(archive, entry, MAX_PICTURE_BYTES + 1)
+
+    content = _extract(archive, inner, MAX_BYTES + 1)
+    if len(content) > MAX_BYTES:
+        raise FieldError(inner, f"more than {MAX_BYTES} bytes", "a smaller file")
+    return content, read_entry
+
+
+def _extract(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
+    """The first bytes of an entry; never more are unpacked, whatever the archive says about its size."""
+    try:
+        with archive.open(name) as file:
+            return file.read(most)
+    except _CANNOT_UNPACK as error:
+        raise FieldError(describe(name), "an entry that cannot be unpacked", "a plain zip archive") from error
+
+
+def _check_parts(data: bytes) -> None:
+    """Refuse JSON that would take far more memory than its bytes: it is neither decoded nor parsed before."""
+    if sum(map(data.count, (b",", b"[", b"{"))) > MAX_PARTS or data.count(b'"') > 2 * MAX_PARTS:
+        raise FieldError("", f"more than {MAX_PARTS} values", "a playground")
+    for match in _STRINGS.finditer(data):
+        begin, size = match.start(), match.end() - match.start()
+        if size <= MAX_TEXT:
+            continue
+        is_picture = data.startswith(b'"data:', begin) and match.group().isascii()
+        most = MAX_PICTURE_TEXT if is_picture else MAX_TEXT
+        if size > most:
+            line, column = data.count(b"\n", 0, begin) + 1, begin - data.rfind(b"\n", 0, begin)
+            raise FieldError(f"line {line}, column {column}", f"a text of {size} bytes", f"at most {most}")
+
+
+def _parse_json(text: str) -> object:
+    def refuse(word: str) -> NoReturn:
+        place = next(token.start() for token in _WORDS.finditer(text) if token.group() == word)
+        raise FieldError(_line_and_column(text, place), word, "finite numbers")
+
+    def unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
+        members = dict(pairs)
+        if len(members) < len(pairs):
+            raise _TwiceError
+        half = next(filter(_HALVES.search, members), None)
+        if half is not None:
+            raise FieldError("", f"half a character in the key {describe(half)}", "whole characters")
+        return members
+
+    try:
+        return json.loads(text, parse_constant=refuse, object_pairs_hook=unique)
+    except json.JSONDecodeError as error:
+        found = repr(text[error.pos : error.pos + _SHOWN]) if error.pos < len(text) else "the end of the text"
+        raise FieldError(_line_and_column(text, error.pos), found, f"JSON ({error.msg})") from error
+    except (RecursionError, ValueError) as error:
+        raise FieldError("", "numbers or nesting without measure", "a playground") from error
+    except _TwiceError as error:
+        place, key = _second(text)
+        raise FieldError(_line_and_column(text, place), f"the key {describe(key)} twice", "every key once") from error
+
+
+class _TwiceError(Exception):
+    """An object has a key twice."""
+
+
+def _second(text: str) -> tuple[int, str]:
+    """Where a key stands that its object has already, and the key; there is one."""
+    keys: list[set[str]] = []
+    for token in _PARTS.finditer(text):
+        match token.group():
+            case "{":
+                keys.append(set())
+            case "}":
+                keys.pop()
+            case word if _COLON.match(text, token.end()):
+                key = json.loads(word)
+                if key in keys[-1]:
+                    return token.start(), key
+                keys[-1].add(key)
+    raise AssertionError("there is one")
+
+
+def _line_and_column(text: str, place: int) -> str:
+    return f"line {text.count(chr(10), 0, place) + 1}, column {place - text.rfind(chr(10), 0, place)}"

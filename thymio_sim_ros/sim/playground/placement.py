@@ -1,0 +1,79 @@
+"""Whether a thing can stand somewhere: footprints, and what is in their way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from thymio_sim_ros.sim.model import robot_constants
+from thymio_sim_ros.sim.model.geometry import Point, Pose, convex_hulls_overlap, disc_overlaps_hull
+from thymio_sim_ros.sim.model.primitives import Disc, Solid
+from thymio_sim_ros.sim.model.spatial_grid import Bounds, Squares
+
+__all__ = ["Footprint", "Occupied", "PlacementError", "footprint_of", "footprint_of_robot"]
+
+_HULL = robot_constants.hull()
+
+
+class PlacementError(ValueError):
+    """A thing that cannot stand where it is wanted: its name, and the name of what is there."""
+
+    def __init__(self, thing: str, pose: Pose, blocker: str) -> None:
+        super().__init__(f"'{thing}' cannot stand at {pose.x_m:.3f}, {pose.y_m:.3f} m: '{blocker}' is in its way")
+        self.thing = thing
+        self.blocker = blocker
+
+
+@dataclass(frozen=True, slots=True)
+class Footprint:
+    """The ground that a thing covers, in the world's frame: a convex polygon, or a disc when it has no vertices."""
+
+    name: str
+    middle: Point
+    radius_m: float
+    vertices: tuple[Point, ...] = ()
+
+    @property
+    def bounds(self) -> Bounds:
+        """Left, bottom, right, top; exact for a disc."""
+        (x, y), radius = self.middle, self.radius_m
+        return x - radius, y - radius, x + radius, y + radius
+
+    def overlaps(self, other: Footprint) -> bool:
+        """Whether both share more than an edge."""
+        if math.dist(self.middle, other.middle) >= self.radius_m + other.radius_m:
+            return False
+        if not self.vertices:
+            return not other.vertices or disc_overlaps_hull(self.middle, self.radius_m, other.vertices)
+        if not other.vertices:
+            return disc_overlaps_hull(other.middle, other.radius_m, self.vertices)
+        return convex_hulls_overlap(self.vertices, other.vertices)
+
+
+def footprint_of(solid: Solid) -> Footprint:
+    """A solid's, where it is."""
+    vertices = () if isinstance(solid.outline, Disc) else solid.vertices
+    return Footprint(solid.name, (solid.pose.x_m, solid.pose.y_m), solid.outline.reach_m, vertices)
+
+
+def footprint_of_robot(name: str, pose: Pose) -> Footprint:
+    """A robot's at a pose."""
+    return Footprint(name, (pose.x_m, pose.y_m), robot_constants.HULL_RADIUS_M, pose.place_all(_HULL))
+
+
+class Occupied:
+    """Footprints by place."""
+
+    def __init__(self, footprints: Iterable[Footprint] = ()) -> None:
+        self._squares: Squares[Footprint] = Squares()
+        for footprint in footprints:
+            self.add(footprint)
+
+    def add(self, footprint: Footprint) -> None:
+        """Let something stand there from now on."""
+        self._squares.add(footprint, footprint.bounds)
+
+    def blocker(self, footprint: Footprint) -> str | None:
+        """The name of what is in the way of a footprint."""
+        return next((there.name for there in self._squares.near(footprint.bounds) if there.overlaps(footprint)), None)

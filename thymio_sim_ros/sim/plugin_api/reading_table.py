@@ -1,0 +1,97 @@
+"""What one tick's sensors have read, kept by sensor and taken apart by robot only when somebody looks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from typing import Any, overload
+
+from thymio_sim_ros.sim.model.readings import Reading
+
+__all__ = ["Columns", "Later", "rows_of"]
+
+Row = tuple[str, str, Reading]
+
+
+class Later(Sequence[Reading | None]):
+    """Readings of all robots by one sensor, made one by one when asked for. `make` keeps what it needs for ever."""
+
+    __slots__ = ("_count", "_make")
+
+    def __init__(self, count: int, make: Callable[[int], Reading | None]) -> None:
+        self._count, self._make = count, make
+
+    def __len__(self) -> int:
+        return self._count
+
+    @overload
+    def __getitem__(self, index: int) -> Reading | None: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Reading | None]: ...
+    def __getitem__(self, index: int | slice) -> Reading | Sequence[Reading | None] | None:
+        numbers = range(self._count)[index]
+        return self._make(numbers) if isinstance(numbers, int) else [self._make(number) for number in numbers]
+
+    def __iter__(self) -> Iterator[Reading | None]:
+        return map(self._make, range(self._count))
+
+
+class Columns(Sequence[Row]):
+    """Readings as (robot, sensor, reading), by robot and then by sensor; equal to a tuple of the same."""
+
+    __slots__ = ("_columns", "_robots", "_rows")
+
+    def __init__(self, robots: Sequence[str], columns: Sequence[tuple[str, Sequence[Reading | None]]]) -> None:
+        self._robots, self._columns = robots, columns
+        self._rows: tuple[Row, ...] | None = None
+
+    def __len__(self) -> int:
+        return len(self._all())
+
+    def __iter__(self) -> Iterator[Row]:
+        return iter(self._all())
+
+    @overload
+    def __getitem__(self, index: int) -> Row: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Row]: ...
+    def __getitem__(self, index: int | slice) -> Row | Sequence[Row]:
+        return self._all()[index]
+
+    def __eq__(self, other: Any) -> bool:
+        return isinstance(other, Columns | tuple) and self._all() == tuple(other)
+
+    def __hash__(self) -> int:
+        return hash(self._all())
+
+    def __repr__(self) -> str:
+        return repr(self._all())
+
+    def of(self, sensors: Collection[str]) -> Iterable[Row]:
+        """The rows of some sensors, in the same order; readings of the others are not made for that."""
+        if self._rows is not None:
+            return (row for row in self._rows if row[1] in sensors)
+        wanted = [column for column in self._columns if column[0] in sensors]
+        return Columns(self._robots, wanted) if wanted else ()
+
+    def _all(self) -> tuple[Row, ...]:
+        if self._rows is None:
+            full = [(sensor, column) for sensor, column in self._columns if isinstance(column, Later) or any(column)]
+            names = [sensor for sensor, _ in full]
+            made = zip(*(column for _, column in full), strict=True) if names else ()
+            self._rows = tuple(
+                [
+                    (robot, name, reading)
+                    for robot, readings in zip(self._robots, made, strict=False)
+                    for name, reading in zip(names, readings, strict=True)
+                    if reading is not None
+                ]
+            )
+            self._columns = ()
+        return self._rows
+
+
+def rows_of(readings: Sequence[Row], sensors: Collection[str]) -> Iterable[Row]:
+    """Those of some sensors among the readings of one tick."""
+    if isinstance(readings, Columns):
+        return readings.of(sensors)
+    return (row for row in readings if row[1] in sensors)

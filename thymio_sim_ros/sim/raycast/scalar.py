@@ -1,0 +1,124 @@
+"""Straight rays against convex things: the scalar reference that sensors use.
+
+A convex polygon is kept as half planes n·p <= c; a ray o + t d is inside from the largest entering to the
+smallest leaving t = (c - n·o) / (n·d). Faster engines may come behind `Surroundings` with equal values.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from thymio_sim_ros.sim.model.geometry import Point
+from thymio_sim_ros.sim.model.primitives import Disc, Solid
+
+__all__ = ["ConvexObstacle", "DiscObstacle", "Obstacle", "Surroundings", "obstacle_of"]
+
+
+class ConvexObstacle:
+    """A convex polygon in the world's frame."""
+
+    __slots__ = ("bounds", "height_m", "planes", "vertices")
+
+    def __init__(self, vertices: Sequence[Point], height_m: float) -> None:
+        self.height_m = height_m
+        self.vertices = vertices
+        xs, ys = [x for x, _ in vertices], [y for _, y in vertices]
+        self.bounds = (min(xs), min(ys), max(xs), max(ys))
+        planes = []
+        for index, (bx, by) in enumerate(vertices):
+            ax, ay = vertices[index - 1]
+            length = math.hypot(bx - ax, by - ay)
+            nx, ny = (by - ay) / length, (ax - bx) / length
+            planes.append((nx, ny, nx * ax + ny * ay))
+        self.planes = tuple(planes)
+
+    def is_within(self, x_m: float, y_m: float, reach_m: float) -> bool:
+        """Whether it may be nearer than `reach_m`; never wrongly false."""
+        for nx, ny, c in self.planes:  # noqa: SIM110  # the loop is twice as fast as all(...)
+            if nx * x_m + ny * y_m - c > reach_m:
+                return False
+        return True
+
+    def distance(self, x_m: float, y_m: float, dx: float, dy: float, limit_m: float) -> float:
+        """How far along a unit direction its surface is met from outside; `limit_m` when it isn't."""
+        enter, leave = -math.inf, limit_m
+        for nx, ny, c in self.planes:
+            along = nx * dx + ny * dy
+            room = c - nx * x_m - ny * y_m
+            if along < 0.0:
+                t = room / along
+                if t > enter:
+                    enter = t
+            elif along > 0.0:
+                t = room / along
+                if t < leave:
+                    leave = t
+            elif room < 0.0:
+                return limit_m
+        return enter if 0.0 <= enter <= leave else limit_m
+
+
+class DiscObstacle:
+    """A disc in the world's frame."""
+
+    __slots__ = ("bounds", "height_m", "radius_m", "x_m", "y_m")
+
+    def __init__(self, x_m: float, y_m: float, radius_m: float, height_m: float) -> None:
+        self.x_m, self.y_m, self.radius_m, self.height_m = x_m, y_m, radius_m, height_m
+        self.bounds = (x_m - radius_m, y_m - radius_m, x_m + radius_m, y_m + radius_m)
+
+    def is_within(self, x_m: float, y_m: float, reach_m: float) -> bool:
+        """Whether it is nearer than `reach_m`."""
+        return math.hypot(self.x_m - x_m, self.y_m - y_m) <= reach_m + self.radius_m
+
+    def distance(self, x_m: float, y_m: float, dx: float, dy: float, limit_m: float) -> float:
+        """How far along a unit direction its surface is met from outside; `limit_m` when it isn't."""
+        px, py = self.x_m - x_m, self.y_m - y_m
+        middle = px * dx + py * dy
+        square = self.radius_m * self.radius_m - (px * px + py * py - middle * middle)
+        if square < 0.0:
+            return limit_m
+        enter = middle - math.sqrt(square)
+        return enter if 0.0 <= enter <= limit_m else limit_m
+
+
+Obstacle = ConvexObstacle | DiscObstacle
+
+
+def obstacle_of(solid: Solid) -> Obstacle:
+    """What rays see of a solid."""
+    if isinstance(solid.outline, Disc):
+        return DiscObstacle(solid.pose.x_m, solid.pose.y_m, solid.outline.radius_m, solid.height_m)
+    return ConvexObstacle(solid.vertices, solid.height_m)
+
+
+class Surroundings:
+    """The obstacles that rays from some place may meet."""
+
+    __slots__ = ("_obstacles",)
+
+    def __init__(self, obstacles: Iterable[Obstacle]) -> None:
+        self._obstacles = tuple(obstacles)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no ray can hit anything."""
+        return not self._obstacles
+
+    def near(self, x_m: float, y_m: float, reach_m: float) -> Surroundings:
+        """Those of them that may be nearer to a point than `reach_m`."""
+        return Surroundings([obstacle for obstacle in self._obstacles if obstacle.is_within(x_m, y_m, reach_m)])
+
+    def fan(
+        self, x_m: float, y_m: float, directions: Sequence[tuple[float, float]], range_m: float
+    ) -> tuple[float, ...]:
+        """Distance along each unit direction from one point to the nearest thing, `inf` beyond the range."""
+        found = []
+        limit = range_m * (1.0 + 1e-12)
+        for dx, dy in directions:
+            nearest = limit
+            for obstacle in self._obstacles:
+                nearest = obstacle.distance(x_m, y_m, dx, dy, nearest)
+            found.append(nearest if nearest < limit else math.inf)
+        return tuple(found)

@@ -1,0 +1,22 @@
+"""An actuator at work on one robot."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from thymio_sim_ros.sim.actuators import Actuator
+from thymio_sim_ros.sim.plugin_api.view import ActuatorView
+
+__all__ = ["Task"]
+
+
+class Task:
+    """An actuator that acts on a robot in every tick in which it is busy."""
+
+    __slots__ = ("is_busy", "is_idle", "state", "update", "update_all", "view")
+
+    def __init__(self, actuator: Actuator, state: Any, view: ActuatorView) -> None:
+        assert actuator.update is not None
+        self.update, self.is_idle, self.state, self.view = actuator.update, actuator.is_idle, state, view
+        self.update_all = actuator.update_all
+        self.is_busy = self.is_idle is None or not self.is_idle(state)

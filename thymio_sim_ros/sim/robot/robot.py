@@ -1,0 +1,324 @@
+"""One robot: a body, two wheels, the state of its actuators, and a view for each plug-in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, TypeVar
+
+from thymio_sim_ros.sim.actuators import Actuator
+from thymio_sim_ros.sim.actuators.buttons import ButtonState
+from thymio_sim_ros.sim.actuators.hand import HandState
+from thymio_sim_ros.sim.actuators.leds import LedState
+from thymio_sim_ros.sim.actuators.pen import PenState
+from thymio_sim_ros.sim.actuators.room import RoomState
+from thymio_sim_ros.sim.audio.propagation import SPEAKER_SHARE, Sound, Sounding
+from thymio_sim_ros.sim.ground.sampling import NO_FLOOR, Ground, GroundSample
+from thymio_sim_ros.sim.mechanics.edge_fall import Balance
+from thymio_sim_ros.sim.mechanics.wheels import WheelArrays, Wheels
+from thymio_sim_ros.sim.model.clock import SimClock
+from thymio_sim_ros.sim.model.geometry import Point, Pose, Tilt, Twist
+from thymio_sim_ros.sim.model.noise import Noise
+from thymio_sim_ros.sim.model.primitives import Color
+from thymio_sim_ros.sim.model.readings import Reading
+from thymio_sim_ros.sim.physics import Contact, Physics, RobotBody
+from thymio_sim_ros.sim.playground.reader import RobotStart
+from thymio_sim_ros.sim.playground.scene import RobotSnapshot
+from thymio_sim_ros.sim.raycast.scalar import Surroundings
+from thymio_sim_ros.sim.robot.actuator_instance import Task
+from thymio_sim_ros.sim.sensors import Sensor
+
+__all__ = ["Robot", "Shared"]
+
+S = TypeVar("S")
+
+
+class Shared:
+    """What all robots of a world share."""
+
+    __slots__ = ("_sounds", "_sounds_ns", "busy", "clock", "ground", "physics", "proximity_model", "robots", "woken")
+
+    def __init__(
+        self, clock: SimClock, ground: Ground, physics: Physics, proximity_model: str, robots: Mapping[str, Robot]
+    ) -> None:
+        self.clock, self.ground, self.physics, self.proximity_model = clock, ground, physics, proximity_model
+        self.robots = robots
+        self.busy: dict[Robot, None] = {}
+        """Robots with something to do in the next tick beside what all do at once."""
+        self.woken: dict[Robot, None] = {}
+        """Robots with a sensor that was woken."""
+        self._sounds: list[Sound] = []
+        self._sounds_ns = -1
+
+    def forget(self, robot: Robot) -> None:
+        """A robot has left the world."""
+        self.busy.pop(robot, None)
+        self.woken.pop(robot, None)
+
+    def sounds(self) -> list[Sound]:
+        """All that sounds now; every robot is asked once per tick, however many listen."""
+        now_ns = self.clock.now_ns
+        if self._sounds_ns != now_ns:
+            self._sounds_ns = now_ns
+            self._sounds = [
+                Sound(robot.pose.x_m, robot.pose.y_m, level)
+                for robot in self.robots.values()
+                for level in robot.levels(now_ns)
+            ]
+        return self._sounds
+
+
+class _View:
+    """A robot as one plug-in sees it; satisfies `SensorView` and `ActuatorView`."""
+
+    __slots__ = ("_clock", "_robot", "_states", "_world", "memory", "noise", "proximity_model")
+
+    def __init__(self, robot: Robot, world: Shared, noise: Noise) -> None:
+        self._robot, self._world, self._states, self._clock = robot, world, robot.states, world.clock
+        self.noise = noise
+        self.memory: dict[str, Any] = {}
+        self.proximity_model = world.proximity_model
+
+    @property
+    def now_ns(self) -> int:
+        return self._clock.now_ns
+
+    @property
+    def wheels(self) -> Wheels:
+        return self._robot.wheels
+
+    @property
+    def pose(self) -> Pose:
+        return self._robot.body.pose
+
+    @property
+    def twist(self) -> Twist:
+        return self._robot.twist
+
+    @property
+    def tilt(self) -> Tilt:
+        return self._robot.tilt
+
+    @property
+    def is_falling(self) -> bool:
+        return self._robot.is_falling
+
+    @property
+    def is_fallen(self) -> bool:
+        return self._robot.is_fallen
+
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        return tuple(self._robot.body.touching.values())
+
+    @property
+    def sounds(self) -> list[Sound]:
+        return self._world.sounds()
+
+    @property
+    def others(self) -> list[Robot]:
+        return [robot for robot in self._world.robots.values() if robot is not self._robot]
+
+    def surroundings(self, reach_m: float, height_m: float) -> Surroundings:
+        return self._world.physics.surroundings(self._robot.body, reach_m, height_m)
+
+    def ground_at(self, x_m: float, y_m: float) -> GroundSample:
+        if self._robot.is_fallen:
+            return NO_FLOOR
+        return self._world.ground.sample(*self._robot.body.pose.place((x_m, y_m)))
+
+    def state(self, kind: type[S]) -> S:
+        state: S = self._states[kind]
+        return state
+
+    def draw(self, start: Point, end: Point, width_m: float, color: Color | None) -> Color | None:
+        self._world.ground.draw_segment(*start, *end, width_m, color)
+        return self._world.ground.color_at(*end)
+
+    def wake(self, kind: type[Any]) -> None:
+        self._robot.wake(kind)
+
+    def place(self, pose: Pose) -> None:
+        self._robot.place(pose)
+
+
+class Robot:
+    """One robot. Invariant: `World.step` alone makes it act, move and measure, in that order."""
+
+    def __init__(
+        self,
+        start: RobotStart,
+        shared: Shared,
+        actuators: Iterable[Actuator],
+        sensors: Iterable[Sensor],
+        *,
+        seed: int,
+        noise: bool,
+    ) -> None:
+        self.name = start.name
+        self.body: RobotBody = shared.physics.add_robot(start.name, start.pose)
+        self._wheels = Wheels()
+        self.shared_wheels: WheelArrays | None = None
+        """The wheels of all robots, when they roll as one."""
+        self._clock, self._physics = shared.clock, shared.physics
+        self.balance = Balance(shared.clock, shared.physics, self.body)
+        """Whether it stands."""
+        self.states: dict[type[Any], Any] = {}
+        """The state of every actuator, by its type."""
+        self._accepting: dict[type[Any], tuple[Actuator, Any]] = {}
+        self._shared = shared
+        self.tasks: list[Task] = []
+        """What acts in a tick, in name order."""
+        for actuator in actuators:
+            state = actuator.begin()
+            self.states[type(state)] = state
+            for kind in actuator.accepts:
+                self._accepting[kind] = (actuator, state)
+            if actuator.update is not None:
+                view = _View(self, shared, Noise(seed, self.name, actuator.name, enabled=noise))
+                self.tasks.append(Task(actuator, state, view))
+        self._list_busy()
+        self._hand, self._room = self.state(HandState), self.state(RoomState)
+        self._speakers = [state for state in self.states.values() if isinstance(state, Sounding)]
+        self.sensors = [
+            (sensor, _View(self, shared, Noise(seed, self.name, sensor.name, enabled=noise))) for sensor in sensors
+        ]
+        self._wakes: dict[type[Any], list[int]] = {}
+        for number, (sensor, _) in enumerate(self.sensors):
+            for kind in sensor.wakes_on:
+                self._wakes.setdefault(kind, []).append(number)
+        self._woken: set[int] = set()
+
+    @property
+    def wheels(self) -> Wheels:
+        """Its wheels."""
+        if self.shared_wheels is not None and not self.shared_wheels.is_told:
+            self.shared_wheels.tell()
+        return self._wheels
+
+    @property
+    def pose(self) -> Pose:
+        """Where it really is."""
+        return self.body.pose
+
+    @property
+    def twist(self) -> Twist:
+        """How its body really moves, in its own frame."""
+        return Twist(self.body.speed_m_s, self.body.spin_rad_s)
+
+    @property
+    def tilt(self) -> Tilt:
+        """How it leans: as the operator's hand holds it, or as it falls off an edge and lies there."""
+        return self.balance.tilt or self._hand.tilt
+
+    @property
+    def is_falling(self) -> bool:
+        """Whether it is in the air, on its way down from an edge."""
+        return self.balance.is_falling
+
+    @property
+    def is_fallen(self) -> bool:
+        """Whether it has fallen off an edge, falling still or not."""
+        return self.body.is_fallen
+
+    def levels(self, now_ns: int) -> list[float]:
+        """How loud is what sounds on it."""
+        levels = [SPEAKER_SHARE * speaker.sounding_level for speaker in self._speakers if speaker.sounding_level]
+        if now_ns <= self._room.clap_ends_ns:
+            levels.append(self._room.clap_level)
+        return levels
+
+    def accepts(self, command: object) -> bool:
+        """Whether an actuator takes this type of command."""
+        return type(command) in self._accepting
+
+    def apply(self, command: object) -> None:
+        """Hand a command to its actuator."""
+        actuator, state = self._accepting[type(command)]
+        actuator.apply(state, command, self._clock.now_ns)
+        self.wake(type(command))
+        for task in self.tasks:
+            if task.state is state and not task.is_busy:
+                task.is_busy = True
+                self._list_busy()
+
+    def wake(self, kind: type[Any]) -> None:
+        """Let the sensors that wait for this type of thing measure at the end of the tick."""
+        numbers = self._wakes.get(kind)
+        if numbers:
+            self._woken.update(numbers)
+            self._shared.woken[self] = None
+
+    def act(self, dt_s: float, *, is_in_crowd: bool = False) -> None:
+        """Run for one tick the actuators that are busy; in a crowd those that the crowd does not run for all."""
+        has_rested = False
+        for task in self._busy:
+            if not (is_in_crowd and task.update_all is not None):
+                task.update(task.state, task.view, dt_s)
+            if task.is_idle is not None and task.is_idle(task.state):
+                task.is_busy, has_rested = False, True
+        if has_rested:
+            self._list_busy()
+        if not is_in_crowd:
+            self.body.drive(self.wheels.ground)
+
+    def _list_busy(self) -> None:
+        """What is to be updated, in name order; and whether the crowd has to ask."""
+        self._busy = tuple(task for task in self.tasks if task.is_busy)
+        if all(task.update_all is not None for task in self._busy):
+            self._shared.busy.pop(self, None)
+        else:
+            self._shared.busy[self] = None
+
+    def roll(self, dt_s: float) -> None:
+        """Count on the wheels what the body has moved."""
+        self.wheels.roll(self.body.covered_m_s, dt_s)
+
+    def take_woken(self) -> list[int]:
+        """The numbers of the sensors that were woken to measure, in order; those that only feel do so."""
+        if not self._woken:
+            return []
+        woken, self._woken = sorted(self._woken), set()
+        self._shared.woken.pop(self, None)
+        for number in woken:
+            sensor, view = self.sensors[number]
+            if sensor.feel is not None:
+                sensor.feel(view)
+        return [number for number in woken if self.sensors[number][0].feel is None]
+
+    def sense(self, number: int) -> Reading | None:
+        """What the sensor with this number reads now."""
+        sensor, view = self.sensors[number]
+        return sensor.measure(view)
+
+    def place(self, pose: Pose) -> None:
+        """Put it somewhere, at rest; from where it has fallen too."""
+        self._physics.place(self.body, pose)
+        self.balance.regain()
+
+    def measure(self, due: Sequence[int]) -> list[tuple[str, str, Reading]]:
+        """The readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""
+        woken = self.take_woken() if self._woken else ()
+        readings = []
+        for number in sorted({*woken, *due}) if woken else due:
+            sensor, view = self.sensors[number]
+            reading = sensor.measure(view)
+            if reading is not None:
+                readings.append((self.name, sensor.name, reading))
+        return readings
+
+    def state(self, kind: type[S]) -> S:
+        """The state of the actuator whose state is a `kind`; KeyError when there is none."""
+        state: S = self.states[kind]
+        return state
+
+    def snapshot(self) -> RobotSnapshot:
+        """How it looks now."""
+        return RobotSnapshot(
+            name=self.name,
+            pose=self.body.pose,
+            tilt=self.tilt,
+            wheel_angles_rad=self.wheels.angles_rad,
+            leds=tuple(self.state(LedState).levels.items()),
+            strokes=self.state(PenState).strokes,
+            pressed=tuple(button for button, held in self.state(ButtonState).pressed.items() if held),
+        )

@@ -1,0 +1,52 @@
+"""The kernel of proximity counts for the sensors of always the same robots: its arrays, and how it is called."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from thymio_sim_ros.sim.kernel.memory import KernelMemory
+from thymio_sim_ros.sim.model import robot_constants
+from thymio_sim_ros.sim.sensors import _proximity_kernel
+
+__all__ = ["ProximityCounts"]
+
+Values = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.intp]
+Counts = npt.NDArray[np.int32]
+
+
+class ProximityCounts:
+    """So many sensors of one model whose rays have these cosines to the axis."""
+
+    def __init__(self, sensors: int, model: str, cosines: Sequence[float]) -> None:
+        rays = len(cosines)
+        memory, floats, ints = KernelMemory.holding(
+            [(rays,), (sensors, rays), (sensors,)], [(len(_proximity_kernel.COUNTS),), (sensors,), (sensors,)]
+        )
+        own_cosines, self._distances, self._noise = floats
+        self._counts, self._numbers, self._found = ints
+        self._counts[:-1] = sensors, rays, robot_constants.PROXIMITY_MODELS.index(model)
+        own_cosines[:] = cosines
+        self._memory = memory
+        self._call = memory.bind(
+            _proximity_kernel,
+            _proximity_kernel.proximity,
+            self._counts,
+            own_cosines,
+            self._numbers,
+            self._distances,
+            self._noise,
+            self._found,
+        )
+
+    def count(self, numbers: Indices, distances: Values, noise: Values) -> Counts:
+        """What all sensors count, of which those with these numbers see anything."""
+        seen = len(numbers)
+        self._counts[-1] = seen
+        self._numbers[:seen], self._distances[:seen], self._noise[:seen] = numbers, distances, noise
+        self._call()
+        found: Counts = self._found.copy()
+        return found

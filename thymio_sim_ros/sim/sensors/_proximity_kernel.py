@@ -1,0 +1,47 @@
+"""Kernel: counts of many proximity sensors. The sums of `sensors/proximity.py` on arrays, operation by operation."""
+
+from __future__ import annotations
+
+import math
+
+from thymio_sim_ros.sim.kernel.compiler import Floats, Ints
+from thymio_sim_ros.sim.model import robot_constants, units
+from thymio_sim_ros.sim.model.units import proximity_response
+
+__all__ = ["COS_CONE", "COUNTS", "KERNELS", "proximity", "proximity_response"]
+
+KERNELS = ("proximity_response", "proximity")
+
+COUNTS = ("sensors", "rays", "model", "seen")
+_SENSORS, _RAYS, _MODEL, _SEEN = range(len(COUNTS))
+"""`model` is its number among `PROXIMITY_MODELS`."""
+_DEFAULT, _CONE = map(robot_constants.PROXIMITY_MODELS.index, ("default", "cone"))
+
+_FULL = float(units.PROXIMITY_FULL)
+_RANGE_M = robot_constants.PROXIMITY_RANGE_M
+COS_CONE = math.cos(robot_constants.PROXIMITY_HALF_CONE_RAD)
+
+
+def proximity(counts: Ints, cosines: Floats, numbers: Ints, distances: Floats, noise: Floats, found: Ints) -> None:
+    """What every sensor counts: of those that see anything the `numbers`, distances of their rays and noise."""
+    for sensor in range(counts[_SENSORS]):
+        found[sensor] = 0
+    rays = counts[_RAYS]
+    for row in range(counts[_SEEN]):
+        if counts[_MODEL] == _CONE:
+            value = 0.0
+            for ray in range(rays):
+                distance = distances[row * rays + ray]
+                if distance <= _RANGE_M:
+                    value += proximity_response(distance * cosines[ray])
+            value = value / rays
+        else:
+            right = distances[3 * row]
+            centre = distances[3 * row + 1]
+            left = distances[3 * row + 2]
+            if counts[_MODEL] == _DEFAULT:
+                value = proximity_response(min(min(right * COS_CONE, centre), left * COS_CONE))
+            else:
+                value = proximity_response(right) + proximity_response(centre) + proximity_response(left)
+                value = value - 2.0 * proximity_response(centre / COS_CONE)
+        found[numbers[row]] = round(min(max(value + noise[row], 0.0), _FULL))
