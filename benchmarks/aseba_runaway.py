@@ -37,10 +37,10 @@ from std_srvs.srv import Trigger
 from websockets.sync.client import connect
 
 from benchmarks.ros_load import playground
-from thymio_sim_ros.nodes import qos
+from thymio_sim_ros.ros.interface import qos
 
 PROGRAMS = Path(__file__).resolve().parent.parent / "tests" / "data" / "runaway"
-MAIN = "import sys; from thymio_sim_ros.cli import main; sys.exit(main())"
+MAIN = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main())"
 START_S, RUN_S, ANSWER_S, END_S = 90.0, 4.0, 30.0, 30.0
 MOST_ANSWER_S, MOST_END_S = 1.0, 5.0
 STOPPED = 5

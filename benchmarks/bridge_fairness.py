@@ -488,7 +488,7 @@ def spawn(peer: Peer) -> None:
 @contextlib.contextmanager
 def suite(port: int) -> Iterator[subprocess.Popen[bytes]]:
     """A running `thymio-sim`."""
-    start = "import sys; from thymio_sim_ros.cli import main; sys.exit(main())"
+    start = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main())"
     command = [sys.executable, "-c", start, "--no-web", "--foxglove-port", str(port)]
     with open(os.environ.get("SUITE_LOG", os.devnull), "ab") as output:
         process = subprocess.Popen(command, stdout=output, stderr=output)

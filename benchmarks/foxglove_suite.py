@@ -81,7 +81,7 @@ def main() -> None:
     options = parser.parse_args()
     with socket.create_server(("127.0.0.1", 0)) as one, socket.create_server(("127.0.0.1", 0)) as two:
         ports = [str(free.getsockname()[1]) for free in (one, two)]
-    start = "import sys; from thymio_sim_ros.cli import main; sys.exit(main())"
+    start = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main())"
     command = [sys.executable, "-c", start, "--port", ports[0], "--foxglove-port", ports[1]]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ) as suite:
         try:

@@ -30,7 +30,7 @@ from websockets.sync.client import ClientConnection, connect
 from thymio_sim_ros.bridge import SUBPROTOCOLS, wire
 from thymio_sim_ros.bridge import messages as ms
 
-COMMAND = "import sys; from thymio_sim_ros.cli import main; sys.exit(main(sys.argv[1:]))"
+COMMAND = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main(sys.argv[1:]))"
 SERVICE = "/simulator/get_poses"
 NO_NAMES = b"\0\1\0\0" + bytes(4)
 START_S, ANSWER_S = 60.0, 120.0

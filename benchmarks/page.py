@@ -80,7 +80,7 @@ def suite(folder: Path, robots: int) -> Iterator[str]:
     port, foxglove_port = free_port(), free_port()
     ports = ("--port", str(port), "--foxglove-port", str(foxglove_port))
     world = ("--playground", str(playground(folder, robots)), "--program", str(program))
-    process = Process(folder, "thymio_sim_ros.cli", *ports, *world)
+    process = Process(folder, "thymio_sim_ros.cli.main", *ports, *world)
     try:
         wait_for_port(port)
         wait_for_port(foxglove_port)

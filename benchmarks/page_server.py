@@ -42,7 +42,7 @@ class Server:
     """The process under attack."""
 
     def __init__(self, port: int, log: Path) -> None:
-        code = "import sys; from thymio_sim_ros.nodes.web_node import main; sys.exit(main())"
+        code = "import sys; from thymio_sim_ros.ros.web.node import main; sys.exit(main())"
         arguments = [sys.executable, "-c", code, "--ros-args", "-p", f"port:={port}"]
         self.port, self._log = port, log
         self._process = subprocess.Popen(

@@ -30,7 +30,7 @@ from PIL import Image, ImageDraw
 
 from thymio_sim_ros import loading
 from thymio_sim_ros.device.layout import PLAYGROUND
-from thymio_sim_ros.device.program import ThymioProgram, load_program
+from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim import world as world_module
 from thymio_sim_ros.sim.model.readings import ProximityReading

@@ -26,7 +26,7 @@ from rclpy.context import Context
 from rclpy.node import Node
 
 from benchmarks.ros_load import DOMAIN, NODE, START_S, playground, process
-from thymio_sim_ros.nodes.life import make_executor
+from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor
 
 SPEEDS_M_S = (0.05, 0.1)
 CHANGED_M_S = 0.01

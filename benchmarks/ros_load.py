@@ -42,15 +42,17 @@ from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Range
 
-from thymio_sim_ros.nodes import dds_profile, qos, reference, sensor_topics, tf_messages
-from thymio_sim_ros.nodes.life import drive, make_executor
-from thymio_sim_ros.nodes.simulator_node import Simulator
+from thymio_sim_ros.ros import generate_ros_docs
+from thymio_sim_ros.ros.compat import dds_profile, tf2_messages
+from thymio_sim_ros.ros.interface import qos, sensor_topics
+from thymio_sim_ros.ros.rclpy_ext.node_runner import drive, make_executor
+from thymio_sim_ros.ros.simulator.node import Simulator
 
 DOMAIN = int(os.environ.get("ROS_DOMAIN_ID", "80"))
 GAP_M = 0.4
 SPEED_M_S, TURN_RAD_S = 0.05, 1.0
 START_S, WARM_UP_S = 120.0, 3.0
-NODE = "import sys; from thymio_sim_ros.nodes.simulator_node import main; sys.exit(main())"
+NODE = "import sys; from thymio_sim_ros.ros.simulator.node import main; sys.exit(main())"
 PROFILED = "import sys; from benchmarks.ros_load import profiled; profiled(sys.argv[1], sys.argv[2:])"
 SENDER = "import sys; from benchmarks.ros_load import send; send(*sys.argv[1:])"
 LISTENER = "import sys; from benchmarks.ros_load import listen; listen(sys.argv[1:])"
@@ -109,13 +111,13 @@ def topics(robots: int, heard: str, *, only_regular: bool = False) -> Iterator[t
     """Every topic that is listened to; or those of them on which nothing has to happen first."""
     spaces = [""] if robots == 1 else [f"/r{index}" for index in range(robots)]
     for space in spaces:
-        for sensor in reference.own_sensors():
+        for sensor in generate_ros_docs.own_sensors():
             for row in sensor_topics.rows_of(sensor):
                 if only_regular and not sensor_topics.is_regular(sensor, row):
                     continue
                 if heard == ALL or row.type is Range or row.topic in ("odom", "joint_states", "imu"):
                     yield row.type, f"{space}/{row.topic}"
-    yield tf_messages.TFMessage, "/tf"
+    yield tf2_messages.TFMessage, "/tf"
     if heard == ALL:
         yield Clock, "/clock"
 
@@ -142,7 +144,7 @@ def send(robots: str, heard: str, rate_hz: str, seconds: str) -> None:
         node = Node("sender", context=context, enable_rosout=False, start_parameter_services=False)
     ready = []
     for kind, topic in topics(int(robots), heard, only_regular=True):
-        data = tf_messages.encode([]) if kind is tf_messages.TFMessage else serialize_message(kind())
+        data = tf2_messages.encode([]) if kind is tf2_messages.TFMessage else serialize_message(kind())
         ready.append((node.create_publisher(kind, topic, qos.SENSOR), data))
     while not all(publisher.get_subscription_count() for publisher, _ in ready):
         time.sleep(0.1)

@@ -22,7 +22,7 @@ from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.commands import MotorTargets
 
-BEHAVIOURS = Path(__file__).parents[1] / "thymio_sim_ros" / "device" / "behaviours"
+BEHAVIOURS = Path(__file__).parents[1] / "thymio_sim_ros" / "device" / "firmware" / "behaviors"
 
 
 def runners() -> dict[str, Runner]:

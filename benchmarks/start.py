@@ -19,10 +19,10 @@ from nav_msgs.msg import Odometry
 from rclpy.context import Context
 from rclpy.node import Node
 
-from thymio_sim_ros.nodes.life import make_executor
+from thymio_sim_ros.ros.rclpy_ext.node_runner import make_executor
 from thymio_sim_ros.testing.ros.domain import reserved
 
-COMMAND = "import sys; from thymio_sim_ros.cli import main; sys.exit(main(['--headless']))"
+COMMAND = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main(['--headless']))"
 
 
 def one_round(domain: int) -> tuple[float, float]:

@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from thymio_sim_ros import registry
-from thymio_sim_ros.device import behaviour_host, bindings, layout
+from thymio_sim_ros.device import bindings, layout
+from thymio_sim_ros.device.firmware import behavior_host
 
 PAGE = Path(__file__).parents[1] / "docs" / "plugins.md"
 _BLOCK = re.compile(r"^\*\*`([^`]+)`\*\*\n\n```\w+\n(.*?)^```$", re.DOTALL | re.MULTILINE)
@@ -59,5 +60,5 @@ def _forget() -> None:
     """Whatever was derived from the plug-ins that there were."""
     registry.forget()
     for cached in (bindings.sensors, bindings.outputs, bindings.natives, bindings.at_reset, layout.target,
-                   layout.fitting, behaviour_host.built_in):  # fmt: skip
+                   layout.fitting, behavior_host.built_in):  # fmt: skip
         cached.cache_clear()

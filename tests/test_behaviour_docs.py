@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from tests.device.handheld import HandheldRobot
-from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.device.programs.program import load_program
 
 GUIDE = (Path(__file__).parent.parent / "docs" / "behaviours.md").read_text(encoding="utf-8")
 

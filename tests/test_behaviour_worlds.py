@@ -10,7 +10,7 @@ import pytest
 
 from tests.sim.builders import box, make
 from tests.tracks import farthest_in_laps
-from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.actuators.leds import LedState

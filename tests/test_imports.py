@@ -56,11 +56,11 @@ RULES = {
     f"{OURS}.registry": Rule(frozenset(), never=NO_WALL_CLOCK),
     f"{OURS}.runner": Rule(_names("aseba_vm", "sim", "device", "registry", "runlog"), never=NO_WALL_CLOCK - {"time"}),
     f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"foxglove_websocket", "websockets"})),
-    f"{OURS}.web": Rule(_names("web", "bridge", "gallery", "resources", "sim"), frozenset({"aiohttp"})),
+    f"{OURS}.web": Rule(_names("web", "bridge", "playground_index", "resources", "sim"), frozenset({"aiohttp"})),
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
-    f"{OURS}.nodes": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
+    f"{OURS}.ros": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.tf": Rule(
-        _names("tf", "nodes.tf_messages", "nodes.warner"),
+        _names("tf", "ros.compat.tf2_messages", "ros.rclpy_ext.throttled_log"),
         ROS | {"numpy", "tf2_geometry_msgs", "tf2_ros", "tf_transformations"},
     ),
     f"{OURS}.tf.buffer_core": Rule(_names("tf.errors"), never=NO_WALL_CLOCK),
@@ -70,11 +70,11 @@ RULES = {
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
     f"{OURS}.pytest_plugin": Rule(ALL_OF_OURS, frozenset({"pytest"})),
     f"{OURS}.cli": Rule(ALL_OF_OURS),
-    f"{OURS}.greeting": Rule(ALL_OF_OURS, frozenset({"segno"})),
+    f"{OURS}.banner": Rule(ALL_OF_OURS, frozenset({"segno"})),
     # resources, loading, suite, webbuild: helpers of the commands, without ROS
     OURS: Rule(ALL_OF_OURS),
 }
-STARTERS = {f"{OURS}.cli", f"{OURS}.testing.ros", f"{OURS}.pytest_plugin", f"{OURS}.nodes", f"{OURS}.tf"}
+STARTERS = {f"{OURS}.cli", f"{OURS}.testing.ros", f"{OURS}.pytest_plugin", f"{OURS}.ros", f"{OURS}.tf"}
 
 
 def _sources() -> dict[str, Path]:
@@ -123,9 +123,9 @@ def test_a_module_imports_only_what_its_package_may(module: str) -> None:
     assert sorted({name for name in _imports(module) if _is_refused(name, rule)}) == []
 
 
-def test_only_the_commands_and_the_fixtures_import_the_nodes() -> None:
-    nodes = f"{OURS}.nodes"
-    importers = {module for module in SOURCES if any(_below(name, nodes) for name in _imports(module))}
+def test_only_the_commands_and_the_fixtures_import_ros() -> None:
+    ros = f"{OURS}.ros"
+    importers = {module for module in SOURCES if any(_below(name, ros) for name in _imports(module))}
     assert {module for module in importers if not any(_below(module, starter) for starter in STARTERS)} == set()
 
 
@@ -135,7 +135,7 @@ def test_no_module_imports_itself_by_a_detour() -> None:
 
 
 def test_everything_without_ros_can_be_imported_where_rclpy_cannot() -> None:
-    with_ros = (f"{OURS}.nodes", f"{OURS}.testing.ros", f"{OURS}.launch", f"{OURS}.tf")
+    with_ros = (f"{OURS}.ros", f"{OURS}.testing.ros", f"{OURS}.launch", f"{OURS}.tf")
     pure = [module for module in SOURCES if not any(_below(module, name) for name in with_ros)]
     pure = [module for module in pure if not module.endswith("__main__")]
     program = (

@@ -6,7 +6,7 @@ import math
 
 from tests.sim.builders import make
 from tests.tracks import distance_to
-from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.loading import read_program
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.commands import MoveRobot, SetPen

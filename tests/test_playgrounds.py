@@ -13,7 +13,7 @@ from typing import Any, cast
 import jsonschema
 import pytest
 
-from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
 from thymio_sim_ros.sim.ground.sampling import Ground

@@ -14,7 +14,7 @@ from tests import plugin_page
 from tests.sim.builders import FLOOR, make
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.layout import target
-from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.loading import load_playground, read_program, shipped_behaviours
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim import actuators, sensors, shapes

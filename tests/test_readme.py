@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from thymio_sim_ros import cli
+from thymio_sim_ros.cli import main
 
 pytest.importorskip("rclpy")
 
@@ -63,7 +63,7 @@ def test_the_node_of_the_readme_drives_the_robot(ros, tmp_path):
 
     source, _ = code("python")
     assert len([line for line in source.splitlines() if line.strip()]) == 15
-    suite = Process(tmp_path, "thymio_sim_ros.cli", "--headless", "--playground", "obstacle", "--program", "none")
+    suite = Process(tmp_path, "thymio_sim_ros.cli.main", "--headless", "--playground", "obstacle", "--program", "none")
     wanderer = tmp_path / "wanderer.py"
     wanderer.write_text(source)
     odometry: list[Odometry] = []
@@ -92,7 +92,7 @@ def test_the_test_of_the_readme_passes(pytester, monkeypatch):
 def test_the_commands_of_the_readme_exist():
     shell = "\n".join(code("sh"))
     options = set(re.findall(r"(--[a-z-]+)", "\n".join(line for line in shell.splitlines() if "thymio-sim" in line)))
-    known = cli._suite_parser().format_help() + cli._runner_parser().format_help()
+    known = main._suite_parser().format_help() + main._runner_parser().format_help()
     assert options <= set(re.findall(r"(--[a-z-]+)", known))
     makefile = (Path(__file__).parents[1] / "Makefile").read_text()
     for target in re.findall(r"make ([a-z-]+)", README):

@@ -13,7 +13,7 @@ from aseba_vm.jit.tiering import INTERPRETER
 from tests.aseba_vm.engines import TRANSLATORS
 from tests.tracks import farthest_in_laps
 from thymio_sim_ros.device.options import DeviceOptions
-from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.loading import load_playground, read_program
 from thymio_sim_ros.runner import BUDGET, MOST_ROUNDS, Runner
 from thymio_sim_ros.sim.commands import BodyTwist, MoveRobot, WheelVelocities

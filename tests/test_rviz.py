@@ -12,7 +12,7 @@ pytest.importorskip("rclpy")
 
 import yaml
 
-from thymio_sim_ros.nodes import reference
+from thymio_sim_ros.ros import generate_ros_docs
 
 FILE = Path(__file__).parent.parent / "resource" / "rviz" / "thymio.rviz"
 # The type that a display of Jazzy subscribes to; None: it has no topic of its own.
@@ -43,7 +43,7 @@ def config() -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def published() -> dict[str, tuple[str, str]]:
-    return reference.published()
+    return generate_ros_docs.published()
 
 
 def _displays(entries: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:

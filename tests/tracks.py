@@ -5,7 +5,7 @@ from __future__ import annotations
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.model.geometry import Point
-from thymio_sim_ros.testing.line import EYES, Line
+from thymio_sim_ros.testing.line_following import EYES, Line
 
 
 def distance_to(points: list[Point], point: Point) -> float:

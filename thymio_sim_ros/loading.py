@@ -15,9 +15,9 @@ from aseba_vm import AeslError
 from aseba_vm.aesl.text_decoding import decoded
 from aseba_vm.errors import TextError
 from thymio_sim_ros import resources
-from thymio_sim_ros.device.fleet import Member, Share, share_out
 from thymio_sim_ros.device.layout import THYMIO
-from thymio_sim_ros.device.program import ThymioProgram, load_file, load_program, parse
+from thymio_sim_ros.device.programs.program import ThymioProgram, load_file, load_program, parse
+from thymio_sim_ros.device.programs.program_assignment import Member, Share, share_out
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.format_detection import MAX_BYTES, is_recognized
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError

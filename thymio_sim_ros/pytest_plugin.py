@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
-    from thymio_sim_ros.nodes.aseba_node import AsebaRuntime
+    from thymio_sim_ros.ros.aseba.node import AsebaRuntime
     from thymio_sim_ros.testing import Classroom, Thymio
     from thymio_sim_ros.testing.ros import Ros, Simulation
 
@@ -108,7 +108,7 @@ def spin_until(ros: Ros) -> Callable[..., Any]:
 @pytest.fixture
 def simulation(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., Simulation]:
     """Make a simulator node in this process, stepped by the test; keyword arguments are its parameters."""
-    from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
+    from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
     from thymio_sim_ros.testing.ros import Simulation
     from thymio_sim_ros.testing.sources import beside
 
@@ -131,7 +131,7 @@ def runtime(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., AsebaRunt
 
     Without a program it runs that of the mark `thymio`.
     """
-    from thymio_sim_ros.nodes.aseba_node import AsebaRuntime, RuntimeParams
+    from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
     from thymio_sim_ros.testing.ros import Simulation
     from thymio_sim_ros.testing.sources import beside, is_name
 

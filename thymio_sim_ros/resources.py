@@ -56,7 +56,7 @@ def playgrounds() -> dict[str, Path]:
 
 def behaviours() -> dict[str, Path]:
     """The built-in behaviours, then those of other packages, name → `.aesl` file, each in name order."""
-    return _files([_PACKAGE / "device" / "behaviours"], "behaviours", ("*.aesl",))
+    return _files([_PACKAGE / "device" / "firmware" / "behaviors"], "behaviours", ("*.aesl",))
 
 
 def _files(ours: list[Path], group: str, patterns: tuple[str, ...]) -> dict[str, Path]:

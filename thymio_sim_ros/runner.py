@@ -11,11 +11,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from thymio_sim_ros.device import bindings
-from thymio_sim_ros.device.behaviour_host import BehaviourHost
 from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
+from thymio_sim_ros.device.firmware.behavior_host import BehaviourHost
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
-from thymio_sim_ros.device.program import ThymioProgram
-from thymio_sim_ros.runlog import RunLog
+from thymio_sim_ros.device.programs.program import ThymioProgram
+from thymio_sim_ros.runlog.run_log import RunLog
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, PressButton
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS

@@ -17,9 +17,9 @@ from websockets.typing import Origin, Subprotocol
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerInfo, ServerSettings, wire
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.channels import Switchboard
 from thymio_sim_ros.bridge.server import BridgeServer
-from thymio_sim_ros.bridge.thread import listen
+from thymio_sim_ros.bridge.server_thread import listen
+from thymio_sim_ros.bridge.switchboard import Switchboard
 
 DEADLINE_S = 20.0
 

@@ -11,7 +11,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from thymio_sim_ros.bridge import SUBPROTOCOLS, wire
 from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.vocabulary import CDR
+from thymio_sim_ros.bridge.constants import CDR
 
 T = TypeVar("T")
 

@@ -6,11 +6,11 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
-from tests.bridge.test_channels import channel
+from tests.bridge.test_switchboard import channel
 from thymio_sim_ros.bridge import Capability, ServerInfo
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.channels import Switchboard
+from thymio_sim_ros.bridge.switchboard import Switchboard
 
 
 class Storm(RuleBasedStateMachine):

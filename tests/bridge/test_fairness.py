@@ -15,7 +15,7 @@ from thymio_sim_ros.bridge import ServerSettings, wire
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
 from thymio_sim_ros.bridge.bounded_json import MAX_STRUCTURE
-from thymio_sim_ros.bridge.channels import MAX_CALLS
+from thymio_sim_ros.bridge.switchboard import MAX_CALLS
 
 PING = bytes([0x89, 0x80, 0, 0, 0, 0])
 CLIENT_FRAME = ms.ServiceRequest(7, 1, "cdr", b"")

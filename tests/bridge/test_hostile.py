@@ -15,8 +15,8 @@ from tests.bridge.peers import CHANNEL, DEADLINE_S, Bridge, Client, StalledClien
 from thymio_sim_ros.bridge import ServerSettings, wire
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.client_send_queue import Outlet
 from thymio_sim_ros.bridge.client_state import ClientState
-from thymio_sim_ros.bridge.outlet import Outlet
 from thymio_sim_ros.bridge.transport import SharedConnection, SharedTransport
 
 FRAMES = 10_000

@@ -16,8 +16,8 @@ from tests.bridge.peers import CHANNEL, DEADLINE_S, Client, StalledClient, bridg
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerSettings, Tokens
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.constants import StatusLevel
 from thymio_sim_ros.bridge.server import WRONG_TOKEN
-from thymio_sim_ros.bridge.vocabulary import StatusLevel
 
 LIMIT = 1 << 16
 KILOBYTE = bytes(1024)

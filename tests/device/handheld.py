@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from thymio_sim_ros.device.behaviour_host import BehaviourHost
 from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
-from thymio_sim_ros.device.program import ThymioProgram
+from thymio_sim_ros.device.firmware.behavior_host import BehaviourHost
+from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.sim.commands import (
     BUTTONS,
     LED_GROUPS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from thymio_sim_ros.device.device import AsebaDevice, DeviceStatus
-from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.sim.commands import LED_GROUPS, EnableComm, MotorTargets, ReleaseLeds, SetLeds, ShowOnLeds
 
 BUDGET = 5000

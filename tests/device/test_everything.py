@@ -16,7 +16,7 @@ from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DeviceOptions
-from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.sim.audio.synthesis import BLOCK_NS, TRIANGLE
 from thymio_sim_ros.sim.commands import (
     LEDS_GIVEN_BACK,

@@ -11,7 +11,7 @@ from aseba_vm import TargetDescription
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import LAYOUTS, PLAYGROUND, THYMIO, target
 from thymio_sim_ros.device.options import DeviceOptions
-from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.device.programs.program import load_program
 
 DATA = Path(__file__).parents[1] / "data"
 REFERENCES = {THYMIO: "thymio2", PLAYGROUND: "thymio2_playground"}

@@ -13,10 +13,10 @@ from aseba_vm.machine.natives import NATIVES
 from tests.sim.builders import make
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
-from thymio_sim_ros.device.load import Meter
 from thymio_sim_ros.device.natives import native_functions
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
-from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.device.programs.load import Meter
+from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.sim.audio.synthesis import BLOCK_NS
 from thymio_sim_ros.sim.commands import Command, MotorTargets, PlaySamples, PlaySystemSound, SetVolume, StopSound
 from thymio_sim_ros.sim.world import World

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from aseba_vm import VirtualMachine
+from thymio_sim_ros.device.firmware.indicators import OwnRules
+from thymio_sim_ros.device.firmware.settings import Settings
 from thymio_sim_ros.device.layout import THYMIO, target
 from thymio_sim_ros.device.outputs import LIT_NS, Outputs
-from thymio_sim_ros.device.own_rules import OwnRules
-from thymio_sim_ros.device.settings import Settings
 from thymio_sim_ros.sim.commands import MotorTargets, PlaySystemSound, PlayTone, SetLed, SetLeds, SetVolume, ShowOnLeds
 
 RED, GREEN = SetLeds("top", (32, 0, 0)), SetLeds("top", (0, 32, 0))

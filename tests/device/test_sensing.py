@@ -9,7 +9,7 @@ from unittest.mock import ANY
 import pytest
 
 from thymio_sim_ros.device.layout import target
-from thymio_sim_ros.device.program import load_program
+from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.actuators.leds import LedState

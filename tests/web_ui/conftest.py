@@ -51,7 +51,7 @@ class Suites:
     def __call__(self, *arguments: str, ports: tuple[int, int] | None = None) -> str:
         port, foxglove_port = ports or (free_port(), free_port())
         command = ["--port", str(port), "--foxglove-port", str(foxglove_port), *arguments]
-        self._running.append(Process(self._folder, "thymio_sim_ros.cli", *command))
+        self._running.append(Process(self._folder, "thymio_sim_ros.cli.main", *command))
         return f"http://127.0.0.1:{port}/"
 
     def end(self) -> None:

@@ -55,7 +55,7 @@ for (const folder of ["language", "events", "natives", "faults", "warnings"]) {
 }
 
 for (const [name, text] of [
-  ...files("thymio_sim_ros/device/behaviours/", ".aesl"),
+  ...files("thymio_sim_ros/device/firmware/behaviors/", ".aesl"),
   ...files("tests/data/programs/events/", ".aesl"),
 ]) {
   test(`${name} is parsed without an error`, () => {

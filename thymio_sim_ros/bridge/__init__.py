@@ -14,11 +14,11 @@ Why our own server on `websockets` and not one of the vendor's packages: docs/sp
 from __future__ import annotations
 
 from thymio_sim_ros.bridge.access import Role, Tokens
+from thymio_sim_ros.bridge.constants import SUBPROTOCOLS, Capability
 from thymio_sim_ros.bridge.errors import BridgeError, FrameError
 from thymio_sim_ros.bridge.messages import ServerInfo
 from thymio_sim_ros.bridge.server import EventSink, ServerSettings
-from thymio_sim_ros.bridge.thread import ServerThread
-from thymio_sim_ros.bridge.vocabulary import SUBPROTOCOLS, Capability
+from thymio_sim_ros.bridge.server_thread import ServerThread
 
 __all__ = [
     "SUBPROTOCOLS",

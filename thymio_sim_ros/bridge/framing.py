@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 
-from thymio_sim_ros.bridge.vocabulary import BinaryOpcode
+from thymio_sim_ros.bridge.constants import BinaryOpcode
 from thymio_sim_ros.bridge.wire import DATA_HEAD_SIZE, data_head
 
 __all__ = ["binary_head", "data_frame", "framed"]

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from thymio_sim_ros.bridge.vocabulary import StatusLevel
+from thymio_sim_ros.bridge.constants import StatusLevel
 
 # --- parts ---------------------------------------------------------------------------------------------------------
 

@@ -28,16 +28,16 @@ from websockets.http11 import Request, Response
 from websockets.typing import Subprotocol
 
 from thymio_sim_ros.bridge.access import Attempts, Tokens, given_token
-from thymio_sim_ros.bridge.channels import Letter, Routes, Switchboard
+from thymio_sim_ros.bridge.client_send_queue import Outlet, Way
+from thymio_sim_ros.bridge.constants import SUBPROTOCOLS, StatusLevel
 from thymio_sim_ros.bridge.errors import FrameError
 from thymio_sim_ros.bridge.events import Command, Data, Event, RemoveChannels
+from thymio_sim_ros.bridge.fair_lock import Turn
 from thymio_sim_ros.bridge.framing import framed
 from thymio_sim_ros.bridge.messages import ServerMessage, Status, Time, Unsubscribe
-from thymio_sim_ros.bridge.origins import is_allowed
-from thymio_sim_ros.bridge.outlet import Outlet, Way
+from thymio_sim_ros.bridge.origin_policy import is_allowed
+from thymio_sim_ros.bridge.switchboard import Letter, Routes, Switchboard
 from thymio_sim_ros.bridge.transport import SLICE_S, SharedConnection
-from thymio_sim_ros.bridge.turn import Turn
-from thymio_sim_ros.bridge.vocabulary import SUBPROTOCOLS, StatusLevel
 from thymio_sim_ros.bridge.wire import decode_client, encode_server
 
 __all__ = ["WRONG_TOKEN", "BridgeServer", "EventSink", "ServerSettings"]

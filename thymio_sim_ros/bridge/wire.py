@@ -12,8 +12,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from thymio_sim_ros.bridge import bounded_json
+from thymio_sim_ros.bridge.constants import ASSET_OPCODE, BinaryOpcode, ClientBinaryOpcode
 from thymio_sim_ros.bridge.errors import FrameError
-from thymio_sim_ros.bridge.json_form import describe, reader, writer
+from thymio_sim_ros.bridge.json_codec import describe, reader, writer
 from thymio_sim_ros.bridge.messages import (
     CLIENT_JSON,
     SERVER_JSON,
@@ -26,7 +27,6 @@ from thymio_sim_ros.bridge.messages import (
     ServiceResponse,
     Time,
 )
-from thymio_sim_ros.bridge.vocabulary import ASSET_OPCODE, BinaryOpcode, ClientBinaryOpcode
 
 __all__ = ["DATA_HEAD_SIZE", "data_head", "decode_client", "decode_server", "encode_client", "encode_server"]
 

@@ -15,21 +15,21 @@ from aseba_vm import VirtualMachine
 from aseba_vm.machine.costs import NO_COSTS
 from aseba_vm.machine.machine_messages import BadCode, DivisionByZero, Emitted, NodeSpecific, OutOfBounds
 from aseba_vm.messages import LANGUAGES
-from thymio_sim_ros.device.body import RESTART, Body
-from thymio_sim_ros.device.breakpoints import Breakpoints, LineDebugger
-from thymio_sim_ros.device.card import Card
 from thymio_sim_ros.device.costs import COSTS
 from thymio_sim_ros.device.events import POLICIES, EventQueue, GlobalEvent
+from thymio_sim_ros.device.firmware.indicators import PERIOD_NS, OwnRules
+from thymio_sim_ros.device.firmware.sd_card import Card
+from thymio_sim_ros.device.firmware.services import RESTART, Body
+from thymio_sim_ros.device.firmware.settings import Settings
 from thymio_sim_ros.device.inputs import Inputs
 from thymio_sim_ros.device.layout import LAYOUTS, target
-from thymio_sim_ros.device.load import Load, Meter
 from thymio_sim_ros.device.natives import native_functions
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.outputs import Outputs
-from thymio_sim_ros.device.own_rules import PERIOD_NS, OwnRules
-from thymio_sim_ros.device.program import ThymioProgram, load_program
-from thymio_sim_ros.device.settings import Settings
-from thymio_sim_ros.device.status import FAULT, INIT, OFF, PAUSED, RUNNING, STOPPED, DeviceStatus
+from thymio_sim_ros.device.programs.breakpoints import Breakpoints, LineDebugger
+from thymio_sim_ros.device.programs.load import Load, Meter
+from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
+from thymio_sim_ros.device.programs.status import FAULT, INIT, OFF, PAUSED, RUNNING, STOPPED, DeviceStatus
 from thymio_sim_ros.sim.audio.synthesis import SHUT_DOWN
 from thymio_sim_ros.sim.commands import Command, PlaySystemSound
 

@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from thymio_sim_ros.device.timers import Timers
+from thymio_sim_ros.device.firmware.timers import Timers
 
 __all__ = ["FIRMWARE", "MOST_WAITING", "POLICIES", "EventQueue", "GlobalEvent", "Policy"]
 

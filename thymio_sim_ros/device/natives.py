@@ -11,9 +11,9 @@ from collections.abc import Callable, Mapping, Sequence
 from aseba_vm import Native, NativeCall
 from aseba_vm.machine.native_call import NativeFault
 from thymio_sim_ros.device import bindings
-from thymio_sim_ros.device.body import RESTART, SWITCH_OFF, Body
 from thymio_sim_ros.device.costs import BYTES_PER_INSTRUCTION
-from thymio_sim_ros.device.load import Meter
+from thymio_sim_ros.device.firmware.services import RESTART, SWITCH_OFF, Body
+from thymio_sim_ros.device.programs.load import Meter
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.plugin_api import aseba_binding
 

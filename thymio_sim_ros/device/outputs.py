@@ -7,9 +7,9 @@ from types import MappingProxyType
 
 from aseba_vm import VirtualMachine
 from thymio_sim_ros.device import bindings
+from thymio_sim_ros.device.firmware.indicators import OwnRules
+from thymio_sim_ros.device.firmware.settings import Settings
 from thymio_sim_ros.device.layout import target
-from thymio_sim_ros.device.own_rules import OwnRules
-from thymio_sim_ros.device.settings import Settings
 from thymio_sim_ros.sim.commands import (
     LED_GROUPS,
     LEDS_GIVEN_BACK,

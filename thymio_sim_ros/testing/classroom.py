@@ -11,16 +11,16 @@ from typing import Any
 import pytest
 
 from thymio_sim_ros.device.device import AsebaDevice
-from thymio_sim_ros.device.program import ThymioProgram, load_program
+from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.world import World
+from thymio_sim_ros.testing.failure_messages import told
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.report import robot_lines
 from thymio_sim_ros.testing.sources import playground_of, program_of
 from thymio_sim_ros.testing.thymio import Machine, Thymio
-from thymio_sim_ros.testing.waiting import told
 
 __all__ = ["Classroom"]
 

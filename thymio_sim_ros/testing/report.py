@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from thymio_sim_ros.device.status import FAULT
+from thymio_sim_ros.device.programs.status import FAULT
+from thymio_sim_ros.testing.failure_messages import counted
 from thymio_sim_ros.testing.thymio import Thymio
-from thymio_sim_ros.testing.waiting import counted
 
 __all__ = ["robot_lines"]
 

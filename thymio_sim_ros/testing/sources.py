@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from thymio_sim_ros import loading
-from thymio_sim_ros.device.program import ThymioProgram, load_program
+from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.sim.playground.reader import Playground
 
 __all__ = ["beside", "is_name", "playground_of", "program_of"]

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from thymio_sim_ros.device.device import AsebaDevice
-from thymio_sim_ros.device.program import ThymioProgram
-from thymio_sim_ros.device.status import DeviceStatus
+from thymio_sim_ros.device.programs.program import ThymioProgram
+from thymio_sim_ros.device.programs.status import DeviceStatus
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.actuators.pen import PenState
 from thymio_sim_ros.sim.commands import (

@@ -17,8 +17,8 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
 from rclpy.time import Time
 
-from thymio_sim_ros.nodes import tf_messages
-from thymio_sim_ros.nodes.warner import Warner
+from thymio_sim_ros.ros.compat import tf2_messages
+from thymio_sim_ros.ros.rclpy_ext.throttled_log import Warner
 from thymio_sim_ros.tf.buffer_core import CACHE_NS, BufferCore, Motion, Placed
 from thymio_sim_ros.tf.errors import TransformException, TypeException
 from thymio_sim_ros.tf.geometry import TRANSFORMERS, motion_of
@@ -268,7 +268,7 @@ class TransformListener:
                 start_parameter_services=False,
             )
         host, group = self._own or node, ReentrantCallbackGroup()
-        kind = tf_messages.TFMessage
+        kind = tf2_messages.TFMessage
         self.tf_sub = host.create_subscription(
             kind, tf_topic, self.callback, qos or DYNAMIC, callback_group=group, raw=True
         )
@@ -314,10 +314,10 @@ class TransformListener:
         try:
             found = [
                 Placed(one.stamp_ns, one.frame, one.child, Motion(one.translation, one.rotation))
-                for one in tf_messages.decode(data)
+                for one in tf2_messages.decode(data)
             ]
             self.buffer._keep(found, "default_authority", is_static=is_static)
-        except (tf_messages.TransformDataError, TransformException) as error:
+        except (tf2_messages.TransformDataError, TransformException) as error:
             self._warn("tf:", f"{error}; does the node use the simulator's time (use_sim_time:=true)?")
 
     def _on_jump(self, jump: TimeJump) -> None:
@@ -332,7 +332,7 @@ class TransformBroadcaster:
     """Sends transforms on `/tf`."""
 
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
-        self.pub_tf = node.create_publisher(tf_messages.TFMessage, "/tf", qos or DYNAMIC)
+        self.pub_tf = node.create_publisher(tf2_messages.TFMessage, "/tf", qos or DYNAMIC)
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802  # as tf2's
         """One transform, or several at once."""
@@ -343,7 +343,7 @@ class StaticTransformBroadcaster:
     """Sends transforms that hold always on `/tf_static`; who comes later hears all of them."""
 
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
-        self.pub_tf = node.create_publisher(tf_messages.TFMessage, "/tf_static", qos or LATCHED)
+        self.pub_tf = node.create_publisher(tf2_messages.TFMessage, "/tf_static", qos or LATCHED)
         self._sent: dict[str, TransformStamped] = {}
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802  # as tf2's
@@ -358,8 +358,8 @@ def _several(transform: TransformStamped | Iterable[TransformStamped]) -> list[T
 
 def _encoded(transforms: Iterable[TransformStamped]) -> bytes:
     placed = map(_placed, transforms)
-    return tf_messages.encode([
-        tf_messages.Transform(one.stamp_ns, one.frame, one.child, one.motion.translation, one.motion.rotation)
+    return tf2_messages.encode([
+        tf2_messages.Transform(one.stamp_ns, one.frame, one.child, one.motion.translation, one.motion.rotation)
         for one in placed
     ])  # fmt: skip
 

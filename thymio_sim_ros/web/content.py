@@ -12,7 +12,7 @@ import urllib.parse
 from dataclasses import dataclass
 from pathlib import Path
 
-from thymio_sim_ros.gallery import Gallery
+from thymio_sim_ros.playground_index import Gallery
 
 __all__ = ["TYPES", "Content", "Document"]
 

@@ -9,7 +9,7 @@ import time
 import traceback
 from collections.abc import Callable
 
-from thymio_sim_ros.bridge.thread import listen
+from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.web.content import Content
 from thymio_sim_ros.web.settings import Settings
 

@@ -16,7 +16,7 @@ from sensor_msgs.msg import Range
 from std_msgs.msg import Bool, String
 from std_srvs.srv import Trigger
 
-from thymio_sim_ros.nodes.simulator_node import Simulator, SimulatorParams
+from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
 from thymio_sim_ros.testing.ros import Ros, Simulation
 from thymio_sim_ros.testing.ros.domain import reserved
 

@@ -8,7 +8,7 @@ import os
 import socket
 from collections.abc import Iterator
 
-from thymio_sim_ros.nodes.leftovers import remove_half_made_ports
+from thymio_sim_ros.ros.compat.shm_cleanup import remove_half_made_ports
 
 __all__ = ["NoDomainError", "reserved"]
 

@@ -19,13 +19,13 @@ from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_default_context, try_shutdown
 
-from thymio_sim_ros.nodes import log_directory
-from thymio_sim_ros.nodes.life import deliver, make_executor
-from thymio_sim_ros.testing.ros import matching, student
+from thymio_sim_ros.ros.rclpy_ext import log_directory
+from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor
+from thymio_sim_ros.testing.failure_messages import told
+from thymio_sim_ros.testing.ros import discovery, student
+from thymio_sim_ros.testing.ros.executor_turns import Turns
 from thymio_sim_ros.testing.ros.recorder import Recorder
-from thymio_sim_ros.testing.ros.turns import Turns
 from thymio_sim_ros.testing.sources import beside
-from thymio_sim_ros.testing.waiting import told
 
 __all__ = ["DEADLINE_S", "Ros"]
 
@@ -210,7 +210,7 @@ class Ros:
         """
         __tracebackhide__ = True
         nodes = [*self._nodes, *(life.node for life in self._lives)]
-        self.until(lambda: matching.is_settled(nodes), what="all publishers and subscriptions found each other")
+        self.until(lambda: discovery.is_settled(nodes), what="all publishers and subscriptions found each other")
         for _ in range(NOTICE):
             self.deliver()
 
@@ -235,10 +235,10 @@ class Ros:
         recorder = Recorder(kind, name, self.until, self.now, where)
         if qos is None:
             self.until(lambda: self.node.count_publishers(name), what=f"a publisher of {name}")
-            qos = matching.as_published(self.node, name, DEPTH, latched=latched)
+            qos = discovery.as_published(self.node, name, DEPTH, latched=latched)
         subscription = self.node.create_subscription(kind, name, recorder.take, qos)
         self._recorders.append(recorder)
-        self.until(lambda: matching.has_met(self.node, subscription), what=f"the publishers of {name}")
+        self.until(lambda: discovery.has_met(self.node, subscription), what=f"the publishers of {name}")
         self.settle()
         return recorder
 
@@ -273,7 +273,7 @@ class Ros:
             lines += self.simulation.lines()
         lines += [repr(recorder) for recorder in self._recorders]
         ours = [TEST_NODE, *(life.node.get_name() for life in self._lives)]
-        pytest.fail("\n".join([*lines, *matching.topic_lines(self.node, ours)]))
+        pytest.fail("\n".join([*lines, *discovery.topic_lines(self.node, ours)]))
 
     def close(self) -> None:
         """End lives, nodes, executor and context; nothing of them is left."""

@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Callable, Sequence
 from typing import Any, overload
 
-from thymio_sim_ros.testing.waiting import counted
+from thymio_sim_ros.testing.failure_messages import counted
 
 __all__ = ["Recorder"]
 

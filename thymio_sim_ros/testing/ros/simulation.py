@@ -9,20 +9,20 @@ from typing import Any
 
 from std_msgs.msg import Int16MultiArray, MultiArrayDimension, MultiArrayLayout
 
-from thymio_sim_ros.device.program import ThymioProgram
-from thymio_sim_ros.nodes import qos
-from thymio_sim_ros.nodes.aseba_node import AsebaRuntime
-from thymio_sim_ros.nodes.device_ports import DevicePorts
-from thymio_sim_ros.nodes.names import full_name
-from thymio_sim_ros.nodes.simulator_node import Simulator
+from thymio_sim_ros.device.programs.program import ThymioProgram
+from thymio_sim_ros.ros.aseba.device_endpoints import DevicePorts
+from thymio_sim_ros.ros.aseba.node import AsebaRuntime
+from thymio_sim_ros.ros.interface import qos
+from thymio_sim_ros.ros.interface.names import full_name
+from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.world import World
+from thymio_sim_ros.testing.failure_messages import told
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.report import robot_lines
 from thymio_sim_ros.testing.ros.graph import Ros
 from thymio_sim_ros.testing.sources import program_of
 from thymio_sim_ros.testing.thymio import Thymio
-from thymio_sim_ros.testing.waiting import told
 
 __all__ = ["Simulation"]
 

@@ -1,0 +1,70 @@
+"""Turns of several threads."""
+
+from __future__ import annotations
+
+import threading
+
+from thymio_sim_ros.bridge.fair_lock import Turn
+
+DEADLINE_S = 20.0
+
+
+def test_one_at_a_time_has_the_turn() -> None:
+    turn = Turn()
+    count, rounds = 0, 2000
+
+    def add() -> None:
+        nonlocal count
+        for number in range(rounds):
+            if number % 2:
+                with turn:
+                    seen = count
+                    count = seen + 1
+            else:
+                turn.take()
+                seen = count
+                count = seen + 1
+                turn.give_back()
+
+    threads = [threading.Thread(target=add) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(DEADLINE_S)
+    assert count == len(threads) * rounds
+
+
+def test_who_waits_has_the_turn_before_one_who_comes_back_at_once() -> None:
+    turn = Turn()
+    has_had_it, is_enough = threading.Event(), threading.Event()
+
+    def take_it_again_and_again() -> None:
+        while not is_enough.is_set():
+            with turn:
+                pass
+
+    restless = threading.Thread(target=take_it_again_and_again)
+    restless.start()
+
+    def take_it_once() -> None:
+        for _ in range(50):
+            with turn:
+                pass
+        has_had_it.set()
+
+    patient = threading.Thread(target=take_it_once)
+    patient.start()
+    came = has_had_it.wait(DEADLINE_S)
+    is_enough.set()
+    patient.join()
+    restless.join()
+    assert came
+
+
+def test_an_error_ends_a_turn() -> None:
+    turn = Turn()
+    try:
+        with turn:
+            raise ValueError
+    except ValueError:
+        turn.take()

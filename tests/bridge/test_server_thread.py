@@ -1,0 +1,298 @@
+"""The server in a thread of its own."""
+
+from __future__ import annotations
+
+import errno
+import socket
+import ssl
+import subprocess
+import sys
+import threading
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
+
+from tests.bridge.certificates import make_certificate, trusting
+from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerInfo, ServerSettings, ServerThread, wire
+from thymio_sim_ros.bridge import events as ev
+from thymio_sim_ros.bridge import messages as ms
+from thymio_sim_ros.bridge.constants import StatusLevel
+from thymio_sim_ros.bridge.server_thread import listen
+
+CHANNEL = ms.Channel(1, "/t", "cdr", "std_msgs/msg/String", "string data", "ros2msg")
+DEADLINE_S = 20.0
+
+
+class Sink:
+    """Tells when somebody subscribes."""
+
+    def __init__(self) -> None:
+        self.subscribed = threading.Event()
+
+    def is_full(self, client: int) -> bool:
+        """Never."""
+        return False
+
+    def post(self, event: ev.Event) -> None:
+        """Take an event."""
+        if isinstance(event, ev.ChannelWanted):
+            self.subscribed.set()
+
+
+HAS_IPV6 = socket.has_ipv6 and Path("/proc/net/if_inet6").exists()
+
+
+def start(port: int = 0) -> tuple[ServerThread, Sink]:
+    sink = Sink()
+    return ServerThread(ServerInfo("test", ()), sink, port=port), sink
+
+
+def test_the_port_is_bound_when_the_constructor_returns_and_free_after_close() -> None:
+    server, _ = start()
+    with pytest.raises(OSError, match=rf"cannot listen on 127\.0\.0\.1:{server.port}: address already in use"):
+        start(server.port)
+    server.close()
+    again, _ = start(server.port)
+    again.close()
+
+
+@pytest.mark.skipif(not HAS_IPV6, reason="no IPv6 here")
+def test_localhost_is_both_loopbacks_on_one_port() -> None:
+    listeners = listen("localhost", 0)
+    port = listeners[0].getsockname()[1]
+    assert [listener.getsockname()[:2] for listener in listeners] == [("127.0.0.1", port), ("::1", port)]
+    for listener in listeners:
+        listener.close()
+
+
+@pytest.mark.skipif(not HAS_IPV6, reason="no IPv6 here")
+def test_a_port_taken_on_one_loopback_is_refused_and_the_other_given_back() -> None:
+    with socket.create_server(("::1", 0), family=socket.AF_INET6) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(OSError, match=rf"cannot listen on \[::1\]:{port}: address already in use"):
+            listen("localhost", port)
+    for listener in listen("localhost", port):
+        listener.close()
+
+
+def test_without_ipv6_the_other_loopback_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Socket(socket.socket):
+        def bind(self, address: Any) -> None:
+            if self.family == socket.AF_INET6:
+                raise OSError(errno.EADDRNOTAVAIL, "cannot assign")
+            super().bind(address)
+
+    monkeypatch.setattr(socket, "socket", Socket)
+    (listener,) = listen("localhost", 0)
+    listener.close()
+
+
+@pytest.mark.skipif(not HAS_IPV6, reason="no IPv6 here")
+def test_a_client_may_come_by_ipv6() -> None:
+    server, _ = start()
+    with connect(f"ws://[::1]:{server.port}", subprotocols=SUBPROTOCOLS) as client:
+        assert isinstance(wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.ServerInfo)
+        assert server.client_count == 1
+    server.close()
+
+
+def test_an_address_that_is_not_ours_is_refused_by_name() -> None:
+    with pytest.raises(OSError, match=r"cannot listen on 192\.0\.2\.1:8765"):
+        listen("192.0.2.1", 8765)
+
+
+def test_answers_are_not_held_back_by_nagles_algorithm() -> None:
+    (listener,) = listen("127.0.0.1", 0)
+    with listener:
+        assert listener.proto == socket.IPPROTO_TCP  # what asyncio asks for before it sets TCP_NODELAY
+
+
+def test_commands_of_another_thread_arrive_in_order() -> None:
+    server, sink = start()
+    server.post(ev.AddChannels((CHANNEL,)))
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
+        client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+        assert sink.subscribed.wait(DEADLINE_S)
+        for number in range(100):
+            server.publish(1, number, b"x")
+        times: list[int] = []
+        while len(times) < 100:
+            message = wire.decode_server(client.recv(timeout=DEADLINE_S))
+            if isinstance(message, ms.MessageData):
+                times.append(message.time_ns)
+        assert times == list(range(100))
+    server.close()
+
+
+def test_data_and_other_commands_do_not_overtake_each_other() -> None:
+    server, sink = start()
+    server.post(ev.AddChannels((CHANNEL,)))
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
+        client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+        assert sink.subscribed.wait(DEADLINE_S)
+        for number in range(200):
+            for _ in range(number % 3):
+                server.post(ev.Tell(1, ms.Status(StatusLevel.INFO, str(number))))
+            server.publish(1, number, b"x")
+        told: list[str] = []
+        while told.count("data 199") < 1:
+            message = wire.decode_server(client.recv(timeout=DEADLINE_S))
+            if isinstance(message, ms.MessageData):
+                told.append(f"data {message.time_ns}")
+            elif isinstance(message, ms.Status):
+                told.append(message.message)
+        assert told == [word for n in range(200) for word in [str(n)] * (n % 3) + [f"data {n}"]]
+    server.close()
+
+
+def test_commands_do_not_wait_for_a_busy_event_loop() -> None:
+    class Busy(Sink):
+        def __init__(self) -> None:
+            super().__init__()
+            self.may_go_on = threading.Event()
+
+        def post(self, event: ev.Event) -> None:
+            super().post(event)
+            assert self.may_go_on.wait(DEADLINE_S)
+
+    sink = Busy()
+    server = ServerThread(ServerInfo("test", ()), sink, port=0)
+    server.post(ev.AddChannels((CHANNEL,)))
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
+        client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+        assert sink.subscribed.wait(DEADLINE_S)
+        server.publish(1, 7, b"x")
+        server.post(ev.Tell(1, ms.Status(StatusLevel.INFO, "told")))
+        while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
+            pass
+        assert message.time_ns == 7
+        assert wire.decode_server(client.recv(timeout=DEADLINE_S)) == ms.Status(StatusLevel.INFO, "told")
+        sink.may_go_on.set()
+    server.close()
+
+
+def test_data_of_another_thread_arrives_by_tls_too(tmp_path: Path) -> None:
+    cert, key = make_certificate(tmp_path)
+    tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    tls.load_cert_chain(cert, key)
+    sink = Sink()
+    server = ServerThread(ServerInfo("test", ()), sink, port=0, settings=ServerSettings(tls=tls))
+    server.post(ev.AddChannels((CHANNEL,)))
+    with connect(f"wss://localhost:{server.port}", subprotocols=SUBPROTOCOLS, ssl=trusting(cert)) as client:
+        client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+        assert sink.subscribed.wait(DEADLINE_S)
+        for number in range(100):
+            server.publish(1, number, number.to_bytes(4, "little") * 500)
+        numbers: list[int] = []
+        while len(numbers) < 100:
+            message = wire.decode_server(client.recv(timeout=DEADLINE_S))
+            if isinstance(message, ms.MessageData):
+                assert message.payload == message.time_ns.to_bytes(4, "little") * 500
+                numbers.append(message.time_ns)
+        assert numbers == list(range(100))
+        server.close()
+        with pytest.raises(ConnectionClosed, match="1001"):
+            client.recv(timeout=DEADLINE_S)
+
+
+def test_a_command_that_cannot_be_told_harms_neither_its_sender_nor_later_ones(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    server, sink = start()
+    server.post(ev.AddChannels((CHANNEL,)))
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
+        client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+        assert sink.subscribed.wait(DEADLINE_S)
+        server.post(ev.Tell(1, ms.ParameterValues((ms.Parameter("/n.p", float("nan")),))))
+        server.publish(1, 7, b"x")
+        while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
+            pass
+        assert message.time_ns == 7
+    server.close()
+    assert caplog.messages == ["Tell failed"]
+
+
+def test_a_thread_that_sends_without_a_pause_keeps_nobody_away() -> None:
+    server, _ = start()
+    server.post(ev.AddChannels((CHANNEL,)))
+    is_enough = threading.Event()
+
+    def send() -> None:
+        while not is_enough.is_set():
+            server.publish(1, 0, bytes(100))
+
+    sender = threading.Thread(target=send)
+    sender.start()
+    try:
+        with ExitStack() as clients:
+            for _ in range(2):
+                client = clients.enter_context(
+                    connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS, close_timeout=0)
+                )
+                client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+                while not isinstance(wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
+                    pass
+    finally:
+        is_enough.set()
+        sender.join()
+        server.close()
+
+
+COUNTING = """
+import sys
+from websockets.sync.client import connect
+from thymio_sim_ros.bridge import SUBPROTOCOLS, wire
+from thymio_sim_ros.bridge import messages as ms
+
+with connect(f"ws://127.0.0.1:{sys.argv[1]}", subprotocols=SUBPROTOCOLS, close_timeout=0) as client:
+    client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
+    count = 0
+    while count < int(sys.argv[2]):
+        frame = client.recv()
+        count += isinstance(frame, bytes)
+    print("done")
+"""
+
+
+def test_a_client_that_reads_on_gets_a_fair_part_of_what_comes_too_fast() -> None:
+    count, most_per_arrival = 10_000, 100
+    server, sink = start()
+    server.post(ev.AddChannels((CHANNEL,)))
+    command = [sys.executable, "-c", COUNTING, str(server.port), str(count)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as client:
+        assert client.stdout is not None
+        watch = threading.Thread(target=client.wait)
+        watch.start()
+        number = 0
+        while watch.is_alive() and number < count * most_per_arrival:
+            number += sink.subscribed.is_set()
+            server.publish(1, number, bytes(1000))
+        client.kill()
+        watch.join()
+        arrived = client.stdout.read()
+    server.close()
+    assert arrived, f"fewer than {count} of {number} messages arrived"
+
+
+def test_closing_ends_the_thread_and_says_goodbye_to_clients() -> None:
+    before = set(threading.enumerate())
+    server, _ = start()
+    started = set(threading.enumerate()) - before
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
+        client.recv(timeout=DEADLINE_S)
+        server.close()
+        with pytest.raises(ConnectionClosed, match="1001"):
+            client.recv(timeout=DEADLINE_S)
+    assert started
+    assert not any(thread.is_alive() for thread in started)
+
+
+def test_closing_twice_and_posting_afterwards_do_nothing() -> None:
+    server, _ = start()
+    server.close()
+    server.close()
+    server.post(ev.AddChannels((CHANNEL,)))

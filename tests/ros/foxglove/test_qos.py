@@ -1,0 +1,83 @@
+"""QoS from what the graph tells, and which names are shown."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+
+from thymio_sim_ros.ros.foxglove.graph import allow_list, is_parameter_service, visible, visible_topics
+from thymio_sim_ros.ros.foxglove.qos import Reception, publishing, reception
+
+
+def endpoint(*, reliable=True, latched=False, depth=0):
+    return SimpleNamespace(
+        qos_profile=SimpleNamespace(  # as Fast DDS reports it; a QoSProfile warns of depth 0
+            depth=depth,
+            reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+        )
+    )
+
+
+@pytest.mark.parametrize(
+    ("publishers", "expected"),
+    [
+        ([], Reception(is_reliable=False, kept=0, depth=10)),
+        ([endpoint()], Reception(is_reliable=True, kept=0, depth=10)),
+        ([endpoint(), endpoint(reliable=False)], Reception(is_reliable=False, kept=0, depth=10)),
+        ([endpoint(latched=True)], Reception(is_reliable=True, kept=1, depth=10)),
+        ([endpoint(latched=True, depth=3)] * 2, Reception(is_reliable=True, kept=25, depth=10)),
+        ([endpoint(latched=True), endpoint()], Reception(is_reliable=True, kept=0, depth=10)),
+        ([endpoint(depth=12)], Reception(is_reliable=True, kept=0, depth=12)),
+        ([endpoint(latched=True, depth=1000)], Reception(is_reliable=True, kept=25, depth=25)),
+    ],
+)
+def test_subscriptions_suit_all_publishers(publishers, expected):
+    assert reception(publishers, min_depth=10, max_depth=25) == expected
+
+
+def test_a_subscription_may_be_best_effort_whatever_is_published():
+    assert not reception([endpoint()], min_depth=10, max_depth=25, best_effort=True).is_reliable
+
+
+def test_the_profile_says_the_same_to_rclpy():
+    profile = Reception(is_reliable=True, kept=1, depth=7).profile
+    assert (profile.reliability, profile.durability, profile.depth) == (
+        ReliabilityPolicy.RELIABLE,
+        DurabilityPolicy.TRANSIENT_LOCAL,
+        7,
+    )
+
+
+def test_a_clients_publisher_is_reliable_and_latched_where_others_expect_it():
+    plain, latched = endpoint(depth=1), endpoint(latched=True, depth=1)
+    assert publishing([], [plain]).durability == DurabilityPolicy.VOLATILE
+    assert publishing([], [plain, latched]).durability == DurabilityPolicy.TRANSIENT_LOCAL
+    assert publishing([latched], []).reliability == ReliabilityPolicy.RELIABLE
+
+
+def test_names_are_allowed_by_whole_matches():
+    is_allowed = allow_list(["/a.*", "", "/b"])
+    assert [name for name in ("/a", "/abc", "/b", "/bc", "") if is_allowed(name)] == ["/a", "/abc", "/b"]
+
+
+def test_hidden_names_are_shown_on_demand():
+    names = {"/a": ["x"], "/_b": ["x"], "/c/_action/status": ["x"], "/d_": ["x"]}
+    assert list(visible(names, allow_list([".*"]), hidden=False)) == ["/a", "/d_"]
+    assert list(visible(names, allow_list([".*"]), hidden=True)) == list(names)
+
+
+def test_all_topics_but_those_of_actions_are_shown():
+    names = {"/a": ["x"], "/_b": ["x"], "/c/_action/status": ["x"], "/d_": ["x"]}
+    assert list(visible_topics(names, allow_list([".*"]), hidden=False)) == ["/a", "/_b", "/d_"]
+    assert list(visible_topics(names, allow_list([".*"]), hidden=True)) == list(names)
+    assert list(visible_topics(names, allow_list(["/a", "/c.*"]), hidden=True)) == ["/a", "/c/_action/status"]
+
+
+def test_only_the_services_that_every_node_has_are_parameter_services():
+    assert is_parameter_service("/peer/set_parameters")
+    assert is_parameter_service("/ns/peer/get_type_description")
+    assert not is_parameter_service("/aseba/get_variables")
+    assert not is_parameter_service("/simulator/reset")

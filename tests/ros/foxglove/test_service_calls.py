@@ -1,0 +1,142 @@
+"""Calls of services without a blocking wait, driven by hand."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+from rclpy.task import Future
+
+from thymio_sim_ros.ros.foxglove.service_calls import Calls
+
+
+class Service:
+    """What rclpy's client shows of a service that answers when it is told to."""
+
+    def __init__(self):
+        self.requests = []
+        self.is_ready = True
+        self.checks = 0
+
+    def service_is_ready(self):
+        self.checks += 1
+        return self.is_ready
+
+    def call_async(self, request):
+        if request == "impossible":
+            raise TypeError("impossible")
+        future = Future()
+        self.requests.append((request, future))
+        return future
+
+    def remove_pending_request(self, future):
+        pass
+
+    def answer(self):
+        """Answer the oldest request by itself."""
+        request, future = self.requests.pop(0)
+        future.set_result(request)
+        return request
+
+
+class Node:
+    """Makes clients, and keeps what is logged."""
+
+    def __init__(self):
+        self.services = {}
+        self.errors = []
+
+    def create_client(self, _type, name):
+        return self.services.setdefault(name, Service())
+
+    def destroy_client(self, client):
+        client.is_ready = False
+
+    def get_logger(self):
+        return self
+
+    def error(self, text):
+        self.errors.append(text)
+
+
+@pytest.fixture
+def node():
+    return Node()
+
+
+@pytest.fixture
+def calls(node):
+    return Calls(node)
+
+
+def test_few_requests_are_on_their_way_at_a_time(node, calls):
+    answers = []
+    for number in range(20):
+        calls.call(str, "/s", f"{number % 4}/{number}", lambda response, _: answers.append(response), sender=number % 4)
+    assert len(node.services["/s"].requests) == 5
+    while node.services["/s"].requests:
+        node.services["/s"].answer()
+    assert len(answers) == 20
+    assert not calls.poll()
+
+
+def test_a_sender_with_many_calls_delays_another_by_two(node, calls):
+    for number in range(64):
+        calls.call(str, "/s", f"busy {number}", lambda *_: None, sender=1)
+    calls.call(str, "/s", "quiet", lambda *_: None, sender=2)
+    assert [request for request, _ in node.services["/s"].requests] == ["busy 0", "busy 1", "quiet"]
+
+
+def test_readiness_is_asked_of_services_not_of_calls(node, calls):
+    """A thousand open calls once cost a million questions a second."""
+    calls.call(str, "/s", "first", lambda *_: None)
+    node.services["/s"].is_ready = False
+    for number in range(1000):
+        calls.call(str, "/s", number, lambda *_: None)
+    node.services["/s"].checks = 0
+    assert calls.poll()
+    assert node.services["/s"].checks == 1
+
+
+def test_a_callback_may_call_on_and_on_without_recursion(node, calls):
+    depth = []
+
+    def again(_response, _reason):
+        depth.append(len(depth))
+        if len(depth) < 2 * sys.getrecursionlimit():
+            calls.call(str, "/s", "impossible", again)
+
+    calls.call(str, "/s", "impossible", again)
+    assert len(depth) == 2 * sys.getrecursionlimit()
+    assert node.errors == []
+
+
+def test_calls_end_by_their_deadline_whether_they_were_sent_or_not(node):
+    calls = Calls(node, timeout_s=0.0)
+    reasons = []
+    for number in range(10):
+        calls.call(str, "/s", number, lambda response, reason: reasons.append((response, reason)))
+    assert not calls.poll()
+    assert reasons == [(None, "no answer from /s within 0 s")] * 10
+    while node.services["/s"].requests:
+        node.services["/s"].answer()
+    assert len(reasons) == 10
+
+
+def test_calls_of_a_vanished_service_fail(node, calls):
+    reasons = []
+    for number in range(3):
+        calls.call(str, "/s", number, lambda _, reason: reasons.append(reason))
+    calls.forget("/s")
+    assert reasons == ["service /s is gone"] * 3
+    assert not calls.poll()
+
+
+def test_a_callback_that_raises_is_logged_and_others_follow(node, calls):
+    answers = []
+    calls.call(str, "/s", 1, lambda *_: 1 / 0)
+    calls.call(str, "/s", 2, lambda response, _: answers.append(response))
+    node.services["/s"].answer()
+    node.services["/s"].answer()
+    assert answers == [2]
+    assert "ZeroDivisionError" in node.errors[0]

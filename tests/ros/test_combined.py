@@ -1,0 +1,62 @@
+"""All nodes in one process: what a start of the suite chooses reaches the node that it is meant for."""
+
+from __future__ import annotations
+
+import urllib.request
+
+import pytest
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+
+from tests.processes import free_port
+from thymio_sim_ros.bridge import SUBPROTOCOLS, Tokens
+from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
+from thymio_sim_ros.device.options import DeviceOptions
+from thymio_sim_ros.ros import combined
+from thymio_sim_ros.suite_config import Suite
+
+
+def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):
+    device = DeviceOptions("playground", "playground", tmp_path / "card", tmp_path / "flash")
+    models = {"motor_model": "firmware", "proximity_model": "cone"}
+    suite = Suite(playground="base", program="none", device=device, **models, web=False, foxglove=False)
+    simulator, runtime = (ros.live(life) for life in combined.lives(ros.context, suite))
+    assert simulator.params.motor_model == "firmware"
+    assert simulator.params.proximity_model == "cone"
+    assert runtime.params.options == device
+    (robot,) = runtime.robots
+    assert robot.device.layout == "playground"
+    assert robot.device.get_variable("sd.present") == (1,)
+
+
+def test_a_page_that_was_opened_from_elsewhere_reaches_the_bridge_if_everybody_may(ros):
+    here, elsewhere = "127.0.0.1", "127.0.0.2"
+    for address, hosts in (("localhost", [here]), ("0.0.0.0", [here, elsewhere])):
+        ports = {"port": 0, "foxglove_port": free_port()}
+        suite = Suite(playground="base", program="none", address=address, tokens=Tokens(), **ports)
+        _, _, bridge, page = (ros.live(life) for life in combined.lives(ros.context, suite))
+        for host in (here, elsewhere):
+            opening = {"subprotocols": SUBPROTOCOLS, "origin": f"http://{host}:{page.port}"}
+            if host in hosts:
+                urllib.request.urlopen(f"http://{host}:{page.port}/config.json", timeout=10).close()
+                with connect(f"ws://{host}:{bridge.port}", **opening) as connection:
+                    assert connection.subprotocol == SUBPROTOCOLS[0]
+                continue
+            with pytest.raises(OSError, match="refused"):
+                urllib.request.urlopen(f"http://{host}:{page.port}/config.json", timeout=10)
+            with pytest.raises(ConnectionRefusedError), connect(f"ws://{host}:{bridge.port}", **opening):
+                pass
+
+
+def test_in_the_network_the_bridge_makes_tokens_and_the_page_knows_them(ros, monkeypatch):
+    monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
+    suite = Suite(playground="base", program="none", address="0.0.0.0", port=0, foxglove_port=free_port())
+    _, _, bridge, page = (ros.live(life) for life in combined.lives(ros.context, suite))
+    assert bridge.tokens.is_required
+    assert page.tokens == bridge.tokens
+    assert f"/#token={bridge.tokens.full}" in page.invitation
+    for host in ("127.0.0.1", "127.0.0.2"):
+        with pytest.raises(InvalidStatus), connect(f"ws://{host}:{bridge.port}", subprotocols=SUBPROTOCOLS):
+            pass
+        with connect(f"ws://{host}:{bridge.port}/?token={bridge.tokens.full}", subprotocols=SUBPROTOCOLS) as connection:
+            assert connection.subprotocol == SUBPROTOCOLS[0]

@@ -1,0 +1,88 @@
+"""What `ros2 bag record` does: raw subscriptions to all of the graph with the QoS that each topic offers."""
+
+from __future__ import annotations
+
+import importlib
+from functools import partial
+
+from geometry_msgs.msg import Twist, Vector3
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.serialization import deserialize_message
+from std_msgs.msg import Int16MultiArray
+
+from thymio_sim_ros.ros.compat import tf2_messages
+
+PROGRAM = "var n = 0\ntimer.period[0] = 100\nonevent timer0\nn = n + 1"
+# One of each kind: latched, of sensors, of the clock, of transforms, of the runtime; nobody commands anything.
+SPEAKS = {
+    "/_aseba/status", "/clock", "/diagnostics", "/imu", "/_markers", "/_markers/objects", "/odom", "/proximity/center",
+    "/_proximity/laser", "/_raw/proximity", "/robot_description", "/simulator/_state", "/tf", "/tf_static",
+}  # fmt: skip
+
+
+def message_class(kind):
+    if kind == tf2_messages.TF_TYPE_NAME:
+        return tf2_messages.TFMessage
+    package, _, name = kind.split("/")
+    return getattr(importlib.import_module(f"{package}.msg"), name)
+
+
+def offered(node, topic):
+    """The QoS that `ros2 bag record` chooses: what all publishers offer."""
+    policies = {info.qos_profile.durability for info in node.get_publishers_info_by_topic(topic)}
+    is_latched = policies == {DurabilityPolicy.TRANSIENT_LOCAL}
+    return QoSProfile(
+        depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL if is_latched else DurabilityPolicy.VOLATILE
+    )
+
+
+def test_everything_can_be_recorded_and_read_back(ros, simulation, runtime):
+    sim = simulation()
+    runtime(PROGRAM)
+    sim.step(0.2)
+    recorded, kinds = {}, {}
+    for topic, (kind, *others) in ros.node.get_topic_names_and_types():
+        if not ros.node.count_publishers(topic) or "/_action/" in topic:
+            continue
+        assert others == []
+        kinds[topic] = message_class(kind)
+        keep = partial(recorded.setdefault, topic)
+        ros.node.create_subscription(kinds[topic], topic, keep, offered(ros.node, topic), raw=True)
+    assert kinds.keys() >= SPEAKS
+    sim.until(lambda: recorded.keys() >= SPEAKS)
+    for topic, message in recorded.items():
+        if kinds[topic] is not tf2_messages.TFMessage:
+            assert isinstance(deserialize_message(message, kinds[topic]), kinds[topic])
+
+
+def test_a_robot_that_is_driven_by_a_recording_drives_the_same_way(ros, simulation):
+    recorded, sent = [], []
+    ros.node.create_subscription(Twist, "/cmd_vel", recorded.append, 10, raw=True)
+    first = simulation()
+    wheels = ros.publisher(Twist, "/cmd_vel")
+    for speed in (0.1, -0.05, 0.08):
+        sent.append(first.now)
+        wheels.publish(Twist(linear=Vector3(x=speed), angular=Vector3(z=speed * 5)))
+        first.step(0.5)
+    ros.end(first.simulator)
+    again = simulation()
+    for moment, data in zip(sent, recorded[:], strict=True):
+        again.until(lambda moment=moment: again.now >= moment)
+        wheels.publish(bytes(data))
+    again.until(lambda: again.now >= first.now)
+    assert again.thymio.pose == first.thymio.pose
+
+
+def test_a_program_runs_on_recorded_readings(ros, simulation, runtime):
+    sim = simulation(playground="obstacle")
+    recorded = []
+    ros.node.create_subscription(Int16MultiArray, "/_raw/proximity", recorded.append, 10, raw=True)
+    ros.settle()
+    sim.step(0.5)
+    seen = list(deserialize_message(recorded[-1], Int16MultiArray).data)
+    ros.end(sim.simulator)
+    ros.simulation = None
+    runtime("var kept[7]\nonevent prox\nkept = prox.horizontal", watch=["kept"])
+    told = ros.collect(Int16MultiArray, "/aseba/variables/kept", latched=True)
+    ros.publisher(Int16MultiArray, "/_raw/proximity").publish(bytes(recorded[-1]))
+    ros.until(lambda: told and list(told[-1].data) == seen)

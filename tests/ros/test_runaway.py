@@ -1,0 +1,108 @@
+"""Programs without an end: the node answers, the robot stops, and the status says what is too fast."""
+
+from __future__ import annotations
+
+import threading
+import time
+from functools import partial
+from pathlib import Path
+
+import pytest
+from diagnostic_msgs.msg import DiagnosticStatus
+from std_srvs.srv import Trigger
+
+from tests.ros.aseba_tools import Status, get_variables, set_parameters
+from thymio_sim_ros.ros.aseba.bus import SLICE_S
+from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
+from thymio_sim_ros.ros.rclpy_ext.node_runner import drive
+
+PROGRAMS = sorted((Path(__file__).parent.parent / "data" / "runaway").glob("*.aesl"))
+ANSWER_S = 10.0
+"""Far more than the second that a user waits: other tests use the machine too."""
+FLOOD = "var i\nvar k = 0\nwhile k == 0 do\ni = (i + 1) % 32\ncall leds.top(i, 0, 0)\nend"
+
+
+@pytest.fixture
+def threaded(ros):
+    """Make a runtime with a thread of its own, as in a process of ours; ended with the test."""
+    stop, threads = threading.Event(), []
+
+    def make(**parameters):
+        life = AsebaRuntime(ros.context, RuntimeParams(follow_simulator=False, **parameters))
+        thread = threading.Thread(target=drive, args=(life, ros.context, stop.is_set))
+        threads.append((life, thread))
+        thread.start()
+        return life
+
+    yield make
+    stop.set()
+    for life, thread in threads:
+        thread.join(ANSWER_S)
+        assert not thread.is_alive()
+        life.close()
+
+
+def test_there_are_twenty_programs():
+    assert len(PROGRAMS) == 20
+
+
+@pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: path.stem)
+def test_a_program_can_always_be_stopped(ros, threaded, tmp_path, program):
+    robots = ["anna", "bert"]
+    folders = {"card": str(tmp_path / "card"), "settings": str(tmp_path / "settings")}
+    threaded(robots=robots, path=str(program), **folders)
+    status = Status(ros, "/anna")
+    ros.until(lambda: status.messages)
+    begun = time.monotonic()
+    for robot in robots:
+        assert get_variables(ros, "motor.left.target", robot=f"/{robot}") != [None]
+    assert set_parameters(ros, {"robots.bert.script.source": "motor.left.target = 7"}).successful
+    answer = ros.call(Trigger, "/anna/aseba/stop", Trigger.Request())
+    assert answer.success
+    ros.until(lambda: status["state"] == "stopped")
+    assert get_variables(ros, "motor.left.target", robot="/anna") == [[0]]
+    assert time.monotonic() - begun < ANSWER_S
+    assert all(path.name.startswith(("u", "r")) for path in (tmp_path / "card").rglob("*") if path.is_file())
+
+
+def test_what_is_too_fast_is_said_and_clears(ros, threaded):
+    threaded(source=FLOOD)
+    status = Status(ros)
+    diagnostics = ros.collect(DiagnosticStatus, "/_aseba/status", latched=True)
+    ros.until(lambda: diagnostics and diagnostics[-1].level == DiagnosticStatus.WARN)
+    assert "call leds.top" in status["overload"]
+    assert "slowed down" in diagnostics[-1].message
+    assert status["state"] == "running"
+    assert set_parameters(ros, {"script.source": "var a = 1"}).successful
+    ros.until(lambda: diagnostics[-1].level == DiagnosticStatus.OK)
+    assert status["overload"] == ""
+
+
+def test_robots_share_the_node_in_turn(ros, threaded):
+    life = threaded(robots=["anna", "bert", "carl", "dora"], source="var i\nvar k = 0\nwhile k == 0 do\ni++\nend")
+
+    def counts():
+        return [get_variables(ros, "i", robot=f"/{ports.names.name}")[0][0] for ports in life.robots]
+
+    first = counts()
+    ros.until(lambda: all(now != before for now, before in zip(counts(), first, strict=True)))
+
+
+def test_a_slice_ends_whatever_waits_and_the_rest_goes_on_in_order(ros):
+    life = ros.live(AsebaRuntime(ros.context, RuntimeParams(robots=[f"r{n}" for n in range(8)])))
+    taken = []
+
+    def turn(ports):
+        taken.append(ports)
+        time.sleep(SLICE_S)
+
+    for ports in life.robots:
+        ports.turn = partial(turn, ports)
+    with life._bus.slice():
+        life._bus.settle(*life.robots)
+    assert taken == life.robots[: len(taken)]
+    assert len(taken) < len(life.robots)
+    assert life._bus.has_waiting
+    life._bus.settle()  # in lock-step there are no slices
+    assert taken == life.robots
+    assert not life._bus.has_waiting

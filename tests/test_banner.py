@@ -1,0 +1,131 @@
+"""What is printed at the start: places that can be opened, from here and from other computers."""
+
+from __future__ import annotations
+
+import io
+import ipaddress
+import os
+import re
+import socket
+import sys
+
+import pytest
+import segno
+
+from thymio_sim_ros import banner
+from thymio_sim_ros.bridge import Tokens
+from thymio_sim_ros.domain import described
+from thymio_sim_ros.suite_config import Suite
+
+
+@pytest.mark.parametrize("address", ["localhost", "127.0.0.1"])
+def test_on_this_computer_only(address):
+    told = banner.greeting(Suite(address=address), ["thymio"]).splitlines()
+    assert told[:2] == ["Page      http://localhost:8080/", "Foxglove  ws://localhost:8765"]
+
+
+def test_for_the_whole_network(monkeypatch):
+    monkeypatch.setattr(banner, "own_address", lambda: "10.1.2.3")
+    told = banner.greeting(Suite(address="0.0.0.0", port=80, foxglove_port=81), ["thymio"]).splitlines()
+    assert told[0] == "Page      http://localhost:80/, from other computers http://10.1.2.3:80/"
+    assert told[1] == "Foxglove  ws://localhost:81, from other computers ws://10.1.2.3:81"
+
+
+def test_on_one_address():
+    assert "Page      http://10.1.2.3:8080/\n" in banner.greeting(Suite(address="10.1.2.3"), ["thymio"])
+
+
+@pytest.mark.parametrize(
+    ("address", "told"),
+    [
+        ("::1", "ws://localhost:8765"),
+        ("::", "ws://localhost:8765, from other computers ws://10.1.2.3:8765"),
+        ("fd00::7", "ws://[fd00::7]:8765"),
+        ("class-pc", "ws://class-pc:8765"),
+    ],
+)
+def test_other_addresses(monkeypatch, address, told):
+    monkeypatch.setattr(banner, "own_address", lambda: "10.1.2.3")
+    assert banner.places("ws", address, 8765) == told
+
+
+def test_without_page_and_bridge():
+    told = banner.greeting(Suite(web=False, foxglove=False), ["thymio"])
+    assert told.splitlines() == [
+        "Page      none (started without it)",
+        "Foxglove  none (started without it)",
+        f"Domain    {described(os.environ)}",
+        "Stop      Ctrl-C",
+    ]
+
+
+TOKENS = Tokens("fulltoken", "looktoken")
+
+
+def test_tokens_are_in_the_addresses_and_the_read_only_ones_apart(monkeypatch):
+    monkeypatch.setattr(banner, "own_address", lambda: "10.1.2.3")
+    told = banner.greeting(Suite(address="0.0.0.0", port=80, foxglove_port=81, tokens=TOKENS), ["thymio"])
+    lines = told.splitlines()
+    full = "http://localhost:80/#token=fulltoken, from other computers http://10.1.2.3:80/#token=fulltoken"
+    assert lines[0] == f"Page      {full}"
+    assert lines[1].endswith("from other computers ws://10.1.2.3:81/?token=fulltoken")
+    assert lines[2:4] == [
+        "Read only http://10.1.2.3:80/#token=looktoken",
+        "Read only ws://10.1.2.3:81/?token=looktoken",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("address", "tokens", "said"),
+    [
+        ("localhost", Tokens(), "this computer only"),
+        ("127.0.0.1", TOKENS, "this computer only, with the token"),
+        ("0.0.0.0", Tokens(), "everyone in your network, without a token: drive, program, load, add robots"),
+        (
+            "0.0.0.0",
+            TOKENS,
+            "everyone in your network with a full address: drive, program, load, add robots; "
+            "with a read-only address: watch",
+        ),
+    ],
+)
+def test_one_line_says_who_can_reach_what(address, tokens, said):
+    assert f"Access    {said}" in banner.greeting(Suite(address=address, tokens=tokens), ["thymio"]).splitlines()
+
+
+def test_the_qr_code_holds_the_address_for_other_computers(monkeypatch):
+    monkeypatch.setattr(banner, "own_address", lambda: "10.1.2.3")
+    suite = Suite(address="0.0.0.0", port=80, tokens=TOKENS)
+    expected = io.StringIO()
+    segno.make_qr("http://10.1.2.3:80/#token=fulltoken", error="l").terminal(expected, border=2, compact=True)
+    drawn = banner.qr_code(suite)
+    assert drawn == expected.getvalue().rstrip("\n")
+    assert max(map(len, re.sub(r"\x1b\[[0-9;]*m", "", drawn).splitlines())) < 80
+
+
+@pytest.mark.parametrize("suite", [Suite(), Suite(address="0.0.0.0", web=False)])
+def test_there_is_no_qr_code_where_there_is_no_page_for_others(suite):
+    assert banner.qr_code(suite) == ""
+
+
+def test_without_the_package_there_is_no_qr_code(monkeypatch):
+    monkeypatch.setitem(sys.modules, "segno", None)
+    assert banner.qr_code(Suite(address="0.0.0.0")) == ""
+
+
+def test_this_computer_has_a_number_or_a_name(monkeypatch):
+    found = banner.own_address()
+    assert found == socket.gethostname() or ipaddress.IPv4Address(found)
+
+    def unreachable(*_arguments):
+        raise OSError("Network is unreachable")
+
+    monkeypatch.setattr(banner.socket.socket, "connect", unreachable)
+    assert banner.own_address() == socket.gethostname()
+
+
+@pytest.mark.parametrize(
+    ("robots", "told"), [(1, None), (20, None), (50, "Start     50 robots: this takes about 17 s")]
+)
+def test_who_has_to_wait_is_told_for_how_long(robots: int, told: str | None) -> None:
+    assert banner.patience(robots) == told

@@ -1,0 +1,44 @@
+"""Conditions in words."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from thymio_sim_ros.testing.failure_messages import told
+
+COUNT = [3]
+
+
+def has_come() -> bool:
+    """A condition."""
+    return bool(COUNT)
+
+
+def test_a_function_is_told_by_its_name() -> None:
+    assert told(has_come) == "has_come"
+    assert told(COUNT.__len__).startswith("<")
+
+
+def test_a_lambda_is_told_as_it_is_written() -> None:
+    assert told(lambda: COUNT[0] > 5) == "COUNT[0] > 5"
+    text = told(
+        lambda: (
+            sum(COUNT) > 4  # shortened to one line
+        )
+    )
+    assert text == "sum(COUNT) > 4"
+
+
+def test_of_a_lambda_inside_a_statement_its_own_part_is_told() -> None:
+    for told_text in [told(lambda: COUNT == []) for _ in range(1)]:
+        assert told_text == "COUNT == []"
+    with_block = told((lambda: COUNT[0]))  # noqa: UP034  (brackets of its own)
+    assert with_block == "COUNT[0]"
+
+
+def test_a_lambda_without_a_source_is_told_by_its_line() -> None:
+    assert told(eval("lambda: 1")) == "the lambda of line 1"
+
+
+def test_anything_else_is_told_as_it_prints() -> None:
+    assert told(partial(int, "1")) == "functools.partial(<class 'int'>, '1')"

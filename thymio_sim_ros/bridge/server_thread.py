@@ -1,0 +1,147 @@
+"""The event loop's thread. Whoever has a command or a message takes it to the sockets itself."""
+
+from __future__ import annotations
+
+import asyncio
+import errno
+import socket
+import threading
+from collections.abc import Callable, Sequence
+
+from thymio_sim_ros.bridge.events import Command
+from thymio_sim_ros.bridge.messages import ServerInfo
+from thymio_sim_ros.bridge.server import BACKLOG, BridgeServer, EventSink, ServerSettings
+from thymio_sim_ros.bridge.switchboard import Switchboard
+
+__all__ = ["ServerThread", "check_free", "listen"]
+
+_LOOPBACK = ("127.0.0.1", "::1")
+"""What `localhost` means: a browser may try either first."""
+
+_NOT_HERE = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
+"""What a machine without IPv6 says; the other loopback is enough then."""
+
+_TRIES = 20
+"""Free ports tried before giving up, where one must be free on two addresses."""
+
+
+def listen(address: str, port: int) -> list[socket.socket]:
+    """Listening sockets, all on one port; port 0: any free one. `localhost` is the loopback of IPv4 and of IPv6.
+
+    Raises OSError that names address and port.
+    """
+    return _sockets(address, port, do_listen=True)
+
+
+def check_free(address: str, port: int) -> None:
+    """Raise what `listen` would raise now. Nobody is let in meanwhile, who would then find nobody."""
+    for bound in _sockets(address, port, do_listen=False):
+        bound.close()
+
+
+def _sockets(address: str, port: int, *, do_listen: bool) -> list[socket.socket]:
+    addresses = _LOOPBACK if address == "localhost" else (address,)
+    for is_last in (number == _TRIES for number in range(1, _TRIES + 1)):
+        try:
+            return _all_bound(addresses, port, do_listen=do_listen)
+        except OSError as error:
+            if port or is_last or error.errno != errno.EADDRINUSE:
+                raise
+    raise AssertionError("the last try returns or raises")
+
+
+def _all_bound(addresses: Sequence[str], port: int, *, do_listen: bool) -> list[socket.socket]:
+    sockets: list[socket.socket] = []
+    for address in addresses:
+        try:
+            bound = _bound(address, port, do_listen=do_listen)
+        except OSError as error:
+            if sockets and error.errno in _NOT_HERE:
+                continue
+            for bound in sockets:
+                bound.close()
+            raise
+        sockets.append(bound)
+        port = bound.getsockname()[1]
+    return sockets
+
+
+def _bound(address: str, port: int, *, do_listen: bool) -> socket.socket:
+    try:
+        info = socket.getaddrinfo(address or None, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
+        family, kind, protocol, _, endpoint = info[0]
+        # socket.create_server leaves the protocol at 0, and asyncio then leaves Nagle on: 40 ms per answer (measured).
+        bound = socket.socket(family, kind, protocol)
+    except OSError as error:
+        raise _named(error, address, port) from error
+    try:
+        bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        bound.bind(endpoint)
+        if do_listen:
+            bound.listen(BACKLOG)
+    except OSError as error:
+        bound.close()
+        raise _named(error, address, port) from error
+    return bound
+
+
+def _named(error: OSError, address: str, port: int) -> OSError:
+    where = f"[{address}]" if ":" in address else address
+    return OSError(error.errno, f"cannot listen on {where}:{port}: {(error.strerror or str(error)).lower()}")
+
+
+class ServerThread:
+    """A running bridge. The port is bound when the constructor returns; `close` leaves nothing behind."""
+
+    def __init__(
+        self,
+        info: ServerInfo,
+        sink: EventSink,
+        *,
+        address: str = "localhost",
+        port: int = 8765,
+        settings: ServerSettings | None = None,
+    ) -> None:
+        self._listeners = listen(address, port)
+        settings = settings or ServerSettings()
+        board = Switchboard(info, changes_nothing=settings.changes_nothing)
+        self._server = BridgeServer(board, sink, settings)
+        self.publish: Callable[[int, int, bytes], None] = self._server.publish
+        """Send a message of a channel: its id, time in ns and payload; from any thread."""
+        self._loop = asyncio.new_event_loop()
+        self._stop = asyncio.Event()
+        self._thread = threading.Thread(target=self._run, name="foxglove-server", daemon=True)
+        self._is_closed = False
+        self.address: str
+        self.port: int
+        self.address, self.port = self._listeners[0].getsockname()[:2]
+        self._thread.start()
+
+    @property
+    def client_count(self) -> int:
+        """Connected clients; from any thread."""
+        return self._server.client_count
+
+    def post(self, command: Command) -> None:
+        """Carry out a command; from any thread."""
+        self._server.carry_out(command)
+
+    def close(self) -> None:
+        """End the server, its connections and the thread."""
+        if self._is_closed:
+            return
+        self._is_closed = True
+        self._loop.call_soon_threadsafe(self._stop.set)
+        self._thread.join()
+
+    def _run(self) -> None:
+        try:
+            self._loop.run_until_complete(self._serve())
+        finally:
+            self._loop.run_until_complete(self._loop.shutdown_asyncgens())
+            self._loop.close()
+
+    async def _serve(self) -> None:
+        await self._server.start(self._listeners)
+        await self._stop.wait()
+        await self._server.close()

@@ -1,0 +1,28 @@
+"""What the loudspeakers of a run said, all together, as a sound file: `thymio-sim runner --sound FILE.wav`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from thymio_sim_ros.device.firmware import wav
+from thymio_sim_ros.runner import Runner
+from thymio_sim_ros.sim.audio.mixer import SoundStream, mixed
+from thymio_sim_ros.sim.audio.synthesis import SAMPLE_NS
+from thymio_sim_ros.sim.model.readings import LoudspeakerReading
+from thymio_sim_ros.sim.world import StepResult
+
+__all__ = ["run_with_sound"]
+
+
+def run_with_sound(runner: Runner, steps: Iterable[StepResult], file: Path) -> None:
+    """Go through these steps of the runner and store what was to be heard meanwhile; OSError."""
+    with file.open("ab"):
+        pass  # refused before the run, not after it
+    first = runner.now_ns // SAMPLE_NS
+    streams: dict[str, SoundStream] = {}
+    for step in steps:
+        for robot, _sensor, reading in step.readings:
+            if isinstance(reading, LoudspeakerReading):
+                streams.setdefault(robot, SoundStream()).hear(reading)
+    wav.write(file, mixed(list(streams.values()), first, runner.now_ns // SAMPLE_NS))

@@ -1,0 +1,156 @@
+"""Which program a robot runs: the menu, a behaviour chosen in it, or what a computer has loaded.
+
+The firmware's menu and behaviours (docs/spec/thymio-behaviors.md section 1) are programs of the folder `behaviours`
+here. One asks for another by an event that stays inside the robot, so that neither other robots nor ROS hear it:
+
+- `menu.start [entry]`: run the program of this entry (`ENTRIES`; 0 is the user's own program),
+- `menu.back`: open the menu, which shows the entry that was running.
+
+A program that declares `menu.open` is a menu. It is told [entry to show, 1 if the user has a program, ticks of 20 ms
+during which the centre button is not to be heard].
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from thymio_sim_ros import registry
+from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
+from thymio_sim_ros.device.layout import THYMIO
+from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram, load_program
+from thymio_sim_ros.device.programs.status import OFF
+
+__all__ = ["ENTRIES", "MENU", "BehaviourHost", "built_in", "is_internal"]
+
+MENU = "menu"
+
+PROGRAM_ENTRY = 0
+"""The entry of the program that a user has loaded."""
+
+ENTRIES = {
+    1: "friendly",
+    2: "explorer",
+    3: "fearful",
+    5: "attentive",
+    6: "investigator",
+    7: "obedient",
+    9: "thesis_basic",
+    10: "thesis_explorer",
+    11: "thesis_track_follower",
+}
+"""Entry → built-in program: the firmware's numbers up to 8, then what the menu does not show."""
+
+POWER_ON_TICKS = 100
+"""For so long after the robot is switched on, the centre button is not heard."""
+
+_PREFIX = "menu."
+_START, _BACK, _OPEN = "menu.start", "menu.back", "menu.open"
+_FOLDER = Path(__file__).parent / "behaviors"
+
+
+def is_internal(event: str) -> bool:
+    """Whether an event of this name stays inside the robot."""
+    return event.startswith(_PREFIX)
+
+
+@cache
+def built_in(name: str, layout: str = THYMIO) -> ThymioProgram:
+    """The built-in program of this name, or that of another package; FileNotFoundError when there is none.
+
+    ProgramError: it uses what a robot of this layout does not have.
+    """
+    paths = [folder / f"{name}.aesl" for folder in (_FOLDER, *registry.folders("behaviours"))]
+    path = next((path for path in paths if path.is_file()), paths[0])
+    return load_program(path.read_text(encoding="utf-8"), path.name, layout)
+
+
+class BehaviourHost:
+    """A device and what decides about its program. Invariant: `program` is what the device runs."""
+
+    def __init__(self, device: AsebaDevice) -> None:
+        self.device = device
+        self.program = load_program("", "none", device.layout)
+        self._own: ThymioProgram | None = None
+        self._first: ThymioProgram | str = self.program
+        self._entry = PROGRAM_ENTRY
+        self._notices: list[str] = []
+
+    def load(self, program: ThymioProgram) -> None:
+        """A computer gives a program: whatever runs ends with its wheels stopped, and the program begins."""
+        self._first = program
+        self._own = _unless_empty(program)
+        self._entry = PROGRAM_ENTRY
+        self._run(program, warm=False)
+
+    def start(self, name: str, own: ThymioProgram | None = None) -> None:
+        """Switch the robot on with a built-in program, such as the menu; `own` is a program that waits in its menu.
+
+        Errors are those of `built_in`; the old program goes on.
+        """
+        program = built_in(name, self.device.layout)
+        self._first, self._own = name, _unless_empty(own)
+        self._entry = next((entry for entry, known in ENTRIES.items() if known == name), PROGRAM_ENTRY)
+        self._run(program, warm=False, wait=POWER_ON_TICKS)
+
+    def restart(self) -> None:
+        """As `load` or `start` did it, by a robot that is new again."""
+        self.device.renew()
+        self._begin()
+
+    def resume(self) -> None:
+        """Let events run (again); a robot that is off is switched on with what `load` or `start` gave it."""
+        if self.device.status.state != OFF or self.program is self._first:
+            self.device.resume()
+        else:
+            self.device.body.settings.restart()
+            self._begin()
+
+    def take_events(self) -> list[EmittedEvent]:
+        """What the program emitted since the last time, for others to hear; what it asks of the robot is done."""
+        events = self.device.take_events()
+        asked = next((event for event in events if is_internal(event.name)), None)
+        if asked is None:
+            return events
+        self._obey(asked)
+        return [event for event in events if not is_internal(event.name)]
+
+    def take_notices(self) -> list[str]:
+        """What the user should know, the device's notices among it."""
+        notices, self._notices = self._notices, []
+        return self.device.take_notices() + notices
+
+    def _obey(self, event: EmittedEvent) -> None:
+        try:
+            if event.name == _BACK:
+                self._run(built_in(MENU, self.device.layout), warm=True)
+            elif event.name == _START and event.args:
+                self._start_entry(event.args[0])
+        except ProgramError as error:
+            self._notices.append(f"{event.name}: {error}")
+
+    def _start_entry(self, entry: int) -> None:
+        if entry == PROGRAM_ENTRY and self._own is not None:
+            program = self._own
+        elif entry in ENTRIES:
+            program = built_in(ENTRIES[entry], self.device.layout)
+        else:
+            self._notices.append(f"{_START} {entry}: the robot has no such program")
+            return
+        self._entry = entry
+        self._run(program, warm=entry != PROGRAM_ENTRY)
+
+    def _begin(self) -> None:
+        if isinstance(self._first, str):
+            self.start(self._first, self._own)
+        else:
+            self.load(self._first)
+
+    def _run(self, program: ThymioProgram, *, warm: bool, wait: int = 0) -> None:
+        self.program = program
+        greeting = EmittedEvent(_OPEN, (self._entry, int(self._own is not None), wait))
+        self.device.load(program, warm=warm, greeting=greeting)
+
+
+def _unless_empty(program: ThymioProgram | None) -> ThymioProgram | None:
+    return program if program is not None and program.source.strip() else None

@@ -1,0 +1,150 @@
+"""The parts of a robot that its firmware itself serves: card, settings, radio, records, the switch.
+
+They live as long as the device; a reset of the program closes files, a restart also forgets unsaved settings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from thymio_sim_ros.device.firmware.sd_card import Card
+from thymio_sim_ros.device.firmware.settings import Settings
+from thymio_sim_ros.device.firmware.sound_recorder import Recorder
+from thymio_sim_ros.sim.audio.synthesis import SYSTEM_SOUNDS
+from thymio_sim_ros.sim.commands import (
+    Command,
+    PlaySamples,
+    PlaySystemSound,
+    SetVolume,
+    StopSound,
+)
+
+__all__ = ["RESTART", "SWITCH_OFF", "Body"]
+
+RESTART, SWITCH_OFF = "restart", "off"
+"""What a program may ask of the whole robot."""
+
+Send = Callable[[Command], None]
+Tell = Callable[[str], None]
+
+
+class Body:
+    """One robot's parts.
+
+    `send` takes what they tell the actuators, `tell` sentences for the user; `recalibrate` is called when the motors'
+    targets may mean something else.
+    """
+
+    def __init__(
+        self,
+        node_id: int,
+        *,
+        card: Card | None,
+        settings: Settings,
+        send: Send,
+        tell: Tell,
+        recalibrate: Callable[[], None],
+    ) -> None:
+        self._first_id = node_id
+        self.node_id = node_id
+        self.network = (0, 0)
+        """Channel and network of the radio: robots of different ones do not hear each other."""
+        self.card = card
+        self.settings = settings
+        self.wanted = ""
+        """RESTART or SWITCH_OFF, until the device has done it."""
+        self.tell = tell
+        self._send = send
+        self._recalibrate = recalibrate
+        self._recorder: Recorder | None = None
+        self._now_ns = 0
+
+    def reset(self) -> None:
+        """The program begins anew."""
+        self.stop_recording()
+        if self.card is not None:
+            self.card.close()
+        self._send(SetVolume(self.settings.volume_shift))
+
+    def renew(self) -> None:
+        """As for a new robot: unsaved settings and the radio's are forgotten."""
+        self.settings.renew()
+        self.node_id, self.network = self._first_id, (0, 0)
+
+    def advance(self, now_ns: int, intensity: int) -> None:
+        """Time has come so far, and the microphone tells this intensity."""
+        self._now_ns = now_ns
+        if self._recorder is not None:
+            self._recorder.listen(now_ns, intensity)
+
+    def change_setting(self, address: int, value: int) -> None:
+        """Put a word into the settings; what it means holds at once."""
+        self.settings[address] = value
+        self._send(SetVolume(self.settings.volume_shift))
+        self._recalibrate()
+
+    def flash_settings(self) -> None:
+        """Keep the settings for the next restart."""
+        complaint = self.settings.flash()
+        if complaint:
+            self.tell(complaint)
+
+    def play_system_sound(self, number: int) -> int:
+        """One of the robot's own sounds, or the card's in place of a number that is none; −1 stops. Bytes read."""
+        if number == -1:
+            self._send(StopSound())
+            return 0
+        found = None if 0 <= number < len(SYSTEM_SOUNDS) else self._play_file(f"s{number}")
+        if found is None:
+            self._send(PlaySystemSound(number))
+        return found or 0
+
+    def play(self, name: str, number: int) -> int:
+        """A sound of the card, by the letter of its kind and its number; −1 stops, and so does one that is missing.
+
+        Returns the bytes read.
+        """
+        found = None if number == -1 else self._play_file(f"{name}{number}")
+        if found is None:
+            self._send(StopSound())
+        if found is None and number != -1:
+            self.tell(f"there is no {name}{number}.wav on the card" if self.card else f"no card: {name}{number}.wav")
+        return found or 0
+
+    def record(self, number: int) -> int:
+        """Begin to record; −1 stops and stores. Returns the bytes written."""
+        written = self.stop_recording()
+        if number >= 0 and self.card is not None:
+            self._recorder = Recorder(number, self._now_ns)
+        return written
+
+    def stop_recording(self) -> int:
+        """Store what was recorded, if something is being recorded; returns the bytes written."""
+        recorder, self._recorder = self._recorder, None
+        if recorder is None or self.card is None:
+            return 0
+        samples = recorder.samples
+        if not self.card.write_sound(f"r{recorder.number}", samples):
+            self.tell(f"r{recorder.number}.wav cannot be stored on the card")
+            self.tell_full_card()
+        return len(samples)
+
+    def tell_full_card(self) -> None:
+        """Tell the user if the card has refused a program something as it is full."""
+        if self.card is not None and self.card.refusal:
+            self.tell(self.card.refusal)
+
+    def recorded_bytes(self, number: int) -> int:
+        """Samples of a record; 0 when there is none."""
+        return 0 if self.card is None else self.card.sound_bytes(f"r{number}")
+
+    def _play_file(self, name: str) -> int | None:
+        """Play a sound of the card; the bytes read, None if there is none."""
+        found = self.card.read_sound(name) if self.card is not None else None
+        if found is None:
+            return None
+        samples, complaint = found
+        if complaint:
+            self.tell(complaint)
+        self._send(PlaySamples(samples))
+        return len(samples)

@@ -1,0 +1,79 @@
+"""Which program of a file is whose: by name, then by number, then in order (docs/aseba_ros.md, "Programs")."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from aseba_vm.messages import wording
+from thymio_sim_ros.device.layout import target
+from thymio_sim_ros.device.programs.program import ThymioFile, ThymioProgram, called
+
+__all__ = ["Member", "Share", "share_out"]
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A robot: its name (empty if it is alone) and its number on the network."""
+
+    name: str
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """What a robot gets of a file: a program or None, and what does not fit, for people."""
+
+    program: ThymioProgram | None
+    notes: tuple[str, ...] = ()
+
+
+def share_out(file: ThymioFile, robots: Sequence[Member]) -> dict[str, Share]:
+    """Robot's name → its share. The only program of a file is for all, unless it names one of them."""
+    common = [*file.notes, *(f"not for a Thymio, left out: node '{other}'" for other in file.others)]
+    names = {robot.name for robot in robots}
+    only = file.programs[0]
+    if len(file.programs) == 1 and (only.node.name not in names or _is_general(only)):
+        if not _is_general(only):
+            common.insert(0, wording("note-only-node", (only.node.name,)))
+        return {robot.name: Share(only, tuple(common)) for robot in robots}
+    given, left = _match(file.programs, robots)
+    common += [f"no robot is left for {called(program.node)}" for program in left]
+    return {robot.name: _share(robot, given.get(robot.name), common) for robot in robots}
+
+
+def _is_general(program: ThymioProgram) -> bool:
+    """Whether its node names no device, but at most the kind of robot."""
+    return program.node.name in ("", target().name)
+
+
+def _match(
+    programs: Sequence[ThymioProgram], robots: Sequence[Member]
+) -> tuple[dict[str, ThymioProgram], list[ThymioProgram]]:
+    left = list(programs)
+    given: dict[str, ThymioProgram] = {}
+    names = {robot.name for robot in robots}
+
+    def give(robot: Member, fits: list[ThymioProgram]) -> None:
+        if robot.name not in given and fits:
+            given[robot.name] = fits[0]
+            left.remove(fits[0])
+
+    for robot in robots:
+        give(robot, [program for program in left if program.node.name == robot.name])
+    for robot in robots:
+        give(robot, [program for program in left if program.node.node_id == robot.number])
+    for robot in robots:
+        give(robot, [program for program in left if program.node.name not in names])
+    return given, left
+
+
+def _share(robot: Member, program: ThymioProgram | None, common: Sequence[str]) -> Share:
+    if program is None:
+        return Share(None, (*common, "the file has no program left for this robot: it runs nothing"))
+    node = program.node
+    if node.name != robot.name and not _is_general(program):
+        return Share(program, (wording("note-next-node", (node.name,)), *common))
+    if node.name != robot.name and node.node_id not in (0, robot.number):
+        return Share(program, (*common, f"{called(node)} runs here, on number {robot.number}, as it was next in order"))
+    return Share(program, tuple(common))

@@ -1,0 +1,105 @@
+"""The service `~/check`: compile a text without loading it (docs/aseba_ros.md names the fields).
+
+The text and what belongs to it are the parameters of the request, the answer is JSON in the reason of the result: a
+service of a standard type, so that it works in every tool and through every bridge.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
+from typing import Any
+
+from rcl_interfaces.msg import Parameter as ParameterMsg
+from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.srv import SetParametersAtomically
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from thymio_sim_ros.device.editor.language_service import Question, check, describe_target, refusal
+
+__all__ = ["CheckService"]
+
+_TYPES = {
+    "source": (Parameter.Type.STRING,),
+    "name": (Parameter.Type.STRING,),
+    "language": (Parameter.Type.STRING,),
+    "events": (Parameter.Type.STRING_ARRAY,),
+    "constants": (Parameter.Type.STRING_ARRAY,),
+    "target": (Parameter.Type.BOOL,),
+}
+
+
+class _RequestError(ValueError):
+    """A request that cannot be understood; the text says why."""
+
+
+class CheckService:
+    """Answers requests; `robots` gives the names of the robots that nodes of a file may be for."""
+
+    def __init__(self, node: Node, *, layout: str, robots: Callable[[], Iterable[str]]) -> None:
+        self._layout = layout
+        self._robots = robots
+        node.create_service(SetParametersAtomically, "~/check", self._on_check)
+
+    def _on_check(
+        self, request: SetParametersAtomically.Request, response: SetParametersAtomically.Response
+    ) -> SetParametersAtomically.Response:
+        try:
+            given = _values(request.parameters)
+            question = Question(
+                source=given["source"],
+                layout=self._layout,
+                language=given.get("language", "en"),
+                events=_pairs("events", given.get("events", ())),
+                constants=_pairs("constants", given.get("constants", ())),
+                robots=tuple(name for name in self._robots() if name),
+            )
+        except _RequestError as error:
+            response.result = SetParametersResult(successful=False, reason=json.dumps(refusal(str(error))))
+            return response
+        successful, told = _answer(question)
+        if given.get("target"):
+            told = json.dumps(json.loads(told) | {"target": describe_target(self._layout, question.language)})
+        response.result = SetParametersResult(successful=successful, reason=told)
+        return response
+
+
+@lru_cache(maxsize=16)
+def _answer(question: Question) -> tuple[bool, str]:
+    """Whether it compiles, and the JSON; editors ask for the same text again and again."""
+    answer = check(question)
+    return not answer["errors"], json.dumps(answer)
+
+
+def _values(parameters: Sequence[ParameterMsg]) -> dict[str, Any]:
+    values: dict[str, Any] = {}
+    for message in parameters:
+        try:
+            parameter = Parameter.from_parameter_msg(message)
+        except ValueError as error:
+            kind = message.value.type
+            raise _RequestError(f"{message.name}: a value of unknown type {kind} found") from error
+        if parameter.name not in _TYPES:
+            raise _RequestError(f"parameter '{parameter.name}' found, expected one of {', '.join(_TYPES)}")
+        is_empty_list = parameter.value is not None and parameter.type_.name.endswith("ARRAY") and not parameter.value
+        expected = _TYPES[parameter.name]
+        if parameter.type_ not in expected and not (is_empty_list and Parameter.Type.STRING_ARRAY in expected):
+            raise _RequestError(f"{parameter.name}: {parameter.type_.name} found, expected {expected[0].name}")
+        values[parameter.name] = parameter.value
+    if "source" not in values:
+        raise _RequestError("no parameter 'source' found, expected the text of a program")
+    return values
+
+
+def _pairs(name: str, items: Iterable[str]) -> tuple[tuple[str, int], ...]:
+    """Pairs of a name and a number, as `ping 1`."""
+    pairs = []
+    for item in items:
+        word, _, number = item.rpartition(" ")
+        try:
+            pairs.append((word.strip(), int(number)))
+        except ValueError as error:
+            raise _RequestError(f"{name}: '{item}' found, expected a name and a number, as 'ping 1'") from error
+    return tuple(pairs)

@@ -1,0 +1,139 @@
+"""Readings of a robot behind its ROS driver: its topics back to Thymio's integers.
+
+Source: docs/spec/ros-interface.md section 3.
+
+What the driver does not tell stays zero: ambient light, radio intensities, raw buttons. Ranges that come one by one
+make a reading together when all are there, or when one comes again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import Any
+
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from sensor_msgs.msg import Imu, Range, Temperature
+from std_msgs.msg import Bool, Empty, Float32, Int8, Int16
+
+from thymio_sim_ros.ros.interface import qos
+from thymio_sim_ros.ros.interface.names import PROXIMITY, SIDES, RobotNames
+from thymio_sim_ros.sim.commands import BUTTONS, MotorTargets
+from thymio_sim_ros.sim.model import units
+from thymio_sim_ros.sim.model.robot_constants import WHEEL_TRACK_M
+
+__all__ = ["Feed", "proximity_count", "subscribe", "twist_of"]
+
+Feed = Callable[[str, Sequence[int]], None]
+"""Takes the words of a sensor."""
+
+FULL_SOUND = 255
+COMM_SENSORS = 7
+_REFLECTING, _DARK = (round(units.ground_response(grey)) for grey in (1.0, 0.0))
+
+
+class _Together:
+    """Values that make one reading."""
+
+    def __init__(self, size: int, finish: Callable[[Sequence[int]], None]) -> None:
+        self._values = [0] * size
+        self._seen: set[int] = set()
+        self._finish = finish
+
+    def take(self, index: int, value: int) -> None:
+        """One value came; the reading is finished by the last one, or by one that comes before the others did."""
+        if index in self._seen:
+            self._flush()
+        self._values[index] = value
+        self._seen.add(index)
+        if len(self._seen) == len(self._values):
+            self._flush()
+
+    def _flush(self) -> None:
+        self._seen.clear()
+        self._finish(self._values)
+
+
+def subscribe(node: Node, names: RobotNames, feed: Feed) -> list[Any]:
+    """Subscriptions to the driver's topics of one robot."""
+    return [
+        node.create_subscription(kind, names.topic(topic), handle, qos.SENSOR)
+        for topic, kind, handle in (*_ranges(feed), *_buttons(feed), *_others(feed))
+    ]
+
+
+def twist_of(command: MotorTargets) -> Twist:
+    """The velocity of a robot whose wheels turn like this."""
+    left, right = units.units_to_speed(command.left), units.units_to_speed(command.right)
+    twist = Twist()
+    twist.linear.x, twist.angular.z = (left + right) / 2.0, (right - left) / WHEEL_TRACK_M
+    return twist
+
+
+def proximity_count(message: Range) -> int:
+    """The count of a range: 0 for nothing (+inf, or -1 of the driver), the most for too close (-inf or the minimum)."""
+    value = message.range
+    if math.isnan(value) or value in (-1.0, math.inf) or value > message.max_range:
+        return 0
+    return units.PROXIMITY_FULL if value <= message.min_range else round(units.proximity_response(value))
+
+
+def _is_reflecting(message: Range) -> bool:
+    """Near (-inf or 0) is reflecting, far (+inf or 1) is not."""
+    return bool(message.range < message.min_range)
+
+
+def _ranges(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
+    ground = _Together(len(SIDES), lambda counts: feed("ground", (0, 0, *counts, *counts)))
+    proximity = _Together(len(PROXIMITY), partial(feed, "proximity"))
+    for index, side in enumerate(SIDES):
+        yield f"ground/{side}", Range, partial(_take_ground, ground, index)
+    for index, name in enumerate(PROXIMITY):
+        yield f"proximity/{name}", Range, partial(_take_proximity, proximity, index)
+
+
+def _take_ground(ground: _Together, index: int, message: Range) -> None:
+    ground.take(index, _REFLECTING if _is_reflecting(message) else _DARK)
+
+
+def _take_proximity(proximity: _Together, index: int, message: Range) -> None:
+    proximity.take(index, proximity_count(message))
+
+
+def _buttons(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
+    pressed = [0] * len(BUTTONS)
+
+    def take(message: Bool, index: int) -> None:
+        pressed[index] = int(message.data)
+        feed("buttons", pressed)
+
+    for index, name in enumerate(BUTTONS):
+        yield f"buttons/{name}", Bool, partial(take, index=index)
+
+
+def _others(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
+    yield "imu", Imu, lambda message: feed("accelerometer", _acceleration(message))
+    yield "temperature", Temperature, lambda message: feed("temperature", [units.celsius_to_units(message.temperature)])
+    yield "tap", Empty, lambda _message: feed("tap", [1])
+    yield "sound", Float32, lambda message: feed("sound", [round(message.data * FULL_SOUND), 0])
+    yield "remote", Int8, lambda message: feed("remote", [0, message.data])
+    yield "comm/received", Int16, lambda message: feed("comm", [message.data, *[0] * (2 * COMM_SENSORS)])
+    yield "odom", Odometry, lambda message: feed("motor", _wheels(message))
+
+
+def _acceleration(message: Imu) -> list[int]:
+    """acc counts to the right, back and down what Imu counts forward, left and up.
+
+    Source: docs/spec/thymio-robot.md section 7.3.
+    """
+    vector = message.linear_acceleration
+    return [units.acceleration_to_units(value) for value in (-vector.y, vector.x, vector.z)]
+
+
+def _wheels(message: Odometry) -> list[int]:
+    forward, turn = message.twist.twist.linear.x, message.twist.twist.angular.z * WHEEL_TRACK_M / 2.0
+    speeds = [units.speed_to_units(forward - turn), units.speed_to_units(forward + turn)]
+    return [*speeds, *map(units.units_to_pwm, speeds)]

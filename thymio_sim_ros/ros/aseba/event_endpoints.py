@@ -1,0 +1,103 @@
+"""Events of one robot's program ↔ topics, both ways (docs/spec/ros-interface.md section 6.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Any
+
+from rclpy.node import Node
+from std_msgs.msg import Int16MultiArray
+
+from thymio_sim_ros.device.firmware.behavior_host import is_internal
+from thymio_sim_ros.device.programs.program import ThymioProgram
+from thymio_sim_ros.ros.interface import convert_readings, qos
+from thymio_sim_ros.ros.interface.names import RobotNames, full_name, topic_word
+
+__all__ = ["Emit", "EventPorts", "unlike"]
+
+Emit = Callable[[str, list[int]], None]
+"""An event that somebody in ROS emits: name, values."""
+
+_LONGEST_TOPIC = 247
+"""Of a full name, in characters; DDS refuses longer ones."""
+
+
+class EventPorts:
+    """The pair for any event, and a pair for each event of the program. They come and go with it."""
+
+    def __init__(self, node: Node, names: RobotNames, emit: Emit, warn: Callable[[str, str], None]) -> None:
+        self.words: Mapping[str, str] = {}
+        self._node = node
+        self._names = names
+        self._emit = emit
+        self._warn = warn
+        self._any = node.create_publisher(Int16MultiArray, names.topic("_aseba/events"), qos.EVENTS)
+        self._any_emit = node.create_subscription(
+            Int16MultiArray, names.topic("_aseba/emit"), self._on_any_emit, qos.EVENTS
+        )
+        self._publishers: dict[str, Any] = {}
+        self._subscriptions: list[Any] = []
+
+    def open(self, program: ThymioProgram, local_events: Collection[str]) -> None:
+        """Have the topics of this program's events, and of these local ones."""
+        self._close_program()
+        events = [event for event, _ in program.events if not is_internal(event)]
+        self.words, unfit = unlike([*events, *local_events], self._topic)
+        for event, why in unfit.items():
+            self._warn(f"event {event}", f"{why}: use _aseba/events and _aseba/emit")
+        for event, word in self.words.items():
+            self._publishers[event] = self._node.create_publisher(Int16MultiArray, self._topic(word), qos.EVENTS)
+            if event in events:
+                topic = self._names.topic(f"aseba/emit/{word}")
+                subscription = self._node.create_subscription(Int16MultiArray, topic, self._emitter(event), qos.EVENTS)
+                self._subscriptions.append(subscription)
+
+    def publish(self, event: str, args: Sequence[int]) -> None:
+        """The robot emitted an event, or a local one happened."""
+        data = list(args)
+        self._any.publish(Int16MultiArray(layout=convert_readings.layout([(event, len(data))]), data=data))
+        publisher = self._publishers.get(event)
+        if publisher is not None:
+            publisher.publish(Int16MultiArray(data=data))
+
+    def close(self) -> None:
+        """Destroy all topics."""
+        self._close_program()
+        self._node.destroy_publisher(self._any)
+        self._node.destroy_subscription(self._any_emit)
+
+    def _close_program(self) -> None:
+        for publisher in self._publishers.values():
+            self._node.destroy_publisher(publisher)
+        for subscription in self._subscriptions:
+            self._node.destroy_subscription(subscription)
+        self._publishers.clear()
+        self._subscriptions.clear()
+
+    def _topic(self, word: str) -> str:
+        return full_name(self._node, self._names.topic(f"aseba/events/{word}"))
+
+    def _emitter(self, event: str) -> Callable[[Int16MultiArray], None]:
+        return lambda message: self._emit(event, list(message.data))
+
+    def _on_any_emit(self, message: Int16MultiArray) -> None:
+        if len(message.layout.dim) != 1:
+            self._warn("_aseba/emit", "refused: layout.dim[0].label must be the name of the event")
+            return
+        self._emit(message.layout.dim[0].label, list(message.data))
+
+
+def unlike(names: Sequence[str], topic: Callable[[str], str]) -> tuple[dict[str, str], dict[str, str]]:
+    """Name → its word in topics, for those that can have a topic to themselves; for the others why not.
+
+    `topic` makes the whole name of a topic from such a word.
+    """
+    words = {name: topic_word(name) for name in names}
+    taken = list(words.values())
+    unfit = {}
+    for name, word in words.items():
+        if taken.count(word) > 1:
+            unfit[name] = f"shares the topic name {word} with another"
+        elif len(topic(word)) > _LONGEST_TOPIC:
+            unfit[name] = "has a name that is too long for a topic"
+    return {name: word for name, word in words.items() if name not in unfit}, unfit

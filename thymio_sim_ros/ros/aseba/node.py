@@ -1,0 +1,411 @@
+"""The Aseba runtime as a ROS node: feeds readings to devices, sends their commands, carries their events.
+
+It knows topics, not simulators: any robot that has them will do (docs/spec/ros-interface.md section 6,
+docs/aseba_ros.md). Devices keep simulated time by the node's clock. Programs are parameters; a text that does not
+compile is refused with its place, and the old program goes on. A robot without a program is switched on with its menu.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf
+from types import MappingProxyType
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.clock import Clock, ClockChange, JumpThreshold, TimeJump
+from rclpy.clock_type import ClockType
+from rclpy.context import Context
+from rclpy.duration import Duration
+from rclpy.executors import Executor
+from rclpy.parameter import Parameter
+from std_msgs.msg import Int16MultiArray, String
+
+from thymio_sim_ros import resources
+from thymio_sim_ros.device.bindings import sensor_names
+from thymio_sim_ros.device.firmware.behavior_host import MENU
+from thymio_sim_ros.device.firmware.sd_card import CardError
+from thymio_sim_ros.device.firmware.settings import SettingsError
+from thymio_sim_ros.device.layout import THYMIO
+from thymio_sim_ros.device.options import OptionError
+from thymio_sim_ros.device.programs.program import ProgramError
+from thymio_sim_ros.device.programs.program_assignment import Member, Share
+from thymio_sim_ros.loading import check_behaviour, shipped_behaviours
+from thymio_sim_ros.ros.aseba import parameters as aseba_params
+from thymio_sim_ros.ros.aseba import script_parameters
+from thymio_sim_ros.ros.aseba.bus import SLICE_S, Bus
+from thymio_sim_ros.ros.aseba.check_service import CheckService
+from thymio_sim_ros.ros.aseba.device_endpoints import DevicePorts, Wishes
+from thymio_sim_ros.ros.aseba.parameters import RuntimeParams, WrongValueError
+from thymio_sim_ros.ros.interface import qos
+from thymio_sim_ros.ros.interface.names import RobotNames, full_name
+from thymio_sim_ros.ros.interface.raw_topic import Decoder
+from thymio_sim_ros.ros.rclpy_ext import parameters as params
+from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, deliver, greeted, run_main
+from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
+from thymio_sim_ros.ros.rclpy_ext.throttled_log import Warner
+from thymio_sim_ros.ros.rclpy_ext.type_mismatch import InputTypes
+
+__all__ = ["AsebaRuntime", "RuntimeParams", "main"]
+
+SIMULATOR_STATE, SIMULATOR_RAW = "simulator/_state", "simulator/_raw"
+"""Relative: of the simulator in the same namespace."""
+DIAGNOSTICS_S = 1.0
+LISTENERS_S = 0.25
+"""How often robots look whether somebody has come to listen to them."""
+
+NO_OVERRIDES: Mapping[str, Any] = MappingProxyType({})
+_SENSORS = frozenset(sensor_names())
+PROGRAM_ERRORS = (ProgramError, resources.ResourceError, OSError)
+
+
+@dataclass(frozen=True, slots=True)
+class _Accepted:
+    """Parameters that were checked: all values, those that change, and each robot's program."""
+
+    values: dict[str, Any]
+    changes: dict[str, Any]
+    shares: dict[str, Share | None]
+
+
+class AsebaRuntime:
+    """The runtime node: one device per robot, all on one Aseba bus."""
+
+    def __init__(
+        self,
+        context: Context,
+        defaults: RuntimeParams | None = None,
+        *,
+        use_sim_time: bool | None = None,
+        overrides: Mapping[str, Any] = NO_OVERRIDES,
+    ) -> None:
+        """`overrides`: values of parameters by name, as from a command line."""
+        given = dict(overrides) | ({} if use_sim_time is None else {"use_sim_time": use_sim_time})
+        self.node = parameter_node(
+            "aseba_runtime",
+            context=context,
+            names_file=lambda name: name.endswith("script.path"),
+            parameter_overrides=[Parameter(name, value=value) for name, value in given.items()],
+            allow_undeclared_parameters=True,
+        )
+        self.robots: list[DevicePorts] = []
+        self._accepted: _Accepted | None = None
+        self._is_declaring = False
+        self._raw: Any = None
+        """The subscription to the integers of all robots of the simulator."""
+        self._decoder, self._warn = Decoder(), Warner(self.node)
+        try:
+            self._start(defaults or RuntimeParams())
+        except (OptionError, WrongValueError, CardError, SettingsError, *PROGRAM_ERRORS) as error:
+            self.node.destroy_node()
+            raise StartError(str(error)) from error
+
+    @property
+    def greeting(self) -> str:
+        """What the robots run, for a person; who they are is not known before the simulator tells."""
+        programs = dict.fromkeys(ports.program.name for ports in self.robots if ports.program.name)
+        return f"Program: {', '.join(programs) or 'none'}"
+
+    def turn(self, executor: Executor) -> None:
+        """Handle messages, then let robots take turns that wait for one, for a slice of wall time.
+
+        Where a slice was not enough for programs without an end, the rest of the process has the interpreter for as
+        long.
+        """
+        with self._bus.slice():
+            busy = [ports for ports in self.robots if ports.is_busy]
+            if busy and self._bus.has_waiting:
+                self._rest(executor)
+            wait_s = min((ports.resumes_s for ports in busy), default=inf) - time.monotonic()
+            if wait_s > 0.0 and not self._bus.has_waiting:
+                executor.spin_once(timeout_sec=min(wait_s, SPIN_SLICE_S))
+                return
+            deliver(executor)
+            now_s = time.monotonic()
+            self._bus.settle(*[ports for ports in busy if ports.is_busy and ports.resumes_s <= now_s])
+
+    @staticmethod
+    def _rest(executor: Executor) -> None:
+        """Do no more than handle messages for a while."""
+        end_s = time.monotonic() + SLICE_S
+        while (wait_s := end_s - time.monotonic()) > 0.0:
+            executor.spin_once(timeout_sec=wait_s)
+
+    def end(self) -> None:
+        """Stop the wheels that programs drive."""
+        for ports in self.robots:
+            ports.halt()
+
+    def close(self) -> None:
+        """Stop the wheels, then destroy the node."""
+        self._jumps.unregister()
+        for ports in self.robots:
+            ports.close()
+        self.node.destroy_node()
+
+    # -- start
+
+    def _start(self, defaults: RuntimeParams) -> None:
+        node = self.node
+        self._values = aseba_params.adopt_overrides(node)
+        self.params = params.declare(node, defaults)
+        self._values |= params.by_name(self.params)
+        for name, value in self._values.items():
+            aseba_params.check_value(name, value)
+        self._options = self.params.options
+        self._behaviour = check_behaviour(self.params.behaviour, self.params.layout)
+        self._bus = Bus(node, lambda: self.robots, self._on_told)
+        self._bus.reaches_all = self.params.emit_reaches == "network"
+        self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", qos.SENSOR)
+        self._input_types = InputTypes(node)
+        self._behaviours = node.create_publisher(String, "~/_behaviours", qos.LATCHED)
+        listed = [{"name": name, "description": text} for name, text in shipped_behaviours().items()]
+        self._behaviours.publish(String(data=json.dumps(listed)))
+        self._check = CheckService(
+            node, layout=self.params.layout, robots=lambda: [ports.names.name for ports in self.robots]
+        )
+        if (
+            self.params.follow_simulator
+            and self.params.robot_topics != "driver"
+            and node.count_publishers(SIMULATOR_RAW)
+        ):
+            self._listen_to(SIMULATOR_RAW)  # it will say so; subscriptions for a hundred robots are not made in vain
+        self._set_robots(self.params.robots)
+        if self.params.follow_simulator:
+            node.create_subscription(String, SIMULATOR_STATE, self._on_simulator_state, qos.LATCHED)
+        node.add_pre_set_parameters_callback(lambda given: aseba_params.exclusive(given, self._told))
+        node.add_on_set_parameters_callback(self._check_parameters)
+        node.add_post_set_parameters_callback(self._apply_parameters)
+        self._jumps = node.get_clock().create_jump_callback(
+            JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False),
+            post_callback=self._on_jump,
+        )
+        self._wall = Clock(clock_type=ClockType.STEADY_TIME)
+        node.create_timer(DIAGNOSTICS_S, self._publish_diagnostics, clock=self._wall)
+        node.create_timer(DIAGNOSTICS_S, self._see_who_tells, clock=self._wall)
+        node.create_timer(LISTENERS_S, self._see_listeners, clock=self._wall)
+        self._looks = node.create_timer(1.0 / self.params.watch_rate, self._look, clock=self._wall)
+
+    # -- robots
+
+    def _set_robots(self, names: Sequence[str]) -> None:
+        """One device for each of these namespaces; those that are there already go on, numbers stay."""
+        here = {ports.names.name: ports for ports in self.robots}
+        for name, ports in here.items():
+            if name not in names:
+                ports.close()
+        kept = {name: ports for name, ports in here.items() if name in names}
+        self.robots = list(kept.values())
+        new = [name for name in names if name not in kept]
+        for name in new:
+            self.robots.append(self._new_robot(name, self._free_number(names.index(name)), alone=len(names) == 1))
+        self.robots.sort(key=lambda ports: names.index(ports.names.name))
+        self._share_out(new)
+
+    def _free_number(self, place: int) -> int:
+        taken = {ports.number for ports in self.robots}
+        wanted = self.params.first_id + place
+        return wanted if wanted not in taken else max(taken) + 1
+
+    def _new_robot(self, name: str, number: int, *, alone: bool) -> DevicePorts:
+        if name:
+            self._is_declaring = True
+            self._values |= aseba_params.declare_robot(self.node, name)
+            self._is_declaring = False
+        return DevicePorts(
+            self.node,
+            RobotNames(name),
+            number=number,
+            around=self._bus,
+            options=self._options.for_robot(name, alone=alone),
+            wishes=self._wishes(name),
+            has_driver=self.params.robot_topics == "driver",
+            is_fed=self._raw is not None,
+        )
+
+    def _share_out(self, new: Sequence[str]) -> None:
+        """New robots begin; others only if the file is shared out differently now."""
+        shares = script_parameters.shares(self._values, self._members(), self.params.layout)
+        for ports in self.robots:
+            share = shares[ports.names.name]
+            if ports.names.name in new or _program(share) != _program(ports.share):
+                self._begin(ports, share)
+
+    def _begin(self, ports: DevicePorts, share: Share | None) -> None:
+        """Let a robot begin with its program, or with the behaviour that it is to be switched on with."""
+        for note in share.notes if share is not None else ():
+            self.node.get_logger().warning(f"{ports.names.name or 'robot'}: {note}")
+        if share is None and self.params.layout != THYMIO:  # the reference playground has no menu
+            share = Share(None)
+        if share is None or self._behaviour:
+            ports.start(self._behaviour or MENU, share)
+        else:
+            ports.load(share.program, share.notes)
+
+    def _members(self) -> list[Member]:
+        return [Member(ports.names.name, ports.number) for ports in self.robots]
+
+    def _on_simulator_state(self, message: String) -> None:
+        """Another playground may have other robots; they come and go while it runs."""
+        try:
+            told = json.loads(message.data)
+            names, raw = [str(robot["name"]) for robot in told["robots"]], str(told.get("raw", ""))
+        except (ValueError, KeyError, TypeError) as error:
+            self._warn(full_name(self.node, SIMULATOR_STATE), f"refused: {error!r}")
+            return
+        self._listen_to("" if self.params.robot_topics == "driver" else raw)
+        if names != [ports.names.name for ports in self.robots]:
+            try:
+                self._set_robots(names)
+            except (CardError, SettingsError, *PROGRAM_ERRORS) as error:
+                self.node.get_logger().error(f"robots {', '.join(names)}: {error}")
+
+    def _listen_to(self, topic: str) -> None:
+        """Hear the integers of all robots at once where a simulator tells them; else each robot has its topics."""
+        topic = topic and self.node.resolve_topic_name(topic)
+        if self._raw is not None and self._raw.topic_name != topic:
+            self.node.destroy_subscription(self._raw)
+            self._raw = None
+        if self._raw is None and topic:
+            self._raw = self.node.create_subscription(Int16MultiArray, topic, self._on_raw, qos.EVENTS, raw=True)
+        for ports in self.robots:
+            ports.is_fed = self._raw is not None
+
+    def _see_who_tells(self) -> None:
+        """There may be no simulator any more, and a robot of another kind instead."""
+        if self._raw is not None and not self.node.count_publishers(self._raw.topic_name):
+            self._listen_to("")
+
+    def _see_listeners(self) -> None:
+        for ports in self.robots:
+            ports.see_listeners()
+
+    def _on_raw(self, data: bytes) -> None:
+        """A tick of the simulator: all that was measured is there before anybody takes a turn, as in the runner."""
+        robots = {ports.names.name: ports for ports in self.robots if ports.is_fed}
+        fed: dict[DevicePorts, None] = {}
+        try:
+            for robot, sensor, words in self._decoder.decode(data):
+                if robot in robots and sensor in _SENSORS:
+                    robots[robot].feed(sensor, words)
+                    fed[robots[robot]] = None
+        except (ValueError, RuntimeError) as error:
+            self._warn(full_name(self.node, SIMULATOR_RAW), f"refused: {error}")
+        now_ns = self.node.get_clock().now().nanoseconds
+        self._bus.settle(*[ports for ports in fed if ports.is_due(now_ns)])
+
+    def _on_jump(self, jump: TimeJump) -> None:
+        """Time went back: the simulator was reset, and so are the robots' machines."""
+        if jump.clock_change in (ClockChange.ROS_TIME_NO_CHANGE, ClockChange.SYSTEM_TIME_NO_CHANGE):
+            for ports in self.robots:
+                ports.restart()
+
+    # -- what is told
+
+    def _look(self) -> None:
+        for ports in self.robots:
+            ports.look()
+
+    def _on_told(self, ports: DevicePorts) -> None:
+        self._publish_statuses([ports.status.message])
+
+    def _publish_diagnostics(self) -> None:
+        for ports in self.robots:
+            ports.observe_load()
+        self._input_types.look()
+        self._publish_statuses([*(ports.status.message for ports in self.robots), self._input_types.status()])
+
+    def _publish_statuses(self, statuses: Iterable[DiagnosticStatus]) -> None:
+        if self._diagnostics.get_subscription_count():
+            message = DiagnosticArray(status=list(statuses))
+            message.header.stamp = self.node.get_clock().now().to_msg()
+            self._diagnostics.publish(message)
+
+    # -- parameters
+
+    def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        if self._is_declaring:
+            return SetParametersResult(successful=True)
+        changes = params.changes(parameters)
+        named = script_parameters.named(changes, self._told)
+        values = self._values | named
+        try:
+            for name, value in changes.items():
+                if not (self.node.has_parameter(name) or aseba_params.is_free(name)):
+                    raise WrongValueError(f"there is no parameter {name}")
+                aseba_params.check_value(name, value)
+            if reason := params.refusal(self.params, parameters):
+                raise WrongValueError(reason)
+            check_behaviour(changes.get("behaviour", ""), self.params.layout)
+            shares = self._checked_shares(values, named)
+        except (WrongValueError, *PROGRAM_ERRORS) as error:
+            self._accepted = None
+            return SetParametersResult(successful=False, reason=str(error))
+        self._accepted = _Accepted(values, named, shares)
+        return SetParametersResult(successful=True)
+
+    def _told(self, name: str) -> str:
+        """A text parameter as it was set last; empty if it never was."""
+        return str(self.node.get_parameter_or(name, Parameter(name, value="")).value)
+
+    def _checked_shares(self, values: dict[str, Any], changes: dict[str, Any]) -> dict[str, Share | None]:
+        """Each robot's program by the new values, if a script changes; those of absent robots must compile too."""
+        if not any(".script." in f".{name}" for name in changes):
+            return {}
+        absent = set(script_parameters.named_robots(changes)) - {ports.names.name for ports in self.robots}
+        for name in sorted(absent):
+            script_parameters.shares(values, [Member(name, self.params.first_id)], self.params.layout)
+        return script_parameters.shares(values, self._members(), self.params.layout)
+
+    def _apply_parameters(self, parameters: list[Parameter]) -> None:
+        accepted, self._accepted = self._accepted, None
+        if accepted is None:
+            return
+        old, self._values = self._values, accepted.values
+        before = self._behaviour
+        changes = accepted.changes
+        self.params = params.updated(self.params, parameters)
+        self._bus.reaches_all = self.params.emit_reaches == "network"
+        if "watch_rate" in changes:
+            self.node.destroy_timer(self._looks)
+            self._looks = self.node.create_timer(1.0 / self.params.watch_rate, self._look, clock=self._wall)
+        if "behaviour" in changes:
+            self._behaviour = self.params.behaviour
+        for ports in self.robots:
+            ports.want(self._wishes(ports.names.name))
+            self._apply_script(ports, old, accepted, is_switched=self._behaviour != before)
+
+    def _apply_script(self, ports: DevicePorts, old: dict[str, Any], accepted: _Accepted, *, is_switched: bool) -> None:
+        name = ports.names.name
+        share = accepted.shares.get(name, ports.share)
+        is_other = script_parameters.script_of(old, name) != script_parameters.script_of(accepted.values, name)
+        if is_other or _program(share) != _program(ports.share):
+            if "behaviour" not in accepted.changes:
+                self._behaviour = ""
+            self._begin(ports, share or Share(None))
+        elif is_switched:
+            self._begin(ports, share)
+
+    def _wishes(self, robot: str) -> Wishes:
+        """What is wanted of one robot: breakpoints of its own in place of those for all, watches of its own besides."""
+        values = self._values
+        own = f"robots.{robot}."
+        return Wishes(
+            breakpoints=tuple(values.get(f"{own}breakpoints") or values.get("breakpoints") or ()),
+            watch=(*(values.get("watch") or ()), *(values.get(f"{own}watch") or ())),
+            local_events=tuple(values.get("local_events") or ()),
+            language=str(values.get("language", "en")),
+        )
+
+
+def _program(share: Share | None) -> object:
+    return None if share is None else share.program
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """The executable `aseba_runtime`."""
+    return run_main(lambda context: greeted([AsebaRuntime(context)]), args)

@@ -1,0 +1,227 @@
+"""Parameters of the Aseba runtime: those for all robots, and the free ones (constants, what differs per robot)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence, Sized
+from dataclasses import dataclass
+from typing import Any
+
+from rclpy.exceptions import InvalidNamespaceException
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.validate_namespace import validate_namespace
+
+from aseba_vm.frontend.lexer import is_name
+from aseba_vm.vm import MAX_BREAKPOINTS
+from thymio_sim_ros import resources
+from thymio_sim_ros.device.options import DeviceOptions
+from thymio_sim_ros.ros.rclpy_ext import parameters as params
+from thymio_sim_ros.ros.rclpy_ext.parameters import param
+
+__all__ = [
+    "RuntimeParams",
+    "WrongValueError",
+    "adopt_overrides",
+    "check_value",
+    "declare_robot",
+    "exclusive",
+    "is_free",
+]
+
+STRINGS, INTEGERS = Parameter.Type.STRING_ARRAY, Parameter.Type.INTEGER_ARRAY
+INT16 = range(-0x8000, 0x8000)
+
+BEHAVIOUR = "behaviour"
+ROBOT_NAMES, OLD_ROBOT_NAMES = "robot_names", "robots"
+"""`ros2 param dump` cannot write a parameter `robots` beside those that begin with `robots.`."""
+
+ROBOT_TEXTS = {
+    "script.path": "Program for this robot in place of that for all: a built-in program's name or an .aesl file",
+    "script.source": "Program for this robot in place of that for all: the text",
+    "script.name": "Name shown for a program given as text",
+}
+ROBOT_ARRAYS = {
+    "breakpoints": (INTEGERS, "Lines to stop at on this robot, in place of those for all"),
+    "watch": (STRINGS, "Variables of this robot with a topic of their own, besides those for all"),
+}
+ARRAYS = {"local_events": STRINGS} | {word: kind for word, (kind, _) in ROBOT_ARRAYS.items()}
+_FREE = re.compile(
+    r"(?:robots\.(?P<robot>[A-Za-z_][A-Za-z0-9_/]*)\.)?"
+    r"(?:script\.constants\.(?P<constant>.+)|(?P<plain>script\.path|script\.source|script\.name|breakpoints|watch))"
+)
+
+
+class WrongValueError(ValueError):
+    """A value that a parameter cannot have; the text says why."""
+
+
+@dataclass(frozen=True)
+class RuntimeParams:
+    """Parameters of the Aseba runtime node."""
+
+    robots: list[str] = param(
+        [""],
+        "Namespaces of the robots that run the program at first; '' is the only robot",
+        name=ROBOT_NAMES,
+        fixed=True,
+    )
+    follow_simulator: bool = param(
+        True, "Whether the robots are those of simulator/_state, once there is one", fixed=True
+    )
+    path: str = param("", "Program: a built-in behaviour's name or an .aesl file", name="script.path")
+    source: str = param("", "Program: text of an .aesl file or of one Aseba program", name="script.source")
+    name: str = param("", "Name shown for a program given as text", name="script.name")
+    behaviour: str = param(
+        "", "Built-in behaviour, such as menu, that the robot is switched on with; '' is the program, or the menu"
+    )
+    breakpoints: list[int] = param(
+        [], "Lines of the program's file, from 1, before which robots stop; at most 16", array=INTEGERS
+    )
+    watch: list[str] = param([], "Variables with a topic of their own, aseba/variables/<name>", array=STRINGS)
+    watch_rate: float = param(10.0, "Looks at variables per second of wall time", low=0.1, high=100.0)
+    local_events: list[str] = param(
+        [], "Local events, such as prox, that are published as those of the program are; * is all", array=STRINGS
+    )
+    emit_reaches: str = param(
+        "network",
+        "Whom _aseba/emit of a robot reaches: network (all that declare the event) or robot (that one)",
+        choices=("network", "robot"),
+    )
+    language: str = param("en", "Language of the help in _aseba/target; English where it is not translated")
+    first_id: int = param(1, "Number of the first robot on the Aseba network", low=1, high=32000, fixed=True)
+    robot_topics: str = param(
+        "raw",
+        "Where readings come from: raw (the simulator's _raw/...) or driver (the ROS driver's topics)",
+        fixed=True,
+        choices=("raw", "driver"),
+    )
+    layout: str = param(
+        "thymio", "Order of variables and natives: thymio (firmware 14) or playground (the reference's)", fixed=True
+    )
+    events: str = param(
+        "firmware", "How events meet: firmware (they wait) or playground (they end a handler that runs)", fixed=True
+    )
+    card: str = param("", "Folder that stands for the memory card; '' is no card", fixed=True)
+    settings: str = param("", "Folder that keeps the robot's settings; '' forgets them", fixed=True)
+
+    @property
+    def options(self) -> DeviceOptions:
+        """What these say about the robots; OptionError for a choice that does not exist."""
+        folders = (resources.expanded(text) if text else None for text in (self.card, self.settings))
+        return DeviceOptions(self.layout, self.events, *folders)
+
+
+def adopt_overrides(node: Node) -> dict[str, Any]:
+    """Declare free parameters that the command line or a file gives; their values. The others are declared as usual.
+
+    WrongValueError.
+    """
+    found = {}
+    ours = params.by_name(RuntimeParams())
+    params.warn_of_unknown(node, "ros.md", lambda name: name in ours or is_free(name) or name == OLD_ROBOT_NAMES, ours)
+    given = params.overrides(node)
+    if OLD_ROBOT_NAMES in given and ROBOT_NAMES not in given:
+        node.get_logger().warning(f"the parameter {OLD_ROBOT_NAMES} is called {ROBOT_NAMES} now")
+        node._parameter_overrides[ROBOT_NAMES] = Parameter(ROBOT_NAMES, value=given[OLD_ROBOT_NAMES])
+    for name, value in given.items():
+        if value is not None and is_free(name):  # an empty list has no type, and says what would be without it
+            check_value(name, value)
+            found[name] = node.declare_parameter(name, value).value
+    return found
+
+
+def declare_robot(node: Node, robot: str) -> dict[str, Any]:
+    """Declare what may differ for one robot, unless it is declared; values in force by full name."""
+    values: dict[str, Any] = {}
+    for word, text in ROBOT_TEXTS.items():
+        name = f"robots.{robot}.{word}"
+        if not node.has_parameter(name):
+            values[name] = node.declare_parameter(name, "", params.described(text)).value
+    for word, (kind, text) in ROBOT_ARRAYS.items():
+        name = f"robots.{robot}.{word}"
+        if not node.has_parameter(name):
+            values[name] = params.declare_array(node, name, kind, text)
+    return values
+
+
+def check_value(name: str, value: Any) -> None:
+    """Raise WrongValueError for a free parameter that does not exist or cannot have this value."""
+    if name == "local_events":
+        _check_strings(name, value)
+    if name == ROBOT_NAMES:
+        for robot in value:
+            _check_namespace(name, robot)
+    match = _FREE.fullmatch(name)
+    if match is None:
+        return
+    if match["constant"]:
+        _check_constant(name, match["constant"], value)
+    elif match["plain"] == "breakpoints":
+        _check_lines(name, value)
+    elif match["plain"] == "watch":
+        _check_strings(name, value)
+    elif not isinstance(value, str):
+        raise WrongValueError(f"{name}: {value!r} found, expected text")
+
+
+def is_free(name: str) -> bool:
+    """Whether a parameter of this name may be set without being declared."""
+    match = _FREE.fullmatch(name)
+    return match is not None and bool(match["robot"] or match["constant"])
+
+
+def exclusive(parameters: Sequence[Parameter], present: Callable[[str], Any]) -> list[Parameter]:
+    """The same with the other of path and source emptied where one is given, and empty lists of their own type.
+
+    Another program for all, different from the `present` one, ends a behaviour.
+    """
+    given = {parameter.name for parameter in parameters}
+    result = []
+    for parameter in parameters:
+        kind = ARRAYS.get(parameter.name.rpartition(".")[2])
+        is_empty = not isinstance(parameter.value, str) and isinstance(parameter.value, Sized) and not parameter.value
+        result.append(Parameter(parameter.name, kind, []) if kind is not None and is_empty else parameter)
+        for one, other in (("script.path", "script.source"), ("script.source", "script.path")):
+            sibling = parameter.name.removesuffix(one) + other
+            if parameter.name.endswith(one) and parameter.value and sibling not in given:
+                result.append(Parameter(sibling, value=""))
+        is_program = parameter.name in ("script.path", "script.source") and parameter.value
+        if is_program and BEHAVIOUR not in given and parameter.value != present(parameter.name):
+            result.append(Parameter(BEHAVIOUR, value=""))
+    return result
+
+
+def _check_constant(name: str, constant: str, value: Any) -> None:
+    if not is_name(constant):
+        raise WrongValueError(f"{name}: a program cannot use the name '{constant}'")
+    if value is not None and (isinstance(value, bool) or not isinstance(value, int) or value not in INT16):
+        raise WrongValueError(f"{name}: {value!r} found, expected a whole number from -32768 to 32767")
+
+
+def _check_namespace(name: str, robot: str) -> None:
+    try:
+        validate_namespace(f"/{robot}")
+    except InvalidNamespaceException as error:
+        raise WrongValueError(f"{name}: {robot!r} found, expected a namespace such as 'anna', or ''") from error
+
+
+def _check_lines(name: str, value: Any) -> None:
+    lines = _list(name, value, "lines")
+    if any(isinstance(line, bool) or not isinstance(line, int) or line < 1 for line in lines):
+        raise WrongValueError(f"{name}: {lines} found, expected lines from 1 on")
+    if len(lines) > MAX_BREAKPOINTS:
+        raise WrongValueError(f"{name}: {len(lines)} breakpoints found, expected at most {MAX_BREAKPOINTS}")
+
+
+def _check_strings(name: str, value: Any) -> None:
+    names = _list(name, value, "names")
+    if any(not isinstance(item, str) for item in names):
+        raise WrongValueError(f"{name}: {names} found, expected a list of names")
+
+
+def _list(name: str, value: Any, of: str) -> list[Any]:
+    """The items of a list; one that was never set has none."""
+    if isinstance(value, str | bytes | int | float):  # a bool is an int
+        raise WrongValueError(f"{name}: {value!r} found, expected a list of {of}")
+    return list(value or ())

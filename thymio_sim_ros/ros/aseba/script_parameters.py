@@ -1,0 +1,100 @@
+"""From the script parameters to each robot's program (docs/spec/ros-interface.md section 6.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from thymio_sim_ros.device.programs.program import load_file
+from thymio_sim_ros.device.programs.program_assignment import Member, Share, share_out
+from thymio_sim_ros.loading import read_text
+
+__all__ = ["Script", "named", "named_robots", "script_of", "shares"]
+
+_CONSTANTS = "script.constants."
+_NAME = "script.name"
+_SOURCE = "script.source"
+
+
+@dataclass(frozen=True, slots=True)
+class Script:
+    """What a robot is to run: a path or a text, with constants. `is_own`: it has it to itself."""
+
+    path: str
+    source: str
+    name: str
+    constants: tuple[tuple[str, int], ...]
+    is_own: bool
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is neither path nor text."""
+        return not (self.path or self.source)
+
+
+def script_of(values: Mapping[str, Any], robot: str) -> Script:
+    """The script that the parameters give a robot; what is empty for it is as for all."""
+    prefix = f"robots.{robot}."
+    is_own = bool(values.get(f"{prefix}script.path") or values.get(f"{prefix}script.source"))
+    own = prefix if is_own else ""
+    return Script(
+        values.get(f"{own}script.path") or "",
+        values.get(f"{own}script.source") or "",
+        values.get(f"{own}script.name") or "",
+        tuple(sorted((_constants(values, "") | _constants(values, prefix)).items())),
+        is_own,
+    )
+
+
+def shares(values: Mapping[str, Any], robots: Sequence[Member], layout: str) -> dict[str, Share | None]:
+    """Robot's name → its program; None for a robot that no script is for.
+
+    Raises ProgramError, ResourceError, OSError.
+    """
+    scripts = {robot.name: script_of(values, robot.name) for robot in robots}
+    pool = [robot for robot in robots if not scripts[robot.name].is_own]
+    found: dict[Script, dict[str, Share]] = {}
+    result: dict[str, Share | None] = {}
+    for robot in robots:
+        script = scripts[robot.name]
+        if script.is_empty:
+            result[robot.name] = None
+            continue
+        if script not in found or script.is_own:
+            found[script] = _load(script, [robot] if script.is_own else pool, layout)
+        result[robot.name] = found[script][robot.name]
+    return result
+
+
+def named(changes: Mapping[str, Any], waiting: Callable[[str], Any]) -> dict[str, Any]:
+    """Changes of parameters with a script's name only beside its text: one set before waits, so that a text that is
+    refused leaves the name of the program that goes on. `waiting` gives the name set last."""
+    names = {name: value for name, value in changes.items() if name.endswith(_NAME)}
+    result = {name: value for name, value in changes.items() if name not in names}
+    for text in [name for name in result if name.endswith(_SOURCE)]:
+        name = text.removesuffix(_SOURCE) + _NAME
+        result[name] = names[name] if name in names else waiting(name)
+    return result
+
+
+def named_robots(names: Iterable[str]) -> list[str]:
+    """Robots that these parameters' names speak of."""
+    return list(dict.fromkeys(name.split(".")[1] for name in names if name.startswith("robots.")))
+
+
+def _constants(values: Mapping[str, Any], prefix: str) -> dict[str, int]:
+    start = prefix + _CONSTANTS
+    return {
+        name.removeprefix(start): value
+        for name, value in values.items()
+        if name.startswith(start) and value is not None
+    }
+
+
+def _load(script: Script, robots: Sequence[Member], layout: str) -> dict[str, Share]:
+    text, name = (script.source, script.name or "program") if script.source else read_text(script.path)
+    file = load_file(
+        text, name, layout, constants=dict(script.constants), robots=[robot.name for robot in robots if robot.name]
+    )
+    return share_out(file, robots)

@@ -1,0 +1,71 @@
+"""All nodes in one process, each on an executor and a thread of its own: `ros2 run thymio_sim_ros thymio`.
+
+The nodes are the same as in separate processes and talk by the same topics.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+from rclpy.context import Context
+
+from thymio_sim_ros.ros.aseba.node import AsebaRuntime
+from thymio_sim_ros.ros.combined_parameters import BRIDGE, PAGE, RUNTIME, SIMULATOR, SUITE, assigned, defaults
+from thymio_sim_ros.ros.rclpy_ext.node_runner import Host, Life, StartError, greeted, run_main
+from thymio_sim_ros.ros.simulator.node import Simulator
+from thymio_sim_ros.suite_config import Suite
+
+REFUSED = 2
+
+
+def lives(context: Context, suite: Suite, warnings: Sequence[str] = ()) -> Iterator[Host]:
+    """Simulator, Aseba runtime and, as wanted, bridge and page, in the order of their start.
+
+    `warnings` about the arguments are logged by the first.
+    """
+    given = defaults(suite)
+    simulator = Simulator(context, given[SIMULATOR])
+    for warning in warnings:
+        simulator.node.get_logger().warning(warning)
+    robots = [names.name for names in simulator.names.values()]
+    yield simulator
+    yield AsebaRuntime(context, replace(given[RUNTIME], robots=robots), use_sim_time=True)
+    foxglove_port, tokens = suite.foxglove_port, suite.tokens
+    if suite.foxglove:
+        from thymio_sim_ros.ros.foxglove.node import FoxgloveBridge
+
+        bridge = FoxgloveBridge(context=context, defaults=given[BRIDGE], use_sim_time=True, tokens=tokens)
+        yield bridge
+        foxglove_port, tokens = bridge.port, bridge.tokens
+    if suite.web:
+        from thymio_sim_ros.ros.web.node import WebPage
+
+        yield WebPage(context, replace(given[PAGE], foxglove_port=foxglove_port), tokens)
+
+
+def run(suite: Suite, args: Sequence[str] | None = None, *, on_ready: Callable[[], None] = lambda: None) -> int:
+    """Run the suite until SIGINT or SIGTERM; the exit code. `args`: those of ROS, else those of the process."""
+    return _run(suite, args, lambda hosts: hosts, on_ready)
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """The executable `thymio`: the suite with its defaults, ROS arguments for everything else."""
+    return _run(Suite(), args, greeted)
+
+
+def _run(
+    suite: Suite,
+    args: Sequence[str] | None,
+    dressed: Callable[[Iterator[Host]], Iterator[Life]],
+    on_ready: Callable[[], None] = lambda: None,
+) -> int:
+    try:
+        with assigned(sys.argv[1:] if args is None else args) as (words, warnings):
+            return run_main(
+                lambda context: dressed(lives(context, suite, warnings)), words, executable=SUITE, on_ready=on_ready
+            )
+    except StartError as error:
+        print(f"thymio-sim: {error}", file=sys.stderr)
+        return REFUSED

@@ -1,0 +1,165 @@
+"""The parameters of the suite in one process: which node each belongs to, and with which default.
+
+A parameter given without a node's name (`-p port:=9000`) would go to every node of the process, though `port` of the
+page is not `port` of the bridge. `assigned` gives each to the nodes that it is meant for; this works in a namespace
+too, where rcl itself finds no node by `-p node:name:=value`.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from thymio_sim_ros.ros.aseba.parameters import RuntimeParams, is_free
+from thymio_sim_ros.ros.rclpy_ext import parameters
+from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
+from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
+from thymio_sim_ros.suite_config import Suite
+
+__all__ = ["BRIDGE", "PAGE", "RUNTIME", "SIMULATOR", "SUITE", "Place", "assigned", "defaults", "places"]
+
+SUITE = "thymio"
+"""What the process is called; `-p thymio:name:=value` is the same as `-p name:=value`."""
+
+SIMULATOR, RUNTIME, BRIDGE, PAGE = "simulator", "aseba_runtime", "foxglove_bridge", "web_ui"
+
+Place = tuple[str, str]
+"""A node, and what it calls the parameter."""
+
+_SPECIAL: Mapping[str, tuple[Place, ...]] = {
+    "port": ((PAGE, "port"),),
+    "foxglove_port": ((BRIDGE, "port"), (PAGE, "foxglove_port")),
+    "robot_names": ((SIMULATOR, "robot_names"),),
+}
+"""Names that mean something else to one of the nodes that have them; the runtime follows the simulator's robots."""
+
+_OF_ROS: Mapping[str, tuple[str, ...]] = {
+    "use_sim_time": (RUNTIME, BRIDGE, PAGE),
+    "start_type_description_service": (SIMULATOR, RUNTIME, BRIDGE, PAGE),
+}
+"""Parameters that rclpy declares, and the nodes they are meant for: the simulator makes the time."""
+
+_PARAMETER = ("-p", "--param")
+_QUOTED = ('"', "'", "[", "{")
+
+
+def defaults(suite: Suite) -> dict[str, Any]:
+    """The parameters of each node by its name, with the values of this suite; of bridge and page if it has them."""
+    device = suite.device
+    values: dict[str, Any] = {
+        SIMULATOR: SimulatorParams(
+            playground=suite.playground,
+            seed=suite.seed,
+            motor_model=suite.motor_model,
+            proximity_model=suite.proximity_model,
+            log=suite.log,
+            real_time_factor=suite.real_time_factor,
+            cmd_vel_timeout=suite.cmd_vel_timeout_s,
+        ),
+        RUNTIME: RuntimeParams(
+            path=suite.program,
+            behaviour=suite.behaviour,
+            layout=device.layout,
+            events=device.events,
+            card=str(device.card or ""),
+            settings=str(device.settings or ""),
+        ),
+    }
+    if suite.foxglove:
+        from thymio_sim_ros.ros.foxglove.options import FoxgloveParams
+
+        values[BRIDGE] = FoxgloveParams(address=suite.address, port=suite.foxglove_port)
+    if suite.web:
+        from thymio_sim_ros.ros.web.node import WebParams
+
+        values[PAGE] = WebParams(address=suite.address, port=suite.port, foxglove_port=suite.foxglove_port)
+    return values
+
+
+def places(name: str) -> tuple[Place, ...]:
+    """Where a parameter of the suite goes; nothing for one that no node has."""
+    if name in _SPECIAL:
+        return _SPECIAL[name]
+    if name in _OF_ROS:
+        return tuple((node, name) for node in _OF_ROS[name])
+    if name.startswith("qos_overrides."):
+        return ((SIMULATOR, name),)
+    if is_free(name):
+        return ((RUNTIME, name),)
+    return tuple((node, name) for node, values in defaults(Suite()).items() if name in parameters.by_name(values))
+
+
+@contextmanager
+def assigned(words: Sequence[str]) -> Iterator[tuple[list[str], list[str]]]:
+    """The arguments of ROS with each parameter at its node, and a warning for each that no node has.
+
+    They name a file that is there until the context ends. StartError when it cannot be written.
+    """
+    rest, given = _split(words)
+    if not given:
+        yield list(words), []
+        return
+    sections, warnings = _sections(given)
+    try:
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml", encoding="utf-8") as file:
+            file.write(_yaml(sections))
+            file.flush()
+            yield [*rest, "--ros-args", "--params-file", file.name], warnings
+    except OSError as error:
+        raise StartError(f"parameters cannot be passed on: {error.strerror} ({error.filename})") from error
+
+
+def _split(words: Sequence[str]) -> tuple[list[str], list[str]]:
+    """All words but those of parameters, and the parameters: `node:name:=value` or `name:=value`."""
+    rest: list[str] = []
+    given: list[str] = []
+    is_of_ros, waiting = False, list(words)
+    while waiting:
+        word = waiting.pop(0)
+        if word == "--ros-args" or (word == "--" and is_of_ros):
+            is_of_ros = word == "--ros-args"
+        if is_of_ros and word in _PARAMETER and waiting and ":=" in waiting[0]:
+            given.append(waiting.pop(0))
+        else:
+            rest.append(word)
+    return rest, given
+
+
+def _sections(given: Sequence[str]) -> tuple[dict[str, dict[str, str]], list[str]]:
+    """Node → parameter → value as it was written, those that name their node last; and what is wrong."""
+    sections: dict[str, dict[str, str]] = {node: {} for node in (SIMULATOR, RUNTIME, BRIDGE, PAGE)}
+    warnings: list[str] = []
+    rules = [(*left.rpartition(":")[::2], value) for left, _, value in (rule.partition(":=") for rule in given)]
+    for node, name, value in sorted(rules, key=lambda rule: rule[0] not in ("", SUITE)):
+        found = places(name) if node in ("", SUITE) else ((node, name),)
+        if not found:
+            known = [one for values in defaults(Suite()).values() for one in parameters.by_name(values)]
+            warnings.append(f"parameter {name} is none of the suite and does nothing{parameters.meant(name, known)}")
+        for place, own_name in found:
+            if place in sections:
+                sections[place][own_name] = value
+            else:
+                near = parameters.meant(place, list(sections))
+                warnings.append(f"parameter {name}: the suite has no node {place}{near}")
+    return sections, warnings
+
+
+def _yaml(sections: Mapping[str, Mapping[str, str]]) -> str:
+    """A file of parameters; `/**/` finds the nodes in every namespace."""
+    lines = []
+    for node, values in sections.items():
+        if values:
+            lines += [f"/**/{node}:", "  ros__parameters:"]
+            lines += [f"    {json.dumps(name)}: {_scalar(value)}" for name, value in values.items()]
+    return "\n".join([*lines, ""])
+
+
+def _scalar(value: str) -> str:
+    """A value as rcl reads it; text that YAML would take for more than a line or for a mapping is quoted."""
+    if value.startswith(_QUOTED):
+        return value.replace("\n", " ")
+    is_plain = value and "\n" not in value and ": " not in value and not value.endswith(":")
+    return value if is_plain else json.dumps(value)

@@ -1,0 +1,174 @@
+"""Transforms as serialised tf2_msgs/msg/TFMessage, also where tf2_msgs is not installed (the ROS wheels lack it).
+
+`TFMessage` is the class to give to `create_publisher` and, with `raw=True`, to `create_subscription`: the real one
+where `import tf2_msgs` works, else one made by `typesupport` under the same name and hash. Both carry `encode`d bytes.
+Where neither works `available()` is False and the reason has been logged once; /tf is then left out.
+"""
+
+from __future__ import annotations
+
+import functools
+import logging
+import struct
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+
+from thymio_sim_ros.ros.compat import typesupport
+
+__all__ = [
+    "TF_DEFINITION",
+    "TF_TYPE_NAME",
+    "TFMessage",
+    "Transform",
+    "TransformDataError",
+    "available",
+    "decode",
+    "encode",
+]
+
+_DESCRIPTION = typesupport.SequenceType(
+    package="tf2_msgs",
+    name="TFMessage",
+    field="transforms",
+    element="geometry_msgs/msg/TransformStamped",
+    type_hash="RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
+)
+TF_TYPE_NAME = _DESCRIPTION.full_name
+TF_DEFINITION = _DESCRIPTION.definition
+
+_SECOND_NS = 1_000_000_000
+_LITTLE_ENDIAN_CDR = b"\x00\x01\x00\x00"
+_HEADER = struct.Struct("<4sI")  # encapsulation, number of transforms
+
+
+class Transform(NamedTuple):
+    """Pose of frame `child` in `frame` at `stamp_ns`: metres and a unit quaternion x, y, z, w."""
+
+    stamp_ns: int
+    frame: str
+    child: str
+    translation: tuple[float, float, float]
+    rotation: tuple[float, float, float, float]
+
+
+class TransformDataError(ValueError):
+    """Bytes that are no TFMessage; the text says at which offset."""
+
+
+class _Metaclass(type):
+    """What rclpy looks for in a message class: type support, loaded on first use, and four non-None conversions."""
+
+    _TYPE_SUPPORT: Any = None
+    _CREATE_ROS_MESSAGE = _CONVERT_FROM_PY = _CONVERT_TO_PY = _DESTROY_ROS_MESSAGE = "serialised messages only"
+
+    @classmethod
+    def __import_type_support__(cls) -> None:
+        """Build the type support; raises TypeSupportError where it cannot be built."""
+        from geometry_msgs.msg import TransformStamped
+        from rclpy.type_support import check_for_type_support
+        from rclpy.utilities import get_rmw_implementation_identifier
+
+        typesupport.check_layouts(get_rmw_implementation_identifier())
+        check_for_type_support(TransformStamped)
+        cls._TYPE_SUPPORT = typesupport.build(_DESCRIPTION, TransformStamped)
+
+
+class _SerialisedTFMessage(metaclass=_Metaclass):
+    """Stands for tf2_msgs.msg.TFMessage in raw publishers and subscriptions; has no instances."""
+
+    def __new__(cls) -> NoReturn:
+        raise TypeError("publish encode(transforms) instead: tf2_msgs is not installed")
+
+
+if TYPE_CHECKING:
+    TFMessage: Any
+else:
+    try:
+        from tf2_msgs.msg import TFMessage
+    except ImportError:
+        TFMessage = _SerialisedTFMessage
+
+
+@functools.cache
+def available() -> bool:
+    """Whether TFMessage can be published here; logs one warning with the reason when it cannot."""
+    try:
+        from rclpy.type_support import check_for_type_support
+
+        check_for_type_support(TFMessage)
+    except (ImportError, AttributeError, typesupport.TypeSupportError) as error:
+        logging.getLogger(__name__).warning("no /tf: tf2_msgs is not installed and cannot be replaced: %s", error)
+        return False
+    return True
+
+
+def encode(transforms: Sequence[Transform]) -> bytes:
+    """CDR of a TFMessage, little-endian. Stamps from 0 to 2**31 s."""
+    parts = [_HEADER.pack(_LITTLE_ENDIAN_CDR, len(transforms))]
+    offset = 4  # CDR aligns from behind the encapsulation
+    for stamp_ns, frame, child, translation, rotation in transforms:
+        layout, *named = _named(offset % 8, frame, child)
+        parts.append(layout.pack(*divmod(stamp_ns, _SECOND_NS), *named, *translation, *rotation))
+        offset += layout.size
+    return b"".join(parts)
+
+
+@functools.lru_cache(maxsize=8192)
+def _named(alignment: int, frame: str, child: str) -> tuple[struct.Struct, int, bytes, int, bytes]:
+    """The layout of a transform between these frames, and their names as it packs them."""
+    frame_bytes, child_bytes = frame.encode(), child.encode()
+    frame_size, child_size = len(frame_bytes) + 1, len(child_bytes) + 1
+    return _layout(alignment, frame_size, child_size), frame_size, frame_bytes, child_size, child_bytes
+
+
+def decode(data: bytes) -> tuple[Transform, ...]:
+    """Transforms of a serialised TFMessage, little-endian as everybody sends it; raises TransformDataError."""
+    try:
+        encapsulation, count = _HEADER.unpack_from(data)
+        if encapsulation[:2] != _LITTLE_ENDIAN_CDR[:2]:
+            raise TransformDataError(f"offset 0: encapsulation {encapsulation.hex()} is not little-endian CDR")
+        transforms = []
+        start = _HEADER.size
+        for _ in range(count):
+            transform, start = _decode_one(data, start)
+            transforms.append(transform)
+    except (struct.error, UnicodeDecodeError) as error:
+        raise TransformDataError(f"cut short or damaged after {len(data)} bytes: {error}") from error
+    return tuple(transforms)
+
+
+def _decode_one(data: bytes, start: int) -> tuple[Transform, int]:
+    """The transform at `start` and where the next one begins; two looks, as each string's length moves the rest."""
+    aligned = start + -(start - 4) % 4
+    (frame_size,) = struct.unpack_from("<8xI", data, aligned)
+    child_at = aligned + 12 + frame_size
+    child_at += -(child_at - 4) % 4
+    (child_size,) = struct.unpack_from("<I", data, child_at)
+    if not frame_size or not child_size or child_at + 4 + child_size > len(data):
+        raise TransformDataError(f"offset {start}: strings of {frame_size} and {child_size} bytes do not fit")
+    layout = _layout((start - 4) % 8, frame_size, child_size)
+    sec, nanosec, _, frame, _, child, *numbers = layout.unpack_from(data, start)
+    translation = (numbers[0], numbers[1], numbers[2])
+    rotation = (numbers[3], numbers[4], numbers[5], numbers[6])
+    stamp_ns = sec * _SECOND_NS + nanosec
+    return Transform(stamp_ns, frame[:-1].decode(), child[:-1].decode(), translation, rotation), start + layout.size
+
+
+@functools.lru_cache(maxsize=1024)
+def _layout(alignment: int, frame_size: int, child_size: int) -> struct.Struct:
+    """One TransformStamped that begins `alignment` bytes behind a multiple of eight; sizes count the final NUL.
+
+    sec, nanosec, frame, child, three and four doubles, each aligned to its size; `struct` fills gaps and NULs.
+    """
+    text = "<"
+    size = alignment
+    for item, item_size, item_alignment in (
+        ("iI", 8, 4),
+        (f"I{frame_size}s", 4 + frame_size, 4),
+        (f"I{child_size}s", 4 + child_size, 4),
+        ("7d", 56, 8),
+    ):
+        gap = -size % item_alignment
+        text += f"{gap}x{item}"
+        size += gap + item_size
+    return struct.Struct(text)

@@ -1,0 +1,236 @@
+"""A ROS message type that nobody compiled: `T[] name`, built from the compiled type support of `T`.
+
+rmw_fastrtps asks a type for four things: Fast DDS callbacks (for raw traffic only the type's name in them matters), an
+introspection table from which it makes the DDS type object, the type hash, and the type's description with its sources.
+For a message whose only field is an unbounded sequence of an installed type all four follow from that type, so ctypes
+structures can stand in for the generated library (docs/spec/ros-packaging.md section 1.3). Such a type carries
+serialised messages only: `publisher.publish(bytes)` and subscriptions with `raw=True`.
+
+Nobody tells us when the middleware stops using a structure, therefore everything built here lives as long as the
+process. Alternative not taken: building tf2_msgs with the user's compiler, a minute and an ABI per Python version.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from thymio_sim_ros.ros.compat import rosidl_structs
+
+__all__ = ["SequenceType", "TypeSupportError", "build", "check_layouts", "release_of", "type_hash_of"]
+
+_C = b"rosidl_typesupport_c"
+_FASTRTPS = b"rosidl_typesupport_fastrtps_c"
+_INTROSPECTION = b"rosidl_typesupport_introspection_c"
+_HASH_PREFIX = "RIHS01_"
+
+_KNOWN_RMW = "rmw_fastrtps_cpp"
+
+
+class TypeSupportError(RuntimeError):
+    """The installed ROS is not one whose structures this module knows; the text says what differs."""
+
+
+@dataclass(frozen=True, slots=True)
+class SequenceType:
+    """A message type with one field, an unbounded sequence of messages of another package."""
+
+    package: str
+    name: str
+    field: str
+    element: str  # "geometry_msgs/msg/TransformStamped"
+    type_hash: str  # "RIHS01_" and 64 hexadecimal digits
+
+    @property
+    def full_name(self) -> str:
+        """Name as the graph shows it, `package/msg/Name`."""
+        return f"{self.package}/msg/{self.name}"
+
+    @property
+    def definition(self) -> str:
+        """Text of the .msg file."""
+        package, _, element = self.element.split("/")
+        return f"{package}/{element}[] {self.field}\n"
+
+
+# Prototypes of our own: `ctypes.pythonapi` is shared by everybody in the process, its argtypes are not ours to set.
+_capsule_new = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p)(
+    ("PyCapsule_New", ctypes.pythonapi)
+)
+_capsule_name = ctypes.PYFUNCTYPE(ctypes.c_char_p, ctypes.py_object)(("PyCapsule_GetName", ctypes.pythonapi))
+_capsule_pointer = ctypes.PYFUNCTYPE(ctypes.c_void_p, ctypes.py_object, ctypes.c_char_p)(
+    ("PyCapsule_GetPointer", ctypes.pythonapi)
+)
+_keep_for_ever = ctypes.PYFUNCTYPE(None, ctypes.py_object)(("Py_IncRef", ctypes.pythonapi))
+
+
+def release_of(package: str) -> tuple[int, int] | None:
+    """Major and minor version of an installed ROS package by its package.xml, None when there is none."""
+    prefixes = [*filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)), sys.prefix]
+    for prefix in prefixes:
+        manifest = Path(prefix, "share", package, "package.xml")
+        if manifest.is_file():
+            major, minor, *_ = ElementTree.parse(manifest).getroot().findtext("version", "0.0").split(".")
+            return int(major), int(minor)
+    return None
+
+
+def check_layouts(rmw: str) -> None:
+    """Raise TypeSupportError unless the running middleware `rmw` and the installed rosidl are the known ones."""
+    if rmw != _KNOWN_RMW:
+        raise TypeSupportError(f"the middleware is {rmw}, known is {_KNOWN_RMW}")
+    for package, known in rosidl_structs.KNOWN.items():
+        found = release_of(package)
+        if found != known:
+            text = "none" if found is None else "{}.{}".format(*found)
+            raise TypeSupportError(f"{package} is {text}, known is {'{}.{}'.format(*known)}")
+
+
+def type_hash_of(message_type: type) -> str:
+    """Type hash of a message class that has its type support loaded, in its textual form."""
+    support = _support_of(message_type)
+    found = rosidl_structs.TypeHash.from_address(support.get_type_hash(ctypes.addressof(support)))
+    return f"RIHS{found.version:02d}_{bytes(found.value).hex()}"
+
+
+def build(message: SequenceType, element_type: type) -> Any:
+    """Capsule with the type support of `message`; `element_type` is the compiled class of its elements.
+
+    The caller has called `check_layouts`. Raises TypeSupportError when the element's type support lacks a part.
+    """
+    element = _support_of(element_type)
+    keep: list[Any] = []
+    handles = {
+        _FASTRTPS: _handle(_FASTRTPS, _callbacks(message, element), keep),
+        _INTROSPECTION: _handle(_INTROSPECTION, _members(message, element, keep), keep),
+    }
+    addresses = {identifier: ctypes.addressof(handle) for identifier, handle in handles.items()}
+    type_hash = _hash(message)
+    description, sources = _description(message, element, keep), _sources(message, element, keep)
+    getters = [_getter(part, keep) for part in (type_hash, description, sources)]
+    # Only called while a publisher or subscription is being created, in the thread that creates it.
+    dispatch = rosidl_structs.Dispatch(lambda _handle, identifier: addresses.get(identifier))
+    for handle in handles.values():
+        handle.dispatch = dispatch
+        handle.get_type_hash, handle.get_type_description, handle.get_sources = getters
+    top = rosidl_structs.TypeSupport(_C, None, dispatch, *getters)
+    keep += [top, dispatch, handles]
+    _keep_for_ever(keep)
+    return _capsule_new(ctypes.addressof(top), None, None)
+
+
+def _support_of(message_type: type) -> rosidl_structs.TypeSupport:
+    capsule = message_type.__class__._TYPE_SUPPORT  # type: ignore[attr-defined]  # set by rosidl's metaclass
+    if capsule is None:
+        raise TypeSupportError(f"the type support of {message_type.__name__} is not loaded")
+    return rosidl_structs.TypeSupport.from_address(_capsule_pointer(capsule, _capsule_name(capsule)))
+
+
+def _part(element: rosidl_structs.TypeSupport, identifier: bytes) -> rosidl_structs.TypeSupport:
+    address = element.dispatch(ctypes.addressof(element), identifier)
+    if not address:
+        raise TypeSupportError(f"the element type has no {identifier.decode()}")
+    return rosidl_structs.TypeSupport.from_address(address)
+
+
+def _handle(identifier: bytes, data: ctypes.Structure, keep: list[Any]) -> rosidl_structs.TypeSupport:
+    keep.append(data)
+    return rosidl_structs.TypeSupport(identifier, ctypes.addressof(data))
+
+
+def _getter(part: ctypes.Structure, keep: list[Any]) -> Any:
+    address = ctypes.addressof(part)
+    function = rosidl_structs.Getter(lambda _handle: address)
+    keep += [part, function]
+    return function
+
+
+def _callbacks(message: SequenceType, element: rosidl_structs.TypeSupport) -> rosidl_structs.Callbacks:
+    """The element's callbacks under our name: its largest size is «unbounded», as ours is."""
+    data = _part(element, _FASTRTPS).data
+    callbacks = rosidl_structs.Callbacks.from_buffer_copy(
+        ctypes.string_at(data, ctypes.sizeof(rosidl_structs.Callbacks))
+    )
+    callbacks.message_namespace = f"{message.package}::msg".encode()
+    callbacks.message_name = message.name.encode()
+    return callbacks
+
+
+def _members(message: SequenceType, element: rosidl_structs.TypeSupport, keep: list[Any]) -> rosidl_structs.Members:
+    nested = _part(element, _INTROSPECTION)
+    member = rosidl_structs.Member(
+        name=message.field.encode(),
+        type_id=rosidl_structs.INTROSPECTION_MESSAGE,
+        members=ctypes.addressof(nested),
+        is_array=True,
+    )
+    keep.append(member)
+    return rosidl_structs.Members(
+        message_namespace=f"{message.package}__msg".encode(),
+        message_name=message.name.encode(),
+        member_count=1,
+        size_of=ctypes.sizeof(rosidl_structs.Sequence),
+        members=ctypes.addressof(member),
+    )
+
+
+def _hash(message: SequenceType) -> rosidl_structs.TypeHash:
+    digits = bytes.fromhex(message.type_hash.removeprefix(_HASH_PREFIX))
+    return rosidl_structs.TypeHash(1, (ctypes.c_uint8 * 32)(*digits))
+
+
+def _description(
+    message: SequenceType, element: rosidl_structs.TypeSupport, keep: list[Any]
+) -> rosidl_structs.TypeDescription:
+    """Ours first, then every type it leads to in name order, as rosidl writes them."""
+    address = element.get_type_description(ctypes.addressof(element))
+    nested = rosidl_structs.TypeDescription.from_address(address)
+    field = rosidl_structs.Field(
+        _string(message.field, keep),
+        rosidl_structs.FieldType(rosidl_structs.NESTED_UNBOUNDED_SEQUENCE, 0, 0, _string(message.element, keep)),
+        _string("", keep),
+    )
+    referenced = [
+        nested.type_description,
+        *_items(nested.referenced_type_descriptions, rosidl_structs.IndividualTypeDescription),
+    ]
+    referenced.sort(key=lambda description: _text(description.type_name))
+    ours = rosidl_structs.IndividualTypeDescription(
+        _string(message.full_name, keep), _sequence(rosidl_structs.Field, [field], keep)
+    )
+    return rosidl_structs.TypeDescription(ours, _sequence(rosidl_structs.IndividualTypeDescription, referenced, keep))
+
+
+def _sources(message: SequenceType, element: rosidl_structs.TypeSupport, keep: list[Any]) -> rosidl_structs.Sequence:
+    nested = rosidl_structs.Sequence.from_address(element.get_sources(ctypes.addressof(element)))
+    ours = rosidl_structs.TypeSource(
+        _string(message.full_name, keep), _string("msg", keep), _string(message.definition, keep)
+    )
+    others = sorted(_items(nested, rosidl_structs.TypeSource), key=lambda source: _text(source.type_name))
+    return _sequence(rosidl_structs.TypeSource, [ours, *others], keep)
+
+
+def _string(text: str, keep: list[Any]) -> rosidl_structs.String:
+    data = ctypes.create_string_buffer(text.encode())
+    keep.append(data)
+    return rosidl_structs.String(ctypes.addressof(data), len(data) - 1, len(data))
+
+
+def _text(string: rosidl_structs.String) -> bytes:
+    return ctypes.string_at(string.data, string.size)
+
+
+def _items(sequence: rosidl_structs.Sequence, kind: type[ctypes.Structure]) -> Iterable[Any]:
+    return (kind * sequence.size).from_address(sequence.data) if sequence.size else ()
+
+
+def _sequence(kind: type[ctypes.Structure], items: Sequence[Any], keep: list[Any]) -> rosidl_structs.Sequence:
+    data = (kind * len(items))(*items)
+    keep.append(data)
+    return rosidl_structs.Sequence(ctypes.addressof(data), len(items), len(items))

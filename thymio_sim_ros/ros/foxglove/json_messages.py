@@ -1,0 +1,152 @@
+"""JSON objects ↔ ROS messages: what clients publish and call in JSON (docs/spec/foxglove.md section 5).
+
+Missing keys keep their defaults, unknown keys are refused; arrays are lists, byte arrays also base64 text. The setters
+of rosidl check nothing in Jazzy (unless asked by an environment variable), hence ranges and lengths are checked here.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+import re
+import sys
+from typing import Any
+
+from thymio_sim_ros.bridge import bounded_json
+from thymio_sim_ros.ros.foxglove.types import full_name, load_type
+
+__all__ = ["JsonMessageError", "from_json", "to_json"]
+
+_LIST = re.compile(r"^(?:sequence<(?P<item>[^,]+)(?:, (?P<most>\d+))?>|(?P<cell>.+)\[(?P<exactly>\d+)\])$")
+_INTEGER = re.compile(r"^(u?)int(8|16|32|64)$")
+_TEXT = re.compile(r"^w?string(?:<(\d+)>)?$")
+
+
+MAX_MESSAGES = 2000
+"""Messages in one message."""
+
+
+class JsonMessageError(ValueError):
+    """JSON that does not fit the message type; the text says where."""
+
+
+def from_json(data: bytes, message_type: Any) -> Any:
+    """A message of the class from UTF-8 JSON; raises JsonMessageError."""
+    try:
+        value = bounded_json.loads(data.decode())
+    except (ValueError, RecursionError) as error:
+        raise JsonMessageError(f"not JSON: {error}") from error
+    if _messages_in(value) > MAX_MESSAGES:
+        raise JsonMessageError(f"message: expected at most {MAX_MESSAGES} objects")
+    message = message_type()
+    _fill(message, value, "message")
+    return message
+
+
+def _messages_in(value: Any) -> int:
+    """Objects in a JSON value: each becomes a message, which takes some 20 µs."""
+    if isinstance(value, dict):
+        return 1 + sum(_messages_in(item) for item in value.values() if isinstance(item, (dict, list)))
+    return sum(_messages_in(item) for item in value if isinstance(item, (dict, list))) if isinstance(value, list) else 0
+
+
+def to_json(message: Any) -> bytes:
+    """The message as UTF-8 JSON; what JSON cannot say (NaN, infinity) is null."""
+    return json.dumps(_plain(message), allow_nan=False, separators=(",", ":")).encode()
+
+
+def _fill(message: Any, value: Any, where: str) -> None:
+    if not isinstance(value, dict):
+        raise JsonMessageError(f"{where}: expected an object, found {value!r:.40}")
+    fields = message.get_fields_and_field_types()
+    for key, item in value.items():
+        kind = fields.get(key)
+        if kind is None:
+            raise JsonMessageError(f"{where}: no field {key}; fields are {', '.join(fields)}")
+        setattr(message, key, _convert(item, kind, f"{where}.{key}"))
+
+
+def _convert(value: Any, kind: str, where: str) -> Any:
+    is_list = _LIST.match(kind)
+    if is_list is not None:
+        items = _convert_list(value, is_list["item"] or is_list["cell"], where)
+        exactly, most = is_list["exactly"], is_list["most"]
+        if (exactly and len(items) != int(exactly)) or (most and len(items) > int(most)):
+            raise JsonMessageError(f"{where}: expected {kind}, found {len(items)} elements")
+        return items
+    if "/" in kind:
+        message = load_type(full_name(kind))()
+        _fill(message, value, where)
+        return message
+    return _convert_scalar(value, kind, where)
+
+
+def _convert_list(value: Any, kind: str, where: str) -> list[Any]:
+    if isinstance(value, str) and kind in ("octet", "uint8", "int8"):
+        try:
+            data = base64.b64decode(value, validate=True)
+        except ValueError as error:
+            raise JsonMessageError(f"{where}: expected a list or base64, found {value!r:.40}") from error
+        if kind == "octet":
+            return [bytes([byte]) for byte in data]
+        return [byte - 256 if kind == "int8" and byte > 127 else byte for byte in data]
+    if not isinstance(value, list):
+        raise JsonMessageError(f"{where}: expected a list, found {value!r:.40}")
+    return [_convert(item, kind, f"{where}[{index}]") for index, item in enumerate(value)]
+
+
+def _convert_scalar(value: Any, kind: str, where: str) -> Any:
+    is_text = _TEXT.match(kind)
+    if is_text is not None:
+        if isinstance(value, str) and _is_utf8(value) and len(value.encode()) <= int(is_text[1] or sys.maxsize):
+            return value
+    elif kind == "boolean":
+        if isinstance(value, bool):
+            return value
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+        number = _number(value, kind)
+        if number is not None:
+            return number
+    raise JsonMessageError(f"{where}: expected {kind}, found {value!r:.40}")
+
+
+def _number(value: int | float, kind: str) -> float | int | bytes | None:
+    """The number as the field wants it, None where it does not fit."""
+    if kind in ("float", "double"):
+        try:
+            return float(value)
+        except OverflowError:
+            return None
+    if isinstance(value, float) and not value.is_integer():
+        return None
+    if kind == "octet":
+        return bytes([int(value)]) if 0 <= value < 256 else None
+    integer = _INTEGER.match(kind)
+    assert integer is not None, kind
+    low, high = _limits(unsigned=bool(integer[1]), bits=int(integer[2]))
+    return int(value) if low <= value <= high else None
+
+
+def _is_utf8(text: str) -> bool:
+    try:
+        text.encode()
+    except UnicodeEncodeError:  # half of a surrogate pair
+        return False
+    return True
+
+
+def _limits(*, unsigned: bool, bits: int) -> tuple[int, int]:
+    return (0, (1 << bits) - 1) if unsigned else (-(1 << (bits - 1)), (1 << (bits - 1)) - 1)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, (str, bool, int)):
+        return value
+    if isinstance(value, bytes):
+        return value[0] if len(value) == 1 else list(value)
+    if hasattr(value, "get_fields_and_field_types"):
+        return {name: _plain(getattr(value, name)) for name in value.get_fields_and_field_types()}
+    return [_plain(item) for item in value.tolist()] if hasattr(value, "tolist") else [_plain(item) for item in value]

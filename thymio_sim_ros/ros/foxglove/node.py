@@ -1,0 +1,350 @@
+"""The Foxglove bridge as a ROS node: any ROS graph for Foxglove Studio, Lichtblick and our own page.
+
+Two threads. The executor's owns everything of ROS and this file; the event loop's owns sockets (`bridge`). Commands go
+there by `ServerThread.post`, events come here by `Mailbox`; nothing else is shared. Topics, services and parameters
+each have a module; what they have in common is that the graph is polled and messages are never deserialised.
+"""
+
+from __future__ import annotations
+
+import time
+import traceback
+import uuid
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+from urllib.parse import quote
+
+from rclpy.clock import Clock, JumpThreshold, TimeJump
+from rclpy.clock_type import ClockType
+from rclpy.context import Context
+from rclpy.duration import Duration
+from rclpy.executors import Executor
+from rclpy.parameter import Parameter
+from std_msgs.msg import UInt32
+
+from thymio_sim_ros.banner import access, places, urls
+from thymio_sim_ros.bridge import ServerInfo, ServerSettings, ServerThread, Tokens
+from thymio_sim_ros.bridge import events as ev
+from thymio_sim_ros.bridge.constants import CDR, JSON
+from thymio_sim_ros.bridge.messages import AssetResponse
+from thymio_sim_ros.ros.foxglove.assets import AssetError, load_asset
+from thymio_sim_ros.ros.foxglove.graph import (
+    allow_list,
+    connection_graph,
+    is_parameter_service,
+    visible,
+    visible_topics,
+)
+from thymio_sim_ros.ros.foxglove.options import FoxgloveParams, announced, check, tls_context
+from thymio_sim_ros.ros.foxglove.parameters import Parameters
+from thymio_sim_ros.ros.foxglove.publishers import ClientPublishers
+from thymio_sim_ros.ros.foxglove.service_calls import Calls
+from thymio_sim_ros.ros.foxglove.services import Services
+from thymio_sim_ros.ros.foxglove.time_share import TimeShare
+from thymio_sim_ros.ros.foxglove.topics import Topics
+from thymio_sim_ros.ros.interface.qos import LATCHED
+from thymio_sim_ros.ros.rclpy_ext import parameters
+from thymio_sim_ros.ros.rclpy_ext.mailbox import Mailbox
+from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, greeted, run_main
+from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
+from thymio_sim_ros.ros.web import tokens as node_tokens
+
+__all__ = ["FoxgloveBridge", "main"]
+
+_DISCOVER_S = 0.25
+_DISCOVER_SHARE = 0.02
+"""Of the time at most this part goes to asking for the graph: with twenty robots that takes 12 ms each time. As much
+goes to asking for the publishers of subscribed topics, and to who talks to whom."""
+_REFRESH_S = 1.0
+_REPEAT_S = 1.0
+"""After time went back: what a client gets while it drops the past may go with it (measured with Lichtblick)."""
+_HURRY_S = 0.02
+"""Period of polling while something waits for discovery: a call, a message of a new publisher."""
+
+
+class FoxgloveBridge:
+    """The node and its server, which listens when the constructor returns. `port` is the one really taken.
+
+    Raises StartError when the port cannot be used. Belongs to the thread that turns the node's executor.
+    """
+
+    def __init__(
+        self,
+        *,
+        context: Context,
+        port: int | None = None,
+        address: str | None = None,
+        use_sim_time: bool | None = None,
+        defaults: FoxgloveParams | None = None,
+        tokens: Tokens | None = None,
+    ) -> None:
+        """`tokens`: those of the command line; None: the node's own, made where the network reaches the address."""
+        overrides = [] if use_sim_time is None else [Parameter("use_sim_time", value=use_sim_time)]
+        self.node = parameter_node("foxglove_bridge", context=context, parameter_overrides=overrides)
+        try:
+            values = defaults or FoxgloveParams()
+            values = replace(
+                values,
+                port=values.port if port is None else port,
+                address=values.address if address is None else address,
+            )
+            self.params = parameters.declare(self.node, values)
+            check(self.params)
+            parameters.warn_of_unknown(
+                self.node, "foxglove.md", lambda name: self.node.has_parameter(name) or name in node_tokens.PARAMETERS
+            )
+            self.tokens = self._own_tokens() if tokens is None else tokens
+            self._uses_sim_time = bool(self.node.get_parameter("use_sim_time").value)
+            self._mailbox: Mailbox[ev.Event] = Mailbox(
+                self.node, self._on_event, sender=_sender, weight=lambda event: 1 + (ev.size_of(event) >> 14)
+            )
+            self._server = self._open_server()
+        except BaseException:
+            self.node.destroy_node()
+            raise
+        self.address, self.port = self._server.address, self._server.port
+        self._sim_now_ns = 0
+        self._wants_graph = False
+        self._is_graph_old = True
+        self._build()
+
+    @property
+    def greeting(self) -> str:
+        """Where to connect, for a person."""
+        place = self._scheme, self.address, self.port
+        is_open = not self.tokens.is_required
+        how = f"or {_app_link(urls(*place)[0])}" if is_open else "with the token on standard output"
+        return f"Foxglove: {places(*place)} {how}; access: {access(self.address, self.tokens)}"
+
+    @property
+    def invitation(self) -> str:
+        """Where to connect with which token, for standard output; never for the log, which clients may read."""
+        if not self.tokens.is_required:
+            return ""
+        place = self._scheme, self.address, self.port
+        full = urls(*place, "/", self.tokens.full)
+        read_only = places(*place, "/", self.tokens.read_only)
+        return f"Foxglove  {', from other computers '.join(full)} or {_app_link(full[0])}\nRead only {read_only}"
+
+    @property
+    def _scheme(self) -> str:
+        return "wss" if self.params.tls else "ws"
+
+    def _own_tokens(self) -> Tokens:
+        given = node_tokens.given_tokens(self.node)
+        if not self.params.require_token:
+            return Tokens()
+        return Tokens.for_address(self.params.address, given.full, given.read_only)
+
+    def turn(self, executor: Executor) -> None:
+        """Handle what is due; returns after `SPIN_SLICE_S` at the latest."""
+        executor.spin_once(timeout_sec=SPIN_SLICE_S)
+
+    def end(self) -> None:
+        """End server and thread; call it when nobody turns the executor any more."""
+        self._mailbox.close()
+        self._server.close()
+
+    def close(self) -> None:
+        """End all that it opened, and the node."""
+        self.end()
+        self._jump_handle.unregister()
+        self._topics.close()
+        self._publishers.end()
+        self.node.destroy_node()
+
+    def _open_server(self) -> ServerThread:
+        values = self.params
+        capabilities = announced(values, uses_sim_time=self._uses_sim_time)
+        try:
+            return ServerThread(
+                ServerInfo(
+                    "thymio_sim_ros",
+                    capabilities,
+                    (CDR, JSON),
+                    {"namespace": self.node.get_namespace()},
+                    session_id=_new_id(),
+                ),
+                self._mailbox,
+                address=values.address,
+                port=values.port,
+                settings=ServerSettings(
+                    allowed_origins=tuple(filter(None, values.allowed_origins)),
+                    buffer_limit=values.send_buffer_limit,
+                    max_message_size=values.max_message_size,
+                    tls=tls_context(values),
+                    tokens=self.tokens,
+                    changes_nothing=allow_list(values.read_only_services),
+                ),
+            )
+        except OSError as error:
+            hint = "choose another with --foxglove-port, or -p port:=NUMBER for the node alone"
+            raise StartError(f"the Foxglove bridge {error.strerror}; {hint}") from error
+
+    def _build(self) -> None:
+        values, post = self.params, self._server.post
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._is_topic = allow_list(values.topic_whitelist)
+        self._is_service = allow_list(values.service_whitelist)
+        self._hurry = self.node.create_timer(_HURRY_S, self._poll_waiting, clock=steady)
+        self._hurry.cancel()
+        self._repeat = self.node.create_timer(_REPEAT_S, self._repeat_kept, clock=steady)
+        self._repeat.cancel()
+        self._calls = Calls(self.node, wake=self._hurry.reset)
+        self._topics = Topics(
+            self.node,
+            post,
+            self._server.publish,
+            self._now_ns,
+            min_depth=values.min_qos_depth,
+            max_depth=values.max_qos_depth,
+            is_best_effort=allow_list(values.best_effort_qos_topic_whitelist),
+            wake=self._hurry.reset,
+        )
+        self._services = Services(self.node, self._calls, post)
+        self._parameters = Parameters(
+            self.node, self._calls, post, is_allowed=allow_list(values.param_whitelist), wake=self._hurry.reset
+        )
+        self._publishers = ClientPublishers(
+            self.node, post, is_allowed=allow_list(values.client_topic_whitelist), wake=self._hurry.reset
+        )
+        self._told_count = -1
+        self._count = (
+            self.node.create_publisher(UInt32, "~/client_count", LATCHED) if values.publish_client_count else None
+        )
+        self._seen: tuple[Any, Any] = ({}, {})
+        self._discovery, self._graph_share = TimeShare(_DISCOVER_SHARE), TimeShare(_DISCOVER_SHARE)
+        self._next_check_s = 0.0
+        self._shown: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
+        self._jump_handle = self.node.get_clock().create_jump_callback(
+            JumpThreshold(
+                min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1), on_clock_change=True
+            ),
+            post_callback=self._on_time,
+        )
+        self.node.create_timer(_DISCOVER_S, self._discover, clock=steady)
+        self.node.create_timer(_REFRESH_S, self._refresh, clock=steady)
+
+    def _now_ns(self) -> int:
+        return self._sim_now_ns if self._uses_sim_time else time.time_ns()
+
+    def _on_time(self, jump: TimeJump) -> None:
+        """Simulated time moved; backwards means a reset."""
+        if not self._uses_sim_time:
+            return
+        now_ns = self.node.get_clock().now().nanoseconds
+        if now_ns < self._sim_now_ns:
+            self._server.post(ev.NewSession(_new_id()))
+            self._repeat.reset()
+        self._sim_now_ns = now_ns
+        self._server.post(ev.SetTime(now_ns))
+
+    def _repeat_kept(self) -> None:
+        self._repeat.cancel()
+        self._server.post(ev.RepeatKept())
+
+    def _discover(self) -> None:
+        """Follow the graph."""
+        self._mailbox.drain()
+        self._check_publishers()
+        if self._wants_graph and self._is_graph_old:
+            self._tell_graph()
+        if not self._discovery.is_due:
+            return
+        with self._discovery.work():
+            topics = dict(self.node.get_topic_names_and_types())
+            services = dict(self.node.get_service_names_and_types())
+        if (topics, services) == self._seen:
+            return
+        self._seen = (topics, services)
+        hidden = self.params.include_hidden
+        shown = visible_topics(topics, self._is_topic, hidden=hidden)
+        offered = visible(services, self._is_service, hidden=hidden)
+        if not hidden:
+            offered = {name: types for name, types in offered.items() if not is_parameter_service(name)}
+        self._shown = (tuple(shown), tuple(offered))
+        self._topics.update(shown)
+        self._services.update(offered)
+        self._parameters.update(services)
+
+    def _check_publishers(self) -> None:
+        """Go on with a round through all subscribed topics, or begin one once in `_REFRESH_S`."""
+        if time.monotonic() >= self._next_check_s and self._topics.refresh(_DISCOVER_S * _DISCOVER_SHARE):
+            self._next_check_s = time.monotonic() + _REFRESH_S
+
+    def _refresh(self) -> None:
+        self._parameters.refresh(is_watched=self._server.client_count > 0)
+        if self._count is not None and self._told_count != self._server.client_count:
+            self._told_count = self._server.client_count
+            self._count.publish(UInt32(data=self._told_count))
+        self._is_graph_old = True
+
+    def _tell_graph(self) -> None:
+        """Send who talks to whom, unless that takes more than its share of time."""
+        if self._graph_share.is_due:
+            self._is_graph_old = False
+            with self._graph_share.work():
+                self._server.post(ev.SetGraph(connection_graph(self.node, *self._shown)))
+
+    def _poll_waiting(self) -> None:
+        waits = [self._calls.poll(), self._publishers.poll(), self._topics.poll(), self._parameters.poll()]
+        if not any(waits):
+            self._hurry.cancel()
+
+    def _on_event(self, event: ev.Event) -> None:
+        try:
+            _HANDLERS[type(event)](self, event)
+        except Exception:
+            # One client's wish must not end the bridge of the others: it is dropped, everything else goes on.
+            self.node.get_logger().error(f"{type(event).__name__} failed:\n{traceback.format_exc()}")
+            if isinstance(event, ev.ServiceCalled):
+                self._services.fail(event.client, event.request, "internal error (please report), see the log")
+            elif isinstance(event, (ev.ParametersSet, ev.ParametersAsked)):
+                self._server.post(ev.ShowParameters(event.client, (), event.request_id, ev.size_of(event)))
+
+    def _want_graph(self, event: ev.GraphWanted) -> None:
+        self._wants_graph = event.wanted
+        self._is_graph_old = True
+        if event.wanted:
+            self._tell_graph()
+
+    def _give_asset(self, event: ev.AssetWanted) -> None:
+        try:
+            answer = AssetResponse(event.request_id, load_asset(event.uri, self.params.asset_uri_allowlist))
+        except AssetError as error:
+            answer = AssetResponse(event.request_id, b"", str(error))
+        self._server.post(ev.Tell(event.client, answer))
+
+
+_HANDLERS: dict[type, Callable[[FoxgloveBridge, Any], None]] = {
+    ev.ChannelWanted: lambda self, event: self._topics.want(event.channel_id),
+    ev.ChannelUnwanted: lambda self, event: self._topics.unwant(event.channel_id),
+    ev.ClientChannelOpened: lambda self, event: self._publishers.open(event.client, event.channel),
+    ev.ClientChannelClosed: lambda self, event: self._publishers.close(event.client, event.channel_id),
+    ev.ClientSent: lambda self, event: self._publishers.publish(event.client, event.channel_id, event.payload),
+    ev.ServiceCalled: lambda self, event: self._services.call(event.client, event.request),
+    ev.ParametersSet: lambda self, event: self._parameters.set(event),
+    ev.ParametersAsked: lambda self, event: self._parameters.get(event),
+    ev.ParametersWatched: lambda self, event: self._parameters.watch(event),
+    ev.GraphWanted: FoxgloveBridge._want_graph,
+    ev.AssetWanted: FoxgloveBridge._give_asset,
+}
+
+
+def _sender(event: ev.Event) -> int:
+    """The client of an event; 0 where several may be behind it."""
+    return getattr(event, "client", 0)
+
+
+def _app_link(url: str) -> str:
+    return f"https://app.foxglove.dev/?ds=foxglove-websocket&ds.url={quote(url, safe='')}"
+
+
+def _new_id() -> str:
+    return str(uuid.uuid4())
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """The executable `foxglove_bridge`."""
+    return run_main(lambda context: greeted([FoxgloveBridge(context=context)]), args)

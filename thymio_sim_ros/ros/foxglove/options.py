@@ -1,0 +1,122 @@
+"""Parameters of the Foxglove bridge, and what is made of them before it starts."""
+
+from __future__ import annotations
+
+import re
+import ssl
+from dataclasses import dataclass, fields
+
+from thymio_sim_ros.bridge import Capability
+from thymio_sim_ros.ros.foxglove.assets import ASSETS
+from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
+from thymio_sim_ros.ros.rclpy_ext.parameters import param
+
+__all__ = ["READ_ONLY_SERVICES", "FoxgloveParams", "announced", "check", "tls_context"]
+
+READ_ONLY_SERVICES = (
+    r"/(.+/)?aseba/(get|list|describe)_variables",
+    r"/(.+/)?aseba_runtime/check",
+    r"/(.+/)?simulator/get_\w+",
+    r"/(.+/)?is_ready",
+)
+"""Services of ours that change nothing."""
+
+
+@dataclass(frozen=True)
+class FoxgloveParams:
+    """Parameters of the bridge; names as the vendor's bridge has them where it has them."""
+
+    port: int = param(8765, "TCP port; 0 takes a free one", low=0, high=65535, fixed=True)
+    address: str = param(
+        "localhost",
+        "Address to listen on: localhost is both loopbacks, 0.0.0.0 the whole network, :: with IPv6",
+        fixed=True,
+    )
+    tls: bool = param(False, "Serve wss:// with certfile and keyfile", fixed=True)
+    certfile: str = param("", "PEM file with the certificate chain", fixed=True)
+    keyfile: str = param("", "PEM file with the private key", fixed=True)
+    allowed_origins: tuple[str, ...] = param(
+        ("",),
+        "Web pages that may connect beside this machine's and the Foxglove app's, as https://host:port; *: all",
+        fixed=True,
+    )
+    require_token: bool = param(
+        True, "Whether clients need a token where the network reaches the address (SECURITY.md)", fixed=True
+    )
+    read_only_services: tuple[str, ...] = param(
+        READ_ONLY_SERVICES, "Regular expressions of services that clients with the read-only token may call", fixed=True
+    )
+    topic_whitelist: tuple[str, ...] = param((".*",), "Regular expressions of topics to offer", fixed=True)
+    service_whitelist: tuple[str, ...] = param((".*",), "Regular expressions of services to offer", fixed=True)
+    param_whitelist: tuple[str, ...] = param(
+        (".*",), "Regular expressions of parameters (/node.name) to offer", fixed=True
+    )
+    client_topic_whitelist: tuple[str, ...] = param(
+        (".*",), "Regular expressions of topics on which clients may publish", fixed=True
+    )
+    include_hidden: bool = param(
+        False, "Offer hidden services and topics of actions too; other hidden topics are always offered", fixed=True
+    )
+    capabilities: tuple[str, ...] = param(
+        tuple(item.value for item in Capability if item is not Capability.TIME),
+        "What to offer: clientPublish, parameters, parametersSubscribe, services, connectionGraph, assets; "
+        "time is added with use_sim_time",
+        fixed=True,
+    )
+    asset_uri_allowlist: tuple[str, ...] = param(
+        (ASSETS,), "Regular expressions of package:// files that clients may fetch", fixed=True
+    )
+    best_effort_qos_topic_whitelist: tuple[str, ...] = param(
+        ("(?!)",), "Regular expressions of topics to subscribe to as best effort, whatever is published", fixed=True
+    )
+    min_qos_depth: int = param(10, "Least history of a subscription", low=1, high=1000, fixed=True)
+    max_qos_depth: int = param(25, "Greatest history of a subscription", low=1, high=1000, fixed=True)
+    send_buffer_limit: int = param(
+        1 << 20,
+        "Bytes that may wait for a slow client before only newest messages are sent",
+        low=1 << 12,
+        high=1 << 30,
+        fixed=True,
+    )
+    publish_client_count: bool = param(
+        False, "Publish how many clients are connected on ~/client_count (std_msgs/UInt32)", fixed=True
+    )
+    max_message_size: int = param(
+        4 << 20, "Longest frame accepted from a client, bytes", low=1 << 10, high=1 << 30, fixed=True
+    )
+
+
+def tls_context(values: FoxgloveParams) -> ssl.SSLContext | None:
+    """What the server needs for wss://, None for ws://; StartError where the files cannot be used."""
+    if not values.tls:
+        return None
+    if not values.certfile:
+        raise StartError("tls needs a certificate: set certfile and keyfile to PEM files")
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    try:
+        context.load_cert_chain(values.certfile, values.keyfile or None)
+    except OSError as error:
+        raise StartError(f"the certificate {values.certfile!r} cannot be used: {error.strerror or error}") from error
+    return context
+
+
+def announced(values: FoxgloveParams, *, uses_sim_time: bool) -> tuple[Capability, ...]:
+    """Capabilities for serverInfo; StartError for a name that is none."""
+    known = {item.value: item for item in Capability}
+    for name in filter(None, values.capabilities):
+        if name not in known:
+            raise StartError(f"parameter capabilities: '{name}' found, expected some of {', '.join(known)}")
+    wanted = {known[name] for name in values.capabilities if name}
+    wanted.discard(Capability.TIME)
+    return tuple(item for item in Capability if item in wanted or (item is Capability.TIME and uses_sim_time))
+
+
+def check(values: FoxgloveParams) -> None:
+    """StartError for what is no regular expression."""
+    for item in fields(values):
+        if item.name.endswith(("_whitelist", "_allowlist", "_services")):
+            for pattern in getattr(values, item.name):
+                try:
+                    re.compile(pattern)
+                except re.error as error:
+                    raise StartError(f"parameter {item.name}: '{pattern}' is no regular expression: {error}") from error

@@ -1,0 +1,315 @@
+"""Parameters of all nodes, as `/<node>.<parameter>`: a cache kept fresh by /parameter_events, and setting.
+
+A node is asked for its parameters when a client first asks for them, sets them or watches them, not before: to ask a
+node that is none of ours may print warnings in its terminal. A refused value is reported as an error status
+`parameter:<name>` before the answer, which always carries the value really in force; the next success removes the
+status.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import zip_longest
+from typing import Any
+
+from rcl_interfaces.msg import Parameter as RosParameter
+from rcl_interfaces.msg import ParameterEvent, ParameterType, ParameterValue, SetParametersResult
+from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
+from rclpy.node import Node
+from rclpy.qos import qos_profile_parameter_events
+
+from thymio_sim_ros.bridge.constants import StatusLevel
+from thymio_sim_ros.bridge.events import (
+    Command,
+    ParametersAsked,
+    ParametersChanged,
+    ParametersSet,
+    ParametersWatched,
+    ShowParameters,
+    Tell,
+    size_of,
+)
+from thymio_sim_ros.bridge.messages import Parameter, RemoveStatus, Status, parameter_status
+from thymio_sim_ros.bridge.switchboard import MAX_REFUSALS, MAX_WATCHED
+from thymio_sim_ros.ros.foxglove.file_access import parameter_refusal
+from thymio_sim_ros.ros.foxglove.parameter_values import UnfitValueError, from_ros, to_ros
+from thymio_sim_ros.ros.foxglove.service_calls import Calls
+
+__all__ = ["Parameters"]
+
+_LIST = "/list_parameters"
+_PORTION = 8
+"""Parameters that a node is given to set at once: between two portions it has time for others."""
+
+_FIRST_ANSWER_S = 1.0
+"""Longest wait of a client for nodes that are asked for the first time; later answers are sent to those who watch."""
+
+
+@dataclass(slots=True)
+class _Change:
+    """A client's wish on its way: names in the order of the request, reasons of those that were refused."""
+
+    wish: ParametersSet
+    names: tuple[str, ...]
+    refused: dict[str, str] = field(default_factory=dict)
+    portions_left: int = 0
+
+
+@dataclass(slots=True, eq=False)
+class _Wait:
+    """Something to be done when nodes have answered, or at the deadline."""
+
+    nodes: set[str]
+    then: Callable[[], None]
+    deadline_s: float
+
+
+class Parameters:
+    """Belongs to the executor's thread; `poll` must be called while it returns True."""
+
+    def __init__(
+        self,
+        node: Node,
+        calls: Calls,
+        post: Callable[[Command], None],
+        *,
+        is_allowed: Callable[[str], bool] = lambda name: True,
+        wake: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._calls = calls
+        self._post = post
+        self._is_allowed = is_allowed
+        self._wake = wake
+        self._present: set[str] = set()
+        """Nodes with parameters."""
+        self._wants_all = False
+        """Whether a client has asked for the parameters of all nodes."""
+        self._watched: set[str] = set()
+        """Nodes whose parameters clients watch, those that are not there yet too."""
+        self._types: dict[str, dict[str, int]] = {}
+        """Node that was asked → parameter → type code in force."""
+        self._reading: set[str] = set()
+        """Nodes that have not answered yet."""
+        self._unread: set[str] = set()
+        """Nodes that did not answer in time."""
+        self._waits: list[_Wait] = []
+        self._subscription = node.create_subscription(
+            ParameterEvent, "/parameter_events", self._on_event, qos_profile_parameter_events
+        )
+
+    def update(self, services: Mapping[str, Sequence[str]]) -> None:
+        """Follow the graph: new nodes are asked if all are wanted, vanished ones are forgotten."""
+        self._present = {name.removesuffix(_LIST) for name in services if name.endswith(_LIST)}
+        for node in [node for node in self._types if node not in self._present]:
+            gone = self._types.pop(node)
+            self._unread.discard(node)
+            for service in ("list", "get", "set"):
+                self._calls.forget(f"{node}/{service}_parameters")
+            self._was_read(node)
+            self._post(ParametersChanged((), tuple(f"{node}.{name}" for name in gone)))
+        self._ask(self._present if self._wants_all else self._watched & self._present)
+
+    def refresh(self, *, is_watched: bool) -> None:
+        """Ask nodes again that did not answer: one that starts may not spin yet. Nobody is asked while no client is
+        connected (`is_watched` is false)."""
+        if not is_watched:
+            self._wants_all = False
+            self._watched.clear()
+            return
+        unread, self._unread = self._unread, set()
+        for node in sorted(unread & self._types.keys()):
+            self._read_all(node)
+
+    def poll(self) -> bool:
+        """Stop waiting for nodes that take too long; whether something waits still."""
+        now_s = time.monotonic()
+        late = [wait for wait in self._waits if wait.deadline_s <= now_s]
+        self._waits = [wait for wait in self._waits if wait.deadline_s > now_s]
+        for wait in late:
+            wait.then()
+        return bool(self._waits)
+
+    def get(self, wish: ParametersAsked) -> None:
+        """Answer with the values in force, once the nodes have been asked for them."""
+        names = wish.names or None
+        self._wants_all = self._wants_all or names is None
+        nodes = self._present if names is None else _nodes_of(names) & self._present
+        self._after(nodes, lambda: self._post(ShowParameters(wish.client, names, wish.request_id)))
+
+    def watch(self, wish: ParametersWatched) -> None:
+        """A client wants to be told of changes."""
+        nodes = _nodes_of(wish.names)
+        if len(self._watched) <= MAX_WATCHED:
+            self._watched |= nodes
+        self._ask(nodes & self._present)
+
+    def set(self, wish: ParametersSet) -> None:
+        """Set values node by node, then answer."""
+        names = tuple(item.name for item in wish.parameters)
+        self._after(_nodes_of(names) & self._present, lambda: self._set(wish, names))
+
+    def _ask(self, nodes: Iterable[str]) -> None:
+        """Ask those nodes for their parameters that were never asked."""
+        for node in sorted(set(nodes) - self._types.keys()):
+            self._types[node] = {}
+            self._read_all(node)
+
+    def _after(self, nodes: Iterable[str], then: Callable[[], None]) -> None:
+        """Do it when the nodes have answered, after `_FIRST_ANSWER_S` at the latest; at once where all have already."""
+        nodes = set(nodes)
+        self._ask(nodes)
+        missing = nodes & self._reading
+        if missing:
+            self._waits.append(_Wait(missing, then, time.monotonic() + _FIRST_ANSWER_S))
+            self._wake()
+        else:
+            then()
+
+    def _was_read(self, node: str) -> None:
+        """The node has answered, or will not: nothing waits for it any more."""
+        self._reading.discard(node)
+        ready = []
+        for wait in self._waits:
+            wait.nodes.discard(node)
+            if not wait.nodes:
+                ready.append(wait)
+        for wait in ready:
+            self._waits.remove(wait)
+        for wait in ready:
+            wait.then()
+
+    def _set(self, wish: ParametersSet, names: tuple[str, ...]) -> None:
+        change = _Change(wish, names)
+        by_node: dict[str, list[RosParameter]] = {}
+        for parameter in wish.parameters:
+            node, _, name = parameter.name.partition(".")
+            try:
+                value = self._checked(parameter, node, name)
+            except UnfitValueError as error:
+                change.refused[parameter.name] = str(error)
+            else:
+                by_node.setdefault(node, []).append(RosParameter(name=name, value=value))
+        portions = [
+            (node, parameters[start : start + _PORTION])
+            for node, parameters in by_node.items()
+            for start in range(0, len(parameters), _PORTION)
+        ]
+        change.portions_left = len(portions)
+        for node, parameters in portions:
+            self._set_on(node, parameters, change)
+        if not portions:
+            self._answer(change)
+
+    def _checked(self, parameter: Parameter, node: str, name: str) -> ParameterValue:
+        if node not in self._types:
+            raise UnfitValueError(f"no node {node} with parameters")
+        if not name or not self._is_allowed(parameter.name) or not _is_text(name):
+            raise UnfitValueError("not offered by this bridge")
+        if refusal := parameter_refusal(name, parameter.value):
+            raise UnfitValueError(refusal)
+        return to_ros(parameter, self._types[node].get(name, ParameterType.PARAMETER_NOT_SET))
+
+    def _set_on(self, node: str, parameters: list[RosParameter], change: _Change) -> None:
+        names = [parameter.name for parameter in parameters]
+
+        def was_set(response: Any, reason: str) -> None:
+            if response is None:
+                change.refused.update((f"{node}.{name}", reason) for name in names)
+            else:
+                missing = SetParametersResult(reason="the node did not say what became of it")
+                for name, result in zip_longest(names, response.results[: len(names)], fillvalue=missing):
+                    if not result.successful:
+                        change.refused[f"{node}.{name}"] = result.reason or "refused by the node"
+            self._read(node, names, lambda: was_read(), sender=change.wish.client)
+
+        def was_read() -> None:
+            change.portions_left -= 1
+            if change.portions_left == 0:
+                self._answer(change)
+
+        request = SetParameters.Request(parameters=parameters)
+        self._calls.call(SetParameters, f"{node}/set_parameters", request, was_set, sender=change.wish.client)
+
+    def _answer(self, change: _Change) -> None:
+        wish = change.wish
+        accepted = tuple(parameter_status(name) for name in change.names if name not in change.refused)
+        if accepted:
+            self._post(Tell(wish.client, RemoveStatus(accepted)))
+        refused = list(change.refused.items())
+        for name, reason in refused[:MAX_REFUSALS]:
+            self._post(Tell(wish.client, Status(StatusLevel.ERROR, f"{name}: {reason}", parameter_status(name))))
+        if more := len(refused[MAX_REFUSALS:]):
+            self._post(Tell(wish.client, Status(StatusLevel.ERROR, f"{more} more parameters were refused")))
+        self._post(ShowParameters(wish.client, change.names, wish.request_id, size_of(wish)))
+
+    def _read_all(self, node: str) -> None:
+        self._reading.add(node)
+
+        def listed(response: Any, reason: str) -> None:
+            if response is not None:
+                self._read(node, response.result.names, lambda: self._was_read(node))
+            else:
+                self._unread.add(node)
+                self._was_read(node)
+
+        self._calls.call(ListParameters, f"{node}{_LIST}", ListParameters.Request(), listed)
+
+    def _read(
+        self, node: str, names: Sequence[str], then: Callable[[], None] = lambda: None, *, sender: int = 0
+    ) -> None:
+        def got(response: Any, reason: str) -> None:
+            if response is not None and len(response.values) == len(names):
+                self._learn(node, zip(names, response.values, strict=True))
+            elif response is not None and len(names) > 1:
+                # rclpy gives no value at all where one of them was declared and never set.
+                left = list(names)
+
+                def one_more() -> None:
+                    left.pop()
+                    if not left:
+                        then()
+
+                for name in names:
+                    self._read(node, [name], one_more, sender=sender)
+                return
+            elif response is not None:
+                self._learn(node, [(name, ParameterValue()) for name in names])
+            else:
+                self._unread.add(node)
+            then()
+
+        request = GetParameters.Request(names=names)
+        self._calls.call(GetParameters, f"{node}/get_parameters", request, got, sender=sender)
+
+    def _learn(self, node: str, values: Iterable[tuple[str, ParameterValue]]) -> None:
+        types = self._types.get(node)
+        if types is None:  # vanished meanwhile
+            return
+        changed, removed = [], []
+        for name, value in values:
+            full = f"{node}.{name}"
+            if not self._is_allowed(full):
+                continue
+            if value.type == ParameterType.PARAMETER_NOT_SET:
+                types.pop(name, None)
+                removed.append(full)
+            else:
+                types[name] = value.type
+                changed.append(from_ros(full, value))
+        self._post(ParametersChanged(tuple(changed), tuple(removed)))
+
+    def _on_event(self, event: ParameterEvent) -> None:
+        items = [(item.name, item.value) for item in (*event.new_parameters, *event.changed_parameters)]
+        items += [(item.name, ParameterValue()) for item in event.deleted_parameters]
+        self._learn(event.node, items)
+
+
+def _nodes_of(names: Iterable[str]) -> set[str]:
+    return {name.partition(".")[0] for name in names}
+
+
+def _is_text(name: str) -> bool:
+    """Whether ROS can carry it: halves of characters cannot be."""
+    return name.isprintable()

@@ -1,0 +1,212 @@
+"""What clients publish: checked, then handed to ROS."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from rclpy._rclpy_pybind11 import RCLError, RMWError
+from rclpy.exceptions import InvalidTopicNameException
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.serialization import deserialize_message
+from rclpy.validate_full_topic_name import validate_full_topic_name
+
+from thymio_sim_ros.bridge.constants import JSON, StatusLevel
+from thymio_sim_ros.bridge.events import Command, Tell
+from thymio_sim_ros.bridge.messages import ClientChannel, Status
+from thymio_sim_ros.ros.compat import tf2_messages
+from thymio_sim_ros.ros.foxglove import json_messages
+from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_parts
+from thymio_sim_ros.ros.foxglove.qos import publishing
+from thymio_sim_ros.ros.foxglove.types import MissingTypeError, full_name, load_type
+
+__all__ = ["ClientPublishers"]
+
+_HELD = 10
+_SETTLE_S = 1.0
+"""A new publisher holds its last `_HELD` messages until it has met all subscribers, at most this long.
+
+They leave as far apart as they came: a button that is pressed and let go meanwhile was held all the same.
+"""
+
+_MOTION_TYPES = frozenset(f"geometry_msgs/msg/{name}" for name in ("Twist", "TwistStamped"))
+
+
+class _RefusalError(Exception):
+    """Why a client's channel or message is not accepted; the text is for its user."""
+
+
+@dataclass(slots=True)
+class _Port:
+    """One ROS publisher, shared by all clients' channels of its topic and type."""
+
+    topic: str
+    type_name: str
+    message_type: Any
+    publisher: Publisher
+    settled_s: float
+    users: int = 0
+    held: deque[tuple[float, Any]] = field(default_factory=lambda: deque(maxlen=_HELD))
+    """When it came, s, and what."""
+    is_waiting: bool = False
+    late_s: float = 0.0
+    met_s: float = 0.0
+    """What had come when all were met leaves so much later than it came; the rest at once, in order."""
+
+
+class ClientPublishers:
+    """Publishers for clients' channels. Belongs to the executor's thread."""
+
+    def __init__(
+        self,
+        node: Node,
+        post: Callable[[Command], None],
+        *,
+        is_allowed: Callable[[str], bool] = lambda topic: True,
+        wake: Callable[[], None] = lambda: None,
+        now_s: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """`wake` asks for `poll` soon and again until it has nothing to do."""
+        self._node = node
+        self._post = post
+        self._is_allowed = is_allowed
+        self._wake = wake
+        self._now_s = now_s
+        self._ports: dict[tuple[str, str], _Port] = {}
+        self._channels: dict[tuple[int, int], tuple[_Port, str]] = {}
+
+    def open(self, client: int, channel: ClientChannel) -> None:
+        """Prepare for a client's messages, or tell the client why not."""
+        try:
+            port = self._port(channel)
+        except _RefusalError as error:
+            self._refuse(client, str(error))
+            return
+        port.users += 1
+        self._channels[client, channel.id] = (port, channel.encoding)
+
+    def close(self, client: int, channel_id: int) -> None:
+        """The channel is over; the last one takes the publisher with it."""
+        port, _ = self._channels.pop((client, channel_id), (None, ""))
+        if port is None:
+            return
+        port.users -= 1
+        if port.users == 0:
+            del self._ports[port.topic, port.type_name]
+            self._node.destroy_publisher(port.publisher)
+
+    def publish(self, client: int, channel_id: int, payload: bytes) -> None:
+        """Publish a client's message, or tell the client why not."""
+        port, encoding = self._channels.get((client, channel_id), (None, ""))
+        if port is None:  # refused when it was opened, and told so
+            return
+        try:
+            message = _decode(payload, encoding, port)
+        except _RefusalError as error:
+            self._refuse(client, f"{port.topic}: {error}")
+            return
+        port.held.append((self._now_s(), message))
+        if not self._flush(port):
+            self._wake()
+
+    def poll(self) -> bool:
+        """Send what was held for subscribers not met before; whether something is held still."""
+        flushed = [self._flush(port) for port in self._ports.values()]
+        return not all(flushed)
+
+    def end(self) -> None:
+        """End all publishers."""
+        for port in self._ports.values():
+            self._node.destroy_publisher(port.publisher)
+        self._ports.clear()
+        self._channels.clear()
+
+    def _flush(self, port: _Port) -> bool:
+        """Publish what is due, unless the publisher has still to meet subscribers; whether nothing is left."""
+        now_s = self._now_s()
+        if port.held and now_s < port.settled_s and not self._has_met_all(port):
+            port.is_waiting = True
+            return False
+        if port.is_waiting:
+            port.is_waiting, port.late_s, port.met_s = False, now_s - port.held[0][0], now_s
+        while port.held:
+            came_s, message = port.held[0]
+            if came_s <= port.met_s and came_s + port.late_s > now_s:
+                return False
+            port.held.popleft()
+            try:
+                port.publisher.publish(message)
+            except RCLError as error:  # beyond a bound of its type, which reading does not check
+                self._node.get_logger().warning(f"{port.topic}: a client's message was refused: {error}")
+        return True
+
+    def _has_met_all(self, port: _Port) -> bool:
+        known = self._node.count_subscribers(port.topic)
+        return 0 < known <= port.publisher.get_subscription_count()
+
+    def _port(self, channel: ClientChannel) -> _Port:
+        topic = channel.topic if channel.topic.startswith("/") else f"/{channel.topic}"
+        type_name = full_name(channel.schema_name)
+        port = self._ports.get((topic, type_name))
+        if port is not None:
+            return port
+        if not self._is_allowed(topic):
+            raise _RefusalError(f"{topic}: clients may not publish here (client_topic_whitelist)")
+        try:
+            validate_full_topic_name(topic)
+            message_type = load_type(type_name)
+            profile = publishing(
+                self._node.get_publishers_info_by_topic(topic), self._node.get_subscriptions_info_by_topic(topic)
+            )
+            publisher = self._node.create_publisher(message_type, topic, profile)
+        except InvalidTopicNameException as error:
+            raise _RefusalError(f"{topic}: not a topic name") from error
+        except MissingTypeError as error:
+            raise _RefusalError(f"{topic}: {error}") from error
+        except RCLError as error:
+            raise _RefusalError(f"{topic}: cannot publish {type_name} here, it carries another type") from error
+        except (ValueError, TypeError, RuntimeError) as error:  # no text, no type of messages
+            raise _RefusalError(f"{topic!r}: cannot publish {type_name}: {error}") from error
+        port = self._ports[topic, type_name] = _Port(
+            topic, type_name, message_type, publisher, self._now_s() + _SETTLE_S
+        )
+        return port
+
+    def _refuse(self, client: int, text: str) -> None:
+        self._post(Tell(client, Status(StatusLevel.ERROR, text)))
+
+
+def _decode(payload: bytes, encoding: str, port: _Port) -> Any:
+    """The message, or its checked bytes where there is no class for it."""
+    try:
+        if port.type_name == tf2_messages.TF_TYPE_NAME and encoding != JSON:
+            check_parts(payload, port.message_type)
+            tf2_messages.decode(payload)
+            return payload
+        if encoding == JSON:
+            message = json_messages.from_json(payload, port.message_type)
+        else:
+            check_parts(payload, port.message_type)
+            message = deserialize_message(payload, port.message_type)
+    except (
+        RMWError,
+        json_messages.JsonMessageError,
+        tf2_messages.TransformDataError,
+        TooManyPartsError,
+    ) as error:
+        first_line = str(error).partition("\n")[0]
+        raise _RefusalError(f"expected a {port.type_name} in {encoding}: {first_line}") from error
+    except TypeError as error:  # a type without a Python class
+        raise _RefusalError(f"{port.type_name} is accepted as cdr only") from error
+    if port.type_name in _MOTION_TYPES and not _is_finite(getattr(message, "twist", message)):
+        raise _RefusalError("a velocity that is not a number or infinite is refused")
+    return message
+
+
+def _is_finite(twist: Any) -> bool:
+    return all(math.isfinite(getattr(part, axis)) for part in (twist.linear, twist.angular) for axis in "xyz")

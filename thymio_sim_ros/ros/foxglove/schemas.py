@@ -1,0 +1,117 @@
+"""Definition text of message and service types (ros2msg), from installed files or from the classes themselves.
+
+The text is the type's own definition, then each type it needs, once, after a line of 80 `=` and `MSG: pkg/Type`.
+The wheels do not set AMENT_PREFIX_PATH, therefore the interpreter's prefix is searched too (docs/spec/foxglove.md
+section 5).
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+from thymio_sim_ros.ros.compat.tf2_messages import TF_DEFINITION, TF_TYPE_NAME
+from thymio_sim_ros.ros.foxglove.types import load_type
+
+__all__ = ["message_definition", "service_definitions", "share_folders"]
+
+_SEPARATOR = "=" * 80
+_BETWEEN = re.compile(r"^---[^\n]*\n?", re.MULTILINE)
+_INTEGERS = frozenset(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))
+_PRIMITIVES = _INTEGERS | {"bool", "byte", "char", "float32", "float64", "string", "wstring"}
+_FIELD = re.compile(r"^([A-Za-z][\w/]*)(?:<=\d+)?(?:\[(?:<=)?\d*\])?\s+[A-Za-z]\w*")
+_PYTHON_TO_ROS = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
+_BOUNDED_SEQUENCE = re.compile(r"^sequence<(.+), (\d+)>$")
+_SEQUENCE = re.compile(r"^sequence<(.+)>$")
+_ARRAY = re.compile(r"^(.+)\[(\d+)\]$")
+_BOUNDED_STRING = re.compile(r"^(w?string)<(\d+)>$")
+
+
+def share_folders() -> list[Path]:
+    """Where packages keep their shared files, the first match wins."""
+    prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
+    return [Path(prefix) / "share" for prefix in (*prefixes, sys.prefix)]
+
+
+def message_definition(type_name: str) -> str:
+    """Complete text for `pkg/msg/Type`; raises MissingTypeError."""
+    return _complete(type_name, _message_text(type_name))
+
+
+def service_definitions(type_name: str) -> tuple[str, str]:
+    """Complete texts of request and response for `pkg/srv/Type`; raises MissingTypeError."""
+    text = _file_text(type_name)
+    if text is not None:
+        request, response = _BETWEEN.split(text, maxsplit=1)
+    else:
+        service = load_type(type_name)
+        request, response = _class_text(service.Request), _class_text(service.Response)
+    return _complete(type_name, request), _complete(type_name, response)
+
+
+def _complete(root: str, text: str) -> str:
+    parts = [text]
+    seen = {root}
+    waiting = _needed(root, text)
+    while waiting:
+        name = waiting.pop(0)
+        if name in seen:
+            continue
+        seen.add(name)
+        part = _message_text(name)
+        package, _, short = name.split("/")
+        parts += [_SEPARATOR, f"MSG: {package}/{short}", part]
+        waiting += _needed(name, part)
+    return "\n".join(parts)
+
+
+def _needed(owner: str, text: str) -> list[str]:
+    """Full names of the message types of the fields in `text`, in order of appearance."""
+    package = owner.split("/")[0]
+    names = []
+    for line in text.splitlines():
+        match = _FIELD.match(line.strip())
+        if match is None or match[1] in _PRIMITIVES:
+            continue
+        words = match[1].split("/")
+        names.append(f"{words[0] if len(words) > 1 else package}/msg/{words[-1]}")
+    return names
+
+
+def _message_text(type_name: str) -> str:
+    text = _file_text(type_name)
+    if text is not None:
+        return text
+    if type_name == TF_TYPE_NAME:
+        return TF_DEFINITION
+    return _class_text(load_type(type_name))
+
+
+def _file_text(type_name: str) -> str | None:
+    package, kind, short = type_name.split("/")
+    for share in share_folders():
+        try:
+            return (share / package / kind / f"{short}.{kind}").read_text(encoding="utf-8")
+        except OSError:
+            continue
+    return None
+
+
+def _class_text(message: Any) -> str:
+    """Fields of a message class; constants and defaults are lost."""
+    return "".join(f"{_ros_type(kind)} {name}\n" for name, kind in message.get_fields_and_field_types().items())
+
+
+def _ros_type(kind: str) -> str:
+    if match := _BOUNDED_SEQUENCE.match(kind):
+        return f"{_ros_type(match[1])}[<={match[2]}]"
+    if match := _SEQUENCE.match(kind):
+        return f"{_ros_type(match[1])}[]"
+    if match := _ARRAY.match(kind):
+        return f"{_ros_type(match[1])}[{match[2]}]"
+    if match := _BOUNDED_STRING.match(kind):
+        return f"{match[1]}<={match[2]}"
+    return _PYTHON_TO_ROS.get(kind, kind)

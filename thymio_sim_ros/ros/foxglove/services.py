@@ -1,0 +1,136 @@
+"""Services of the graph as services of the bridge: cdr and JSON in, the same out."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rclpy._rclpy_pybind11 import RMWError
+from rclpy.node import Node
+from rclpy.serialization import deserialize_message, serialize_message
+
+from thymio_sim_ros.bridge.constants import CDR, JSON, StatusLevel
+from thymio_sim_ros.bridge.events import AddServices, Answer, Command, RemoveServices, Tell
+from thymio_sim_ros.bridge.messages import (
+    Service,
+    ServiceCallFailure,
+    ServiceRequest,
+    ServiceResponse,
+    ServiceSide,
+    Status,
+)
+from thymio_sim_ros.ros.foxglove import json_messages
+from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_parts
+from thymio_sim_ros.ros.foxglove.file_access import call_refusal
+from thymio_sim_ros.ros.foxglove.schemas import service_definitions
+from thymio_sim_ros.ros.foxglove.service_calls import Calls
+from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
+
+__all__ = ["Services"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Offer:
+    service: Service
+    service_type: Any
+
+
+class Services:
+    """Keeps the offered services equal to the graph. Belongs to the executor's thread."""
+
+    def __init__(self, node: Node, calls: Calls, post: Callable[[Command], None]) -> None:
+        self._node = node
+        self._calls = calls
+        self._post = post
+        self._ids = itertools.count(1)
+        self._by_name: dict[str, _Offer] = {}
+        self._by_id: dict[int, _Offer] = {}
+        self._refused: set[str] = set()
+        self._definitions: dict[str, tuple[str, str]] = {}
+        """Texts of the types met so far."""
+
+    def update(self, services: Mapping[str, Sequence[str]]) -> None:
+        """Offer new services, take away vanished ones; service → types."""
+        gone = [name for name, offer in self._by_name.items() if offer.service.type not in services.get(name, ())]
+        if gone:
+            ended = [self._by_name.pop(name).service for name in gone]
+            for service in ended:
+                del self._by_id[service.id]
+                self._calls.forget(service.name)
+            self._post(RemoveServices(tuple(service.id for service in ended)))
+        added = [
+            offer.service
+            for name, types in services.items()
+            if name not in self._by_name and (offer := self._add(name, types[0])) is not None
+        ]
+        if added:
+            self._post(AddServices(tuple(added)))
+
+    def call(self, client: int, request: ServiceRequest) -> None:
+        """Carry out a client's call."""
+        offer = self._by_id.get(request.service_id)
+        if offer is None:
+            self.fail(client, request, f"service {request.service_id} is gone")
+            return
+        try:
+            message = _decode(request, offer.service_type.Request)
+        except (RMWError, json_messages.JsonMessageError, TooManyPartsError, ValueError) as error:
+            self.fail(client, request, f"{offer.service.name}: undecodable request: {_first_line(error)}")
+            return
+        if refusal := call_refusal(offer.service.type, message):
+            self.fail(client, request, f"{offer.service.name}: {refusal}")
+            return
+
+        def done(response: Any, reason: str) -> None:
+            if response is None:
+                self.fail(client, request, reason)
+                return
+            try:
+                payload = json_messages.to_json(response) if request.encoding == JSON else serialize_message(response)
+            except Exception as error:  # of a response that neither can carry
+                self.fail(client, request, f"{offer.service.name}: unreadable response: {_first_line(error)}")
+                return
+            answer = ServiceResponse(request.service_id, request.call_id, request.encoding, payload)
+            self._post(Answer(client, answer, len(request.payload)))
+
+        self._calls.call(offer.service_type, offer.service.name, message, done, sender=client)
+
+    def _add(self, name: str, type_name: str) -> _Offer | None:
+        try:
+            service_type = load_type(type_name)
+            definitions = self._definitions.get(type_name) or service_definitions(type_name)
+        except MissingTypeError as error:
+            if name not in self._refused:
+                self._refused.add(name)
+                self._node.get_logger().warning(f"service {name} is not bridged: {error}")
+            return None
+        self._definitions[type_name] = definitions
+        request, response = (
+            ServiceSide(CDR, f"{type_name}_{side}", "ros2msg", text)
+            for side, text in zip(("Request", "Response"), definitions, strict=True)
+        )
+        offer = _Offer(Service(next(self._ids), name, type_name, request, response), service_type)
+        self._by_name[name] = self._by_id[offer.service.id] = offer
+        return offer
+
+    def fail(self, client: int, request: ServiceRequest, text: str) -> None:
+        """Answer a call with the reason why it failed."""
+        # Some clients handle one, some the other (docs/spec/foxglove.md section 2).
+        failure = ServiceCallFailure(request.service_id, request.call_id, text)
+        self._post(Answer(client, failure, len(request.payload)))
+        self._post(Tell(client, Status(StatusLevel.ERROR, text)))
+
+
+def _decode(request: ServiceRequest, message_type: Any) -> Any:
+    if request.encoding == CDR:
+        check_parts(request.payload, message_type)
+        return deserialize_message(request.payload, message_type)
+    if request.encoding == JSON:
+        return json_messages.from_json(request.payload or b"{}", message_type)
+    raise ValueError(f"expected encoding {CDR} or {JSON}, found {request.encoding}")
+
+
+def _first_line(error: BaseException) -> str:
+    return str(error).partition("\n")[0]

@@ -1,0 +1,225 @@
+"""Topics of the graph as channels; raw subscriptions only while a client wants them."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+from rclpy._rclpy_pybind11 import RCLError
+from rclpy.node import Node
+from rclpy.subscription import Subscription
+
+from thymio_sim_ros.bridge.constants import CDR
+from thymio_sim_ros.bridge.events import AddChannels, Command, KeepLast, RemoveChannels
+from thymio_sim_ros.bridge.messages import Channel
+from thymio_sim_ros.ros.foxglove.qos import Reception, reception
+from thymio_sim_ros.ros.foxglove.schemas import message_definition
+from thymio_sim_ros.ros.foxglove.time_share import TimeShare
+from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
+
+__all__ = ["Topics"]
+
+_ALL_IN = 10
+"""Publishers are asked for their QoS when their number has changed, and else in one of so many refreshes: asking costs
+0.3 ms a topic, a tenth of a core for the hundred topics of a page that shows twenty robots."""
+
+
+_DEMAND_SHARE = 0.25
+"""Of the time at most this part goes to subscribing and unsubscribing: 1500 topics take 1.5 s."""
+
+_SLICE_S = 0.005
+"""Longest time of one turn of it."""
+
+
+class _Topic:
+    """One channel and, while it is wanted, its subscription."""
+
+    def __init__(self, channel: Channel, message_type: Any) -> None:
+        self.channel = channel
+        self.message_type = message_type
+        self.reception: Reception | None = None
+        self.publishers = 0
+        """How many there were when the reception was chosen."""
+        self.subscription: Subscription | None = None
+        self.is_wanted = False
+
+
+class Topics:
+    """Keeps channels equal to the graph. Belongs to the executor's thread; `poll` must be called while it returns True.
+
+    What takes time (subscribing, asking for publishers) is done in slices, topic by topic.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        post: Callable[[Command], None],
+        publish: Callable[[int, int, bytes], None],
+        now_ns: Callable[[], int],
+        *,
+        min_depth: int = 10,
+        max_depth: int = 25,
+        is_best_effort: Callable[[str], bool] = lambda topic: False,
+        wake: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._node = node
+        self._post = post
+        self._publish = publish
+        self._now_ns = now_ns
+        self._depths = {"min_depth": min_depth, "max_depth": max_depth}
+        self._is_best_effort = is_best_effort
+        self._ids = itertools.count(1)
+        self._wake = wake
+        self._share = TimeShare(_DEMAND_SHARE)
+        self._demand: dict[int, None] = {}
+        """Channels that may have to be subscribed or unsubscribed, the oldest first."""
+        self._refreshes = 0
+        self._round = self._check_all()
+        """What is left of the present refresh."""
+        self._by_name: dict[str, _Topic] = {}
+        self._by_id: dict[int, _Topic] = {}
+        self._refused: set[tuple[str, str]] = set()
+        self._types: dict[str, tuple[Any, str]] = {}
+        """Class and definition of the types met so far."""
+
+    def update(self, topics: Mapping[str, Sequence[str]]) -> None:
+        """Make channels for new topics, take away those of vanished ones; topic → types, the first one counts."""
+        gone = [name for name, topic in self._by_name.items() if topic.channel.schema_name not in topics.get(name, ())]
+        if gone:
+            self._remove(gone)
+        added = [
+            topic.channel
+            for name, types in topics.items()
+            if name not in self._by_name and (topic := self._add(name, types[0])) is not None
+        ]
+        if added:
+            self._post(AddChannels(tuple(added)))
+
+    def want(self, channel_id: int) -> None:
+        """Subscribe for the first client, soon."""
+        self._note_demand(channel_id, is_wanted=True)
+
+    def unwant(self, channel_id: int) -> None:
+        """Unsubscribe after the last client, soon."""
+        self._note_demand(channel_id, is_wanted=False)
+
+    def _note_demand(self, channel_id: int, *, is_wanted: bool) -> None:
+        topic = self._by_id.get(channel_id)
+        if topic is None:
+            return
+        topic.is_wanted = is_wanted
+        self._demand[channel_id] = None
+        if self.poll():
+            self._wake()
+
+    def poll(self) -> bool:
+        """Subscribe and unsubscribe for a slice of time; whether something is left."""
+        if self._demand and self._share.is_due:
+            with self._share.work():
+                end_s = time.monotonic() + _SLICE_S
+                while self._demand and time.monotonic() < end_s:
+                    channel_id = next(iter(self._demand))
+                    del self._demand[channel_id]
+                    self._follow_demand(channel_id)
+        return bool(self._demand)
+
+    def _follow_demand(self, channel_id: int) -> None:
+        topic = self._by_id.get(channel_id)
+        if topic is None:
+            return
+        if not topic.is_wanted:
+            self._unsubscribe(topic)
+        elif topic.subscription is None:
+            self._subscribe(topic, self._reception(topic))
+
+    def refresh(self, slice_s: float = float("inf")) -> bool:
+        """Subscribe anew where publishers came or left so that another QoS fits; whether all topics have been checked.
+
+        A call goes on where the one before it stopped after `slice_s`.
+        """
+        end_s = time.monotonic() + slice_s
+        for _ in self._round:
+            if time.monotonic() >= end_s:
+                return False
+        self._round = self._check_all()
+        return True
+
+    def _check_all(self) -> Iterator[None]:
+        self._refreshes += 1
+        for number, topic in list(self._by_id.items()):
+            if topic.subscription is None:
+                continue
+            self._check(number, topic)
+            yield
+
+    def _check(self, number: int, topic: _Topic) -> None:
+        is_due = number % _ALL_IN == self._refreshes % _ALL_IN
+        if not is_due and self._node.count_publishers(topic.channel.topic) == topic.publishers:
+            return
+        fitting = self._reception(topic)
+        if fitting != topic.reception:
+            self._unsubscribe(topic)
+            self._subscribe(topic, fitting)
+
+    def close(self) -> None:
+        """End all subscriptions."""
+        for topic in self._by_id.values():
+            self._unsubscribe(topic)
+
+    @property
+    def subscribed(self) -> tuple[str, ...]:
+        """Topics with a subscription now."""
+        return tuple(name for name, topic in self._by_name.items() if topic.subscription is not None)
+
+    def _add(self, name: str, type_name: str) -> _Topic | None:
+        try:
+            known = self._types.get(type_name) or (load_type(type_name), message_definition(type_name))
+        except MissingTypeError as error:
+            self._refuse(name, type_name, str(error))
+            return None
+        message_type, schema = self._types[type_name] = known
+        channel = Channel(next(self._ids), name, CDR, type_name, schema, "ros2msg")
+        topic = self._by_name[name] = self._by_id[channel.id] = _Topic(channel, message_type)
+        return topic
+
+    def _remove(self, names: Sequence[str]) -> None:
+        topics = [self._by_name.pop(name) for name in names]
+        for topic in topics:
+            self._unsubscribe(topic)
+            del self._by_id[topic.channel.id]
+        self._post(RemoveChannels(tuple(topic.channel.id for topic in topics)))
+
+    def _reception(self, topic: _Topic) -> Reception:
+        name = topic.channel.topic
+        publishers = self._node.get_publishers_info_by_topic(name)
+        topic.publishers = len(publishers)
+        return reception(publishers, **self._depths, best_effort=self._is_best_effort(name))
+
+    def _subscribe(self, topic: _Topic, fitting: Reception) -> None:
+        channel_id, now_ns, publish = topic.channel.id, self._now_ns, self._publish
+
+        def forward(payload: bytes) -> None:
+            publish(channel_id, now_ns(), payload)
+
+        self._post(KeepLast(channel_id, fitting.kept))
+        try:
+            topic.subscription = self._node.create_subscription(
+                topic.message_type, topic.channel.topic, forward, fitting.profile, raw=True
+            )
+        except RCLError as error:  # this process uses the topic with another type
+            self._refuse(topic.channel.topic, topic.channel.schema_name, str(error))
+            return
+        topic.reception = fitting
+
+    def _unsubscribe(self, topic: _Topic) -> None:
+        if topic.subscription is not None:
+            self._node.destroy_subscription(topic.subscription)
+            topic.subscription = topic.reception = None
+
+    def _refuse(self, name: str, type_name: str, reason: str) -> None:
+        """Say once why a topic is not there."""
+        if (name, type_name) not in self._refused:
+            self._refused.add((name, type_name))
+            self._node.get_logger().warning(f"{name} is not bridged: {reason}")

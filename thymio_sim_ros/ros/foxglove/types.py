@@ -1,0 +1,63 @@
+"""Type names and their classes."""
+
+from __future__ import annotations
+
+import functools
+import importlib.util
+from pathlib import Path
+from typing import Any
+
+from rclpy.type_support import check_for_type_support
+
+from thymio_sim_ros.ros.compat import tf2_messages
+
+__all__ = ["MissingTypeError", "full_name", "load_type"]
+
+
+class MissingTypeError(Exception):
+    """A type that is not installed here."""
+
+    def __init__(self, name: str, reason: str) -> None:
+        super().__init__(f"type {name} is not available: {reason}")
+        self.name = name
+        self.reason = reason
+
+
+def full_name(name: str, kind: str = "msg") -> str:
+    """`pkg/Type`, as clients may write it, as `pkg/msg/Type`; other forms as they are."""
+    words = name.split("/")
+    return f"{words[0]}/{kind}/{words[1]}" if len(words) == 2 else name
+
+
+@functools.lru_cache(maxsize=4096)
+def load_type(name: str) -> Any:
+    """The class of `pkg/msg/Type` or `pkg/srv/Type`, ready for publishers, subscriptions and clients.
+
+    Transforms work without tf2_msgs, as raw bytes. Raises MissingTypeError.
+    """
+    if name == tf2_messages.TF_TYPE_NAME:
+        if not tf2_messages.available():
+            raise MissingTypeError(name, "tf2_msgs is not installed and cannot be replaced")
+        return tf2_messages.TFMessage
+    words = name.split("/")
+    if len(words) != 3 or words[1] not in ("msg", "srv") or not all(word.isidentifier() for word in words):
+        raise MissingTypeError(name, "expected package/msg/Type")
+    if not _has_interfaces(words[0], words[1]):
+        raise MissingTypeError(name, f"there is no package {words[0]} with {words[1]} types")
+    try:
+        cls = getattr(importlib.import_module(".".join(words[:2])), words[2])
+        if words[1] == "msg":
+            check_for_type_support(cls)
+    except (ImportError, AttributeError) as error:
+        raise MissingTypeError(name, str(error)) from error
+    return cls
+
+
+def _has_interfaces(package: str, kind: str) -> bool:
+    """Whether it is a package of interfaces, found out without importing it: clients choose the name."""
+    try:
+        spec = importlib.util.find_spec(package)
+    except ValueError:  # of __main__, where it is no file
+        return False
+    folders = spec.submodule_search_locations if spec is not None else None
+    return any((Path(folder) / kind / "__init__.py").is_file() for folder in folders or ())

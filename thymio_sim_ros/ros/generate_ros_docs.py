@@ -1,0 +1,279 @@
+"""docs/ros.md from the declarations that the nodes use: `python -m thymio_sim_ros.ros.generate_ros_docs > docs/ros.md`.
+
+Plug-ins of other packages are left out: the page is about what is shipped.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from thymio_sim_ros import registry
+from thymio_sim_ros.ros import combined_parameters
+from thymio_sim_ros.ros.aseba.aseba_ros_mapping import migration
+from thymio_sim_ros.ros.aseba.node import RuntimeParams
+from thymio_sim_ros.ros.compat import tf2_messages
+from thymio_sim_ros.ros.interface import driver_topics, qos, sensor_topics
+from thymio_sim_ros.ros.interface.names import SIDES, is_hidden
+from thymio_sim_ros.ros.rclpy_ext import parameters
+from thymio_sim_ros.ros.rclpy_ext.type_mismatch import type_name
+from thymio_sim_ros.ros.ros_docs_text import AFTER, ALL_IN_ONE, BEFORE, DRIVER, HIDDEN, INTERFACES, QUALITY, RVIZ
+from thymio_sim_ros.ros.simulator import robot_endpoints, world_endpoints, world_services
+from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
+from thymio_sim_ros.ros.simulator.robot_inputs import robot_inputs
+from thymio_sim_ros.ros.simulator.simulation_interfaces.services import OFFERS, PACKAGE, STEPS
+from thymio_sim_ros.ros.simulator.urdf import fixed_frames, wheel_position
+from thymio_sim_ros.sim import sensors
+from thymio_sim_ros.sim.sensors import Sensor, all_sensors
+from thymio_sim_ros.suite_config import Suite
+
+__all__ = ["own_sensors", "published", "table", "text", "type_name"]
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class _Line:
+    """One topic in a table; neighbours that differ in the last word of their name alone become one."""
+
+    topic: str
+    type: str
+    often: str
+    frame: str
+    profile: str
+    about: str
+
+    @property
+    def place(self) -> str:
+        """What comes before the last word."""
+        return self.topic.rpartition("/")[0]
+
+    @property
+    def sort(self) -> tuple[str, ...]:
+        """What neighbours share."""
+        word = self.topic.rpartition("/")[2]
+        frame = self.frame.replace(f"_{word}_", "_…_")
+        return (self.place, self.type, self.often, frame, self.profile, self.about)
+
+
+def text() -> str:
+    """The whole page."""
+    parts = [
+        BEFORE,
+        "## What a robot publishes\n",
+        _topics(line for line in _published() if not is_hidden(line.topic)),
+        "## What a robot listens to\n",
+        _topics(line for line in _listened() if not is_hidden(line.topic)),
+        HIDDEN,
+        "### What a robot publishes besides\n",
+        _topics(line for line in _published() if is_hidden(line.topic)),
+        "### What a robot listens to besides\n",
+        _topics(line for line in _listened() if is_hidden(line.topic)),
+        DRIVER,
+        table(("topic", "", "type", ""), _of_driver()),
+        "## Topics of the world\n",
+        _topics(_of_world()),
+        "## Services\n",
+        table(("service", "type", "does"), _services()),
+        INTERFACES,
+        table(("service", "type", "does"), _interfaces()),
+        "## Quality of service\n",
+        QUALITY,
+        table(("kind", "depth", "for"), ((kind, str(one.depth), about) for kind, (one, about) in qos.KINDS.items())),
+        "## Frames\n",
+        _frames(),
+        RVIZ,
+        "## Parameters of the simulator\n",
+        table(("parameter", "default", "values", "at run time", ""), _parameters(SimulatorParams())),
+        "## Parameters of the Aseba runtime\n",
+        "What they and its topics do: [aseba_ros.md](aseba_ros.md).\n",
+        table(("parameter", "default", "values", "at run time", ""), _parameters(RuntimeParams())),
+        ALL_IN_ONE,
+        table(("parameter", "node", "default"), _of_all_nodes()),
+        AFTER,
+        migration(own_sensors()),
+    ]
+    return "\n".join(parts)
+
+
+def published() -> dict[str, tuple[str, str]]:
+    """Every topic of the simulator, relative to the robot's namespace or absolute: its type and its kind of QoS."""
+    return {line.topic: (line.type, line.profile) for line in (*_published(), *_of_world())}
+
+
+def own_sensors() -> tuple[Sensor, ...]:
+    """Those that are shipped."""
+    ours = registry.own_names(sensors)
+    return tuple(sensor for sensor in all_sensors() if sensor.name in ours)
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table of Markdown, and an empty line."""
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def _published() -> Iterator[_Line]:
+    for sensor in own_sensors():
+        for row in sensor_topics.rows_of(sensor):
+            often = sensor_topics.often(sensor, row)
+            profile = qos.kind_of(row.profile)
+            yield _Line(row.topic, type_name(row.type), often, row.frame, profile, row.about)
+    kind, about = robot_endpoints.DESCRIBED
+    yield _Line(robot_endpoints.DESCRIPTION, type_name(kind), "once", "", "latched", about)
+
+
+def _listened() -> Iterator[_Line]:
+    for one in robot_inputs():
+        yield _Line(one.topic, type_name(one.type), "", "", qos.kind_of(one.profile), one.about)
+
+
+def _of_driver() -> Iterator[tuple[str, str, str, str]]:
+    for topic, (direction, kind, about) in driver_topics.TOPICS.items():
+        yield f"`{topic}`", direction, f"`{driver_topics.PACKAGE}/msg/{kind}`", about
+
+
+def _of_world() -> Iterator[_Line]:
+    for topic, one in world_endpoints.TOPICS.items():
+        yield _Line(
+            _in_no_namespace(topic), type_name(one.type), one.often, one.frame, qos.kind_of(one.profile), one.about
+        )
+    moving = "`map -> odom -> base_link` and the wheels; `map -> odom` makes up for the odometry's drift"
+    yield _Line("/tf", tf2_messages.TF_TYPE_NAME, "20", "", "transforms", moving)
+    yield _Line("/tf_static", tf2_messages.TF_TYPE_NAME, "once", "", "latched", "the frames below that are fixed")
+    yield _Line(
+        _in_no_namespace(world_services.PLACE),
+        "geometry_msgs/msg/TransformStamped",
+        "in",
+        "map",
+        "command",
+        world_services.PLACED,
+    )
+
+
+def _in_no_namespace(name: str) -> str:
+    """A name of the simulator as it is where the node has no namespace."""
+    return name if name.startswith("/") else f"/{name.replace('~', 'simulator')}"
+
+
+def _topics(lines: Iterable[_Line]) -> str:
+    """Topics by their place, in the order in which places first appear."""
+    listed = list(lines)
+    places = {line.place: None for line in listed}
+    ordered = [line for place in places for line in listed if line.place == place]
+    has_rates, has_frames = any(line.often for line in listed), any(line.frame for line in listed)
+    rows = []
+    for group in _runs(ordered, lambda line: line.sort):
+        first = group[0]
+        words = [line.topic.rpartition("/")[2] for line in group]
+        word = words[0] if len(words) == 1 else f"{{{','.join(words)}}}"
+        frame = first.frame if len(words) == 1 else first.frame.replace(f"_{words[0]}_", "_…_")
+        name = f"{first.place}/{word}" if first.place or first.topic.startswith("/") else word
+        cells = [f"`{name}`", f"`{first.type}`", first.often, f"`{frame}`" if frame else "", first.profile, first.about]
+        wanted = (True, True, has_rates, has_frames, True, True)
+        rows.append([cell for cell, is_wanted in zip(cells, wanted, strict=True) if is_wanted])
+    heads = [
+        head for head, is_wanted in zip(("topic", "type", "Hz", "frame", "QoS", ""), wanted, strict=True) if is_wanted
+    ]
+    return table(heads, rows)
+
+
+def _runs(items: Iterable[T], key: Callable[[T], Any]) -> Iterator[list[T]]:
+    for _, group in itertools.groupby(items, key=key):
+        yield list(group)
+
+
+def _services() -> Iterator[tuple[str, str, str]]:
+    for name, (kind, about) in robot_endpoints.SERVICES.items():
+        yield f"`{name}`", f"`{type_name(kind)}`", about
+    for name, service in world_services.SERVICES.items():
+        yield f"`{_in_no_namespace(name)}`", f"`{type_name(service.type)}`", service.about
+
+
+def _interfaces() -> Iterator[tuple[str, str, str]]:
+    for offer in (*OFFERS, STEPS):
+        form = "action" if offer is STEPS else "srv"
+        yield f"`/simulator/{offer.name}`", f"`{PACKAGE}/{form}/{offer.type}`", offer.about
+
+
+def _frames() -> str:
+    rows = [("`odom`", "`map`", "origin of the odometry in the world", ""), ("`base_link`", "`odom`", "odometry", "")]
+    rows += [(f"`{side}_wheel_link`", "`base_link`", _vector(wheel_position(side)), "turns about y") for side in SIDES]
+    for frame in fixed_frames():
+        degrees = ", ".join(f"{math.degrees(angle):.4g}" for angle in frame.rotation)
+        turn = "" if not any(frame.rotation) else f"roll, pitch, yaw {degrees}°"
+        rows.append((f"`{frame.name}`", "`base_link`", _vector(frame.position), turn))
+    return table(("frame", "in", "place, m", ""), rows)
+
+
+def _vector(values: Iterable[float]) -> str:
+    return ", ".join(f"{value:.4g}" for value in values)
+
+
+def _parameters(values: object) -> Iterator[tuple[str, str, str, str, str]]:
+    """Each parameter; those of groups that differ in the middle of their names alone share a line."""
+    for first, name in _grouped(values):
+        yield (
+            f"`{name}`",
+            _value(first.default),
+            _limits(first),
+            "" if first.metadata["fixed"] else "yes",
+            _cell(first.metadata["text"]),
+        )
+
+
+def _grouped(values: object) -> Iterator[tuple[parameters.Declared, str]]:
+    """The first parameter of each group, and the name of its line."""
+    groups: dict[tuple[str, str], list[parameters.Declared]] = {}
+    for one in parameters.declared(values):
+        groups.setdefault((_outer(one.name), one.metadata["text"]), []).append(one)
+    for group in groups.values():
+        first = group[0]
+        several = f"{first.name.split('.')[0]}.<sensor>.{first.name.rpartition('.')[2]}"
+        yield first, first.name if len(group) == 1 else several
+
+
+def _of_all_nodes() -> Iterator[tuple[str, str, str]]:
+    """Each parameter of the combined process, its nodes and its default; those of a group share a line."""
+    values = combined_parameters.defaults(Suite())
+    suite = ["port", "foxglove_port", "address"]
+    for name in suite:
+        nodes = combined_parameters.places(name)
+        node, own_name = nodes[-1]
+        called = [f"`{one}`" if own == name else f"`{one}` (its `{own}`)" for one, own in nodes]
+        yield f"`{name}`", ", ".join(called), _value(parameters.by_name(values[node])[own_name])
+    for node, own in values.items():
+        for first, line_name in _grouped(own):
+            if first.name not in suite:
+                yield f"`{line_name}`", f"`{node}`", _value(first.default)
+
+
+def _outer(name: str) -> str:
+    """`a.b.c` without its middle."""
+    words = name.split(".")
+    return f"{words[0]}.{words[-1]}"
+
+
+def _value(value: object) -> str:
+    return f"`{str(value).lower() if isinstance(value, bool) else repr(value) if isinstance(value, str) else value}`"
+
+
+def _limits(one: parameters.Declared) -> str:
+    descriptor = one.descriptor
+    for bounds in descriptor.floating_point_range:
+        return f"{bounds.from_value:g}…{bounds.to_value:g}"
+    for bounds in descriptor.integer_range:
+        return f"{bounds.from_value}…{bounds.to_value}"
+    return _cell(descriptor.additional_constraints)
+
+
+def _cell(content: str) -> str:
+    return content.replace("|", "\\|")
+
+
+if __name__ == "__main__":
+    sys.stdout.write(text())

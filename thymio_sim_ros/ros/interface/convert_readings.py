@@ -1,0 +1,239 @@
+"""Readings → messages; nothing else knows what a Range is.
+
+Names, units, frames and QoS are those of docs/spec/ros-interface.md sections 4, 6.3 and 9.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from geometry_msgs.msg import Point, Quaternion, TwistWithCovariance
+from geometry_msgs.msg import Pose as PoseMsg
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState, Joy, LaserScan, Range
+from std_msgs.msg import (
+    Bool,
+    ColorRGBA,
+    Float32,
+    Float32MultiArray,
+    Int8MultiArray,
+    Int16MultiArray,
+    MultiArrayDimension,
+    MultiArrayLayout,
+    UInt8MultiArray,
+)
+from visualization_msgs.msg import Marker, MarkerArray
+
+from thymio_sim_ros.ros.interface import cdr_fields
+from thymio_sim_ros.ros.interface.cdr_fields import LASER_OFFSET_M, PROXIMITY_MIN_M
+from thymio_sim_ros.ros.interface.headers import SECOND_NS, stamped
+from thymio_sim_ros.ros.interface.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames
+from thymio_sim_ros.sim.audio.synthesis import VOLUME_OFF
+from thymio_sim_ros.sim.model import readings
+from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt, Twist
+
+# The driver's constants of a Range (docs/spec/ros-interface.md section 3).
+PROXIMITY_MAX_M, PROXIMITY_FOV_RAD = 0.14, 0.3
+GROUND_MIN_M, GROUND_MAX_M, GROUND_FOV_RAD = 0.009, 0.03, 0.3
+LASER_STEP_RAD, LASER_ANGLE_RAD = 0.32, 0.64
+
+TRAIL_M = 0.0015
+"""Height of what pens drew, for viewers: above all paint."""
+
+
+@dataclass(frozen=True, slots=True)
+class RangeFields:
+    """What the Range of one proximity sensor says about it: m, m, rad."""
+
+    min_m: float = PROXIMITY_MIN_M
+    max_m: float = PROXIMITY_MAX_M
+    fov_rad: float = PROXIMITY_FOV_RAD
+
+
+@dataclass(frozen=True, slots=True)
+class ConvertOptions:
+    """What a user may choose about the content of messages.
+
+    `driver_ranges`: −1 and minimum instead of ±inf (docs/spec/ros-interface.md section 4.3). `ground_threshold`: count.
+    `proximity`: in Thymio's order. Covariance diagonals: x y z roll pitch yaw. `scan_ns`: between two laser scans.
+    """
+
+    driver_ranges: bool = False
+    ground_threshold: int = 200
+    proximity: tuple[RangeFields, ...] = (RangeFields(),) * len(PROXIMITY)
+    pose_covariance: tuple[float, ...] = (1e-4, 1e-4, 0.0, 0.0, 0.0, 1e-3)
+    twist_covariance: tuple[float, ...] = (1e-5, 1e-5, 0.0, 0.0, 0.0, 1e-4)
+    scan_ns: int = SECOND_NS // 10
+
+
+def quaternion(yaw_rad: float, tilt: Tilt = LEVEL) -> Quaternion:
+    """A turn about z, of a body that leans; w >= 0."""
+    x, y, z, w = cdr_fields.rotation(yaw_rad, tilt)
+    return Quaternion(x=x, y=y, z=z, w=w)
+
+
+def yaw_of(rotation: Quaternion) -> float:
+    """Yaw in rad of any unit quaternion; of one without measure, not a number."""
+    x, y, z, w = rotation.x, rotation.y, rotation.z, rotation.w
+    if not math.isfinite(x * x + y * y + z * z + w * w):
+        return math.nan
+    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+
+def proximity_range(
+    reading: readings.ProximityReading, names: RobotNames, options: ConvertOptions, *, index: int
+) -> Range:
+    """A horizontal sensor as the driver has it."""
+    said = options.proximity[index]
+    message = Range(
+        radiation_type=Range.INFRARED,
+        field_of_view=said.fov_rad,
+        min_range=said.min_m,
+        max_range=said.max_m,
+        range=cdr_fields.seen_m(reading, options, index),
+    )
+    return stamped(message, reading.stamp_ns, names.frame(f"proximity_{PROXIMITY[index]}_link"))
+
+
+def laser(reading: readings.ProximityReading, names: RobotNames, options: ConvertOptions) -> LaserScan:
+    """The five front sensors as one scan from right to left; all five measure at once, hence no time increment."""
+    message = LaserScan(
+        angle_min=-LASER_ANGLE_RAD,
+        angle_max=LASER_ANGLE_RAD,
+        angle_increment=LASER_STEP_RAD,
+        time_increment=0.0,
+        scan_time=options.scan_ns / SECOND_NS,
+        range_min=PROXIMITY_MIN_M + LASER_OFFSET_M,
+        range_max=PROXIMITY_MAX_M + LASER_OFFSET_M,
+        ranges=cdr_fields.laser_m(reading),
+        intensities=[float(count) for count in reading.words[4::-1]],
+    )
+    return stamped(message, reading.stamp_ns, names.frame("laser_link"))
+
+
+def ground_range(reading: readings.GroundReading, names: RobotNames, options: ConvertOptions, *, index: int) -> Range:
+    """A ground sensor: whether the floor reflects."""
+    message = Range(
+        radiation_type=Range.INFRARED,
+        field_of_view=GROUND_FOV_RAD,
+        min_range=GROUND_MIN_M,
+        max_range=GROUND_MAX_M,
+        range=cdr_fields.below_m(reading, options, index),
+    )
+    return stamped(message, reading.stamp_ns, names.frame(f"ground_{SIDES[index]}_link"))
+
+
+def ground_grey(
+    reading: readings.GroundReading, _names: RobotNames, _options: ConvertOptions, *, index: int
+) -> Float32:
+    """A ground sensor: how much light the floor reflects, 0 (black) to 1 (white)."""
+    return Float32(data=cdr_fields.grey(reading, index))
+
+
+def button(reading: readings.ButtonsReading, _names: RobotNames, _options: ConvertOptions, *, index: int) -> Bool:
+    """Whether one button is pressed."""
+    return Bool(data=pressed(reading, index=index))
+
+
+def pressed(reading: readings.ButtonsReading, *, index: int) -> bool:
+    """The same without a message."""
+    return bool(reading.words[index])
+
+
+def joy(reading: readings.ButtonsReading, names: RobotNames, _options: ConvertOptions) -> Joy:
+    """All buttons."""
+    return stamped(Joy(buttons=list(reading.words)), reading.stamp_ns, names.frame("base_link"))
+
+
+def joints(reading: readings.MotorReading, names: RobotNames, _options: ConvertOptions) -> JointState:
+    """Angles and speeds of the wheels."""
+    message = JointState(
+        name=[names.frame(f"{side}_wheel_joint") for side in SIDES],
+        position=list(reading.angles_rad),
+        velocity=list(reading.velocities_rad_s),
+    )
+    return stamped(message, reading.stamp_ns, "")
+
+
+def odometry(reading: readings.PoseReading, names: RobotNames, options: ConvertOptions) -> Odometry:
+    """Where the wheels have brought the robot by their count."""
+    message = _odometry_message(reading.odometry, reading.odometry_twist)
+    message.pose.covariance[::7] = options.pose_covariance
+    message.twist.covariance[::7] = options.twist_covariance
+    message.child_frame_id = names.frame("base_link")
+    return stamped(message, reading.stamp_ns, names.frame("odom"))
+
+
+def truth(reading: readings.PoseReading, names: RobotNames, _options: ConvertOptions) -> Odometry:
+    """Where the robot really is."""
+    message = _odometry_message(reading.truth, reading.truth_twist)
+    message.pose.pose.orientation = quaternion(reading.truth.yaw_rad, reading.tilt)
+    message.child_frame_id = names.frame("base_link")
+    return stamped(message, reading.stamp_ns, names.frame(MAP_FRAME))
+
+
+def _odometry_message(pose: Pose, twist: Twist) -> Odometry:
+    message = Odometry()
+    message.pose.pose = PoseMsg(position=Point(x=pose.x_m, y=pose.y_m), orientation=quaternion(pose.yaw_rad))
+    message.twist = TwistWithCovariance()
+    message.twist.twist.linear.x = twist.linear_m_s
+    message.twist.twist.angular.z = twist.angular_rad_s
+    return message
+
+
+def leds(reading: readings.LedReading, _names: RobotNames, _options: ConvertOptions) -> Float32MultiArray:
+    """Every light, a labelled dimension for each group."""
+    return Float32MultiArray(
+        layout=layout((group, len(levels)) for group, levels in reading.groups),
+        data=cdr_fields.led_levels(reading),
+    )
+
+
+def sound(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Float32MultiArray:
+    """[Hz, s, volume 0…1]: 0 Hz for samples, inf s for a tone without end, zeros for silence."""
+    seconds = math.inf if reading.duration_ns is None else reading.duration_ns / SECOND_NS
+    parts = layout([("frequency_hz", 1), ("duration_s", 1), ("volume", 1)])
+    return Float32MultiArray(layout=parts, data=[reading.frequency_hz, seconds, volume(reading.shift)])
+
+
+def heard_samples(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Any:
+    """A sound that begins; None for a tone."""
+    return UInt8MultiArray(data=reading.samples) if reading.samples else None
+
+
+def heard_wave(reading: readings.LoudspeakerReading, _names: RobotNames, _options: ConvertOptions) -> Int8MultiArray:
+    """The period that tones are made of."""
+    return Int8MultiArray(data=list(reading.wave))
+
+
+def trail(reading: readings.PenReading, names: RobotNames, _options: ConvertOptions) -> MarkerArray:
+    """What the robot's pen drew, a line strip for each stroke; DELETEALL comes first."""
+    message = MarkerArray(markers=[Marker(action=Marker.DELETEALL)])
+    for number, stroke in enumerate(reading.strokes):
+        red, green, blue = stroke.color
+        marker = Marker(ns=f"{names.name}/pen".lstrip("/"), id=number, action=Marker.ADD, type=Marker.LINE_STRIP)
+        marker.color = ColorRGBA(r=red, g=green, b=blue, a=1.0)
+        marker.scale.x = stroke.width_m
+        marker.points = [Point(x=x, y=y, z=TRAIL_M) for x, y in stroke.points]
+        message.markers.append(stamped(marker, reading.stamp_ns, names.frame(MAP_FRAME)))
+    return message
+
+
+def volume(shift: int) -> float:
+    """Loudness 0…1 of samples that lose so many bits."""
+    return 0.0 if shift >= VOLUME_OFF else 2.0**-shift
+
+
+def words(reading: Any, _names: RobotNames, _options: ConvertOptions) -> Int16MultiArray:
+    """Aseba's integers."""
+    return Int16MultiArray(data=list(reading.words))
+
+
+def layout(dimensions: Iterable[tuple[str, int]]) -> MultiArrayLayout:
+    """Labelled parts of one flat array, one after the other."""
+    return MultiArrayLayout(
+        dim=[MultiArrayDimension(label=label, size=size, stride=size) for label, size in dimensions]
+    )

@@ -1,0 +1,183 @@
+"""Topics that only code written for the Thymio's ROS driver needs: with the parameter `driver_topics`.
+
+Some topics of the driver have hidden names here; with the parameter they are there under the driver's names as well.
+Those with types of the driver's own package `thymio_msgs` are there where that package is installed; each has a twin of
+standard types (docs/spec/ros-interface.md section 4).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+
+from thymio_sim_ros.ros.interface import command_checks, qos, saturation, sensor_topics
+from thymio_sim_ros.ros.interface.command_checks import CommandError
+from thymio_sim_ros.ros.interface.headers import SECOND_NS
+from thymio_sim_ros.ros.interface.names import HIDDEN
+from thymio_sim_ros.ros.interface.saturation import Beyond
+from thymio_sim_ros.ros.interface.sensor_topics import Row
+from thymio_sim_ros.ros.simulator.robot_inputs import Moment, RobotInput, robot_inputs
+from thymio_sim_ros.sim import commands
+from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.sensors import all_sensors
+
+__all__ = ["PACKAGE", "PLAIN", "TOPICS", "DriverTopics", "driver_name", "found"]
+
+PACKAGE = "thymio_msgs"
+
+GROUPS = ("circle", "proximity", "buttons", "ground", "temperature", "microphone", "remote")
+"""Groups of lights by the number in `Led` and `LedGesture`."""
+
+SHORTEST_NS = SECOND_NS // 60
+"""Of a tone, as the driver plays it."""
+
+PLAIN = (
+    "alarm",
+    "buttons",
+    "comm/enable",
+    "comm/received",
+    "comm/tx",
+    "led/gesture/alive",
+    "led/gesture/blink",
+    "led/gesture/circle",
+    "led/gesture/kit",
+    "led/gesture/off",
+    "led/off",
+    "proximity/laser",
+    "remote",
+    "sound",
+    "sound_threshold",
+    "tap",
+    "temperature",
+)
+"""The driver's names, of standard types, whose topics have hidden names here: `_alarm` and so on."""
+
+TOPICS: Mapping[str, tuple[str, str, str]] = {
+    "comm/rx": ("out", "Comm", "an infrared frame: value, payloads and intensities of the seven sensors"),
+    "led": (
+        "in",
+        "Led",
+        "group 0…6 (circle, proximity, buttons, ground, temperature, microphone, remote), intensities",
+    ),
+    "led/gesture": ("in", "LedGesture", "the nearest of `_led/gesture/{circle,blink,kit,alive,off}`"),
+    "sound/play": ("in", "Sound", "Hz, duration of at least 1/60 s"),
+    "sound/play/system": ("in", "SystemSound", "the robot's sound 0…7, -1 stops"),
+}
+"""Direction, type and meaning of each."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriverTopics:
+    """What a robot publishes and listens to besides: rows by sensor, and inputs."""
+
+    rows: Mapping[str, Sequence[Row]] = field(default_factory=dict)
+    inputs: Sequence[RobotInput] = ()
+
+    @classmethod
+    def plain(cls) -> DriverTopics:
+        """The topics with hidden names under those of the driver."""
+        rows = {sensor.name: _plain(sensor_topics.rows_of(sensor)) for sensor in all_sensors()}
+        return cls({sensor: plain for sensor, plain in rows.items() if plain}, _plain(robot_inputs()))
+
+    def with_all(self, other: DriverTopics) -> DriverTopics:
+        """Both together."""
+        sensors = self.rows.keys() | other.rows.keys()
+        rows = {name: (*self.rows.get(name, ()), *other.rows.get(name, ())) for name in sorted(sensors)}
+        return DriverTopics(rows, (*self.inputs, *other.inputs))
+
+    @classmethod
+    def of(cls, messages: Any) -> DriverTopics:
+        """Those with types of the module `thymio_msgs.msg`."""
+
+        def comm(reading: Any, _names: object, _options: object) -> Any:
+            words = reading.words
+            return messages.Comm(value=words[0], payloads=words[1:8], intensities=words[8:15])
+
+        def taken(topic: str, act: Any, profile: QoSProfile, beyond: Beyond = saturation.nothing) -> RobotInput:
+            _, kind, about = TOPICS[topic]
+            return RobotInput(topic, getattr(messages, kind), act, about, profile, beyond)
+
+        return cls(
+            {"comm": (Row("comm/rx", messages.Comm, comm, TOPICS["comm/rx"][2]),)},
+            (
+                taken("led", _led, qos.LEDS, _too_bright),
+                taken("led/gesture", _gesture, qos.LEDS),
+                taken("sound/play", _tone, qos.EVENTS, lambda message: saturation.frequency(message.frequency)),
+                taken("sound/play/system", _system, qos.EVENTS, lambda message: saturation.sound_number(message.sound)),
+            ),
+        )
+
+
+def driver_name(topic: str) -> str:
+    """The driver's name of one of our topics."""
+    plain = topic.removeprefix(HIDDEN)
+    return plain if plain in PLAIN else topic
+
+
+def found(node: Node) -> DriverTopics:
+    """All of them; those of the package if there is one. A package that cannot be loaded is logged."""
+    try:
+        import thymio_msgs.msg
+    except ImportError as error:
+        if not isinstance(error, ModuleNotFoundError) or error.name != PACKAGE:
+            node.get_logger().warning(f"{PACKAGE} is left out: {error}")
+        return DriverTopics.plain()
+    return DriverTopics.plain().with_all(DriverTopics.of(thymio_msgs.msg))
+
+
+_R = TypeVar("_R", Row, RobotInput)
+
+
+def _plain(rows: Iterable[_R]) -> tuple[_R, ...]:
+    """Those of the rows that have another name in the driver, under that name."""
+    return tuple(replace(row, topic=driver_name(row.topic)) for row in rows if driver_name(row.topic) != row.topic)
+
+
+def _group(number: int) -> str:
+    if number >= len(GROUPS):
+        raise CommandError(f"group {number} found, expected 0 to {len(GROUPS) - 1}: {', '.join(GROUPS)}")
+    return GROUPS[number]
+
+
+def _led(message: Any, _moment: Moment) -> Sequence[Command]:
+    group = _group(message.id)
+    size = commands.LED_GROUPS[group]
+    return (command_checks.led_levels(group, list(message.values)[:size]),)
+
+
+def _too_bright(message: Any) -> str:
+    return saturation.brightness(message.values[: commands.LED_GROUPS[GROUPS[message.id]]])
+
+
+def _gesture(message: Any, _moment: Moment) -> Sequence[Command]:
+    """The driver's own four are told apart by group, shape and length."""
+    if message.gesture == message.OFF:
+        return (commands.StopGesture(),)
+    group = _group(message.leds)
+    if group == "circle":
+        name = "alive" if message.wave == message.RECT else "blink" if message.length <= 1 else "circle"
+    elif group == "proximity":
+        name = "kit"
+    else:
+        raise CommandError(f"a gesture of the {group} lights found, expected circle (0) or proximity (1)")
+    if not math.isfinite(message.period):
+        raise CommandError(f"period is {message.period}, expected a finite number")
+    try:
+        return (commands.PlayGesture(name, float(message.period)),)
+    except ValueError as error:
+        raise CommandError(str(error)) from error
+
+
+def _tone(message: Any, _moment: Moment) -> Sequence[Command]:
+    command_checks.finite(message.frequency, "frequency")
+    duration_ns = message.duration.sec * SECOND_NS + message.duration.nanosec
+    return (commands.PlayTone(max(1.0, float(message.frequency)), max(SHORTEST_NS, duration_ns)),)
+
+
+def _system(message: Any, _moment: Moment) -> Sequence[Command]:
+    return (commands.StopSound() if message.sound == message.STOP else commands.PlaySystemSound(int(message.sound)),)

@@ -1,0 +1,89 @@
+"""Topics of the actuators that a plug-in adds: one per type of command, its numbers in one labelled array.
+
+A command that is none of `sim/commands/` travels as std_msgs/Float64MultiArray on `actuator/<actuator>`, or on
+`actuator/<actuator>/<command>` where an actuator takes several; programs speak on it, and so may people and nodes.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+import typing
+from collections.abc import Callable
+from typing import Any
+
+from std_msgs.msg import Float64MultiArray
+
+from thymio_sim_ros.ros.interface import command_checks, convert_readings
+from thymio_sim_ros.ros.interface.command_checks import CommandError
+from thymio_sim_ros.ros.interface.command_topics import CommandRow
+from thymio_sim_ros.sim import commands
+from thymio_sim_ros.sim.actuators import Actuator, all_actuators
+
+__all__ = ["rows", "topic_of"]
+
+_NUMBERS: dict[Any, Callable[[float], object]] = {
+    int: round,
+    float: float,
+    bool: bool,
+}
+
+
+def rows() -> tuple[CommandRow, ...]:
+    """One row for each command that only a plug-in knows; those with other fields than numbers have none."""
+    return tuple(
+        CommandRow(topic, Float64MultiArray, _decoder(kind), _encode, about=_about(kind))
+        for actuator in all_actuators()
+        for kind, topic in _topics(actuator).items()
+    )
+
+
+def topic_of(command: object) -> str | None:
+    """The topic of a plug-in's command; None for any other."""
+    found = (_topics(actuator).get(type(command)) for actuator in all_actuators())
+    return next((topic for topic in found if topic is not None), None)
+
+
+def _topics(actuator: Actuator) -> dict[type[Any], str]:
+    own = [kind for kind in actuator.accepts if issubclass(kind, commands.PluginCommand) and _has_only_numbers(kind)]
+    if len(own) == 1:
+        return {own[0]: f"actuator/{actuator.name}"}
+    return {kind: f"actuator/{actuator.name}/{_word(kind.__name__)}" for kind in own}
+
+
+def _has_only_numbers(kind: type[Any]) -> bool:
+    if not dataclasses.is_dataclass(kind):
+        return False
+    hints = typing.get_type_hints(kind)
+    return all(hints[field.name] in _NUMBERS for field in dataclasses.fields(kind))
+
+
+def _about(kind: type[Any]) -> str:
+    return ", ".join(field.name for field in dataclasses.fields(kind)) or "no values"
+
+
+def _word(name: str) -> str:
+    """BigJump → big_jump."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
+
+
+def _encode(command: Any) -> Float64MultiArray:
+    names = [field.name for field in dataclasses.fields(command)]
+    data = [float(getattr(command, name)) for name in names]
+    return Float64MultiArray(layout=convert_readings.layout([(name, 1) for name in names]), data=data)
+
+
+def _decoder(kind: type[Any]) -> Callable[[Float64MultiArray], Any]:
+    hints = typing.get_type_hints(kind)
+    names = [field.name for field in dataclasses.fields(kind)]
+
+    def decode(message: Float64MultiArray) -> Any:
+        values = command_checks.sized(message.data, len(names), f"[{', '.join(names)}]")
+        for name, value in zip(names, values, strict=True):
+            command_checks.finite(value, name)
+        try:
+            return kind(*(_NUMBERS[hints[name]](value) for name, value in zip(names, values, strict=True)))
+        except ValueError as error:
+            raise CommandError(str(error)) from error
+
+    return decode

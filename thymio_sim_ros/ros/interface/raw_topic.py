@@ -1,0 +1,131 @@
+"""The integers of all robots' sensors in one message a tick: what a runtime with many robots listens to.
+
+It is a `std_msgs/Int16MultiArray` with a dimension for each reading: the label is `robot/sensor`, or `sensor` where the
+robot has no name, the size is the number of its words, which follow each other in `data`. `_raw/<sensor>` of each robot
+tells the same one by one; a message costs more than what is in it.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
+from typing import Any
+
+from rclpy.serialization import deserialize_message
+from std_msgs.msg import Int16MultiArray
+
+from thymio_sim_ros.ros.interface import sensor_topics
+from thymio_sim_ros.ros.interface.names import raw_topic
+from thymio_sim_ros.ros.rclpy_ext import raw_publisher
+from thymio_sim_ros.ros.simulator.subscriber_demand import Audience, Heard
+from thymio_sim_ros.sim.model.readings import Reading
+from thymio_sim_ros.sim.sensors import all_sensors
+
+__all__ = ["Decoder", "RawTopic", "Told", "encode"]
+
+Told = tuple[str, str, Sequence[int]]
+"""A robot's name in ROS, a sensor, its integers."""
+
+_LITTLE_ENDIAN_CDR = b"\0\1\0\0"
+_TWO = struct.Struct("<II")
+_COUNT = struct.Struct("<I")
+_MOST_KNOWN = 500
+"""So many kinds of messages are remembered: which sensors measure together hardly changes."""
+
+
+def encode(readings: Iterable[Told]) -> bytes:
+    """The message of these readings, serialised."""
+    heads: list[bytes] = []
+    words: list[int] = []
+    for robot, sensor, integers in readings:
+        heads.append(_dimension(robot, sensor, len(integers)))
+        words += integers
+    head = (_LITTLE_ENDIAN_CDR, _COUNT.pack(len(heads)), *heads, _TWO.pack(0, len(words)))
+    return b"".join((*head, struct.pack(f"<{len(words)}h", *words)))
+
+
+class Decoder:
+    """Takes messages apart. Invariant: what is known of a message by its first bytes is true of all that begin so."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, list[tuple[bytes, list[tuple[str, str, int, int]]]]] = {}
+        """By size of the message: how it begins, and robot, sensor, first word and end of each reading."""
+        self._count = 0
+
+    def decode(self, data: bytes) -> Iterator[Told]:
+        """The readings of a serialised message; RuntimeError when it is none, ValueError when words are missing."""
+        for head, parts in self._known.get(len(data), ()):
+            if data.startswith(head):
+                words = struct.unpack_from(f"<{parts[-1][3] if parts else 0}h", data, len(head))
+                break
+        else:
+            message = deserialize_message(data, Int16MultiArray)
+            words, parts = tuple(message.data), _parts(message)
+            self._remember(data, words, parts)
+        for robot, sensor, begin, end in parts:
+            yield robot, sensor, words[begin:end]
+
+    def _remember(self, data: bytes, words: Sequence[int], parts: list[tuple[str, str, int, int]]) -> None:
+        own = encode((robot, sensor, words[begin:end]) for robot, sensor, begin, end in parts)
+        if not data.startswith(own):
+            return  # written by somebody else in another way
+        if self._count >= _MOST_KNOWN:
+            self._known.clear()
+            self._count = 0
+        self._count += 1
+        self._known.setdefault(len(data), []).append((own[: len(own) - 2 * len(words)], parts))
+
+
+class RawTopic:
+    """The simulator's side: what a tick gave is sent at its end, if anybody listens."""
+
+    def __init__(self, publisher: Any, audience: Audience) -> None:
+        self._send, self._count = raw_publisher.sender(publisher), raw_publisher.counter(publisher)
+        self._audience = audience
+        self._heard = {
+            sensor.name: Heard(sensor.name, is_regular=sensor_topics.is_regular(sensor, row))
+            for sensor in all_sensors()
+            for row in sensor_topics.rows_of(sensor)
+            if row.topic == raw_topic(sensor.name)
+        }
+        self._is_heard = False
+        self._waiting: list[Told] = []
+
+    def look(self) -> None:
+        """Find out whether somebody listens now."""
+        is_heard = self._count() > 0
+        if is_heard == self._is_heard:
+            return
+        self._is_heard = is_heard
+        for heard in self._heard.values():
+            (self._audience.join if is_heard else self._audience.leave)(heard)
+
+    def take(self, robot: str, sensor: str, reading: Reading) -> None:
+        """A reading of this tick, of the robot with this name in ROS."""
+        if self._is_heard and sensor in self._heard:
+            self._waiting.append((robot, sensor, reading.words))
+
+    def flush(self) -> None:
+        """The tick is over."""
+        if self._waiting:
+            self._send(encode(self._waiting))
+            self._waiting.clear()
+
+
+@lru_cache(maxsize=8192)
+def _dimension(robot: str, sensor: str, size: int) -> bytes:
+    """A serialised MultiArrayDimension, which begins and ends at a multiple of four bytes."""
+    label = f"{robot}/{sensor}".lstrip("/").encode() + b"\0"
+    return _COUNT.pack(len(label)) + label + bytes(-len(label) % 4) + _TWO.pack(size, size)
+
+
+def _parts(message: Int16MultiArray) -> list[tuple[str, str, int, int]]:
+    parts, end = [], 0
+    for dimension in message.layout.dim:
+        robot, _, sensor = dimension.label.rpartition("/")
+        parts.append((robot, sensor, end, end + dimension.size))
+        end += dimension.size
+    if end != len(message.data):
+        raise ValueError(f"{len(message.data)} words found, expected {end}")
+    return parts

@@ -1,0 +1,312 @@
+"""The topics of every sensor, one row for each, and how often they are sent.
+
+Names, units, frames and QoS are those of docs/spec/ros-interface.md sections 4, 6.3 and 9.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from operator import attrgetter
+from typing import Any
+
+from nav_msgs.msg import Odometry
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import BatteryState, Imu, JointState, Joy, LaserScan, Range, Temperature
+from std_msgs.msg import (
+    Bool,
+    Empty,
+    Float32,
+    Float32MultiArray,
+    Int8,
+    Int8MultiArray,
+    Int16,
+    Int16MultiArray,
+    UInt8MultiArray,
+)
+from visualization_msgs.msg import Marker, MarkerArray
+
+from thymio_sim_ros.ros.interface import cdr_fields, convert_readings, convert_sensors, qos
+from thymio_sim_ros.ros.interface.cdr_templates import Patch
+from thymio_sim_ros.ros.interface.convert_readings import ConvertOptions
+from thymio_sim_ros.ros.interface.headers import SECOND_NS
+from thymio_sim_ros.ros.interface.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames, raw_topic
+from thymio_sim_ros.sim import commands
+from thymio_sim_ros.sim.audio.synthesis import TRIANGLE
+from thymio_sim_ros.sim.model.readings import LoudspeakerReading, PenReading, Reading
+from thymio_sim_ros.sim.sensors import Sensor
+
+JOINTS, TRUTH = "joint_states", "_ground_truth/odom"
+
+Encode = Callable[[Any, RobotNames, ConvertOptions], Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One topic made from one sensor: `encode` gives the message, or None for nothing new.
+
+    `about`: its content and units, for the reference; `frame`: the usual name of its header's frame, if it has one.
+    `every_ns`: not more often than that; 0 all. `always`: published also when nobody listens. `on_change`: only when
+    this part of a reading differs from what it was.
+    """
+
+    topic: str
+    type: type
+    encode: Encode
+    about: str = ""
+    frame: str = ""
+    profile: QoSProfile = field(default_factory=lambda: qos.SENSOR)
+    every_ns: int = 0
+    always: bool = False
+    on_change: Callable[[Any], Any] | None = None
+    is_event: bool = False
+    """Whether `encode` gives nothing for most readings."""
+    patch: Patch | None = None
+    """What a reading changes in the serialised message, for topics with much traffic."""
+
+
+ROWS: dict[str, tuple[Row, ...]] = {
+    "ground": (
+        *(
+            Row(
+                f"ground/{side}",
+                Range,
+                partial(convert_readings.ground_range, index=i),
+                "-inf: the floor reflects, +inf: it does not; as the driver has it 0 and 1",
+                f"ground_{side}_link",
+                patch=cdr_fields.below_patch(i),
+            )
+            for i, side in enumerate(SIDES)
+        ),
+        *(
+            Row(
+                f"ground/{side}/reflectance",
+                Float32,
+                partial(convert_readings.ground_grey, index=i),
+                "grey of the floor as the sensor counts it: 0 black (or no floor), 1 white",
+                patch=cdr_fields.grey_patch(i),
+            )
+            for i, side in enumerate(SIDES)
+        ),
+    ),
+    "proximity": (
+        *(
+            Row(
+                f"proximity/{name}",
+                Range,
+                partial(convert_readings.proximity_range, index=i),
+                "distance in m of a wall; +inf: nothing, -inf: too close; as the driver has it -1 and the minimum",
+                f"proximity_{name}_link",
+                patch=cdr_fields.seen_patch(i),
+            )
+            for i, name in enumerate(PROXIMITY)
+        ),
+        Row(
+            "_proximity/laser",
+            LaserScan,
+            convert_readings.laser,
+            "the five front sensors from right to left, m from the robot's middle; intensities are counts",
+            "laser_link",
+            patch=cdr_fields.LASER,
+        ),
+        Row(
+            "_proximity/rays",
+            Marker,
+            convert_sensors.rays,
+            "the seven rays as lines, as long as what they measure; red where something is met",
+            "base_link",
+            patch=cdr_fields.RAYS,
+        ),
+    ),
+    "buttons": (
+        *(
+            Row(
+                f"buttons/{name}",
+                Bool,
+                partial(convert_readings.button, index=i),
+                "true while it is pressed",
+                on_change=partial(convert_readings.pressed, index=i),
+                always=True,
+            )
+            for i, name in enumerate(commands.BUTTONS)
+        ),
+        Row(
+            "_buttons",
+            Joy,
+            convert_readings.joy,
+            "backward, left, center, forward, right",
+            "base_link",
+            every_ns=SECOND_NS // 10,
+            patch=cdr_fields.JOY,
+        ),
+    ),
+    "motor": (
+        Row(
+            JOINTS,
+            JointState,
+            convert_readings.joints,
+            "wheel angles in rad, not wrapped, and speeds in rad/s, left then right",
+            every_ns=SECOND_NS // 20,
+            patch=cdr_fields.JOINTS,
+        ),
+    ),
+    "pose": (
+        Row(
+            "odom",
+            Odometry,
+            convert_readings.odometry,
+            "by the wheels, from zero; they slip",
+            "odom",
+            patch=cdr_fields.ODOMETRY,
+        ),
+        Row(TRUTH, Odometry, convert_readings.truth, "where the robot really is", MAP_FRAME, patch=cdr_fields.TRUTH),
+    ),
+    "leds": (
+        Row(
+            "_led/state",
+            Float32MultiArray,
+            convert_readings.leds,
+            "brightness 0…1 of every light, a labelled dimension for each group",
+            profile=qos.LATCHED,
+            always=True,
+            patch=cdr_fields.LEDS,
+        ),
+    ),
+    "accelerometer": (
+        Row(
+            "imu",
+            Imu,
+            convert_sensors.imu,
+            "acceleration alone, m/s²; g upwards at rest",
+            "base_link",
+            patch=cdr_fields.IMU,
+        ),
+    ),
+    "temperature": (
+        Row(
+            "_temperature",
+            Temperature,
+            convert_sensors.temperature,
+            "°C, in tenths",
+            "base_link",
+            patch=cdr_fields.TEMPERATURE,
+        ),
+    ),
+    "battery": (
+        Row(
+            "_battery",
+            BatteryState,
+            convert_sensors.battery,
+            "V, charge 0…1, charging or not",
+            "base_link",
+            patch=cdr_fields.BATTERY,
+        ),
+    ),
+    "collision": (
+        Row(
+            "_collision",
+            Bool,
+            convert_sensors.collision,
+            "whether anything but the floor is touched",
+            on_change=attrgetter("is_touching"),
+            always=True,
+        ),
+    ),
+    "tap": (Row("_tap", Empty, convert_sensors.tap, "a shock was felt"),),
+    "sound": (Row("_sound", Float32, convert_sensors.sound, "loudness 0…1 above `_sound_threshold`", is_event=True),),
+    "remote": (Row("_remote", Int8, convert_sensors.remote, "command 0…127 of a key of an RC5 remote control"),),
+    "comm": (Row("_comm/received", Int16, convert_sensors.received, "value of an infrared frame"),),
+    "pen": (
+        Row(
+            "_pen/trail",
+            MarkerArray,
+            convert_readings.trail,
+            "what the pen drew, a line strip for each stroke",
+            profile=qos.LATCHED,
+            always=True,
+        ),
+    ),
+    "loudspeaker": (
+        Row(
+            "_sound/state/wave",
+            Int8MultiArray,
+            convert_readings.heard_wave,
+            "the period that tones are made of, 142 samples",
+            profile=qos.LATCHED,
+            always=True,
+            on_change=attrgetter("wave"),
+        ),
+        Row(
+            "_sound/state/samples",
+            UInt8MultiArray,
+            convert_readings.heard_samples,
+            "unsigned 8 bit at 7812.5 Hz of a sound that begins",
+            profile=qos.EVENTS,
+        ),
+        Row(
+            "_sound/state",
+            Float32MultiArray,
+            convert_readings.sound,
+            "Hz, s, volume 0…1 of what plays; zeros for silence",
+            profile=qos.LATCHED,
+            always=True,
+        ),
+    ),
+}
+"""Sensor name → topics in SI units. Besides, every sensor that Aseba sees has `_raw/<sensor>`."""
+
+
+AT_START: Mapping[str, Reading] = {
+    "pen": PenReading(0, (), False, (0.0, 0.0, 0.0), 0.0, False, ()),
+    "loudspeaker": LoudspeakerReading(0, (), 0, 0.0, 0, TRIANGLE, b"", 0),
+}
+"""What these sensors, which tell changes only, would say of a robot that has done nothing yet."""
+
+
+def rows_of(sensor: Sensor) -> tuple[Row, ...]:
+    """Topics of a sensor; one added by a plug-in has those of its words."""
+    variables = ", ".join(f"`{name}`" if size == 1 else f"`{name}[{size}]`" for name, size in sensor.aseba.variables)
+    about = f"Aseba's integers: {variables}" if variables else "the event, without values"
+    about += "".join(f", then {name}" for name in sensor.aseba.unseen)
+    is_seen = sensor.aseba.variables or sensor.aseba.event
+    raw = (
+        (
+            Row(
+                raw_topic(sensor.name),
+                Int16MultiArray,
+                convert_readings.words,
+                about,
+                patch=cdr_fields.words_patch(sensor.aseba.size),
+            ),
+        )
+        if is_seen
+        else ()
+    )
+    return ROWS.get(sensor.name, ()) + raw
+
+
+RARE: Mapping[str, str] = {
+    "collision": "change",
+    "comm": "event",
+    "current": "change",
+    "leds": "change",
+    "loudspeaker": "change",
+    "pen": "change",
+    "remote": "event",
+    "sound_finished": "event",
+    "tap": "event",
+}
+"""When sensors give readings that look for something now and then."""
+
+
+def is_regular(sensor: Sensor, row: Row) -> bool:
+    """Whether a row of a sensor is sent again and again, and not when something happens."""
+    return not (row.is_event or row.on_change or sensor.name in RARE)
+
+
+def often(sensor: Sensor, row: Row) -> str:
+    """How often a row of a sensor is sent: in Hz, on a change, or when something happens."""
+    if not is_regular(sensor, row):
+        return "event" if row.is_event else RARE.get(sensor.name, "change")
+    return f"{SECOND_NS / max(sensor.period_ns, row.every_ns):.3g}"

@@ -1,0 +1,124 @@
+"""A ROS node whose parameters survive `ros2 param dump` and `load`: what is loaded unchanged changes nothing.
+
+`load` does not send what `dump` wrote: rclpy makes text of each value and guesses its type anew, so that 1e-05 arrives
+as text, an empty list as one of truth values, and the lines of a program as one. Two rules undo that: a value is taken
+as the declared type where it can be read as such, and what is, or is loaded from, the present value is accepted without
+being set, even where it is read-only.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from rcl_interfaces.msg import Parameter as ParameterMessage
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.parameter import Parameter, get_parameter_value
+
+from thymio_sim_ros.ros.rclpy_ext import parameters
+
+__all__ = ["ParameterNode", "parameter_node"]
+
+_ARRAYS = {
+    Parameter.Type.BYTE_ARRAY,
+    Parameter.Type.BOOL_ARRAY,
+    Parameter.Type.INTEGER_ARRAY,
+    Parameter.Type.DOUBLE_ARRAY,
+    Parameter.Type.STRING_ARRAY,
+}
+
+
+class ParameterNode(Node):
+    """A node that only sets what differs; the callbacks of its parameters see nothing else."""
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        context: Context,
+        names_file: Callable[[str], bool] = lambda _name: False,
+        **options: Any,
+    ) -> None:
+        """`names_file`: of which parameters the present value is passed on all the same, since its file may differ."""
+        self._names_file = names_file
+        super().__init__(name, context=context, **options)
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set those that differ from the present ones, all or none; this is what the services of rclpy call."""
+        wanted = [self._as_declared(one) for one in parameter_list]
+        changed = [one for one in wanted if self._names_file(one.name) or not self._is_present(one)]
+        if parameter_list and not changed:
+            return SetParametersResult(successful=True)
+        return super().set_parameters_atomically(changed)
+
+    def _as_declared(self, wanted: Parameter) -> Parameter:
+        """The parameter with the type that it has now, where its value can be read so."""
+        if not self.has_parameter(wanted.name):
+            return wanted
+        kind = self.get_parameter(wanted.name).type_
+        if kind in _ARRAYS and wanted.type_ in _ARRAYS and not len(wanted.value):
+            return Parameter(wanted.name, kind, [])
+        if kind == Parameter.Type.DOUBLE and wanted.type_ == Parameter.Type.STRING:
+            value: Any = _number(wanted.value)
+        elif kind == Parameter.Type.DOUBLE_ARRAY and wanted.type_ in (
+            Parameter.Type.STRING,
+            Parameter.Type.STRING_ARRAY,
+        ):
+            value = _numbers(wanted.value)
+        else:
+            value = None
+        return wanted if value is None else Parameter(wanted.name, kind, value)
+
+    def _is_present(self, wanted: Parameter) -> bool:
+        """Whether it is what it is wanted to be."""
+        if not self.has_parameter(wanted.name):
+            return False
+        return _are_equal(self.get_parameter(wanted.name), wanted) or _is_loaded_from(
+            self.get_parameter(wanted.name), wanted
+        )
+
+
+def parameter_node(name: str, *, context: Context, **options: Any) -> Node:
+    """Such a node, with rclpy's own type."""
+    return ParameterNode(name, context=context, **options)
+
+
+def _are_equal(one: Parameter, other: Parameter) -> bool:
+    return bool(one.type_ == other.type_ and parameters.plain(one.value) == parameters.plain(other.value))
+
+
+def _is_loaded_from(present: Parameter, wanted: Parameter) -> bool:
+    """Whether `ros2 param load` sends this for the present value."""
+    value = parameters.plain(present.value)
+    if isinstance(value, str) and isinstance(wanted.value, str) and wanted.value.split() != value.split():
+        return False  # of a text all but the space between words is still there; YAML takes long for programs
+    try:
+        sent = get_parameter_value(str(value))
+    except Exception:  # of YAML or of the message: then nothing can be sent
+        return False
+    return _are_equal(Parameter.from_parameter_msg(ParameterMessage(name=wanted.name, value=sent)), wanted)
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def _numbers(found: str | Sequence[str]) -> list[float] | None:
+    """Of a list as text, or of a list of texts."""
+    if isinstance(found, str):
+        try:
+            found = json.loads(found)
+        except ValueError:
+            return None
+        if not isinstance(found, list):
+            return None
+    try:
+        return [float(one) for one in found]
+    except (TypeError, ValueError):
+        return None

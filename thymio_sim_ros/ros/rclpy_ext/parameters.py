@@ -1,0 +1,263 @@
+"""A node's parameters as one frozen dataclass: declared, described and checked from the same fields.
+
+    @dataclass(frozen=True)
+    class Params:
+        real_time_factor: float = param(1.0, "Simulated seconds per second", low=0.0, high=1000.0)
+
+`declare` declares them all and returns the values in force; descriptors (text, range, choices, read-only flag) come
+from the fields, so that `ros2 param describe`, the reference and the code cannot disagree. `updated` gives the values
+after a change; what no descriptor can refuse is refused by `refusal`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import Field, dataclass, field
+from typing import Any, TypeVar
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
+
+T = TypeVar("T")
+
+_LIKE = 0.7
+"""How like a known name a name must be to be taken for a slip of the fingers, 0…1."""
+
+_OF_RCL = ("use_sim_time", "qos_overrides.", "start_type_description_service")
+
+
+def param(
+    default: Any,
+    text: str,
+    *,
+    name: str | None = None,
+    low: float | None = None,
+    high: float | None = None,
+    fixed: bool = False,
+    choices: Sequence[str] = (),
+    size: int | None = None,
+    array: Parameter.Type | None = None,
+) -> Any:
+    """A field of a parameter dataclass; `name` where it has dots, `fixed`: read-only once the node runs.
+
+    `low` and `high` limit a number, or each of an array; `choices`: all texts it may be; `size`: an array's length;
+    `array`: the type of an array that may be empty.
+    """
+    metadata: dict[str, Any] = {"text": text, "low": low, "high": high, "fixed": fixed, "array": array, "size": size}
+    metadata["choices"] = tuple(choices)
+    if name:
+        metadata["name"] = name
+    if isinstance(default, list):
+        return field(default_factory=lambda: list(default), metadata=metadata)
+    return field(default=default, metadata=metadata)
+
+
+def group(default: Any, name: str) -> Any:
+    """A field that holds parameters of its own; their names begin with `name` and a dot."""
+    return field(default=default, metadata={"group": name})
+
+
+@dataclass(frozen=True)
+class Declared:
+    """One parameter: its full name, its field's path in the dataclass, its default and what its field says."""
+
+    name: str
+    path: tuple[str, ...]
+    default: Any
+    metadata: Mapping[str, Any]
+
+    @property
+    def descriptor(self) -> ParameterDescriptor:
+        """What `ros2 param describe` tells."""
+        said = self.metadata
+        expected = [f"one of: {', '.join(said['choices'])}"] if said["choices"] else []
+        expected += [f"{said['size']} values"] if said["size"] is not None else []
+        expected += [f"each {_limits(said)}"] if isinstance(self.default, list) and _limits(said) else []
+        descriptor = ParameterDescriptor(
+            description=said["text"], read_only=said["fixed"], additional_constraints="; ".join(expected)
+        )
+        low, high = said["low"], said["high"]
+        if (low is None and high is None) or isinstance(self.default, list):
+            return descriptor
+        if isinstance(self.default, float):
+            bounds = FloatingPointRange(
+                from_value=-math.inf if low is None else float(low), to_value=math.inf if high is None else float(high)
+            )
+            descriptor.floating_point_range = [bounds]
+        else:
+            descriptor.integer_range = [IntegerRange(from_value=int(low or 0), to_value=int(high or 0))]
+        return descriptor
+
+    def refusal(self, value: Any) -> str:
+        """Why this value is refused, or nothing; what a descriptor refuses is not asked here."""
+        said = self.metadata
+        if value is None:
+            return f"{self.name}: nothing found, expected a value"
+        if said["choices"] and value not in said["choices"]:
+            return f"{self.name} is '{value}', expected {' or '.join(said['choices'])}"
+        if isinstance(value, float) and not math.isfinite(value):
+            return f"{self.name} is {value}, expected a finite number"
+        if not isinstance(self.default, list):
+            return ""
+        if said["size"] is not None and len(value) != said["size"]:
+            return f"{self.name}: {len(value)} values found, expected {said['size']}"
+        for number, item in enumerate(value):
+            if isinstance(item, float) and not _is_within(item, said):
+                return f"{self.name}[{number}] is {item}, expected {_limits(said) or 'a finite number'}"
+        return ""
+
+
+def _limits(said: Mapping[str, Any]) -> str:
+    low, high = said["low"], said["high"]
+    if low is None and high is None:
+        return ""
+    if high is None:
+        return f"at least {low:g}"
+    return f"at most {high:g}" if low is None else f"{low:g} to {high:g}"
+
+
+def _is_within(value: float, said: Mapping[str, Any]) -> bool:
+    low = -math.inf if said["low"] is None else said["low"]
+    high = math.inf if said["high"] is None else said["high"]
+    return bool(math.isfinite(value) and low <= value <= high)
+
+
+def declared(values: Any) -> Iterator[Declared]:
+    """Every parameter of a dataclass and its groups, in order; defaults are those of this object."""
+    return _declared(values, "", ())
+
+
+def _declared(values: Any, prefix: str, path: tuple[str, ...]) -> Iterator[Declared]:
+    for item in dataclasses.fields(values):
+        here, value = (*path, item.name), getattr(values, item.name)
+        if "group" in item.metadata:
+            yield from _declared(value, f"{prefix}{item.metadata['group']}.", here)
+        else:
+            yield Declared(prefix + _name(item), here, value, item.metadata)
+
+
+def _name(item: Field[Any]) -> str:
+    return str(item.metadata.get("name", item.name))
+
+
+def declare(node: Node, defaults: T) -> T:
+    """Declare every field on the node; returns the dataclass with the values in force.
+
+    A value from the command line that a descriptor or a field refuses is a StartError.
+    """
+    values = defaults
+    for one in declared(defaults):
+        if one.metadata["array"] is not None:
+            found = declare_array(node, one.name, one.metadata["array"], one.metadata["text"], one.default)
+            values = _with(values, one.path, found)
+            continue
+        try:
+            parameter = node.declare_parameter(one.name, one.default, one.descriptor)
+        except (InvalidParameterTypeException, InvalidParameterValueException) as error:
+            reason = " ".join(str(error).split())
+            raise StartError(f"parameter {one.name} of {node.get_name()}: {reason}") from error
+        value = one.default if parameter.value is None else plain(parameter.value)
+        reason = one.refusal(value)
+        if reason:
+            raise StartError(reason)
+        values = _with(values, one.path, value)
+    return values
+
+
+def undeclared(node: Node, name: str) -> str:
+    """The start value of a parameter that is never declared, so that it cannot be read from outside; or ""."""
+    given = node._parameter_overrides.get(name)  # rclpy has no public way to see them
+    return "" if given is None or given.value is None else str(given.value)
+
+
+def warn_of_unknown(
+    node: Node, page: str, is_known: Callable[[str], bool] | None = None, names: Iterable[str] = ()
+) -> None:
+    """Tell which parameters a node was started with that it does not have: ROS ignores them without a word.
+
+    `page` of docs/ lists those that it has; `is_known` tells them, else all are declared when this is called. The
+    nearest of these and of `names` is named.
+    """
+    known = is_known or node.has_parameter
+    for name in sorted(overrides(node)):
+        if not known(name) and not name.startswith(_OF_RCL):
+            near = meant(name, [one for one in (*node.get_parameters_by_prefix(""), *names) if known(one)])
+            node.get_logger().warning(
+                f"parameter {name} is none of {node.get_name()} and does nothing{near}; see docs/{page}"
+            )
+
+
+def meant(name: str, names: Sequence[str]) -> str:
+    """A question whether another of these names was meant; nothing where none is like it."""
+    near = difflib.get_close_matches(name, names, 1, _LIKE)
+    return f" (did you mean {near[0]}?)" if near else ""
+
+
+def overrides(node: Node) -> dict[str, Any]:
+    """What a command line, a file or a constructor gave a node: name → value; None for an empty list."""
+    return {name: one.value for name, one in node._parameter_overrides.items()}  # rclpy has no public way
+
+
+def refusal(values: Any, parameters: Iterable[Parameter]) -> str:
+    """Why a change is refused by what the fields say, or nothing."""
+    known = {one.name: one for one in declared(values)}
+    reasons = (known[one.name].refusal(plain(one.value)) for one in parameters if one.name in known)
+    return next((reason for reason in reasons if reason), "")
+
+
+def updated(values: T, parameters: Iterable[Parameter]) -> T:
+    """The values after a change; parameters of others do not matter."""
+    paths = {one.name: one.path for one in declared(values)}
+    for parameter in parameters:
+        if parameter.name in paths and parameter.value is not None:
+            values = _with(values, paths[parameter.name], plain(parameter.value))
+    return values
+
+
+def declare_array(node: Node, name: str, kind: Parameter.Type, text: str, default: Sequence[Any] = ()) -> list[Any]:
+    """Declare a list that may be empty; the value in force.
+
+    An empty list from a command line has the type of no element, so the type is checked by who uses the value.
+    """
+    node.declare_parameter(name, None, ParameterDescriptor(description=text, dynamic_typing=True))
+    found = node.get_parameter(name).value
+    if isinstance(found, str | bytes | int | float):
+        raise StartError(f"parameter {name} of {node.get_name()}: found {found!r}, expected a list")
+    value = list(default if found is None else found)
+    node.set_parameters([Parameter(name, kind, value)] if not value else [Parameter(name, value=value)])
+    return value
+
+
+def by_name(values: Any) -> dict[str, Any]:
+    """The values of a dataclass by the names of their parameters."""
+    return {one.name: one.default for one in declared(values)}
+
+
+def described(text: str) -> ParameterDescriptor:
+    """The descriptor of a parameter that has nothing but a meaning."""
+    return ParameterDescriptor(description=text)
+
+
+def changes(parameters: Iterable[Parameter]) -> dict[str, Any]:
+    """Parameter list of a callback as name → value."""
+    return {parameter.name: parameter.value for parameter in parameters}
+
+
+def plain(value: Any) -> Any:
+    """Arrays of parameters as lists."""
+    return value if isinstance(value, str | bytes | int | float | bool) or value is None else list(value)
+
+
+def _with(values: T, path: tuple[str, ...], value: Any) -> T:
+    """The same with one field, maybe of a group, set."""
+    first, *rest = path
+    if rest:
+        value = _with(getattr(values, first), tuple(rest), value)
+    return dataclasses.replace(values, **{first: value})  # type: ignore[type-var]  # T is always a dataclass

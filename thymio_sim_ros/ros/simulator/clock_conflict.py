@@ -1,0 +1,97 @@
+"""Another simulator that publishes the same clock: time jumps between the two, and programs start again at each jump.
+
+A second publisher in the graph is no proof: discovery keeps one that was killed for some 20 s. So as long as there is
+one, the simulator subscribes to the clock; messages that it did not publish itself are the proof.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter, deque
+from collections.abc import Callable
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from rclpy.node import Node
+from rosgraph_msgs.msg import Clock
+
+from thymio_sim_ros.ros.interface import qos
+from thymio_sim_ros.ros.interface.headers import SECOND_NS
+
+__all__ = ["ClockRivals"]
+
+PROOF = 2
+"""Messages of others within `REMEMBERED_S` that prove another simulator."""
+REMEMBERED_S = 5.0
+"""Wall time; a paused simulator publishes once a second."""
+_OWN = 512
+"""So many of its own messages are remembered: those of ten seconds."""
+
+
+class ClockRivals:
+    """Finds other publishers of a simulator's clock, and warns once while there is one. Costs nothing without them."""
+
+    def __init__(self, node: Node, topic: str, domain: int, now_s: Callable[[], float] = time.monotonic) -> None:
+        """`topic`: the resolved name of the clock."""
+        self._node = node
+        self._topic = topic
+        self._domain = domain
+        self._now_s = now_s
+        self._subscription: Any = None
+        self._own: Counter[int] = Counter()
+        self._order: deque[int] = deque()
+        self._foreign_s: deque[float] = deque(maxlen=PROOF)
+        self.is_found = False
+        """Whether another simulator publishes now."""
+
+    def sent(self, now_ns: int) -> None:
+        """This simulator publishes this time."""
+        self._order.append(now_ns)
+        self._own[now_ns] += 1
+        if len(self._order) > _OWN:
+            self._forget(self._order.popleft())
+
+    def look(self) -> None:
+        """Compare the graph and the messages since the last look; warn of what is new."""
+        if self._node.count_publishers(self._topic) > 1:
+            if self._subscription is None:
+                self._subscription = self._node.create_subscription(Clock, self._topic, self._take, qos.CLOCK)
+        elif self._subscription is not None:
+            self._node.destroy_subscription(self._subscription)
+            self._subscription = None
+            self._foreign_s.clear()
+        was_found, self.is_found = self.is_found, self._is_proven()
+        if self.is_found and not was_found:
+            self._node.get_logger().warning(self._text())
+
+    def status(self) -> DiagnosticStatus:
+        """For `/diagnostics`: ERROR while there is another simulator."""
+        return DiagnosticStatus(
+            level=DiagnosticStatus.ERROR if self.is_found else DiagnosticStatus.OK,
+            name=f"{self._node.get_fully_qualified_name().removeprefix('/')}: clock",
+            hardware_id="thymio_sim_ros",
+            message=self._text() if self.is_found else "the only publisher",
+            values=[KeyValue(key="topic", value=self._topic), KeyValue(key="domain", value=str(self._domain))],
+        )
+
+    def _is_proven(self) -> bool:
+        return len(self._foreign_s) == PROOF and self._now_s() - self._foreign_s[0] < REMEMBERED_S
+
+    def _take(self, message: Clock) -> None:
+        now_ns = message.clock.sec * SECOND_NS + message.clock.nanosec
+        if self._own[now_ns] > 0:
+            self._forget(now_ns)
+        else:
+            self._foreign_s.append(self._now_s())
+
+    def _forget(self, now_ns: int) -> None:
+        self._own[now_ns] -= 1
+        if self._own[now_ns] <= 0:
+            del self._own[now_ns]
+
+    def _text(self) -> str:
+        return (
+            f"{self._topic}: another simulator publishes it in ROS_DOMAIN_ID {self._domain}, so that time jumps and "
+            "programs start again. End one of them, or give it a ROS_DOMAIN_ID of its own; for simulators with "
+            "namespaces in one domain remap the clock of each, as by -r /clock:=/lab1/clock"
+        )

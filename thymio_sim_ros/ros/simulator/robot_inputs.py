@@ -1,0 +1,160 @@
+"""Everything a robot of the simulator listens to, one value per topic.
+
+Most are rows of `command_topics`, `operator_topics` and `plugin_topics`; here are those that need more than the
+message, or make more than one command of it (docs/spec/ros-interface.md section 4.2).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from geometry_msgs.msg import PoseWithCovarianceStamped, TwistStamped
+from geometry_msgs.msg import Twist as TwistMsg
+from rclpy.qos import QoSProfile
+from std_msgs.msg import Bool, Empty, Float64MultiArray
+
+from thymio_sim_ros.ros.interface import (
+    command_checks,
+    command_topics,
+    convert_readings,
+    operator_topics,
+    plugin_topics,
+    qos,
+    saturation,
+)
+from thymio_sim_ros.ros.interface.command_checks import CommandError
+from thymio_sim_ros.ros.interface.command_topics import CommandRow
+from thymio_sim_ros.ros.interface.headers import SECOND_NS
+from thymio_sim_ros.ros.interface.saturation import Beyond
+from thymio_sim_ros.sim import commands
+from thymio_sim_ros.sim.commands import Command
+from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
+
+__all__ = ["Moment", "RobotInput", "robot_inputs"]
+
+
+WORLD = Pose(0.0, 0.0, 0.0)
+"""The world's frame in itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """When a message arrives: simulated time, and how long velocities hold (0: until the next one), in ns.
+
+    `frames` tells where the frames of a robot are in the world then.
+    """
+
+    now_ns: int
+    timeout_ns: int
+    frames: Callable[[], Mapping[str, Pose]] = dict
+
+
+@dataclass(frozen=True, slots=True)
+class RobotInput:
+    """One topic: `commands` gives what a message says, or raises CommandError; `about` is for the reference.
+
+    `beyond` says what of a message that was not refused is limited.
+    """
+
+    topic: str
+    type: type
+    commands: Callable[[Any, Moment], Sequence[Command]]
+    about: str
+    profile: QoSProfile
+    beyond: Beyond = saturation.nothing
+
+
+def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
+    """All of them; `stamped_cmd_vel`: `cmd_vel` is TwistStamped, as newer Nav2 has it."""
+    plain, stamped = ("cmd_vel_unstamped", "cmd_vel") if stamped_cmd_vel else ("cmd_vel", "cmd_vel_stamped")
+    speeds = "linear.x in m/s and angular.z in rad/s; scaled down together above the wheels' limit"
+    return (
+        RobotInput(plain, TwistMsg, _twist, speeds, qos.COMMAND, saturation.twist),
+        RobotInput(
+            stamped,
+            TwistStamped,
+            _stamped_twist,
+            f"{speeds}; refused when older than `cmd_vel_timeout`",
+            qos.COMMAND,
+            saturation.stamped_twist,
+        ),
+        RobotInput(
+            "_wheels/command", Float64MultiArray, _wheels, "left, right in rad/s", qos.COMMAND, saturation.wheels
+        ),
+        *map(_of_row, command_topics.ROWS),
+        RobotInput("_led/off", Empty, _leds_off, "all lights dark", qos.LEDS),
+        RobotInput(
+            "shutdown",
+            Empty,
+            _shutdown,
+            "wheels, lights, sound and alarm off, the program until `aseba/run` or a reset; later commands are obeyed",
+            qos.EVENTS,
+        ),
+        RobotInput(
+            "initialpose",
+            PoseWithCovarianceStamped,
+            _pose,
+            "put the robot there, m in the header's frame: the world's (or none), `odom` or `base_link`; "
+            "its odometry does not notice. Refused where something stands",
+            qos.COMMAND,
+        ),
+        *(
+            RobotInput(
+                f"_press/{button}", Bool, partial(_press, button), "a finger on the button, or off it", qos.EVENTS
+            )
+            for button in commands.BUTTONS
+        ),
+        *map(_of_row, (*operator_topics.ROWS, *plugin_topics.rows())),
+    )
+
+
+def _of_row(row: CommandRow) -> RobotInput:
+    return RobotInput(
+        row.topic, row.type, lambda message, _moment: (row.decode(message),), row.about, row.profile, row.beyond
+    )
+
+
+def _twist(message: TwistMsg, moment: Moment) -> Sequence[Command]:
+    return (command_checks.body_twist(message, moment.timeout_ns),)
+
+
+def _stamped_twist(message: TwistStamped, moment: Moment) -> Sequence[Command]:
+    sent_ns = message.header.stamp.sec * SECOND_NS + message.header.stamp.nanosec
+    age_ns = moment.now_ns - sent_ns
+    if moment.timeout_ns and sent_ns and age_ns > moment.timeout_ns:
+        raise CommandError(f"stamp is {age_ns / 1e9:.3f} s old, expected at most {moment.timeout_ns / 1e9:.3f} s")
+    return (command_checks.body_twist(message.twist, moment.timeout_ns),)
+
+
+def _wheels(message: Float64MultiArray, moment: Moment) -> Sequence[Command]:
+    return (command_checks.wheel_velocities(message.data, moment.timeout_ns),)
+
+
+def _leds_off(_message: Empty, _moment: Moment) -> Sequence[Command]:
+    return tuple(commands.SetLeds(group, (0,) * size) for group, size in commands.LED_GROUPS.items())
+
+
+def _shutdown(message: Empty, moment: Moment) -> Sequence[Command]:
+    quiet = (commands.SetAlarm(False), commands.StopSound())
+    return (commands.MotorTargets(0, 0), *quiet, *_leds_off(message, moment))
+
+
+def _pose(message: PoseWithCovarianceStamped, moment: Moment) -> Sequence[Command]:
+    """Tools of viewers send it in the frame that they show or follow."""
+    pose, frame, frames = message.pose.pose, message.header.frame_id, moment.frames()
+    if frame and frame not in frames:
+        raise CommandError(f"frame '{frame}' found, expected {' or '.join(frames)}")
+    origin = frames[frame] if frame else WORLD
+    x, y = origin.place((pose.position.x, pose.position.y))
+    yaw = origin.yaw_rad + convert_readings.yaw_of(pose.orientation)
+    if not all(map(math.isfinite, (x, y, yaw))):
+        raise CommandError("pose has a value that is not finite")
+    return (commands.MoveRobot(x, y, wrap_angle(yaw)),)
+
+
+def _press(button: str, message: Bool, _moment: Moment) -> Sequence[Command]:
+    return (commands.PressButton(button, bool(message.data)),)

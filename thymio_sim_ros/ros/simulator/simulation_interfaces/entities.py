@@ -1,0 +1,201 @@
+"""Robots, movable things and doors by the services of simulation_interfaces: listed, placed, spawned, deleted."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from thymio_sim_ros.ros.interface import convert_readings
+from thymio_sim_ros.ros.interface.headers import stamp
+from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import (
+    FAILED,
+    NOT_FOUND,
+    OK,
+    UNSUPPORTED,
+    WORLD_FRAMES,
+    Act,
+    RefusedError,
+    resource,
+)
+from thymio_sim_ros.ros.simulator.world_services import Controlled
+from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
+from thymio_sim_ros.sim.model import fields
+from thymio_sim_ros.sim.model.fields import FieldError
+from thymio_sim_ros.sim.playground.placement import PlacementError
+from thymio_sim_ros.sim.playground.reader import RobotStart
+
+__all__ = ["SPAWNABLE", "Entities"]
+
+SPAWNABLE = "thymio"
+"""The one kind of robot that there is, as a URI."""
+ROBOT, DYNAMIC_OBJECT = 1, 4
+"""EntityCategory: what drives, and what is moved."""
+NAME_NOT_UNIQUE, NAME_INVALID, UNSUPPORTED_FORMAT, NO_RESOURCE, NAMESPACE_INVALID = range(101, 106)
+SPAWN_POSE_INVALID, STATE_POSE_INVALID, SOME_FAILED = 109, 101, 150
+
+
+class Entities:
+    """What acts on entities; `messages` is the module `simulation_interfaces.msg`."""
+
+    def __init__(self, simulator: Controlled, messages: Any) -> None:
+        self._simulator, self._messages = simulator, messages
+
+    @property
+    def acts(self) -> Mapping[str, Act]:
+        """What each service does."""
+        return {
+            "get_entities": self._list,
+            "get_entity_info": self._describe,
+            "get_entity_state": self._get_state,
+            "get_entities_states": self._get_states,
+            "set_entity_state": self._set_state,
+            "get_spawnables": self._list_spawnables,
+            "spawn_entity": self._spawn,
+            "spawn_entities": self._spawn_all,
+            "delete_entity": self._delete,
+        }
+
+    def _categories(self) -> dict[str, int]:
+        """All entities by name: robots, then things."""
+        world = self._simulator.world
+        return dict.fromkeys(world.robots, ROBOT) | {thing.name: DYNAMIC_OBJECT for thing in world.objects}
+
+    def _known(self, name: str) -> int:
+        categories = self._categories()
+        if name not in categories:
+            expected = fields.nearest(name, tuple(categories))
+            raise RefusedError(NOT_FOUND, f"nothing here is called '{name}', expected {expected}")
+        return categories[name]
+
+    def _matching(self, filters: Any) -> Iterator[str]:
+        if filters.tags.tags:
+            raise RefusedError(UNSUPPORTED, "tags found: entities have none here")
+        if filters.bounds.type:
+            raise RefusedError(UNSUPPORTED, "bounds found: entities are not filtered by place here")
+        try:
+            pattern = re.compile(filters.filter)
+        except re.error as error:
+            raise RefusedError(FAILED, f"filter {filters.filter!r} is no regular expression: {error}") from error
+        wanted = {one.category for one in filters.categories}
+        for name, category in self._categories().items():
+            if pattern.search(name) and (not wanted or category in wanted):
+                yield name
+
+    def _list(self, request: Any, response: Any) -> None:
+        response.entities = list(self._matching(request.filters))
+
+    def _describe(self, request: Any, response: Any) -> None:
+        response.info.category.category = category = self._known(request.entity)
+        response.info.description = "a Thymio II" if category == ROBOT else "a thing that moves or is moved"
+
+    def _get_state(self, request: Any, response: Any) -> None:
+        self._known(request.entity)
+        response.state = self._state(request.entity)
+
+    def _get_states(self, request: Any, response: Any) -> None:
+        response.entities = list(self._matching(request.filters))
+        response.states = [self._state(name) for name in response.entities]
+
+    def _state(self, name: str) -> Any:
+        """Truth in the world's frame; speeds of things are not known."""
+        world, state = self._simulator.world, self._messages.EntityState()
+        state.header.stamp, state.header.frame_id = stamp(world.now_ns), self._simulator.map_frame
+        robot = world.robots.get(name)
+        if robot is None:
+            pose = next(thing.pose for thing in world.objects if thing.name == name)
+            state.pose.orientation = convert_readings.quaternion(pose.yaw_rad)
+        else:
+            pose, twist = robot.pose, robot.twist
+            state.pose.orientation = convert_readings.quaternion(pose.yaw_rad, robot.tilt)
+            state.twist.linear.x = twist.linear_m_s * math.cos(pose.yaw_rad)
+            state.twist.linear.y = twist.linear_m_s * math.sin(pose.yaw_rad)
+            state.twist.angular.z = twist.angular_rad_s
+        state.pose.position.x, state.pose.position.y = pose.x_m, pose.y_m
+        return state
+
+    def _place(self, header: Any, pose: Any, code: int) -> tuple[float, float, float]:
+        """x, y and yaw of a pose in the world's frame; a refusal with `code` for one that is none."""
+        if header.frame_id not in (*WORLD_FRAMES, self._simulator.map_frame):
+            raise RefusedError(UNSUPPORTED, f"frame '{header.frame_id}' found, expected '{self._simulator.map_frame}'")
+        place = (pose.position.x, pose.position.y, convert_readings.yaw_of(pose.orientation))
+        if not all(map(math.isfinite, place)):
+            raise RefusedError(code, "the pose has a value that is not finite")
+        return place
+
+    def _set_state(self, request: Any, response: Any) -> None:
+        name, state, world = request.entity, request.state, self._simulator.world
+        category = self._known(name)
+        speeds = [state.twist.linear, state.twist.angular, state.acceleration.linear, state.acceleration.angular]
+        if any(value for vector in speeds for value in (vector.x, vector.y, vector.z)):
+            raise RefusedError(UNSUPPORTED, "speeds found: only poses can be set, wheels do the rest")
+        if not getattr(request, "set_pose", True):
+            return
+        place = self._place(state.header, state.pose, STATE_POSE_INVALID)
+        if category != ROBOT and name not in world.movables:
+            raise RefusedError(FAILED, f"'{name}' is a door: it opens by its own rules")
+        try:
+            world.post(name, MoveRobot(*place) if category == ROBOT else MoveObject(*place))
+        except PlacementError as error:
+            raise RefusedError(STATE_POSE_INVALID, str(error)) from error
+
+    def _list_spawnables(self, request: Any, response: Any) -> None:
+        response.spawnables = [self._messages.Spawnable(uri=SPAWNABLE, description="a Thymio II with all its sensors")]
+        if request.sources:
+            response.result.error_message = f"unknown sources: {', '.join(request.sources)}"
+
+    def _spawn(self, request: Any, response: Any) -> None:
+        uri, text = resource(request, "entity_resource")
+        if not uri:
+            given = (UNSUPPORTED_FORMAT, "a text found") if text else (NO_RESOURCE, "no resource found")
+            raise RefusedError(given[0], f"{given[1]}, expected the URI '{SPAWNABLE}'")
+        if uri != SPAWNABLE:
+            raise RefusedError(UNSUPPORTED_FORMAT, f"'{uri}' found, expected the URI '{SPAWNABLE}'")
+        name = self._name(request.name, request.allow_renaming)
+        if request.entity_namespace.strip("/") not in ("", name):
+            raise RefusedError(
+                NAMESPACE_INVALID, f"'{request.entity_namespace}' found: a robot's namespace is its name"
+            )
+        header, pose = request.initial_pose.header, request.initial_pose.pose
+        x, y, yaw = self._place(header, pose, SPAWN_POSE_INVALID)
+        try:
+            start = fields.read(RobotStart, {"name": name, "x_m": x, "y_m": y, "yaw_rad": yaw}, "")
+            self._simulator.spawn(start)
+        except FieldError as error:
+            raise RefusedError(NAME_INVALID if error.key == "name" else SPAWN_POSE_INVALID, str(error)) from error
+        except PlacementError as error:
+            raise RefusedError(SPAWN_POSE_INVALID, str(error)) from error
+        except ValueError as error:
+            raise RefusedError(NAME_NOT_UNIQUE, str(error)) from error
+        response.entity_name = name
+        self._simulator.follow()
+
+    def _name(self, wanted: str, allow_renaming: bool) -> str:
+        """The name wanted, or, where another is allowed, the first with a number behind it that is free."""
+        taken = self._categories()
+        if not wanted and not allow_renaming:
+            raise RefusedError(NAME_INVALID, "no name found, and renaming is not allowed")
+        if wanted and (wanted not in taken or not allow_renaming):
+            return wanted
+        numbers = range(1 if not wanted else 2, len(taken) + 3)
+        return next(name for name in (f"{wanted or SPAWNABLE}_{number}" for number in numbers) if name not in taken)
+
+    def _spawn_all(self, request: Any, response: Any) -> None:
+        for one in request.spawn_requests:
+            result = self._messages.SpawnResult()
+            result.result.result = OK
+            try:
+                self._spawn(one, result)
+            except RefusedError as refusal:
+                result.result.result, result.result.error_message = refusal.code, str(refusal)
+            response.results.append(result)
+        failed = sum(result.result.result != OK for result in response.results)
+        if failed:
+            raise RefusedError(SOME_FAILED, f"{failed} of {len(response.results)} were not spawned: see results")
+
+    def _delete(self, request: Any, response: Any) -> None:
+        if self._known(request.entity) != ROBOT:
+            raise RefusedError(FAILED, f"'{request.entity}' belongs to the playground: only robots can be deleted")
+        self._simulator.world.remove(request.entity)
+        self._simulator.follow()

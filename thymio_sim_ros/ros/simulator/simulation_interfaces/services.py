@@ -1,0 +1,220 @@
+"""The services of the package simulation_interfaces on the simulator's node, where that package is installed.
+
+They are those that other simulators of ROS have, too (docs/spec/ros-interface.md sections 5 and 7): tools that know
+them pause, step, reset, spawn and load here as there. What they do, `~/pause` and the others do as well, with standard
+types.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from rclpy.node import Node
+
+from thymio_sim_ros import resources
+from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import (
+    FAILED,
+    UNSUPPORTED,
+    Act,
+    Offer,
+    RefusedError,
+    answering,
+    resource,
+)
+from thymio_sim_ros.ros.simulator.simulation_interfaces.entities import SPAWNABLE, Entities
+from thymio_sim_ros.ros.simulator.world_services import STOPPED_BY_ITSELF, Controlled, presently
+from thymio_sim_ros.sim.playground import reader as playgrounds
+from thymio_sim_ros.sim.playground.reader import PlaygroundError
+
+__all__ = ["OFFERS", "PACKAGE", "STEPS", "SimInterfaces", "offered"]
+
+PACKAGE = "simulation_interfaces"
+
+OFFERS = (
+    Offer("get_simulator_features", "GetSimulatorFeatures", (), "the features below"),
+    Offer("get_simulation_state", "GetSimulationState", ("SIMULATION_STATE_GETTING",), "stopped is paused at time 0"),
+    Offer(
+        "set_simulation_state",
+        "SetSimulationState",
+        ("SIMULATION_STATE_SETTING", "SIMULATION_STATE_PAUSE"),
+        "playing, paused, or stopped, which resets; quitting is refused",
+    ),
+    Offer(
+        "step_simulation",
+        "StepSimulation",
+        ("STEP_SIMULATION_SINGLE", "STEP_SIMULATION_MULTIPLE"),
+        "ticks of 10 ms, at most 100000; refused unless paused",
+    ),
+    Offer(
+        "reset_simulation",
+        "ResetSimulation",
+        ("SIMULATION_RESET", "SIMULATION_RESET_TIME", "SIMULATION_RESET_STATE", "SIMULATION_RESET_SPAWNED"),
+        "everything as at the start; scopes only all together",
+    ),
+    Offer("get_entities", "GetEntities", ("ENTITY_CATEGORIES",), "robots, movable things, doors; by name and category"),
+    Offer("get_entity_info", "GetEntityInfo", ("ENTITY_INFO_GETTING",), "robot or object"),
+    Offer("get_entity_state", "GetEntityState", ("ENTITY_STATE_GETTING",), "true pose and speed in the world's frame"),
+    Offer("get_entities_states", "GetEntitiesStates", (), "the same of several"),
+    Offer("set_entity_state", "SetEntityState", ("ENTITY_STATE_SETTING",), "its pose; speeds are refused"),
+    Offer("get_spawnables", "GetSpawnables", ("SPAWNABLES",), f"`{SPAWNABLE}`"),
+    Offer("spawn_entity", "SpawnEntity", ("SPAWNING",), f"a robot; its URI is `{SPAWNABLE}`, its namespace its name"),
+    Offer("spawn_entities", "SpawnEntities", ("SPAWNING_ENTITIES",), "several, each with a result"),
+    Offer("delete_entity", "DeleteEntity", ("DELETING",), "a robot"),
+    Offer("get_available_worlds", "GetAvailableWorlds", ("AVAILABLE_WORLDS",), "the shipped playgrounds"),
+    Offer(
+        "load_world",
+        "LoadWorld",
+        ("WORLD_LOADING", "WORLD_RESOURCE_STRING"),
+        "a playground by name, path or text; stopped then",
+    ),
+    Offer("get_current_world", "GetCurrentWorld", ("WORLD_INFO_GETTING",), "the playground"),
+)
+"""Every service; one whose type an older version of the package lacks is left out."""
+
+STEPS = Offer("simulate_steps", "SimulateSteps", ("STEP_SIMULATION_ACTION",), "an action: ticks with feedback on each")
+
+STOPPED, PLAYING, PAUSED = range(3)
+"""SimulationState (docs/spec/ros-interface.md section 7)."""
+_STATES = ("stopped", "playing", "paused")
+ALREADY, INCORRECT_TRANSITION = 101, 103
+MOST_STEPS = 100_000
+EVERYTHING = (0, 7, 255)
+"""Scopes of a reset: none named, each named, all."""
+NO_RESOURCE, PARSE_ERROR = 102, 103
+
+
+class SimInterfaces:
+    """The services; `interfaces` has the package's modules `msg` and `srv`, and `action` if actions are wanted."""
+
+    def __init__(self, node: Node, simulator: Controlled, interfaces: Any) -> None:
+        self._node, self._simulator, self._messages = node, simulator, interfaces.msg
+        acts = {**self._acts, **Entities(simulator, interfaces.msg).acts}
+        offers = [offer for offer in OFFERS if hasattr(interfaces.srv, offer.type)]
+        self._features = [feature for offer in offers for feature in offer.features]
+        for offer in offers:
+            answer = self._get_features if offer.name == "get_simulator_features" else answering(acts[offer.name])
+            kind = getattr(interfaces.srv, offer.type)
+            node.create_service(kind, f"~/{offer.name}", presently(simulator, answer))
+        self._close: Callable[[], None] = lambda: None
+        actions = getattr(interfaces, "action", None)
+        if actions is not None:
+            from thymio_sim_ros.ros.simulator.simulation_interfaces.steps import StepsAction  # loads what actions need
+
+            self._features += STEPS.features
+            self._close = StepsAction(node, simulator, actions.SimulateSteps).close
+
+    def close(self) -> None:
+        """End what the node does not end by itself."""
+        self._close()
+
+    @property
+    def _acts(self) -> Mapping[str, Act]:
+        return {
+            "get_simulation_state": self._get_state,
+            "set_simulation_state": self._set_state,
+            "step_simulation": self._step,
+            "reset_simulation": self._reset,
+            "get_available_worlds": self._list_worlds,
+            "load_world": self._load_world,
+            "get_current_world": self._get_world,
+        }
+
+    def _get_features(self, _request: Any, response: Any) -> Any:
+        known = self._messages.SimulatorFeatures
+        response.features.features = [getattr(known, name) for name in self._features if hasattr(known, name)]
+        response.features.spawn_formats = []
+        response.features.custom_info = "Thymio Sim ROS: docs/ros.md"
+        return response
+
+    # --- time ---
+
+    @property
+    def _state(self) -> int:
+        if not self._simulator.paused:
+            return PLAYING
+        return PAUSED if self._simulator.world.now_ns else STOPPED
+
+    def _get_state(self, _request: Any, response: Any) -> None:
+        response.state.state = self._state
+
+    def _set_state(self, request: Any, _response: Any) -> None:
+        wanted, now = request.state.state, self._state
+        if wanted not in (STOPPED, PLAYING, PAUSED):
+            raise RefusedError(UNSUPPORTED, f"state {wanted} found, expected stopped, playing or paused")
+        if wanted == now:
+            raise RefusedError(ALREADY, f"the simulation is {_STATES[now]} already")
+        if (now, wanted) == (STOPPED, PAUSED):
+            raise RefusedError(
+                INCORRECT_TRANSITION, "the simulation is stopped, which is paused at time 0: step or play it"
+            )
+        self._simulator.pause(wanted != PLAYING)
+        if wanted == STOPPED:
+            self._simulator.reset()
+
+    def _step(self, request: Any, _response: Any) -> None:
+        if not self._simulator.paused:
+            raise RefusedError(FAILED, "the world is running: pause it first")
+        if request.steps > MOST_STEPS:
+            raise RefusedError(
+                FAILED, f"{request.steps} steps found, expected at most {MOST_STEPS}; more by the action"
+            )
+        if not self._simulator.step(request.steps):
+            raise RefusedError(FAILED, STOPPED_BY_ITSELF)
+
+    def _reset(self, request: Any, _response: Any) -> None:
+        if request.scope not in EVERYTHING:
+            raise RefusedError(
+                UNSUPPORTED, f"scope {request.scope} found, expected 0 or 255: time, state and robots at once"
+            )
+        self._simulator.reset()
+
+    # --- worlds ---
+
+    def _world(self, name: str, uri: str, text: str = "", about: str = "") -> Any:
+        world = self._messages.WorldResource(name=name, description=about)
+        world.world_resource.uri, world.world_resource.resource_string = uri, text
+        return world
+
+    def _list_worlds(self, request: Any, response: Any) -> None:
+        if request.filter.tags:
+            raise RefusedError(UNSUPPORTED, "tags found: worlds have none here")
+        for name, path in resources.playgrounds().items():
+            try:
+                about = playgrounds.headline(path).description
+            except PlaygroundError:  # the simulator has told it in its log at the start
+                continue
+            response.worlds.append(self._world(name, name, about=about))
+        if request.additional_sources:
+            response.result.error_message = f"not searched: {', '.join(request.additional_sources)}"
+
+    def _load_world(self, request: Any, response: Any) -> None:
+        uri, text = resource(request, "world_resource")
+        if not uri and not text:
+            raise RefusedError(NO_RESOURCE, "no resource found, expected the name, path or text of a playground")
+        reason = self._simulator.load(uri or text)
+        if reason:
+            raise RefusedError(PARSE_ERROR, reason)
+        self._simulator.pause(True)
+        self._get_world(request, response)
+
+    def _get_world(self, _request: Any, response: Any) -> None:
+        name, value = self._simulator.playground_name, self._simulator.playground
+        is_name = "\n" not in value and not value.lstrip().startswith(("{", "<"))
+        response.world = self._world(name, value if is_name else "", "" if is_name else value)
+
+
+def offered(node: Node, simulator: Controlled) -> SimInterfaces | None:
+    """The services, where the package is installed; one that cannot be loaded is told once."""
+    try:
+        import simulation_interfaces.action
+        import simulation_interfaces.msg
+        import simulation_interfaces.srv
+    except ModuleNotFoundError as error:
+        if error.name != PACKAGE:
+            node.get_logger().warning(f"{PACKAGE} is left out: {error}")
+        return None
+    except ImportError as error:
+        node.get_logger().warning(f"{PACKAGE} is left out: {error}")
+        return None
+    return SimInterfaces(node, simulator, simulation_interfaces)

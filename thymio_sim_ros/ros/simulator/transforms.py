@@ -1,0 +1,179 @@
+"""/tf and /tf_static of all robots (docs/spec/ros-interface.md sections 4.1 and 8).
+
+`odom → base_link` is the wheels' odometry and how the robot leans; `map → odom` makes up for its drift, so that
+`map → base_link` is the truth (perfect localisation); the wheels turn by their angles. What nobody hears costs nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+
+from thymio_sim_ros.ros.compat import tf2_messages
+from thymio_sim_ros.ros.compat.tf2_messages import Transform
+from thymio_sim_ros.ros.interface import qos
+from thymio_sim_ros.ros.interface.cdr_fields import rotation, wheel_rotation
+from thymio_sim_ros.ros.interface.names import MAP_FRAME, SIDES, RobotNames
+from thymio_sim_ros.ros.simulator.subscriber_demand import Audience, Heard
+from thymio_sim_ros.ros.simulator.urdf import fixed_frames, wheel_position
+from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
+from thymio_sim_ros.sim.model.readings import PoseReading, Reading
+
+__all__ = ["TRANSFORMING", "TransformOptions", "Transforms", "frames_of", "origin_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class TransformOptions:
+    """What is published: `map → odom`, the wheels, the fixed frames; and whether in each robot's namespace."""
+
+    publish_map: bool = True
+    publish_wheels: bool = True
+    publish_static: bool = True
+    namespaced: bool = False
+
+
+TRANSFORMING = "pose"
+"""The sensor whose readings make transforms."""
+
+MOVING = Heard(TRANSFORMING)
+
+
+class _Channel:
+    """Publishers of one transform topic, and for each the transforms of this tick."""
+
+    def __init__(self, node: Node, word: str, profile: QoSProfile, audience: Audience | None = None) -> None:
+        """`audience` is told which topics are heard."""
+        self.word = word
+        self._node, self._profile, self._audience = node, profile, audience
+        self._publishers: dict[str, Any] = {}
+        self._heard: set[str] = set()
+        self._waiting: dict[str, list[Transform]] = {}
+
+    def open(self, topics: set[str]) -> None:
+        """Have publishers of these topics, and of no other."""
+        self._waiting.clear()
+        for topic in self._publishers.keys() - topics:
+            self._hear(topic, 0)
+            self._node.destroy_publisher(self._publishers.pop(topic))
+        for topic in topics - self._publishers.keys():
+            self._publishers[topic] = self._node.create_publisher(tf2_messages.TFMessage, topic, self._profile)
+
+    def look(self) -> None:
+        """Find out which topics somebody hears now."""
+        for topic, publisher in self._publishers.items():
+            self._hear(topic, publisher.get_subscription_count())
+
+    def is_heard(self, topic: str) -> bool:
+        """Whether anybody listens."""
+        return topic in self._heard
+
+    def add(self, topic: str, transforms: Sequence[Transform]) -> None:
+        """Send these with the next `flush`."""
+        self._waiting.setdefault(topic, []).extend(transforms)
+
+    def flush(self) -> None:
+        """Send all that waits, one message for each topic."""
+        for topic, transforms in self._waiting.items():
+            self._publishers[topic].publish(tf2_messages.encode(transforms))
+        self._waiting.clear()
+
+    def _hear(self, topic: str, listeners: int) -> None:
+        if self._audience is None or (listeners > 0) == (topic in self._heard):
+            return
+        if listeners:
+            self._heard.add(topic)
+            self._audience.join(MOVING)
+        else:
+            self._heard.remove(topic)
+            self._audience.leave(MOVING)
+
+
+class Transforms:
+    """Publishes transforms from readings; silent where the type cannot be had (`tf_messages.available`)."""
+
+    def __init__(self, node: Node, audience: Audience, options: TransformOptions | None = None) -> None:
+        self._options = options or TransformOptions()
+        self._is_on = tf2_messages.available()
+        self._moving = _Channel(node, "tf", qos.TRANSFORMS, audience)
+        self._static = _Channel(node, "tf_static", qos.LATCHED)
+
+    def begin(self, robots: Sequence[RobotNames]) -> None:
+        """Latched frames of these robots, all in one message where the topic is common."""
+        if not self._is_on:
+            return
+        self._moving.open({self._topic(names, self._moving) for names in robots})
+        if not self._options.publish_static:
+            return
+        self._static.open({self._topic(names, self._static) for names in robots})
+        for names in robots:
+            base = names.frame("base_link")
+            fixed = [
+                Transform(0, base, names.frame(frame.name), frame.position, frame.quaternion)
+                for frame in fixed_frames()
+            ]
+            self._static.add(self._topic(names, self._static), fixed)
+        self._static.flush()
+
+    def take(self, names: RobotNames, reading: Reading, angles_rad: tuple[float, float]) -> None:
+        """Send the robot's moving frames at the end of the tick: its pose, its wheels turned by these angles."""
+        topic = self._topic(names, self._moving)
+        if isinstance(reading, PoseReading) and self._moving.is_heard(topic):
+            self._moving.add(topic, self._frames(names, reading, angles_rad))
+
+    def look(self) -> None:
+        """Find out which moving frames somebody hears now."""
+        self._moving.look()
+
+    def flush(self) -> None:
+        """The tick is over."""
+        self._moving.flush()
+
+    def _topic(self, names: RobotNames, channel: _Channel) -> str:
+        return names.topic(channel.word) if self._options.namespaced else f"/{channel.word}"
+
+    def _frames(self, names: RobotNames, reading: PoseReading, angles_rad: tuple[float, float]) -> list[Transform]:
+        ns = reading.stamp_ns
+        origin, odom, base, *wheels = _moving_frames(names)
+        frames = [_planar(ns, odom, base, reading.odometry, reading.tilt)]
+        if self._options.publish_map:
+            frames.insert(0, _planar(ns, origin, odom, origin_of(reading.truth, reading.odometry)))
+        if self._options.publish_wheels:
+            for wheel, place, angle in zip(wheels, _WHEELS, angles_rad, strict=True):
+                frames.append(Transform(ns, base, wheel, place, wheel_rotation(angle)))
+        return frames
+
+
+_WHEELS = tuple(map(wheel_position, SIDES))
+
+
+@cache
+def _moving_frames(names: RobotNames) -> tuple[str, ...]:
+    """The map's frame, the odometry's, the robot's and those of its wheels."""
+    return tuple(
+        names.frame(usual) for usual in (MAP_FRAME, "odom", "base_link", *(f"{side}_wheel_link" for side in SIDES))
+    )
+
+
+def origin_of(truth: Pose, odometry: Pose) -> Pose:
+    """Where odometry's origin lies in the world: truth · odometry⁻¹."""
+    yaw = truth.yaw_rad - odometry.yaw_rad
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    return Pose(
+        truth.x_m - cos * odometry.x_m + sin * odometry.y_m, truth.y_m - sin * odometry.x_m - cos * odometry.y_m, yaw
+    )
+
+
+def frames_of(names: RobotNames, truth: Pose, odometry: Pose) -> dict[str, Pose]:
+    """Where the world's frame, the odometry's and the robot's are in the world."""
+    places = {MAP_FRAME: Pose(0.0, 0.0, 0.0), "odom": origin_of(truth, odometry), "base_link": truth}
+    return {names.frame(usual): place for usual, place in places.items()}
+
+
+def _planar(ns: int, frame: str, child: str, pose: Pose, tilt: Tilt = LEVEL) -> Transform:
+    return Transform(ns, frame, child, (pose.x_m, pose.y_m, 0.0), rotation(pose.yaw_rad, tilt))

@@ -1,0 +1,122 @@
+"""The web page as a ROS node: parameters, and a server in a thread that shares nothing (`thymio_sim_ros.web`).
+
+The page speaks the Foxglove protocol to the bridge; the server only gives it its files, the shipped playgrounds as
+`/playgrounds/NAME.json`, and `/config.json`, which names the bridge's port. Loopback by default; nothing is written,
+nothing else is served, and nothing of it is secret: tokens are for the bridge (SECURITY.md).
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rclpy.context import Context
+from rclpy.executors import Executor
+
+import thymio_sim_ros
+from thymio_sim_ros import resources
+from thymio_sim_ros.banner import places
+from thymio_sim_ros.bridge.access import Tokens, is_loopback
+from thymio_sim_ros.ros.rclpy_ext import parameters
+from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, greeted, run_main
+from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
+from thymio_sim_ros.ros.rclpy_ext.parameters import param
+from thymio_sim_ros.ros.web import tokens as node_tokens
+from thymio_sim_ros.suite_config import ADDRESS, FOXGLOVE_PORT, HTTP_PORT
+from thymio_sim_ros.web import Content, PageThread, Settings
+from thymio_sim_ros.web.settings import max_connections
+
+
+@dataclass(frozen=True)
+class WebParams:
+    """Parameters of the web node."""
+
+    port: int = param(HTTP_PORT, "TCP port of the page; 0 takes a free one", low=0, high=65535, fixed=True)
+    address: str = param(ADDRESS, "Address to listen on; 0.0.0.0 for the whole network", fixed=True)
+    foxglove_port: int = param(
+        FOXGLOVE_PORT, "Port of the Foxglove bridge on the same host", low=1, high=65535, fixed=True
+    )
+    allowed_hosts: list[str] = param(
+        [""], "Host names beside localhost under which a page on loopback may be opened", fixed=True
+    )
+
+
+class WebPage:
+    """The web node and its HTTP server. `port` is the one really taken."""
+
+    def __init__(self, context: Context, defaults: WebParams | None = None, tokens: Tokens | None = None) -> None:
+        """`tokens`: those of the bridge, for the address that is printed; None: what the node was given."""
+        self.node = parameter_node("web_ui", context=context)
+        try:
+            self.params = parameters.declare(self.node, defaults or WebParams())
+            parameters.warn_of_unknown(
+                self.node, "ros2-tools.md", lambda name: self.node.has_parameter(name) or name in node_tokens.PARAMETERS
+            )
+            self.tokens = node_tokens.given_tokens(self.node) if tokens is None else tokens
+            self._server = self._open_server()
+        except BaseException:
+            self.node.destroy_node()
+            raise
+        self.port = self._server.port
+
+    def _open_server(self) -> PageThread:
+        values = self.params
+        if importlib.util.find_spec("aiohttp") is None:
+            raise StartError("the page needs aiohttp: pip install aiohttp, or the system's python3-aiohttp")
+        page = resources.page()
+        if page is None:
+            self.node.get_logger().warning(resources.PAGE_BUILD_HINT)
+        config = {"foxglove_port": values.foxglove_port, "version": thymio_sim_ros.__version__}
+        settings = Settings(
+            values.foxglove_port,
+            is_loopback=is_loopback(values.address),
+            allowed_hosts=tuple(name.lower() for name in values.allowed_hosts if name),
+            max_connections=max_connections(),
+        )
+        try:
+            return PageThread(
+                Content(page, json.dumps(config).encode()),
+                settings,
+                address=values.address,
+                port=values.port,
+                warn=self.node.get_logger().warning,
+            )
+        except OSError as error:
+            where = f"{values.address}:{values.port}"
+            raise StartError(
+                f"the page's port {where} cannot be used: {error.strerror}; "
+                "choose another with --port, or port:=NUMBER of ros2"
+            ) from error
+
+    @property
+    def greeting(self) -> str:
+        """Where to look, for a person."""
+        return f"Page: {places('http', self.params.address, self.port, '/')}"
+
+    @property
+    def invitation(self) -> str:
+        """Where to look with which token, for standard output; never for the log, which clients may read."""
+        if not self.tokens.is_required:
+            return ""
+        place = "http", self.params.address, self.port, "/"
+        return f"Page      {places(*place, self.tokens.full)}\nRead only {places(*place, self.tokens.read_only)}"
+
+    def turn(self, executor: Executor) -> None:
+        """Nothing but parameters to answer."""
+        executor.spin_once(timeout_sec=SPIN_SLICE_S)
+
+    def end(self) -> None:
+        """Close the port, end the thread."""
+        self._server.close()
+
+    def close(self) -> None:
+        """The same, and destroy the node."""
+        self.end()
+        self.node.destroy_node()
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """The executable `web_ui`."""
+    return run_main(lambda context: greeted([WebPage(context)]), args)
