@@ -120,13 +120,15 @@ class Meeting:
     def __init__(self) -> None:
         self.now_s, self.has_met = 0.0, False
         self.heard: list[tuple[float, bool]] = []
+        self.created: list[str] = []
 
     def get_publishers_info_by_topic(self, _topic: str) -> list[object]:
         return []
 
     get_subscriptions_info_by_topic = get_publishers_info_by_topic
 
-    def create_publisher(self, *_arguments: object) -> Meeting:
+    def create_publisher(self, _type: type, topic: str, *_arguments: object, **_options: object) -> Meeting:
+        self.created.append(topic)
         return self
 
     def count_subscribers(self, _topic: str) -> int:
@@ -151,3 +153,25 @@ def test_what_waited_for_a_subscriber_leaves_as_far_apart_as_it_came():
     assert node.heard == [(0.3, True), (0.42, False), (0.42, True)]
     publishers.publish(1, 7, b'{"data": false}')
     assert node.heard[3:] == [(0.69, False)]
+
+
+def test_a_channel_that_is_closed_at_once_costs_ros_nothing() -> None:
+    """Floods of channels that are opened and closed kept the bridge busy for minutes after their clients had left."""
+    node = Meeting()
+    publishers = ClientPublishers(node, lambda _command: None)
+    for number in range(100):
+        publishers.open(1, ms.ClientChannel(number, f"/flood_{number}", JSON, "std_msgs/Bool"))
+        publishers.close(1, number)
+    assert not publishers.poll()
+    assert node.created == []
+
+
+def test_channels_of_all_clients_are_opened_in_turn() -> None:
+    node = Meeting()
+    publishers = ClientPublishers(node, lambda _command: None)
+    for number in range(3):
+        publishers.open(1, ms.ClientChannel(number, f"/flood_{number}", JSON, "std_msgs/Bool"))
+    publishers.open(2, ms.ClientChannel(0, "/mine", JSON, "std_msgs/Bool"))
+    while publishers.poll():
+        pass
+    assert node.created == ["/flood_0", "/mine", "/flood_1", "/flood_2"]

@@ -191,7 +191,7 @@ class FoxgloveBridge:
         self._hurry.cancel()
         self._repeat = self.node.create_timer(_REPEAT_S, self._repeat_kept, clock=steady)
         self._repeat.cancel()
-        self._calls = Calls(self.node, wake=self._hurry.reset)
+        self._calls = Calls(self.node, wake=self._poll_soon)
         self._topics = Topics(
             self.node,
             post,
@@ -200,14 +200,14 @@ class FoxgloveBridge:
             min_depth=values.min_qos_depth,
             max_depth=values.max_qos_depth,
             is_best_effort=allow_list(values.best_effort_qos_topic_whitelist),
-            wake=self._hurry.reset,
+            wake=self._poll_soon,
         )
         self._services = Services(self.node, self._calls, post)
         self._parameters = Parameters(
-            self.node, self._calls, post, is_allowed=allow_list(values.param_whitelist), wake=self._hurry.reset
+            self.node, self._calls, post, is_allowed=allow_list(values.param_whitelist), wake=self._poll_soon
         )
         self._publishers = ClientPublishers(
-            self.node, post, is_allowed=allow_list(values.client_topic_whitelist), wake=self._hurry.reset
+            self.node, post, is_allowed=allow_list(values.client_topic_whitelist), wake=self._poll_soon
         )
         self._told_count = -1
         self._count = (
@@ -286,6 +286,11 @@ class FoxgloveBridge:
             self._is_graph_old = False
             with self._graph_share.work():
                 self._server.post(ev.SetGraph(connection_graph(self.node, *self._shown)))
+
+    def _poll_soon(self) -> None:
+        """Poll until nothing waits. A timer that is reset again and again would never be due."""
+        if self._hurry.is_canceled():
+            self._hurry.reset()
 
     def _poll_waiting(self) -> None:
         waits = [self._calls.poll(), self._publishers.poll(), self._topics.poll(), self._parameters.poll()]

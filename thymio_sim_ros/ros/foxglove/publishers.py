@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rclpy._rclpy_pybind11 import RCLError, RMWError
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.exceptions import InvalidTopicNameException
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -22,6 +23,7 @@ from thymio_sim_ros.bridge.messages import ClientChannel, Status
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.foxglove import json_messages
 from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_parts
+from thymio_sim_ros.ros.foxglove.fair_queue import FairQueue
 from thymio_sim_ros.ros.foxglove.qos import publishing
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, full_name, load_type
 
@@ -33,6 +35,12 @@ _SETTLE_S = 1.0
 
 They leave as far apart as they came: a button that is pressed and let go meanwhile was held all the same.
 """
+
+_SLICE_S = 0.005
+"""Longest time for which publishers are created in one `poll`; each takes DDS some milliseconds."""
+
+_NO_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
+"""Each event handler would be one more thing that the executor waits for, in every turn."""
 
 _MOTION_TYPES = frozenset(f"geometry_msgs/msg/{name}" for name in ("Twist", "TwistStamped"))
 
@@ -79,9 +87,21 @@ class ClientPublishers:
         self._now_s = now_s
         self._ports: dict[tuple[str, str], _Port] = {}
         self._channels: dict[tuple[int, int], tuple[_Port, str]] = {}
+        self._opening: dict[tuple[int, int], ClientChannel] = {}
+        self._order: FairQueue[int, tuple[int, int]] = FairQueue()
+        """The channels of `_opening` by client, in the order in which their publishers are created."""
 
     def open(self, client: int, channel: ClientChannel) -> None:
-        """Prepare for a client's messages, or tell the client why not."""
+        """Prepare for a client's messages.
+
+        The publisher is created with the first message, or by `poll`, for all clients in turn; a channel that is closed
+        before that costs DDS nothing. A channel that is refused is reported to the client then.
+        """
+        self._opening[client, channel.id] = channel
+        self._order.put(client, (client, channel.id))
+        self._wake()
+
+    def _create(self, client: int, channel: ClientChannel) -> None:
         try:
             port = self._port(channel)
         except _RefusalError as error:
@@ -92,6 +112,9 @@ class ClientPublishers:
 
     def close(self, client: int, channel_id: int) -> None:
         """The channel is over; the last one takes the publisher with it."""
+        if self._opening.pop((client, channel_id), None) is not None:
+            self._order.remove(client, (client, channel_id))
+            return
         port, _ = self._channels.pop((client, channel_id), (None, ""))
         if port is None:
             return
@@ -102,6 +125,10 @@ class ClientPublishers:
 
     def publish(self, client: int, channel_id: int, payload: bytes) -> None:
         """Publish a client's message, or tell the client why not."""
+        channel = self._opening.pop((client, channel_id), None)
+        if channel is not None:
+            self._order.remove(client, (client, channel_id))
+            self._create(client, channel)
         port, encoding = self._channels.get((client, channel_id), (None, ""))
         if port is None:  # refused when it was opened, and told so
             return
@@ -115,9 +142,13 @@ class ClientPublishers:
             self._wake()
 
     def poll(self) -> bool:
-        """Send what was held for subscribers not met before; whether something is held still."""
+        """Create publishers, and send what was held for subscribers not met before; whether something is left to do."""
+        end_s = time.monotonic() + _SLICE_S
+        while self._order and time.monotonic() < end_s:
+            client, channel_id = self._order.take()
+            self._create(client, self._opening.pop((client, channel_id)))
         flushed = [self._flush(port) for port in self._ports.values()]
-        return not all(flushed)
+        return bool(self._order) or not all(flushed)
 
     def end(self) -> None:
         """End all publishers."""
@@ -125,6 +156,8 @@ class ClientPublishers:
             self._node.destroy_publisher(port.publisher)
         self._ports.clear()
         self._channels.clear()
+        self._opening.clear()
+        self._order = FairQueue()
 
     def _flush(self, port: _Port) -> bool:
         """Publish what is due, unless the publisher has still to meet subscribers; whether nothing is left."""
@@ -163,7 +196,7 @@ class ClientPublishers:
             profile = publishing(
                 self._node.get_publishers_info_by_topic(topic), self._node.get_subscriptions_info_by_topic(topic)
             )
-            publisher = self._node.create_publisher(message_type, topic, profile)
+            publisher = self._node.create_publisher(message_type, topic, profile, event_callbacks=_NO_EVENTS)
         except InvalidTopicNameException as error:
             raise _RefusalError(f"{topic}: not a topic name") from error
         except MissingTypeError as error:
