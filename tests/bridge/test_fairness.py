@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 
@@ -56,6 +57,35 @@ class Turns:
     def stop(self) -> None:
         """Count no more."""
         self._task.cancel()
+
+
+class SlowClock:
+    """Every message costs a millisecond of processor time, and comes a second after the one before."""
+
+    def __init__(self) -> None:
+        self._spent_s, self._now_s = 0.0, time.monotonic()
+
+    def thread_time(self) -> float:
+        self._spent_s += 0.001
+        return self._spent_s
+
+    def monotonic(self) -> float:
+        self._now_s += 1.0
+        return self._now_s
+
+
+def test_a_client_that_asks_little_does_not_queue_behind_those_that_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Clients that came and went delayed a quiet one by more than a second: it waited for the rests of them all."""
+
+    async def scenario() -> None:
+        async with bridge() as server, server.client() as client:
+            await client.settle()
+            monkeypatch.setattr("thymio_sim_ros.bridge.server.time", SlowClock())
+            async with server.server._rest_lock:
+                for _ in range(20):
+                    await client.settle()
+
+    run(scenario())
 
 
 @pytest.mark.parametrize(("frame", "count"), [(PING, 40_000), (masked(CLIENT_FRAME), 3000)], ids=["pings", "calls"])

@@ -57,6 +57,8 @@ BACKLOG = 128
 _ACCEPTED_AT_ONCE = 4
 """Connections that are accepted in one turn of the loop: a handshake takes it 3 ms."""
 _NO_WAYS: tuple[Routes, tuple[Way, ...]] = ((), ())
+_SMALL_SHARE = 0.05
+"""Of the loop's time: a client that takes less is served without a pause."""
 _TIME_SLOT = -1
 """Where an outlet keeps the newest time; no subscription has this id."""
 
@@ -266,7 +268,7 @@ class BridgeServer:
 
     async def _read(self, client: int, connection: SharedConnection) -> None:
         """Receive a client's messages until it leaves."""
-        spent_s = 0.0
+        spent_s, since_s = 0.0, time.monotonic()
         async for frame in connection:
             if self._is_closing:
                 return
@@ -276,8 +278,10 @@ class BridgeServer:
             while self._sink.is_full(client) and not self._is_closing:
                 await asyncio.sleep(_FULL_PAUSE_S)
             if spent_s >= SLICE_S:
-                await self._rest(spent_s)
-                spent_s = 0.0
+                # A client that takes little of the loop's time does not queue behind those that rest.
+                if spent_s > _SMALL_SHARE * (time.monotonic() - since_s):
+                    await self._rest(spent_s)
+                spent_s, since_s = 0.0, time.monotonic()
 
     async def _rest(self, spent_s: float) -> None:
         """Pause a client that took so much of the loop's time for as long, while no other client rests.
