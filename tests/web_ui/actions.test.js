@@ -1,12 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { Actions, LARGEST_PLAYGROUND, LARGEST_PROGRAM } from "../../web_ui/actions.js";
+import { Actions, LARGEST_PLAYGROUND, LARGEST_PROGRAM } from "../../web_ui/input/actions.js";
 import { Store } from "../../web_ui/state/store.js";
 
 /** @typedef {import("../../web_ui/state/index.js").Message} Message */
 
-/** Actions over a client that notes what it is asked, and answers as told. */
+/** Actions over a client that notes what it is asked, and answers as reported. */
 function prepared({ ok = true, message = "", value = /** @type {any} */ (undefined) } = {}) {
   /** @type {any[]} */ const asked = [];
   const client = {
@@ -70,7 +70,7 @@ test("a robot's own runtime is asked, else the one that all share", async () => 
   );
 });
 
-test("a call that is refused is told", async () => {
+test("a call that is refused is reported", async () => {
   const { actions, store } = prepared({ ok: false, message: "not paused" });
   await actions.step(10);
   assert.deepEqual(
@@ -146,13 +146,13 @@ test("a simulator that cannot move things says so", async () => {
   assert.equal(store.state.notices.length, 1);
 });
 
-test("a behaviour is a parameter of the runtime", async () => {
+test("a behavior is a parameter of the runtime", async () => {
   const { actions, asked } = prepared();
-  await actions.setBehaviour("menu");
+  await actions.setBehavior("menu");
   assert.deepEqual(asked, [["set", [{ name: "/aseba_runtime.behaviour", value: "menu" }]]]);
 });
 
-test("what is loaded once more begins anew, since the same value changes nothing", async () => {
+test("what is loaded once more restarts, since the same value changes nothing", async () => {
   const { actions, asked, store } = prepared();
   connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], []);
   store.dispatch({ type: "parameters", parameters: [{ name: "/simulator.playground", value: "base" }] });
@@ -172,8 +172,8 @@ test("what is loaded once more begins anew, since the same value changes nothing
       "/b/aseba/run",
     ],
   );
-  await actions.setBehaviour("menu");
-  await actions.setBehaviour("menu");
+  await actions.setBehavior("menu");
+  await actions.setBehavior("menu");
   assert.deepEqual(asked.slice(2).map(([, name]) => name), ["/a/aseba/reset", "/b/aseba/reset", "/a/aseba/run", "/b/aseba/run"]);
 });
 
@@ -225,7 +225,7 @@ test("a step lets as much time pass as was chosen", async () => {
   ]);
 });
 
-test("what was refused is not told any more when it is done", async () => {
+test("what was refused is not reported any more when it is done", async () => {
   const refused = prepared({ ok: false, message: "not paused" });
   await refused.actions.step(1);
   const done = new Actions({

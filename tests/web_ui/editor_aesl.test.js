@@ -5,10 +5,10 @@ import { test } from "node:test";
 import { AeslError, allEvents, newAesl, readAesl, withCode, withEntry } from "../../web_ui/editor/aesl.js";
 import { codeOf, opened } from "../../web_ui/editor/documents.js";
 
-const BEHAVIOURS = new URL("../../thymio_sim_ros/device/firmware/behaviors/", import.meta.url);
-const FILES = readdirSync(BEHAVIOURS)
+const BEHAVIORS = new URL("../../thymio_sim_ros/device/firmware/behaviors/", import.meta.url);
+const FILES = readdirSync(BEHAVIORS)
   .filter((name) => name.endsWith(".aesl"))
-  .map((name) => /** @type {const} */ ([name, readFileSync(new URL(name, BEHAVIOURS), "utf8")]));
+  .map((name) => /** @type {const} */ ([name, readFileSync(new URL(name, BEHAVIORS), "utf8")]));
 
 const ODD = [
   "<!DOCTYPE aesl-source>",

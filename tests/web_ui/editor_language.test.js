@@ -63,7 +63,7 @@ for (const [name, text] of [
   });
 }
 
-test("an event without values is told from the statement behind it", () => {
+test("an event without values is reported from the statement behind it", () => {
   assert.deepEqual(stumbles("emit ping\na = 1\nemit ping a\nb[1] = 2\nemit ping [1, 2]\nemit ping -a"), []);
 });
 

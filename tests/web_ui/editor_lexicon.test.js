@@ -44,7 +44,7 @@ test("a runtime that cannot help leaves the help as it came", async () => {
   assert.equal(lexicon.translate(TARGET).variables[0].help, "accelerometer");
 });
 
-test("the first fault is told, but not that nobody could look", () => {
+test("the first fault is reported, but not that nobody could look", () => {
   /** @param {string} kind */
   const answer = (kind) => ({
     result: { reason: JSON.stringify({ errors: [{ line: 2, column: 3, length: 1, message: "falsch", kind, node: "" }] }) },

@@ -28,7 +28,7 @@ for (const message of FOREIGN) {
   });
 }
 
-test("a mistake in a playground is told as it is", () => {
+test("a mistake in a playground is reported as it is", () => {
   for (const text of [
     "shapes[0].x_m: found 'far', expected a number of m",
     "shapes[0]: found 3, expected an object",

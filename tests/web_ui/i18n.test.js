@@ -19,7 +19,7 @@ for (const [language, table] of Object.entries(LANGUAGES)) {
 }
 
 test("every text that the page asks for by name is there", () => {
-  const files = ["main.js", "actions.js", ...readdirSync(new URL("panels/", ROOT)).map((name) => `panels/${name}`)];
+  const files = ["main.js", "input/actions.js", ...readdirSync(new URL("panels/", ROOT)).map((name) => `panels/${name}`)];
   for (const file of files) {
     const source = readFileSync(new URL(file, ROOT), "utf8");
     for (const [, key] of source.matchAll(/\bt\("([^"]+)"/g)) assert.ok(key in LANGUAGES.en, `${file}: ${key}`);

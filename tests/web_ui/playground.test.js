@@ -3,8 +3,8 @@ import { readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { parse, write } from "../../web_ui/playground/document.js";
-import { holds, overlap, placed, rectangle } from "../../web_ui/playground/geometry.js";
-import { blockerOf, isOnGround, objection } from "../../web_ui/playground/judge.js";
+import { containsPoint, overlap, placed, rectangle } from "../../web_ui/playground/geometry.js";
+import { blockerOf, isOnGround, findProblem } from "../../web_ui/playground/validation.js";
 import { ROBOT, SHAPES } from "../../web_ui/playground/kinds/index.js";
 import { Markers } from "../../web_ui/playground/markers.js";
 import { partsOf } from "../../web_ui/playground/parts.js";
@@ -160,16 +160,16 @@ test("an item may not stand on a robot, though things may stand in each other", 
   const [robot] = parse(text([], [{ name: "thymio", x_m: 0, y_m: 0 }])).items;
   const crate = { ...BOX, x_m: 0.05 };
   assert.equal(blockerOf([robot], crate), "thymio");
-  assert.deepEqual(objection([robot], crate), { word: "problem.taken", values: { name: "thymio" } });
-  assert.equal(objection([robot, { ...BOX, name: "other", x_m: 0.2 }], { ...BOX, x_m: 0.21 }), null);
-  assert.equal(objection([robot], { ...BOX, x_m: 0.13 + 1e-9 }), null);
+  assert.deepEqual(findProblem([robot], crate), { word: "problem.taken", values: { name: "thymio" } });
+  assert.equal(findProblem([robot, { ...BOX, name: "other", x_m: 0.2 }], { ...BOX, x_m: 0.21 }), null);
+  assert.equal(findProblem([robot], { ...BOX, x_m: 0.13 + 1e-9 }), null);
 });
 
-test("a limit that is passed is an objection with its key", () => {
-  assert.equal(objection([], { ...BOX, height_m: 0 })?.values?.key, "height_m");
+test("a limit that is passed is an findProblem with its key", () => {
+  assert.equal(findProblem([], { ...BOX, height_m: 0 })?.values?.key, "height_m");
 });
 
-test("ground holds what is on it and on its edge", () => {
+test("ground containsPoint what is on it and on its edge", () => {
   const ground = { kind: "rectangle", name: "g", size_x_m: 1, size_y_m: 1, color: "#ffffff" };
   assert.equal(isOnGround([ground], { ...BOX, x_m: 0.5 }), true);
   assert.equal(isOnGround([ground], { ...BOX, x_m: 0.51 }), false);
@@ -191,7 +191,7 @@ test("a disc beside a corner does not overlap it", () => {
   assert.equal(overlap(square, { middle: [1.8, 1.8], radius: 1 }), false);
   assert.equal(overlap(square, { middle: [1.7, 1.7], radius: 1 }), true);
   assert.equal(overlap({ middle: [0, 0], radius: 0.1 }, square), true);
-  assert.equal(holds(placed({ x: 1, y: 0, yaw: Math.PI / 4 }, rectangle(1, 1)), [1.6, 0]), true);
+  assert.equal(containsPoint(placed({ x: 1, y: 0, yaw: Math.PI / 4 }, rectangle(1, 1)), [1.6, 0]), true);
 });
 
 test("a robot's kind needs a name", () => {

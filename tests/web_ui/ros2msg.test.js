@@ -16,7 +16,7 @@ test("constants and comments take no room", () => {
   );
 });
 
-test("arrays tell a fixed length from a bound", () => {
+test("arrays report a fixed length from a bound", () => {
   const { fields } = parseSchema(
     "a/B",
     "float64[36] covariance\nint16[<=8] data\nstring<=10 name\nstring<=4[] names\nuint8[] rest\n",

@@ -142,7 +142,7 @@ test("a service call that fails says why", async () => {
   assert.deepEqual(await answer, { ok: false, message: "gone" });
 });
 
-test("a service that is not there is told at once", async () => {
+test("a service that is not there is reported at once", async () => {
   const { session } = opened();
   assert.deepEqual(await session.call("/nowhere"), { ok: false, message: "/nowhere is not available" });
 });

@@ -50,7 +50,7 @@ test("waves rest at 0, samples at 128", () => {
   assert.deepEqual([...waveform({ ...tone, kind: "samples", data: [128, 192, 0] })], [0, 0.5, -1]);
 });
 
-test("a sound goes on when only its loudness changes, and begins anew when it is played again", () => {
+test("a sound goes on when only its loudness changes, and restarts when it is played again", () => {
   const samples = { kind: /** @type {const} */ ("samples"), frequency: 0, data: [1, 2], volume: 1 };
   assert.equal(goesOn(samples, { ...samples, data: [1, 2], volume: 0.5 }), true);
   assert.equal(goesOn(samples, { ...samples, data: [1, 2] }), false);
@@ -86,8 +86,8 @@ test("samples sound at their own rate, faster when time is faster", () => {
     [10, 4],
   ]) {
     const { audio, speaker } = prepared();
-    const told = JSON.stringify({ real_time_factor: factor });
-    let state = reduce(START, { type: "message", topic: "/simulator/_state", value: { data: told }, timeNs: 0n });
+    const reported = JSON.stringify({ real_time_factor: factor });
+    let state = reduce(START, { type: "message", topic: "/simulator/_state", value: { data: reported }, timeNs: 0n });
     const samples = Array.from({ length: 78 }, (_, at) => at);
     state = heard(heard(state, "/_sound/state/samples", samples), "/_sound/state", [0, 0.01, 1]);
     speaker.update(state);

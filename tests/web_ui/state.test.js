@@ -34,7 +34,7 @@ test("topics are split into robot and name", () => {
   assert.equal(splitTopic("/a/b/_led/state"), null);
 });
 
-test("robots are those whose true pose is told", () => {
+test("robots are those whose true pose is reported", () => {
   const state = after([
     { type: "channels", topics: ["/thymio_0/_ground_truth/odom", "/thymio_1/_ground_truth/odom", "/clock"] },
   ]);
@@ -103,18 +103,18 @@ test("a runtime of its own goes before the one that all share", () => {
   assert.equal(programOf(own)?.state, "fault");
 });
 
-test("robots have names in the world, and things that can be moved are told", () => {
+test("robots have names in the world, and things that can be moved are reported", () => {
   const robots = [{ name: "", frame: "base_link", robot: "thymio" }];
   const { simulator } = after([message("/simulator/_state", json({ robots, movables: ["can"] }))]);
   assert.deepEqual([simulator?.worldNames, simulator?.movables], [{ "": "thymio" }, ["can"]]);
 });
 
-test("built-in behaviours are told as JSON", () => {
-  const { behaviours } = after([message("/aseba_runtime/_behaviours", json([{ name: "menu", description: "d" }]))]);
-  assert.deepEqual(behaviours, [{ name: "menu", description: "d" }]);
+test("built-in behaviors are reported as JSON", () => {
+  const { behaviors } = after([message("/aseba_runtime/_behaviours", json([{ name: "menu", description: "d" }]))]);
+  assert.deepEqual(behaviors, [{ name: "menu", description: "d" }]);
 });
 
-test("the simulator and its playgrounds are told as JSON", () => {
+test("the simulator and its playgrounds are reported as JSON", () => {
   const { simulator, playgrounds } = after([
     message(
       "/simulator/_state",
@@ -200,7 +200,7 @@ test("a refusal without a place keeps its words", () => {
   assert.deepEqual(locate("x.json: line 2, column 1: no"), { text: "x.json: no", line: 2, column: 1 });
 });
 
-test("refused parameters are told where they were asked, other statuses as notices", () => {
+test("refused parameters are reported where they were asked, other statuses as notices", () => {
   const state = after([
     { type: "status", status: { level: 2, message: "refused", id: "parameter:/a.x" } },
     { type: "status", status: { level: 1, message: "slow" } },
@@ -225,7 +225,7 @@ test("only the last notices are kept", () => {
   );
 });
 
-test("a lost connection is told until there is a new one, and the picture stays", () => {
+test("a lost connection is reported until there is a new one, and the picture stays", () => {
   const lost = after([
     { type: "connected" },
     message("/buttons/left", { data: true }),
@@ -254,7 +254,7 @@ test("the same simulation goes on after a connection was lost, another one start
   assert.deepEqual(reduce(lost, greeting("2")).robots, {});
 });
 
-test("a simulation that begins anew keeps its topics, and its time starts at zero", () => {
+test("a simulation that restarts keeps its topics, and its time starts at zero", () => {
   const state = after([
     { type: "connected" },
     greeting("1"),
@@ -280,13 +280,13 @@ test("a snapshot is plain data with the selected robot at hand", () => {
 });
 
 test("a robot that has gone with its playground is gone, even while its topics live on", () => {
-  const told = (/** @type {string[]} */ ...names) =>
+  const reported = (/** @type {string[]} */ ...names) =>
     message("/simulator/_state", json({ playground: "p", robots: names.map((name) => ({ name })) }));
   const channels = { type: "channels", topics: ["/a/_ground_truth/odom", "/_ground_truth/odom"] };
   const odometry = message("/a/_raw/ground", { data: [] });
-  const { robots, selected } = after(/** @type {any} */ ([channels, told("a"), told(""), odometry, channels]));
+  const { robots, selected } = after(/** @type {any} */ ([channels, reported("a"), reported(""), odometry, channels]));
   assert.deepEqual([Object.keys(robots), selected], [[""], ""]);
-  assert.deepEqual(Object.keys(after(/** @type {any} */ ([told(""), channels, told("a")])).robots), ["a"]);
+  assert.deepEqual(Object.keys(after(/** @type {any} */ ([reported(""), channels, reported("a")])).robots), ["a"]);
 });
 
 test("of a crowd, beams and values are asked of the selected robot only", () => {
@@ -326,20 +326,20 @@ test("robots stand in the order of their numbers", () => {
 test("a notice goes with its cause, and one of the bridge when the bridge takes it back", () => {
   const store = new Store();
   /** @param {import("../../web_ui/state/index.js").Message[]} messages */
-  const told = (...messages) => {
+  const reported = (...messages) => {
     for (const message of messages) store.dispatch(message);
     return store.state.notices.map(({ text }) => text);
   };
-  told({ type: "notice", level: "error", text: "refused", cause: "/simulator/step" });
-  told({ type: "notice", level: "error", text: "for good" });
-  told({ type: "status", status: { level: 2, message: "too many", id: "channels" } });
-  assert.deepEqual(told({ type: "solved", cause: "/simulator/step" }), ["for good", "too many"]);
-  assert.deepEqual(told({ type: "removeStatus", ids: ["channels"] }), ["for good"]);
-  told({ type: "notice", level: "error", text: "nobody there", cause: "connection" });
-  assert.deepEqual(told({ type: "connected" }), ["for good"]);
+  reported({ type: "notice", level: "error", text: "refused", cause: "/simulator/step" });
+  reported({ type: "notice", level: "error", text: "for good" });
+  reported({ type: "status", status: { level: 2, message: "too many", id: "channels" } });
+  assert.deepEqual(reported({ type: "solved", cause: "/simulator/step" }), ["for good", "too many"]);
+  assert.deepEqual(reported({ type: "removeStatus", ids: ["channels"] }), ["for good"]);
+  reported({ type: "notice", level: "error", text: "nobody there", cause: "connection" });
+  assert.deepEqual(reported({ type: "connected" }), ["for good"]);
 });
 
-test("what was told of a file goes with the next attempt", () => {
+test("what was reported of a file goes with the next attempt", () => {
   const store = new Store();
   store.dispatch({ type: "notice", level: "error", text: "no playground", cause: "file" });
   store.dispatch({ type: "notice", level: "error", text: "bad.json", cause: "upload playground" });

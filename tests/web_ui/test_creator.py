@@ -131,7 +131,7 @@ def test_a_playground_is_built_with_undo_saved_found_again_opened_and_tried(suit
     page.locator("#view").focus()
     page.keyboard.press("t")
     start = page.evaluate("window.thymio.state().robot.latest.pose")
-    page.select_option(".behaviour select", "thesis_basic")
+    page.select_option(".behavior select", "thesis_basic")
     page.wait_for_function(
         "window.thymio.state().program?.state === 'running' && window.thymio.state().program.name.includes('basic')"
     )

@@ -93,9 +93,9 @@ def test_a_pause_holds_the_sound(suite, page, tmp_path):
 
 def test_a_built_in_behaviour_is_chosen_and_shows_its_colour(suite, page):
     open_page(page, suite("--playground", "base"))
-    page.select_option("#behaviour-choice", "friendly")
+    page.select_option("#behavior-choice", "friendly")
     page.wait_for_function("() => window.thymio.state().program?.name.startsWith('friendly')")
-    page.wait_for_function("() => document.querySelector('#behaviour-choice').value === 'friendly'")
+    page.wait_for_function("() => document.querySelector('#behavior-choice').value === 'friendly'")
     playwright.expect(page.locator(".swatch")).to_have_attribute("style", re.compile("#12c22f"))
     # Green, as on the robot.
     page.wait_for_function(

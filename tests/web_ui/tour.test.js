@@ -5,20 +5,20 @@ import { LANGUAGES } from "../../web_ui/i18n/index.js";
 import { placed } from "../../web_ui/tour/place.js";
 import { STEPS } from "../../web_ui/tour/steps.js";
 import { WORDS } from "../../web_ui/tour/words.js";
-import { begins } from "../../web_ui/tour_host.js";
+import { shouldStart } from "../../web_ui/hosts/tour_host.js";
 
 /** @param {string | null} kept */
-const shelf = (kept) => ({ getItem: () => kept });
+const storage = (kept) => ({ getItem: () => kept });
 
-test("the tour begins at a first visit, and never again once it was closed", () => {
-  assert.equal(begins({ search: "", shelf: shelf(null), entry: null }), true);
-  assert.equal(begins({ search: "?token=abc", shelf: shelf("closed"), entry: null }), false);
-  assert.equal(begins({ search: "", shelf: shelf(null), entry: { tour: "closed" } }), false); // nothing can be stored
+test("the tour starts at a first visit, and never again once it was closed", () => {
+  assert.equal(shouldStart({ search: "", storage: storage(null), entry: null }), true);
+  assert.equal(shouldStart({ search: "?token=abc", storage: storage("closed"), entry: null }), false);
+  assert.equal(shouldStart({ search: "", storage: storage(null), entry: { tour: "closed" } }), false); // nothing can be stored
 });
 
 test("the address decides for a kiosk or a class", () => {
-  assert.equal(begins({ search: "?token=abc&tour=off", shelf: shelf(null), entry: null }), false);
-  assert.equal(begins({ search: "?tour=on", shelf: shelf("closed"), entry: { tour: "closed" } }), true);
+  assert.equal(shouldStart({ search: "?token=abc&tour=off", storage: storage(null), entry: null }), false);
+  assert.equal(shouldStart({ search: "?tour=on", storage: storage("closed"), entry: { tour: "closed" } }), true);
 });
 
 for (const language of Object.keys(LANGUAGES)) {

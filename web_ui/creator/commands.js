@@ -174,7 +174,7 @@ export function groundOf({ items }) {
   return items.find(({ kind }) => kindNamed(kind)?.group === "ground") ?? null;
 }
 
-/** @param {number} metres */
-function round(metres) {
-  return Math.round(metres * 1000) / 1000;
+/** @param {number} meters */
+function round(meters) {
+  return Math.round(meters * 1000) / 1000;
 }

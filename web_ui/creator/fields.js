@@ -19,13 +19,13 @@ import { shown, taken, unitOf } from "./units.js";
 let serial = 0;
 
 /**
- * A labelled control with room for what is wrong with it.
+ * A labeled control with room for what is wrong with it.
  *
  * @param {string} label
  * @param {HTMLElement} input
  * @param {string} [unit]
  */
-function labelled(label, input, unit = "") {
+function labeled(label, input, unit = "") {
   const id = `field-${++serial}`;
   input.id = id;
   const problem = h("small", { class: "problem", id: `${id}-problem`, role: "alert", hidden: true });
@@ -35,7 +35,7 @@ function labelled(label, input, unit = "") {
   return {
     element,
     /** @param {string | null} text */
-    tell(text) {
+    report(text) {
       problem.hidden = text === null;
       setText(problem, text ?? "");
       input.setAttribute("aria-invalid", String(text !== null));
@@ -47,16 +47,16 @@ function labelled(label, input, unit = "") {
 function numberControl({ t, say, commit }, key, { rule }) {
   const { unit, step } = unitOf(rule.unit);
   const input = h("input", { type: "number", step: "any", inputmode: "decimal", "data-field": key });
-  const { element, tell } = labelled(t(`field.${key}`), input, unit);
+  const { element, report } = labeled(t(`field.${key}`), input, unit);
   let value = NaN;
   const take = () => {
     const wanted = taken(input.valueAsNumber, rule.unit);
     const [low, high] = [rule.low ?? -Infinity, rule.high ?? Infinity];
     if (!(wanted >= low && wanted <= high)) {
-      return tell(t("problem.range", { low: shown(low, rule.unit), high: shown(high, rule.unit), unit }));
+      return report(t("problem.range", { low: shown(low, rule.unit), high: shown(high, rule.unit), unit }));
     }
     const problem = commit({ [key]: wanted });
-    tell(problem === null ? null : say(problem));
+    report(problem === null ? null : say(problem));
   };
   input.addEventListener("change", take);
   input.addEventListener("keydown", (event) => {
@@ -71,7 +71,7 @@ function numberControl({ t, say, commit }, key, { rule }) {
       if (values[key] === value) return;
       value = values[key];
       input.value = value === null || value === undefined ? "" : String(shown(value, rule.unit));
-      tell(null);
+      report(null);
     },
   };
 }
@@ -79,11 +79,11 @@ function numberControl({ t, say, commit }, key, { rule }) {
 /** @param {Setting} setting @param {string} key @param {string} type  of the browser's input @returns {Control} */
 function textControl({ t, say, commit }, key, type) {
   const input = h("input", { type, "data-field": key, autocomplete: "off", spellcheck: "false" });
-  const { element, tell } = labelled(t(`field.${key}`), input);
+  const { element, report } = labeled(t(`field.${key}`), input);
   let value = "";
   input.addEventListener("change", () => {
     const problem = commit({ [key]: input.value });
-    tell(problem === null ? null : say(problem));
+    report(problem === null ? null : say(problem));
   });
   return {
     element,
@@ -91,7 +91,7 @@ function textControl({ t, say, commit }, key, type) {
       if ((values[key] ?? "") === value) return;
       value = values[key] ?? "";
       input.value = value;
-      tell(null);
+      report(null);
     },
   };
 }
@@ -109,10 +109,10 @@ function flagControl({ t, commit }, key) {
 /** The door that a plate opens. @param {Setting} setting @param {string} key @returns {Control} */
 function doorControl({ t, say, commit, doors }, key) {
   const select = h("select", { "data-field": key });
-  const { element, tell } = labelled(t(`field.${key}`), select);
+  const { element, report } = labeled(t(`field.${key}`), select);
   select.addEventListener("change", () => {
     const problem = commit({ [key]: select.value });
-    tell(problem === null ? null : say(problem));
+    report(problem === null ? null : say(problem));
   });
   let listed = "";
   return {
@@ -197,14 +197,14 @@ function pointsControl({ t, say, commit }, key, { rule }) {
 /** Another picture. @param {Setting} setting @param {string} key @returns {Control} */
 function imageControl({ t, say, commit, readPicture }, key) {
   const input = h("input", { type: "file", accept: "image/png,image/jpeg,image/svg+xml", "data-field": key });
-  const { element, tell } = labelled(t(`field.${key}`), input);
+  const { element, report } = labeled(t(`field.${key}`), input);
   input.addEventListener("change", async () => {
     const file = input.files?.[0];
     if (file === undefined) return;
     const uri = await readPicture(file);
-    if (uri === null) return tell(t("problem.picture", { name: file.name }));
+    if (uri === null) return report(t("problem.picture", { name: file.name }));
     const problem = commit({ [key]: uri });
-    tell(problem === null ? null : say(problem));
+    report(problem === null ? null : say(problem));
   });
   return { element, update: () => {} };
 }

@@ -15,18 +15,18 @@ import { CREATOR_ICONS } from "./icons.js";
 const FIRST = ["name", "x_m", "y_m"];
 const LOAD_KEYS = ["mass_kg", "friction", "restitution"];
 
-/** @param {Omit<Setting, "commit">} setting @param {import("./builder.js").Builder} builder */
-export function itemForm(setting, builder) {
+/** @param {Omit<Setting, "commit">} setting @param {import("./creator_model.js").CreatorModel} model */
+export function itemForm(setting, model) {
   const { t } = setting;
   const title = h("h3");
   const fields = h("div", { class: "fields" });
   const verbs = [
-    { icon: "turnLeft", word: "verb.turnLeft", act: () => builder.turn(1) },
-    { icon: "turnRight", word: "verb.turnRight", act: () => builder.turn(-1) },
-    { icon: "copy", word: "verb.copy", act: () => builder.duplicate() },
-    { icon: "over", word: "verb.over", act: () => builder.raise(1) },
-    { icon: "under", word: "verb.under", act: () => builder.raise(-1) },
-    { icon: "remove", word: "verb.remove", act: () => builder.remove() },
+    { icon: "turnLeft", word: "verb.turnLeft", act: () => model.turn(1) },
+    { icon: "turnRight", word: "verb.turnRight", act: () => model.turn(-1) },
+    { icon: "copy", word: "verb.copy", act: () => model.duplicate() },
+    { icon: "over", word: "verb.over", act: () => model.raise(1) },
+    { icon: "under", word: "verb.under", act: () => model.raise(-1) },
+    { icon: "remove", word: "verb.remove", act: () => model.remove() },
   ].map((verb) => ({
     ...verb,
     button: h(
@@ -56,7 +56,7 @@ export function itemForm(setting, builder) {
   const build = (kind, placing) => {
     const own = kindNamed(kind)?.fields ?? {};
     const all = { ...(placing ? {} : { name: needed(RULES.name) }), ...own };
-    const full = { ...setting, commit: builder.edit.bind(builder) };
+    const full = { ...setting, commit: model.edit.bind(model) };
     /** @param {[string, any]} entry */
     const rank = ([key]) => (FIRST.includes(key) ? FIRST.indexOf(key) : FIRST.length);
     const ordered = Object.entries(all).sort((one, other) => rank(one) - rank(other));
@@ -71,7 +71,7 @@ export function itemForm(setting, builder) {
     element,
     focus: () => /** @type {HTMLElement | null} */ (fields.querySelector("input, select"))?.focus(),
     render() {
-      const { placing, item } = builder;
+      const { placing, item } = model;
       const shown =
         placing === null ? item : placing.isPath ? placing.pattern : (placing.ghost?.item ?? placing.pattern);
       element.hidden = shown === null;

@@ -1,9 +1,9 @@
 // Keys while one builds. They work on the view only, so that writing in fields acts on nothing else; undo and redo
 // also from the buttons around it.
 
-import { plainKey } from "../keyboard.js";
+import { plainKey } from "../input/keyboard.js";
 
-/** @typedef {import("./builder.js").Builder} Builder */
+/** @typedef {import("./creator_model.js").CreatorModel} CreatorModel */
 
 const STEPS = /** @type {Record<string, [number, number]>} */ ({
   ArrowUp: [0, 1],
@@ -21,11 +21,11 @@ const CAMERA_KEYS = ["+", "=", "-", "Home", "t"];
  * @param {HTMLElement} options.stage
  * @param {HTMLElement} options.canvas
  * @param {readonly HTMLElement[]} options.around   where undo and redo work too
- * @param {Builder} options.builder
+ * @param {CreatorModel} options.model
  * @param {() => void} options.editFields   go on in the form
  * @returns {() => void}  ends it
  */
-export function watchBuildingKeys({ stage, canvas, around, builder, editFields }) {
+export function watchBuildingKeys({ stage, canvas, around, model, editFields }) {
   const ending = new AbortController();
   const { signal } = ending;
   let shiftAlone = false;
@@ -35,17 +35,17 @@ export function watchBuildingKeys({ stage, canvas, around, builder, editFields }
     (event) => {
       if (event.target !== canvas) return;
       shiftAlone = event.key === "Shift" && !event.repeat;
-      const isTheirs = CAMERA_KEYS.includes(plainKey(event)) || event.key === "Tab" || isCameraTurn(builder, event);
+      const isTheirs = CAMERA_KEYS.includes(plainKey(event)) || event.key === "Tab" || isCameraTurn(model, event);
       if (isTheirs && !event.ctrlKey && !event.metaKey) return;
       event.stopPropagation(); // no robot's button is pressed, and Escape stops none
-      if (act(builder, event, editFields)) event.preventDefault();
+      if (act(model, event, editFields)) event.preventDefault();
     },
     { capture: true, signal },
   );
   stage.addEventListener(
     "keyup",
     (event) => {
-      if (event.target === canvas && event.key === "Shift" && shiftAlone) builder.toggleCamera();
+      if (event.target === canvas && event.key === "Shift" && shiftAlone) model.toggleCamera();
       shiftAlone = false;
     },
     { capture: true, signal },
@@ -58,8 +58,8 @@ export function watchBuildingKeys({ stage, canvas, around, builder, editFields }
       (event) => {
         const isText = event.target instanceof HTMLInputElement && !["checkbox", "color"].includes(event.target.type);
         if (event.target === canvas || isText || event.target instanceof HTMLTextAreaElement) return;
-        if (travel(builder, event)) event.preventDefault();
-        else if (event.key === "Escape" && builder.cancel()) event.stopPropagation(); // and no robot is stopped
+        if (travel(model, event)) event.preventDefault();
+        else if (event.key === "Escape" && model.cancel()) event.stopPropagation(); // and no robot is stopped
       },
       { signal },
     );
@@ -70,19 +70,19 @@ export function watchBuildingKeys({ stage, canvas, around, builder, editFields }
 /**
  * Shift and arrows turn the camera while nothing is in hand or selected.
  *
- * @param {Builder} builder
+ * @param {CreatorModel} model
  * @param {KeyboardEvent} event
  */
 function isCameraTurn({ placing, selected }, { key, shiftKey }) {
   return shiftKey && key in STEPS && placing === null && selected === null;
 }
 
-/** Undo and redo; whether it was one. @param {Builder} builder @param {KeyboardEvent} event */
-function travel(builder, { key, ctrlKey, metaKey, shiftKey }) {
+/** Undo and redo; whether it was one. @param {CreatorModel} model @param {KeyboardEvent} event */
+function travel(model, { key, ctrlKey, metaKey, shiftKey }) {
   if (!ctrlKey && !metaKey) return false;
   const letter = key.toLowerCase();
-  if (letter === "z" && !shiftKey) builder.undo();
-  else if (letter === "y" || letter === "z") builder.redo();
+  if (letter === "z" && !shiftKey) model.undo();
+  else if (letter === "y" || letter === "z") model.redo();
   else return false;
   return true;
 }
@@ -90,33 +90,33 @@ function travel(builder, { key, ctrlKey, metaKey, shiftKey }) {
 /**
  * Whether the key did something.
  *
- * @param {Builder} builder
+ * @param {CreatorModel} model
  * @param {KeyboardEvent} event
  * @param {() => void} editFields
  */
-function act(builder, event, editFields) {
+function act(model, event, editFields) {
   const { shiftKey, altKey, ctrlKey, metaKey } = event;
   const key = plainKey(event);
-  const { placing } = builder;
-  if (travel(builder, event)) return true;
+  const { placing } = model;
+  if (travel(model, event)) return true;
   if (ctrlKey || metaKey) {
     if (key !== "d") return false;
-    builder.duplicate();
+    model.duplicate();
     return true;
   }
-  if (key in STEPS) builder.nudge(...STEPS[key], { far: shiftKey, fine: altKey });
-  else if (key in TURNS) builder.turn(key === "r" && shiftKey ? -1 : TURNS[key], altKey);
-  else if (key === "Escape") builder.cancel();
+  if (key in STEPS) model.nudge(...STEPS[key], { far: shiftKey, fine: altKey });
+  else if (key in TURNS) model.turn(key === "r" && shiftKey ? -1 : TURNS[key], altKey);
+  else if (key === "Escape") model.cancel();
   else if (key === " " && placing !== null) placing.put();
   else if (key === "Enter") {
     if (placing === null) editFields();
     else if (placing.kind === "track" && placing.points.length > 1) placing.finish();
     else placing.put();
   } else if (key === "Backspace" && placing !== null) placing.undoPoint();
-  else if (key === "Delete" || key === "Backspace") builder.remove();
-  else if (key === "n") builder.selectNext(shiftKey ? -1 : 1);
-  else if (key === "PageUp") builder.raise(1);
-  else if (key === "PageDown") builder.raise(-1);
+  else if (key === "Delete" || key === "Backspace") model.remove();
+  else if (key === "n") model.selectNext(shiftKey ? -1 : 1);
+  else if (key === "PageUp") model.raise(1);
+  else if (key === "PageDown") model.raise(-1);
   else return false;
   return true;
 }

@@ -1,7 +1,7 @@
 // What a pointer is on: handles of what is selected, and items. Pure.
 
-import { atHeight, hit } from "../move/things.js";
-import { distance, holds } from "../playground/geometry.js";
+import { atHeight, hit } from "../move/placed_bodies.js";
+import { distance, containsPoint } from "../playground/geometry.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { outlinesOf } from "../playground/parts.js";
 import { canTurn, middleOf, pointsOf, reachOf } from "./place.js";
@@ -20,14 +20,14 @@ const TINY_M = 0.006;
 export function itemAt(items, ray) {
   const standing = items.flatMap((item) => solidsOf(item));
   const found = hit(ray, standing);
-  if (found !== null) return items.find(({ name }) => name === found.thing.name) ?? null;
+  if (found !== null) return items.find(({ name }) => name === found.body.name) ?? null;
   const place = atHeight(ray, 0);
   if (place === null) return null;
   const point = /** @type {Point} */ ([place.x, place.y]);
   return (
     [...items]
       .reverse()
-      .find((item) => outlinesOf(item).some(({ outline, height }) => height === 0 && holds(outline, point))) ?? null
+      .find((item) => outlinesOf(item).some(({ outline, height }) => height === 0 && containsPoint(outline, point))) ?? null
   );
 }
 
@@ -36,7 +36,7 @@ export function itemAt(items, ray) {
  *
  * @param {Item} item
  * @param {Ray} ray
- * @param {number} pixel  metres on the ground
+ * @param {number} pixel  meters on the ground
  * @returns {Handle | null}
  */
 export function handleAt(item, ray, pixel) {

@@ -16,15 +16,15 @@ const SAME_PX = 8;
 const ASIDE_M = 0.15;
 
 export class Placing {
-  /** @param {import("./builder.js").Builder} builder @param {string} kind @param {Record<string, any>} values */
-  constructor(builder, kind, values) {
-    this.builder = builder;
+  /** @param {import("./creator_model.js").CreatorModel} model @param {string} kind @param {Record<string, any>} values */
+  constructor(model, kind, values) {
+    this.model = model;
     this.kind = kind;
-    const { playground } = builder;
+    const { playground } = model;
     const ground = groundOf(playground);
     /** @type {Point} where it would be put */
-    this.place = snapped(ground === null ? [0, 0] : middleOf(ground), builder.grid);
-    /** Metres within which a point is the same. */
+    this.place = snapped(ground === null ? [0, 0] : middleOf(ground), model.grid);
+    /** Meters within which a point is the same. */
     this.same = SAME_M;
     /** @type {Point[]} of a path, so far */ this.points = [];
     /** @type {Point[]} taken back */ this.takenBack = [];
@@ -43,7 +43,7 @@ export class Placing {
   #makeRoom() {
     const [x, y] = this.place;
     const places = [0, 1, 2, 3].flatMap((far) =>
-      [1, -1].map((side) => snapped([x + side * far * ASIDE_M, y], this.builder.grid)),
+      [1, -1].map((side) => snapped([x + side * far * ASIDE_M, y], this.model.grid)),
     );
     const free = places.find((place) => {
       this.place = place;
@@ -57,35 +57,35 @@ export class Placing {
     return (kindNamed(this.kind)?.clicks ?? 1) > 1;
   }
 
-  /** Where it would stand; null for a path without its first point. @returns {import("./builder.js").Ghost | null} */
+  /** Where it would stand; null for a path without its first point. @returns {import("./creator_model.js").Ghost | null} */
   get ghost() {
     const item = this.isPath ? this.#pathTo(this.place) : movedTo(this.#whole(), this.place);
-    return item === null ? null : { item, problem: this.builder.problemOf(item, item.name) };
+    return item === null ? null : { item, problem: this.model.problemOf(item, item.name) };
   }
 
   /** The pointer is there. @param {Point} place @param {boolean} free  of the grid */
   hover(place, free) {
-    this.place = snapped(place, this.builder.gridFor(free));
-    this.same = free ? SAME_PX * this.builder.pixel : SAME_M;
+    this.place = snapped(place, this.model.gridFor(free));
+    this.same = free ? SAME_PX * this.model.pixel : SAME_M;
   }
 
   /** Put it down, or one point of it. */
   put() {
-    const { builder } = this;
+    const { model } = this;
     if (this.isPath) return this.#putPoint();
     const { ghost } = this;
     if (ghost === null) return;
-    if (ghost.problem !== null) return builder.tell(ghost.problem);
+    if (ghost.problem !== null) return model.report(ghost.problem);
     this.#add(ghost.item);
   }
 
   /** The path is complete. @param {boolean} [closed] */
   finish(closed = false) {
     if (this.kind !== "track") return;
-    if (this.points.length < 2) return this.builder.tell({ word: "problem.twoPoints" });
+    if (this.points.length < 2) return this.model.report({ word: "problem.twoPoints" });
     const item = changed(this.pattern, { points_m: this.points, ...(closed ? { closed: true } : {}) });
-    const problem = this.builder.problemOf(item, item.name);
-    if (problem !== null) return this.builder.tell(problem);
+    const problem = this.model.problemOf(item, item.name);
+    if (problem !== null) return this.model.report(problem);
     this.points = [];
     this.#add(item);
   }
@@ -95,8 +95,8 @@ export class Placing {
     const point = this.points.pop();
     if (point === undefined) return false;
     this.takenBack.push(point);
-    this.builder.tell({ word: "tell.pointBack", values: { count: this.points.length } });
-    this.builder.changed();
+    this.model.report({ word: "tell.pointBack", values: { count: this.points.length } });
+    this.model.changed();
     return true;
   }
 
@@ -105,7 +105,7 @@ export class Placing {
     const point = this.takenBack.pop();
     if (point === undefined) return false;
     this.points.push(point);
-    this.builder.changed();
+    this.model.changed();
     return true;
   }
 
@@ -116,21 +116,21 @@ export class Placing {
     const { ghost } = this;
     const at =
       ghost === null || this.isPath ? { kind: "robot", name: "", x_m: this.place[0], y_m: this.place[1] } : ghost.item;
-    this.builder.tellPlace(at, ghost?.problem);
-    this.builder.changed();
+    this.model.tellPlace(at, ghost?.problem);
+    this.model.changed();
   }
 
   /** @param {number} angle */
   turn(angle) {
     if (this.isPath || !canTurn(this.pattern)) return;
     this.pattern = turned(this.#whole(), angle);
-    this.builder.tellPlace(movedTo(this.pattern, this.place), this.ghost?.problem);
-    this.builder.changed();
+    this.model.tellPlace(movedTo(this.pattern, this.place), this.ghost?.problem);
+    this.model.changed();
   }
 
   /** Other values for those to come. @param {Record<string, any>} values @returns {Phrase | null} */
   edit(values) {
-    const { builder } = this;
+    const { model } = this;
     const next = changed(this.pattern, values);
     if (this.isPath) this.pattern = next;
     else {
@@ -138,12 +138,12 @@ export class Placing {
         "x_m" in values || "y_m" in values
           ? movedTo({ ...this.#whole(), ...next }, middleOf({ ...this.#whole(), ...values }))
           : movedTo({ ...this.#whole(), ...next }, this.place);
-      const problem = builder.problemOf(item, item.name);
+      const problem = model.problemOf(item, item.name);
       if (problem?.word === "problem.value") return problem;
       this.pattern = next;
       this.place = middleOf(item);
     }
-    builder.changed();
+    model.changed();
     return null;
   }
 
@@ -153,21 +153,21 @@ export class Placing {
   }
 
   #putPoint() {
-    const { builder, points, place } = this;
+    const { model, points, place } = this;
     const last = points.at(-1);
     if (last !== undefined && distance(last, place) < this.same) return this.finish();
     if (this.kind === "track" && points.length > 2 && distance(points[0], place) < this.same) return this.finish(true);
     const item = this.#pathTo(place);
-    const problem = item === null ? null : builder.problemOf(item, item.name);
-    if (problem !== null) return builder.tell(problem);
+    const problem = item === null ? null : model.problemOf(item, item.name);
+    if (problem !== null) return model.report(problem);
     if (this.kind === "wall" && item !== null) {
-      this.points = [place]; // the next wall begins where this one ends
+      this.points = [place]; // the next wall starts where this one ends
       return this.#add(item);
     }
     points.push(place);
     this.takenBack = [];
-    builder.tell({ word: "tell.point", values: { count: points.length } });
-    builder.changed();
+    model.report({ word: "tell.point", values: { count: points.length } });
+    model.changed();
   }
 
   /**
@@ -187,12 +187,12 @@ export class Placing {
 
   /** @param {Item} item */
   #add(item) {
-    const { builder } = this;
+    const { model } = this;
     const did = { word: "did.added", values: { name: item.name } };
-    builder.do(added(builder.playground, item), did);
+    model.do(added(model.playground, item), did);
     this.takenBack = [];
     this.refresh();
-    builder.tell(did);
+    model.report(did);
   }
 
   /** The pattern with a place, as places are needed. */
@@ -204,7 +204,7 @@ export class Placing {
   }
 
   #name() {
-    return freeName(this.builder.playground, this.kind === "robot" ? "thymio" : this.kind);
+    return freeName(this.model.playground, this.kind === "robot" ? "thymio" : this.kind);
   }
 
   /**
@@ -214,7 +214,7 @@ export class Placing {
    * @returns {Record<string, any>}
    */
   #own(kind) {
-    const { playground } = this.builder;
+    const { playground } = this.model;
     const ground = groundOf(playground);
     if (kind === "picture" && ground !== null) {
       return { size_x_m: ground.size_x_m ?? rounded(ground.side_m * (1 + Math.SQRT2)) };

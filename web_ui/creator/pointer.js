@@ -1,10 +1,10 @@
 // Pointer and wheel while one builds. Handlers only note what happened and ask for a frame; places are taken over once
 // a frame (`flush`), however many moves there were. They come before the camera's, which gets what is not ours.
 
-import { atHeight } from "../move/things.js";
+import { atHeight } from "../move/placed_bodies.js";
 import { WheelSteps } from "./wheel.js";
 
-/** @typedef {import("./builder.js").Builder} Builder */
+/** @typedef {import("./creator_model.js").CreatorModel} CreatorModel */
 /** @typedef {{ clientX: number, clientY: number, altKey: boolean }} Spot */
 
 /** A pointer that went up nearer than this has clicked. */
@@ -12,30 +12,30 @@ const CLICK_PX = 6;
 
 /**
  * @param {object} options
- * @param {HTMLElement} options.stage    that holds the canvas
+ * @param {HTMLElement} options.stage    that containsPoint the canvas
  * @param {HTMLElement} options.canvas
- * @param {Builder} options.builder
+ * @param {CreatorModel} options.model
  * @param {import("../scene/index.js").SceneView} options.scene
  * @returns {{ flush: () => void, destroy: () => void }}
  */
-export function watchBuilding({ stage, canvas, builder, scene }) {
+export function watchBuilding({ stage, canvas, model, scene }) {
   const ending = new AbortController();
   /** @type {Spot | null} */ let latest = null;
   /** @type {{ id: number, x: number, y: number, ours: boolean, click: boolean } | null} */ let down = null;
   const wheel = new WheelSteps();
 
   const flush = () => {
-    builder.pixel = scene.pixelSize;
+    model.pixel = scene.pixelSize;
     if (latest === null) return;
     const spot = latest;
     latest = null;
     const ray = scene.rayOf(spot);
     const place = atHeight(ray, 0);
-    builder.pointer = place === null ? null : [place.x, place.y];
-    if (down?.ours) builder.selecting.drag(ray, spot.altKey);
-    else if (builder.placing !== null && place !== null) {
-      builder.placing.hover([place.x, place.y], spot.altKey);
-      builder.changed();
+    model.pointer = place === null ? null : [place.x, place.y];
+    if (down?.ours) model.selecting.drag(ray, spot.altKey);
+    else if (model.placing !== null && place !== null) {
+      model.placing.hover([place.x, place.y], spot.altKey);
+      model.changed();
     }
   };
   /** @param {Event} event */
@@ -55,11 +55,11 @@ export function watchBuilding({ stage, canvas, builder, scene }) {
       return;
     }
     if (event.button !== 0) return;
-    const ours = builder.placing === null && builder.selecting.grab(scene.rayOf(event));
+    const ours = model.placing === null && model.selecting.grab(scene.rayOf(event));
     down = { id: event.pointerId, x: event.clientX, y: event.clientY, ours, click: true };
     latest = event;
     if (ours) canvas.setPointerCapture(event.pointerId);
-    if (ours || !builder.cameraOn) event.stopPropagation();
+    if (ours || !model.cameraOn) event.stopPropagation();
     scene.invalidate();
   });
   on("pointermove", (/** @type {PointerEvent} */ event) => {
@@ -80,21 +80,21 @@ export function watchBuilding({ stage, canvas, builder, scene }) {
     latest = event;
     flush();
     down = null;
-    if (ours) builder.selecting.drop();
-    else if (builder.placing !== null) builder.placing.put();
-    else builder.selecting.click(scene.rayOf(event));
+    if (ours) model.selecting.drop();
+    else if (model.placing !== null) model.placing.put();
+    else model.selecting.click(scene.rayOf(event));
   });
   on("pointercancel", () => {
     down = null;
-    builder.selecting.cancel();
+    model.selecting.cancel();
   });
   on("wheel", (/** @type {WheelEvent} */ event) => {
-    const turns = builder.placing !== null && !builder.placing.isPath;
-    if (!turns && builder.cameraOn) return;
+    const turns = model.placing !== null && !model.placing.isPath;
+    if (!turns && model.cameraOn) return;
     event.stopPropagation();
     event.preventDefault();
     const steps = wheel.take(event);
-    if (steps !== 0) builder.turn(-steps, event.altKey);
+    if (steps !== 0) model.turn(-steps, event.altKey);
   });
   return { flush, destroy: () => ending.abort() };
 }

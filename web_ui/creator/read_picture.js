@@ -34,9 +34,9 @@ export async function readPicture(file) {
 
 /** @param {File} file @returns {Promise<string>} */
 function uriOf(file) {
-  return new Promise((settle, fail) => {
+  return new Promise((resolve, fail) => {
     const reader = new FileReader();
-    reader.onload = () => settle(String(reader.result));
+    reader.onload = () => resolve(String(reader.result));
     reader.onerror = () => fail(reader.error);
     reader.readAsDataURL(file);
   });

@@ -1,5 +1,5 @@
 // What is drawn over the playground while one builds: grid, ghost, selection, handles. Pure: lines and areas in
-// metres.
+// meters.
 
 import { placed } from "../playground/geometry.js";
 import { kindNamed } from "../playground/kinds/index.js";
@@ -20,14 +20,14 @@ const KNOB_PX = 8;
 const RING_SIDES = 64;
 const ARROW = { from: 0.09, to: 0.17, head: 0.025 };
 
-/** @param {import("./builder.js").Builder} builder @returns {Sketch} */
-export function sketchOf(builder) {
-  const { playground, ghost, item, placing } = builder;
+/** @param {import("./creator_model.js").CreatorModel} model @returns {Sketch} */
+export function sketchOf(model) {
+  const { playground, ghost, item, placing } = model;
   /** @type {Sketch} */ const sketch = {
     areas: [],
-    lines: gridOf(builder),
+    lines: gridOf(model),
     knobs: [],
-    knobSize: KNOB_PX * builder.pixel,
+    knobSize: KNOB_PX * model.pixel,
   };
   for (const one of playground.items) {
     if (one.kind === "robot" && one.name !== ghost?.item.name) sketch.lines.push(...arrowOf(one, "soft"));
@@ -121,7 +121,7 @@ function hintsOf(item, tone) {
 /**
  * The grid over all grounds; coarser where it would be too fine to see.
  *
- * @param {import("./builder.js").Builder} builder
+ * @param {import("./creator_model.js").CreatorModel} model
  * @returns {Line[]}
  */
 function gridOf({ playground, grid, pixel }) {

@@ -1,4 +1,4 @@
-// Numbers as people write them: centimetres, degrees, grams. Pure.
+// ValueLabels as people write them: centimeters, degrees, grams. Pure.
 
 /** One row per unit of the file: the one that is shown, how many of it make one, and the step of its arrows. */
 export const UNITS = /** @type {Record<string, { unit: string, factor: number, step: number }>} */ ({

@@ -14,7 +14,7 @@ export { AeslError } from "./xml.js";
  * @property {string} id
  * @property {Span} tag         of its opening tag
  * @property {boolean} empty    written as <node …/>
- * @property {number} end       where its closing tag begins
+ * @property {number} end       where its closing tag starts
  * @property {Unit[]} units     of the code, with where each stands in the file
  * @property {string} code
  */

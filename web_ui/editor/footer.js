@@ -24,7 +24,7 @@ export function footer(t, go) {
   return {
     element,
     /** @param {{ kind: "good" | "warning" | "error" | "", text: string }} verdict */
-    tell({ kind, text }) {
+    report({ kind, text }) {
       setText(words, text);
       setAttribute(words, "data-kind", kind);
     },

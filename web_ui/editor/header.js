@@ -7,14 +7,14 @@ import { ALL } from "./workspace.js";
 /**
  * @param {object} options
  * @param {import("../i18n/index.js").Translate} options.t
- * @param {(kept: import("./storage.js").Kept) => string} options.draftWords   says of a text that it is in no file
- * @param {import("./desk.js").Desk} options.desk
+ * @param {(kept: import("./file_store.js").Kept) => string} options.draftLabel   says of a text that it is in no file
+ * @param {import("./editor_session.js").EditorSession} options.session
  * @param {(robot: string) => void} options.select   a robot's tab was chosen
  * @param {() => void} options.redraw
  * @param {() => void} options.close
  */
-export function header({ t, draftWords, desk, select, redraw, close }) {
-  const { workspace } = desk;
+export function header({ t, draftLabel, session, select, redraw, close }) {
+  const { workspace } = session;
   const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": t("editor.robots") });
   const nodes = h("select", {
     "aria-label": t("editor.nodes"),
@@ -98,7 +98,7 @@ export function header({ t, draftWords, desk, select, redraw, close }) {
     notLoaded.hidden = isInRobot(document);
   };
 
-  /** @type {import("./storage.js").Kept | null} */ let draftShown = null;
+  /** @type {import("./file_store.js").Kept | null} */ let draftShown = null;
   const drawDraft = () => {
     const kept = workspace.draft;
     if (kept === draftShown) return;
@@ -109,7 +109,7 @@ export function header({ t, draftWords, desk, select, redraw, close }) {
     const button = (key, act) =>
       h("button", { type: "button", "data-draft": key, onclick: () => (act(), redraw()) }, t(`editor.${key}`));
     draft.replaceChildren(
-      h("span", {}, draftWords(kept)),
+      h("span", {}, draftLabel(kept)),
       button("restore", () => workspace.restoreDraft()),
       button("discard", () => workspace.forgetDraft()),
     );

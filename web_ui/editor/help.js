@@ -80,7 +80,7 @@ export function items({ target, events, constants, variables, definitions }) {
 }
 
 /**
- * What fits behind the text of a line up to the cursor, and where the word being written begins.
+ * What fits behind the text of a line up to the cursor, and where the word being written starts.
  *
  * @param {string} before
  * @param {Vocabulary} vocabulary

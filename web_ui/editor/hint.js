@@ -13,7 +13,7 @@ const LONGEST = 14; // letters that a button shows
  * @param {string} text
  * @param {Repair} repair
  */
-export function repairWords(t, text, { from, to, insert }) {
+export function repairLabel(t, text, { from, to, insert }) {
   const old = text.slice(from, to).trim();
   const now = insert.trim();
   /** @param {string} word */

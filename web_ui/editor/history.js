@@ -14,7 +14,7 @@ export class History {
   add(name, seconds, value) {
     let series = this.series.get(name);
     if (series === undefined || seconds < (series.times.at(-1) ?? seconds)) {
-      series = { name, times: [], values: [] }; // time that went back begins anew
+      series = { name, times: [], values: [] }; // time that went back restarts
       this.series.set(name, series);
     }
     series.times.push(seconds);

@@ -1,4 +1,4 @@
-// What CodeMirror knows of Aseba: colours, indentation, folding, comments.
+// What CodeMirror knows of Aseba: colors, indentation, folding, comments.
 
 import {
   continuedIndent,
@@ -70,8 +70,8 @@ export const asebaLanguage = LRLanguage.define({
   },
 });
 
-/** Each at least 4.5:1 on white, and on the colour of the current line. */
-const COLOURS = HighlightStyle.define([
+/** Each at least 4.5:1 on white, and on the color of the current line. */
+const COLORS = HighlightStyle.define([
   { tag: [tags.controlKeyword, tags.definitionKeyword, tags.operatorKeyword], color: "#7a1fa2", fontWeight: "600" },
   { tag: tags.number, color: "#9a3800" },
   { tag: tags.variableName, color: "#17263a" },
@@ -83,5 +83,5 @@ const COLOURS = HighlightStyle.define([
 ]);
 
 export function aseba() {
-  return new LanguageSupport(asebaLanguage, [syntaxHighlighting(COLOURS)]);
+  return new LanguageSupport(asebaLanguage, [syntaxHighlighting(COLORS)]);
 }

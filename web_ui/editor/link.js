@@ -20,13 +20,13 @@ export class Link {
   }
 
   /**
-   * What is loaded once more begins anew: a parameter that is set to what it is changes nothing.
+   * What is loaded once more restarts: a parameter that is set to what it is changes nothing.
    *
    * @param {string | null} robot
    * @param {string} loaded
    * @param {readonly string[]} robots  all there are
    */
-  async #beginAnew(robot, loaded, robots) {
+  async #restartPrograms(robot, loaded, robots) {
     const isSame = this.last.get(robot) === loaded;
     this.last.clear();
     this.last.set(robot, loaded);
@@ -78,17 +78,17 @@ export class Link {
       { name: `${prefix(robot)}script.name`, value: name },
       { name: `${prefix(robot)}script.source`, value: source },
     ]);
-    if (ok) await this.#beginAnew(robot, source, robots);
+    if (ok) await this.#restartPrograms(robot, source, robots);
     return { ok, message: message.replace(`${prefix(robot)}script.source: `, "") };
   }
 
-  /** A built-in behaviour as program. @param {string | null} robot @param {string} name @param {readonly string[]} robots */
+  /** A built-in behavior as program. @param {string | null} robot @param {string} name @param {readonly string[]} robots */
   async loadBuiltIn(robot, name, robots) {
     const answer = await this.client.setParameters([
       ...this.#released(robot, robots),
       { name: `${prefix(robot)}script.path`, value: name },
     ]);
-    if (answer.ok) await this.#beginAnew(robot, name, robots);
+    if (answer.ok) await this.#restartPrograms(robot, name, robots);
     return answer;
   }
 

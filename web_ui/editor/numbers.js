@@ -1,4 +1,4 @@
-// Numbers that a person typed, and tables for a spreadsheet.
+// ValueLabels that a person typed, and tables for a spreadsheet.
 
 import { GREATEST, LEAST } from "./aesl.js";
 

@@ -1,4 +1,4 @@
-// Draws series over time on a canvas. Lines differ by colour and by dashes.
+// Draws series over time on a canvas. Lines differ by color and by dashes.
 
 /** @typedef {import("./history.js").Series} Series */
 

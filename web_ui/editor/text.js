@@ -60,11 +60,11 @@ const KEPT = { history: historyField, breakpoints: breakpointField, folds: foldS
  * @param {() => Omit<Vocabulary, "definitions">} options.vocabulary
  * @param {(code: string) => void} options.changed   a person changed the text
  * @param {(line: number) => void} options.toggleBreakpoint
- * @param {(text: string, repair: import("./checking.js").Repair) => string} options.repairWords  of its button
+ * @param {(text: string, repair: import("./checking.js").Repair) => string} options.repairLabel  of its button
  * @param {() => void} options.correct               a person wants the first repair
  */
 export function createText(options) {
-  const { parent, kept, label, phrases, vocabulary, changed, toggleBreakpoint, repairWords, correct } = options;
+  const { parent, kept, label, phrases, vocabulary, changed, toggleBreakpoint, repairLabel, correct } = options;
   /** @param {EditorState} state @returns {Vocabulary} */
   const words = (state) => ({
     ...vocabulary(),
@@ -177,7 +177,7 @@ export function createText(options) {
         severity,
         message: hint === undefined ? message : `${message}\n${hint}`,
         actions: repair
-          ? [{ name: repairWords(doc.toString(), repair), apply: () => void this.repair(doc.toString(), repair) }]
+          ? [{ name: repairLabel(doc.toString(), repair), apply: () => void this.repair(doc.toString(), repair) }]
           : [],
       }));
       view.dispatch(setDiagnostics(view.state, fitting));

@@ -1,4 +1,4 @@
-// The programs on the desk, one per tab: which robot has which, what is kept for a closed browser. No screen.
+// The programs on the session, one per tab: which robot has which, what is kept for a closed browser. No screen.
 
 import { AeslError } from "./aesl.js";
 import { blank, codeOf, edited, fileName, fromRobot, isInRobot, isUnsaved, opened, redefined } from "./documents.js";
@@ -13,17 +13,17 @@ export const ALL = "*";
 export class Workspace {
   /**
    * @param {object} options
-   * @param {import("./storage.js").Keeper} options.keeper
+   * @param {import("./file_store.js").FileStore} options.fileStore
    * @param {() => number} options.now      milliseconds since 1970
    * @param {() => void} options.changed    another text is to be shown
    */
-  constructor({ keeper, now, changed }) {
-    this.keeper = keeper;
+  constructor({ fileStore, now, changed }) {
+    this.fileStore = fileStore;
     this.now = now;
     this.changed = changed;
     this.tab = ALL;
     /** @type {Map<string, Document>} */ this.documents = new Map();
-    /** @type {Map<string, import("./storage.js").Kept>} */ this.drafts = new Map();
+    /** @type {Map<string, import("./file_store.js").Kept>} */ this.drafts = new Map();
     /** @type {Set<string>} */ this.following = new Set(); // tabs that take the robot's next program whatever they hold
   }
 
@@ -38,7 +38,7 @@ export class Workspace {
     if (known !== undefined) return known;
     const document = blank(tab === ALL ? undefined : fileName(tab));
     this.documents.set(tab, document);
-    const draft = this.keeper.draft(tab);
+    const draft = this.fileStore.draft(tab);
     if (draft !== null) this.drafts.set(tab, draft);
     return document;
   }
@@ -62,7 +62,7 @@ export class Workspace {
   }
 
   /**
-   * Put a file on the desk; nothing changes when it is refused.
+   * Put a file on the session; nothing changes when it is refused.
    *
    * @param {string} name
    * @param {string} text
@@ -71,7 +71,7 @@ export class Workspace {
   open(name, text) {
     try {
       this.#replace(this.tab, opened(fileName(name), text));
-      this.keeper.remember({ name: fileName(name), text, time: this.now() });
+      this.fileStore.remember({ name: fileName(name), text, time: this.now() });
       return null;
     } catch (error) {
       if (!(error instanceof AeslError)) throw error;
@@ -96,7 +96,7 @@ export class Workspace {
 
   saved() {
     const document = this.current;
-    this.keeper.remember({ name: document.name, text: document.text, time: this.now() });
+    this.fileStore.remember({ name: document.name, text: document.text, time: this.now() });
     this.#set({ ...document, saved: document.text });
   }
 
@@ -116,7 +116,7 @@ export class Workspace {
    * @param {string} tab
    * @param {ProgramInfo | null | undefined} program
    */
-  tell(tab, program) {
+  setRobotProgram(tab, program) {
     if (!program?.file) return;
     const document = this.at(tab);
     if (program.file === document.source) return;
@@ -126,7 +126,7 @@ export class Workspace {
     try {
       this.#replace(tab, fromRobot(program));
     } catch (error) {
-      if (!(error instanceof AeslError)) throw error; // the runtime reads more than we do; what is on the desk stays
+      if (!(error instanceof AeslError)) throw error; // the runtime reads more than we do; what is on the session stays
     }
   }
 
@@ -143,7 +143,7 @@ export class Workspace {
     this.restore(draft);
   }
 
-  /** Go on with a text that is in no file. @param {import("./storage.js").Kept} kept */
+  /** Go on with a text that is in no file. @param {import("./file_store.js").Kept} kept */
   restore({ name, text }) {
     const { text: saved } = blank();
     this.#replace(this.tab, { ...opened(name, text), saved });
@@ -151,7 +151,7 @@ export class Workspace {
 
   forgetDraft() {
     this.drafts.delete(this.tab);
-    this.keeper.keepDraft(this.tab, null);
+    this.fileStore.keepDraft(this.tab, null);
   }
 
   /** @returns {string} */
@@ -164,16 +164,16 @@ export class Workspace {
     this.documents.set(this.tab, document);
     const { name, text } = document;
     const draft = this.drafts.get(this.tab);
-    if (draft !== undefined && draft.text !== text) this.keeper.remember({ ...draft, unsaved: true });
+    if (draft !== undefined && draft.text !== text) this.fileStore.remember({ ...draft, unsaved: true });
     this.drafts.delete(this.tab);
-    this.keeper.keepDraft(this.tab, isUnsaved(document) ? { name, text, time: this.now() } : null);
+    this.fileStore.keepDraft(this.tab, isUnsaved(document) ? { name, text, time: this.now() } : null);
   }
 
   /** Another document; what would be lost is among the recent files. @param {string} tab @param {Document} document */
   #replace(tab, document) {
     const old = this.documents.get(tab);
     if (old !== undefined && isUnsaved(old)) {
-      this.keeper.remember({ name: old.name, text: old.text, time: this.now(), unsaved: true });
+      this.fileStore.remember({ name: old.name, text: old.text, time: this.now(), unsaved: true });
     }
     this.documents.set(tab, document);
     if (tab === this.tab) this.changed();

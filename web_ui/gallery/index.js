@@ -9,7 +9,7 @@ import { FILE } from "../state/index.js";
 const PENCIL = "M3 17.500V21h3.500L17 10.500 13.500 7zM15 5.500 18.500 9l2-2L17 3.500z";
 
 /** @param {import("../panels/index.js").Context} context */
-export function galleryDialog({ t, language, actions, shelf, store, creator, scene }) {
+export function galleryDialog({ t, language, actions, thumbnails, store, creator, scene }) {
   const fault = h("div", { class: "fault", role: "alert", hidden: true });
   const list = h("ul", { class: "samples" });
   const close = h("button", { type: "button", class: "plain", "aria-label": t("gallery.close") }, icon(ICONS.close));
@@ -25,7 +25,7 @@ export function galleryDialog({ t, language, actions, shelf, store, creator, sce
   });
   const dialog = h(
     "dialog",
-    { class: "gallery", "aria-labelledby": "gallery-title" },
+    { class: "gallery", "aria-labeledby": "gallery-title" },
     h("div", { class: "gallery-head" }, h("h2", { id: "gallery-title" }, t("gallery")), close),
     fault,
     list,
@@ -81,7 +81,7 @@ export function galleryDialog({ t, language, actions, shelf, store, creator, sce
       },
       icon(PENCIL),
     );
-    void shelf.sample(info.name).then((sample) => {
+    void thumbnails.sample(info.name).then((sample) => {
       if (sample === null) return;
       const count = sample.playground.items.filter(({ kind }) => kind === "robot").length;
       setText(robots, t(count === 1 ? "gallery.robot" : "gallery.robots", { count }));

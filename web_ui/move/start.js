@@ -1,10 +1,10 @@
 // Where a robot that fell is put back: its start, or the nearest free place beside it. No document, no scene.
 
-import { isOnGround } from "../playground/judge.js";
+import { isOnGround } from "../playground/validation.js";
 import { parse } from "../playground/document.js";
-import { blocker, obstacles, ROBOT_OUTLINE } from "./things.js";
+import { blocker, obstacles, ROBOT_OUTLINE } from "./placed_bodies.js";
 
-/** @typedef {import("./things.js").Pose} Pose */
+/** @typedef {import("./placed_bodies.js").Pose} Pose */
 
 /** Distances from the start and directions that are tried, one after the other. */
 const DISTANCES_M = [0.15, 0.3, 0.45];
@@ -24,12 +24,12 @@ export function startOf(state, text, name) {
   const robots = items.filter(({ kind }) => kind === "robot");
   const own = robots.find((robot) => robot.name === name) ?? robots[0]; // one that came later has no start of its own
   const start = { x: own?.x_m ?? 0, y: own?.y_m ?? 0, yaw: own?.yaw_rad ?? 0 };
-  const thing = { name, robot: name, pose: start, outline: ROBOT_OUTLINE, height: HEIGHT_M };
+  const body = { name, robot: name, pose: start, outline: ROBOT_OUTLINE, height: HEIGHT_M };
   const others = obstacles(state, name);
   const shapes = items.filter(({ kind }) => kind !== "robot");
   /** @param {Pose} pose */
   const isFree = (pose) =>
-    blocker(thing, pose, others) === null &&
+    blocker(body, pose, others) === null &&
     isOnGround(shapes, { kind: "robot", name, x_m: pose.x, y_m: pose.y, yaw_rad: pose.yaw });
   return [start, ...around(start)].find(isFree) ?? start;
 }

@@ -1,6 +1,6 @@
 // The frame of a side panel: a heading that folds it, remembered by the browser.
 
-import { memory, note } from "../memory.js";
+import { localStore, trySetItem } from "../browser/local_storage.js";
 import { uploadCause } from "../state/index.js";
 import { h } from "./dom.js";
 
@@ -13,11 +13,11 @@ export function card(name, title, ...content) {
   const key = `card.${name}`;
   const details = h(
     "details",
-    { class: `card ${name}`, open: memory.getItem(key) !== "closed" },
+    { class: `card ${name}`, open: localStore.getItem(key) !== "closed" },
     h("summary", {}, h("h2", {}, title)),
     h("div", { class: "content" }, ...content),
   );
-  details.addEventListener("toggle", () => note(memory, key, details.open ? "open" : "closed"));
+  details.addEventListener("toggle", () => trySetItem(localStore, key, details.open ? "open" : "closed"));
   return details;
 }
 

@@ -1,6 +1,6 @@
 // Small tools to build and change elements; a panel writes the document only where a value changed.
 
-import { whenShiftGoes } from "../shift.js";
+import { onShiftRelease } from "../input/sticky_press.js";
 
 /**
  * @template {keyof HTMLElementTagNameMap} Tag
@@ -107,7 +107,7 @@ export function holdable(element, hold) {
   element.addEventListener("pointerup", ({ shiftKey }) => {
     if (!shiftKey) return;
     down("Shift");
-    whenShiftGoes(() => up("Shift"));
+    onShiftRelease(() => up("Shift"));
   });
   for (const name of /** @type {const} */ (["pointerup", "pointercancel", "lostpointercapture"])) {
     element.addEventListener(name, (event) => up(event.pointerId));

@@ -1,6 +1,6 @@
 // The robot's five buttons as a cross; a button shows as pressed when the robot says so.
 
-import { memory, note } from "../memory.js";
+import { localStore, trySetItem } from "../browser/local_storage.js";
 import { BUTTONS } from "../state/names.js";
 import { h, holdable, icon, ICONS, lock, setAttribute } from "./dom.js";
 
@@ -34,14 +34,14 @@ export function dpadPanel({ t, actions, store }) {
   const element = h("div", { class: "drive" }, pad, fold);
   /** @param {boolean} folded */
   const setFolded = (folded) => {
-    note(memory, FOLDED_KEY, String(folded));
+    trySetItem(localStore, FOLDED_KEY, String(folded));
     element.toggleAttribute("data-folded", folded);
     const label = t(folded ? "dpad.unfold" : "dpad.fold");
     setAttribute(fold, "aria-expanded", String(!folded));
     setAttribute(fold, "aria-label", label);
     setAttribute(fold, "title", label);
   };
-  setFolded(memory.getItem(FOLDED_KEY) === "true");
+  setFolded(localStore.getItem(FOLDED_KEY) === "true");
   return {
     slot: "stage",
     element,

@@ -1,4 +1,4 @@
-// What a person is told about what they did: one area over the view, and in an open dialog, which covers all else.
+// What a person is reported about what they did: one area over the view, and in an open dialog, which covers all else.
 // Success goes by itself; what failed stays until it is closed or its cause is gone.
 
 import { h, icon, ICONS } from "./dom.js";

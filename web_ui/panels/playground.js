@@ -92,9 +92,9 @@ export function playgroundPanel(context) {
       if (document.activeElement !== select || playground?.phase !== "sending") select.value = current;
       const chosen = playgrounds.find(({ name }) => name === current);
       setText(description, chosen === undefined ? "" : translated(chosen, language).description);
-      const told = JSON.stringify(simulator?.notes ?? []);
-      if (told !== noted) {
-        noted = told;
+      const notesJson = JSON.stringify(simulator?.notes ?? []);
+      if (notesJson !== noted) {
+        noted = notesJson;
         const texts = simulator?.notes ?? [];
         setText(summary, t("playground.remarks", { count: texts.length }));
         notes.replaceChildren(...texts.map((text) => h("li", {}, text)));

@@ -149,7 +149,7 @@ function strongest(words) {
 }
 
 /**
- * Reflecting ground is told as "too close" (−inf) or, as the driver does, 0 (docs/spec/ros-interface.md section 4.3).
+ * Reflecting ground is reported as "too close" (−inf) or, as the driver does, 0 (docs/spec/ros-interface.md section 4.3).
  *
  * @param {number} range
  */

@@ -1,6 +1,6 @@
 // Sound on or off. A browser keeps silent until the page has been touched; until then the button says so.
 
-import { memory, note } from "../memory.js";
+import { localStore, trySetItem } from "../browser/local_storage.js";
 import { h, icon, ICONS, setAttribute, setText } from "./dom.js";
 
 /** Where the browser remembers that a person wants silence. */
@@ -14,7 +14,7 @@ export function soundPanel({ t, speaker, announce }) {
   element.addEventListener("click", () => {
     // The first click anywhere lets the page sound; on this button it means the same, not silence.
     const muted = shown === "on";
-    note(memory, MUTED_KEY, String(muted));
+    trySetItem(localStore, MUTED_KEY, String(muted));
     speaker.setMuted(muted);
     announce(t(`sound.${speaker.phase}`));
   });

@@ -1,6 +1,6 @@
 // A playground as it is built: titles, and items in their order. Read from and written as our format. Pure.
 
-import { checkSettled } from "./judge.js";
+import { checkSettled } from "./validation.js";
 import { kindNamed, ROBOT } from "./kinds/index.js";
 import { check, describe, Fault, needed, optional, RULES } from "./rules.js";
 

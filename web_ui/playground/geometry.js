@@ -1,4 +1,4 @@
-// Plane geometry: poses, convex outlines, and whether they overlap. Metres, radians, counter-clockwise. Pure.
+// Plane geometry: poses, convex outlines, and whether they overlap. Meters, radians, counter-clockwise. Pure.
 // The tests of overlap are those of thymio_sim_ros/sim/model/geometry.py, so that page and simulator judge alike.
 
 /** @typedef {readonly [number, number]} Point */
@@ -10,7 +10,7 @@ const ON_THE_EDGE = 1e-9;
 const ROUND = 28;
 
 /**
- * Points of a pose's frame in the frame that holds the pose.
+ * Points of a pose's frame in the frame that containsPoint the pose.
  *
  * @param {Pose} pose
  * @param {readonly Point[]} points
@@ -46,7 +46,7 @@ export function overlap(one, two) {
 }
 
 /** Whether a point lies in a convex polygon or on its edge. @param {readonly Point[]} polygon @param {Point} point */
-export function holds(polygon, [x, y]) {
+export function containsPoint(polygon, [x, y]) {
   return polygon.every(([ax, ay], index) => {
     const [bx, by] = polygon[(index + 1) % polygon.length];
     return (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= -ON_THE_EDGE;

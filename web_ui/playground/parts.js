@@ -3,7 +3,7 @@
 import { circle, placed } from "./geometry.js";
 import { kindNamed } from "./kinds/index.js";
 import { footprintOf } from "./primitives.js";
-import { ROBOT_OUTLINE } from "../move/things.js";
+import { ROBOT_OUTLINE } from "../move/placed_bodies.js";
 
 /** @typedef {Readonly<Record<string, any> & { kind: string, name: string }>} Item  a shape, or a robot's start (kind "robot") */
 /** @typedef {import("./geometry.js").Footprint} Footprint */

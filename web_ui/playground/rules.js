@@ -128,10 +128,10 @@ export function expectation({ type, unit = "", low = 0, high = 0, meaning = "", 
   return { word: `fault.${type}` };
 }
 
-/** A value as a person recognises it. @param {unknown} value */
+/** A value as a person recognizes it. @param {unknown} value */
 export function describe(value) {
-  const told = value === undefined ? "–" : JSON.stringify(value);
-  return told.length > 60 ? `${told.slice(0, 57)}…` : told;
+  const json = value === undefined ? "–" : JSON.stringify(value);
+  return json.length > 60 ? `${json.slice(0, 57)}…` : json;
 }
 
 /** @param {string} key @param {string} name */

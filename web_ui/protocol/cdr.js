@@ -1,6 +1,6 @@
 // ROS 2 messages ↔ bytes: classic CDR (XCDR1), driven by a parsed `ros2msg` schema.
 //
-// A payload starts with four bytes that tell the byte order; every number is aligned to its own
+// A payload starts with four bytes that report the byte order; every number is aligned to its own
 // size counted from behind them. A type without fields carries one byte, as ROS 2 sends it.
 
 /** @typedef {import("./ros2msg.js").Definition} Definition */

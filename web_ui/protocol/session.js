@@ -93,9 +93,9 @@ export class Session {
     /** @type {Map<number, { channel: Channel, topic: string, definition: Definition }>} */ this.subscriptions = new Map();
     /** @type {Map<string, Service>} */ this.services = new Map();
     /** @type {Map<string, { id: number, definition: Definition }>} */ this.published = new Map();
-    /** @type {Map<number, { service: Service, settle: (answer: ServiceAnswer) => void }>} */ this.calls = new Map();
+    /** @type {Map<number, { service: Service, resolve: (answer: ServiceAnswer) => void }>} */ this.calls = new Map();
     /**
-     * @type {Map<string, { name: string, refusal: string | null, settle: (answer: ParameterAnswer) => void }>}
+     * @type {Map<string, { name: string, refusal: string | null, resolve: (answer: ParameterAnswer) => void }>}
      */
     this.requests = new Map();
     this.nextId = 1;
@@ -151,8 +151,8 @@ export class Session {
     try {
       const definition = parseSchema(service.request.schemaName, service.request.schema);
       const frame = serviceRequestFrame(service.id, callId, "cdr", encode(definition, request));
-      return new Promise((settle) => {
-        this.calls.set(callId, { service, settle });
+      return new Promise((resolve) => {
+        this.calls.set(callId, { service, resolve });
         this.send(frame);
       });
     } catch (error) {
@@ -169,9 +169,9 @@ export class Session {
    */
   setParameters(parameters) {
     const id = `set-${this.nextId++}`;
-    return new Promise((settle) => {
+    return new Promise((resolve) => {
       const { name } = parameters[parameters.length - 1];
-      this.requests.set(id, { name, refusal: null, settle });
+      this.requests.set(id, { name, refusal: null, resolve });
       const named = parameters.map((parameter) => ({ ...parameter, name: this.names.outer(parameter.name) }));
       this.#sendJson({ op: "setParameters", parameters: named, id });
     });
@@ -179,9 +179,9 @@ export class Session {
 
   /** The connection is gone: nothing pending will be answered. */
   close() {
-    for (const { settle } of this.calls.values()) settle({ ok: false, message: "connection lost" });
-    for (const { settle } of this.requests.values())
-      settle({ ok: false, value: undefined, message: "connection lost" });
+    for (const { resolve } of this.calls.values()) resolve({ ok: false, message: "connection lost" });
+    for (const { resolve } of this.requests.values())
+      resolve({ ok: false, value: undefined, message: "connection lost" });
     this.calls.clear();
     this.requests.clear();
   }
@@ -208,9 +208,9 @@ export class Session {
       const { schemaName, schema } = call.service.response;
       try {
         const value = decode(parseSchema(schemaName, schema), frame.payload);
-        call.settle({ ok: value.success ?? true, message: value.message ?? "", value });
+        call.resolve({ ok: value.success ?? true, message: value.message ?? "", value });
       } catch (error) {
-        call.settle({ ok: false, message: "an answer that cannot be read" });
+        call.resolve({ ok: false, message: "an answer that cannot be read" });
         throw error;
       }
     }
@@ -326,8 +326,8 @@ const TEXT_HANDLERS = /** @type {Record<string, (session: Session, message: any)
     }
     session.emitServices();
   },
-  parameterValues(session, { parameters: told, id }) {
-    const parameters = told.flatMap((/** @type {Parameter} */ parameter) => {
+  parameterValues(session, { parameters: reported, id }) {
+    const parameters = reported.flatMap((/** @type {Parameter} */ parameter) => {
       const name = session.names.inner(parameter.name);
       return name === null ? [] : [{ ...parameter, name }];
     });
@@ -336,10 +336,10 @@ const TEXT_HANDLERS = /** @type {Record<string, (session: Session, message: any)
     if (request === undefined) return;
     session.requests.delete(id);
     const value = parameters.find((/** @type {Parameter} */ parameter) => parameter.name === request.name)?.value;
-    request.settle({ ok: request.refusal === null, value, message: request.refusal ?? "" });
+    request.resolve({ ok: request.refusal === null, value, message: request.refusal ?? "" });
   },
-  status(session, { level, message: told, id }) {
-    const message = session.names.inner(told) ?? told; // it may begin with the name of a parameter
+  status(session, { level, message: reported, id }) {
+    const message = session.names.inner(reported) ?? reported; // it may begin with the name of a parameter
     session.emit({ type: "status", status: id === undefined ? { level, message } : { level, message, id } });
     if (level < STATUS_ERROR) return;
     for (const request of session.requests.values()) {
@@ -348,7 +348,7 @@ const TEXT_HANDLERS = /** @type {Record<string, (session: Session, message: any)
   },
   removeStatus: (session, { statusIds }) => session.emit({ type: "removeStatus", ids: statusIds }),
   serviceCallFailure(session, { callId, message }) {
-    session.calls.get(callId)?.settle({ ok: false, message });
+    session.calls.get(callId)?.resolve({ ok: false, message });
     session.calls.delete(callId);
   },
 });

@@ -20,14 +20,14 @@ const LOWER = 0xe7ebef;
 const DARK = 0x2b333c;
 const TYRE = 0x343b44;
 
-/** @typedef {import("./fleet.js").Look} Look */
+/** @typedef {import("./robot_instances.js").Look} Look */
 
-const TINT = 0.72; // share of the top light's colour in the shell when it is full
+const TINT = 0.72; // share of the top light's color in the shell when it is full
 const SHINE = 0.12; // how much brighter the shell is then
 const SHELL = new THREE.Color(WHITE);
 const HERE = new THREE.Matrix4();
 
-/** @param {import("./fleet.js").Room} room */
+/** @param {import("./robot_instances.js").Capacity} room */
 export function createBody({ robots }) {
   const counts = { each: 1, robots };
   const hole = new THREE.CircleGeometry(0.0062, 24).translate(0, 0, HEIGHT_M + 0.0003);
@@ -44,19 +44,19 @@ export function createBody({ robots }) {
   ]);
   const base = new Instances(lower, new THREE.MeshLambertMaterial({ vertexColors: true }), counts);
   const shell = new Instances(upper, new THREE.MeshLambertMaterial(), counts);
-  const colour = new THREE.Color();
+  const color = new THREE.Color();
   return {
     parts: [base, shell],
     /** @param {number} slot @param {Look} look */
     show(slot, { robot }) {
       base.put(slot, 0, HERE);
       shell.put(slot, 0, HERE);
-      shell.tint(slot, 0, shellColour(colour, robot));
+      shell.tint(slot, 0, shellColor(color, robot));
     },
   };
 }
 
-/** A robot that is small on the screen: body and wheels in one piece. @param {import("./fleet.js").Room} room */
+/** A robot that is small on the screen: body and wheels in one piece. @param {import("./robot_instances.js").Capacity} room */
 export function createFarBody({ robots }) {
   const wheel = () => new THREE.CylinderGeometry(WHEEL.radius, WHEEL.radius, WHEEL.width, 8);
   const shape = merged([
@@ -66,21 +66,21 @@ export function createFarBody({ robots }) {
     [wheel().translate(0, -WHEEL.track / 2, WHEEL.radius), TYRE],
   ]);
   const body = new Instances(shape, new THREE.MeshLambertMaterial({ vertexColors: true }), { each: 1, robots });
-  const colour = new THREE.Color();
+  const color = new THREE.Color();
   return {
     parts: [body],
     /** @param {number} slot @param {Look} look */
     show(slot, { robot }) {
       body.put(slot, 0, HERE);
-      body.tint(slot, 0, shellColour(colour, robot));
+      body.tint(slot, 0, shellColor(color, robot));
     },
   };
 }
 
-/** The top light shines through the shell. @param {THREE.Color} colour  is set @param {import("../state/robot.js").Robot} robot */
-function shellColour(colour, { leds: { top } }) {
-  glow(colour, SHELL, top, TINT);
-  return colour.multiplyScalar(1 + SHINE * Math.max(0, ...(top ?? [])));
+/** The top light shines through the shell. @param {THREE.Color} color  is set @param {import("../state/robot.js").Robot} robot */
+function shellColor(color, { leds: { top } }) {
+  glow(color, SHELL, top, TINT);
+  return color.multiplyScalar(1 + SHINE * Math.max(0, ...(top ?? [])));
 }
 
 /**
@@ -126,7 +126,7 @@ function notch(shape, outer, inner, from, to) {
  * @param {THREE.Shape} shape
  * @param {number} bottom
  * @param {number} top
- * @param {{ bevel?: number, corners?: number }} [how]  metres; corners of a round edge
+ * @param {{ bevel?: number, corners?: number }} [how]  meters; corners of a round edge
  */
 function extruded(shape, bottom, top, { bevel = 0, corners = 10 } = {}) {
   const geometry = new THREE.ExtrudeGeometry(shape, {

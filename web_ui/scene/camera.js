@@ -45,7 +45,7 @@ export class Camera {
     if (this.inset === 0) this.camera.clearViewOffset();
     else this.camera.setViewOffset(width, height, -this.inset / 2, 0, width, height);
     this.camera.updateProjectionMatrix();
-    if (!this.touched && !this.goesAlong) this.look(this.view);
+    if (!this.touched && !this.goesAlong) this.setView(this.view);
   }
 
   /** So many pixels at the left are covered by something: worlds are fitted beside it. @param {number} inset */
@@ -68,7 +68,7 @@ export class Camera {
   frame(corners, held = false) {
     if (corners.length === 0) return;
     this.corners = corners;
-    if (!held && !this.goesAlong) this.look(this.view);
+    if (!held && !this.goesAlong) this.setView(this.view);
   }
 
   /**
@@ -77,7 +77,7 @@ export class Camera {
    * @param {ViewName} view
    * @param {{ x: number, y: number, yaw: number } | null} [robot]
    */
-  look(view, robot = null) {
+  setView(view, robot = null) {
     this.view = view;
     this.touched = false;
     this.controls.enabled = view !== "eye";

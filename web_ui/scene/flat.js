@@ -4,7 +4,7 @@
 import * as THREE from "three";
 
 import { hasPicture, MARKER } from "../state/markers.js";
-import { placed, ROBOT_OUTLINE } from "../move/things.js";
+import { placed, ROBOT_OUTLINE } from "../move/placed_bodies.js";
 import { poseAt } from "./motion.js";
 import { BUTTON_PLACES, LIGHTS, PROXIMITY_PLACES } from "./parts.js";
 import { MAX_RANGE_M } from "./rays.js";
@@ -59,12 +59,12 @@ export class FlatView {
    * @param {object} options
    * @param {number} options.nowMs
    * @param {(name: string) => boolean} options.senses  whether beams are drawn
-   * @param {import("../move/mover.js").Held | null} options.held
+   * @param {import("../move/drag_controller.js").Held | null} options.held
    * @param {import("../creator/sketch.js").Sketch | null} options.sketch
-   * @param {(name: string) => string} options.colour
+   * @param {(name: string) => string} options.color
    * @param {() => void} options.changed   called when a picture has arrived
    */
-  draw(state, { nowMs, senses, held, sketch, colour, changed }) {
+  draw(state, { nowMs, senses, held, sketch, color, changed }) {
     const { context, canvas, camera } = this;
     if (context === null) return;
     Object.assign(canvas, this.#size);
@@ -72,7 +72,7 @@ export class FlatView {
     context.fillRect(0, 0, canvas.width, canvas.height);
     const scale = canvas.height / (camera.top - camera.bottom);
     const { x, y } = camera.position;
-    // Metres, y up.
+    // Meters, y up.
     context.setTransform(scale, 0, 0, -scale, canvas.width / 2 - x * scale, canvas.height / 2 + y * scale);
     const lowFirst = [...state.markers.values(), ...state.objects.values()].sort((a, b) => top(a) - top(b));
     for (const marker of lowFirst) this.#marker(context, marker, changed);
@@ -85,12 +85,12 @@ export class FlatView {
       context.save();
       context.translate(pose.x, pose.y);
       context.rotate(pose.yaw);
-      drawRobot(context, robot, senses(name), colour(name));
+      drawRobot(context, robot, senses(name), color(name));
       context.restore();
     }
     if (held !== null) {
       context.fillStyle = held.blocker === null ? "rgb(23 105 209 / 50%)" : "rgb(209 26 26 / 60%)";
-      for (const polygon of placed(held.thing.outline, held.pose)) fill(context, polygon);
+      for (const polygon of placed(held.body.outline, held.pose)) fill(context, polygon);
     }
     if (sketch !== null) drawSketch(context, sketch, this.pixelRatio / scale);
     context.setTransform(1, 0, 0, 1, 0, 0);
@@ -168,8 +168,8 @@ function top({ pose, scale, type }) {
   return pose.position.z + (type === MARKER.TRIANGLE_LIST ? 0 : scale.z / 2);
 }
 
-/** @param {CanvasRenderingContext2D} context @param {Robot} robot @param {boolean} sensors @param {string} colour */
-function drawRobot(context, robot, sensors, colour) {
+/** @param {CanvasRenderingContext2D} context @param {Robot} robot @param {boolean} sensors @param {string} color */
+function drawRobot(context, robot, sensors, color) {
   if (sensors) {
     for (const [name, { x, y, yaw }] of Object.entries(PROXIMITY_PLACES)) {
       const range = robot.proximity[name];
@@ -188,7 +188,7 @@ function drawRobot(context, robot, sensors, colour) {
   const most = Math.max(...lit);
   const [r, g, b] = lit.map((level) => 247 + (most > 0 ? most * (255 * (level / most) - 247) : 0));
   context.fillStyle = `rgb(${r} ${g} ${b})`;
-  context.strokeStyle = colour;
+  context.strokeStyle = color;
   context.lineWidth = 0.004;
   fill(context, outline);
   context.stroke();
@@ -198,7 +198,7 @@ function drawRobot(context, robot, sensors, colour) {
     context.fillStyle = robot.buttons[name] ? "#0b2f66" : "#66758a";
     disc(context, x, y, 0.005);
   }
-  for (const { group, index, place, colour: full, normal } of LIGHTS) {
+  for (const { group, index, place, color: full, normal } of LIGHTS) {
     const level = robot.leds[group]?.[index] ?? 0;
     if (level === 0) continue;
     context.fillStyle = `#${full.toString(16).padStart(6, "0")}`;
@@ -223,7 +223,7 @@ function disc(context, x, y, radius) {
   context.fill();
 }
 
-/** @param {import("../state/markers.js").Colour} colour */
+/** @param {import("../state/markers.js").Color} color */
 function css({ r, g, b, a }) {
   return `rgb(${r * 255} ${g * 255} ${b * 255} / ${a})`;
 }

@@ -2,10 +2,10 @@
 
 import * as THREE from "three";
 
-import { RING } from "../move/mover.js";
-import { reach } from "../move/things.js";
+import { RING } from "../move/drag_controller.js";
+import { reach } from "../move/placed_bodies.js";
 
-/** @typedef {import("../move/mover.js").Held} Held */
+/** @typedef {import("../move/drag_controller.js").Held} Held */
 
 const FREE = 0x1769d1;
 const TAKEN = 0xd11a1a;
@@ -24,8 +24,8 @@ export class Ghost {
   update(held, ring) {
     this.group.visible = held !== null;
     if (held === null) return;
-    const { thing, pose, blocker } = held;
-    const key = `${thing.name} ${ring} ${thing.outline.length} ${reach(thing)}`;
+    const { body, pose, blocker } = held;
+    const key = `${body.name} ${ring} ${body.outline.length} ${reach(body)}`;
     if (key !== this.shown) {
       this.shown = key;
       this.#build(held, ring);
@@ -37,15 +37,15 @@ export class Ghost {
   }
 
   /** @param {Held} held @param {boolean} ring */
-  #build({ thing }, ring) {
+  #build({ body }, ring) {
     this.dispose();
-    for (const polygon of thing.outline) {
+    for (const polygon of body.outline) {
       const shape = new THREE.Shape(polygon.map(([x, y]) => new THREE.Vector2(x, y)));
-      const solid = new THREE.ExtrudeGeometry(shape, { depth: thing.height + ABOVE_M, bevelEnabled: false });
+      const solid = new THREE.ExtrudeGeometry(shape, { depth: body.height + ABOVE_M, bevelEnabled: false });
       this.group.add(new THREE.Mesh(solid, this.material));
     }
     if (!ring) return;
-    const radius = reach(thing) + RING.beyond;
+    const radius = reach(body) + RING.beyond;
     const circle = new THREE.RingGeometry(radius - 0.003, radius + 0.003, 48).translate(0, 0, ABOVE_M);
     const knob = new THREE.CircleGeometry(RING.width / 2.4, 24).translate(radius, 0, ABOVE_M);
     this.group.add(new THREE.Mesh(circle, this.line), new THREE.Mesh(knob, this.line));

@@ -4,13 +4,13 @@ import * as THREE from "three";
 
 import { watchDrags } from "../move/drag.js";
 import { Camera } from "./camera.js";
-import { robotColour } from "../state/colours.js";
+import { robotColor } from "../state/robot_colors.js";
 import { FlatView } from "./flat.js";
-import { Fleet } from "./fleet.js";
+import { RobotInstances } from "./robot_instances.js";
 import { Ghost } from "./ghost.js";
 import { createRenderer, isSoftware } from "./graphics.js";
 import { litScene } from "./lights.js";
-import { Numbers, numbersOf } from "./numbers.js";
+import { ValueLabels, valueLabelsOf } from "./value_labels.js";
 import { photograph } from "./photographer.js";
 import { PlaygroundModel } from "./playground.js";
 import { watchPointer } from "./pointer.js";
@@ -41,18 +41,18 @@ export class SceneView {
    * @param {() => State} options.state
    * @param {(nowMs: number) => void} options.beforeDraw   the panels' turn in the same frame
    * @param {(target: Target, pressed: boolean) => void} options.press
-   * @param {import("../move/mover.js").Mover} options.mover   what a hand carries
+   * @param {import("../move/drag_controller.js").DragController} options.dragController   what a hand carries
    * @param {(name: string) => string} options.robotTitle
    * @param {() => import("../creator/sketch.js").Sketch | null} options.sketch   what a builder sees over it; null while nobody builds
    * @param {(trouble: "lost" | "gone" | null) => void} options.contextLost   gone: for good, drawn in 2D
    */
-  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, mover, robotTitle, sketch, contextLost }) {
+  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, dragController, robotTitle, sketch, contextLost }) {
     this.canvas = canvas;
     this.tags = new NameTags(labels);
     this.state = state;
     this.beforeDraw = beforeDraw;
     this.robotTitle = robotTitle;
-    this.mover = mover;
+    this.dragController = dragController;
     this.ghost = new Ghost();
     this.sketch = sketch;
     this.sketchModel = new SketchModel();
@@ -62,34 +62,34 @@ export class SceneView {
     this.size = { width: 0, height: 0 }; // of the canvas in CSS pixels: asking it after a label was moved lays out the page
     this.showSensors = true;
     this.showNumbers = false;
-    this.numbers = new Numbers(labels);
+    this.valueLabels = new ValueLabels(labels);
     this.flat = new FlatView(flatCanvas);
     this.wantsFlat = false;
     this.isLost = false;
     /** @type {Target | null} */ this.hovered = null;
-    /** @type {{ world: State, settle: (picture: HTMLCanvasElement) => void }[]} */ this.sittings = [];
+    /** @type {{ world: State, resolve: (picture: HTMLCanvasElement) => void }[]} */ this.photoRequests = [];
     /** @type {Map<string, { model: RobotModel, trail: PlaygroundModel }>} */ this.robots = new Map();
     this.scene = litScene();
     this.playground = new PlaygroundModel(() => this.invalidate());
     this.objects = new PlaygroundModel(() => this.invalidate());
-    this.near = new Fleet({ fine: true });
-    this.far = new Fleet({ fine: false });
+    this.near = new RobotInstances({ fine: true });
+    this.far = new RobotInstances({ fine: false });
     this.scene.add(this.playground.group, this.objects.group, this.ghost.group, this.sketchModel.group);
     this.scene.add(this.near.group, this.far.group);
     this.camera = new Camera(canvas, () => this.invalidate());
     this.renderer = createRenderer(canvas);
     this.quality = new Quality(isSoftware(this.renderer) ? 1 : 0);
-    let patience = 0;
+    let lostTimer = 0;
     canvas.addEventListener("webglcontextlost", () => {
       contextLost("lost");
-      patience = window.setTimeout(() => {
+      lostTimer = window.setTimeout(() => {
         this.isLost = true;
         contextLost("gone");
         this.invalidate();
       }, LOST_FOR_GOOD_MS);
     });
     canvas.addEventListener("webglcontextrestored", () => {
-      window.clearTimeout(patience);
+      window.clearTimeout(lostTimer);
       this.isLost = false;
       contextLost(null);
       this.invalidate();
@@ -97,7 +97,7 @@ export class SceneView {
     watchDrags({
       element: canvas,
       rayOf: (event) => (this.sketch() === null ? this.rayOf(event) : null),
-      mover,
+      dragController,
       isButton: (event) => buttons.isAt(event),
     });
     const buttons = watchPointer({
@@ -127,8 +127,8 @@ export class SceneView {
   }
 
   /** @param {ViewName} view */
-  look(view) {
-    this.camera.look(view, this.#selectedPose());
+  setView(view) {
+    this.camera.setView(view, this.#selectedPose());
   }
 
   /** Whether this browser can draw in 3D now. */
@@ -185,7 +185,7 @@ export class SceneView {
     this.#updateRobots(this.state(), nowMs); // none is drawn coarsely that is large in the picture
     this.#draw(nowMs); // a 3D picture is only there until the browser has shown it
     const shown = this.isFlat ? this.flat.canvas : this.canvas;
-    const picture = new Promise((/** @type {(png: Blob | null) => void} */ settle) => shown.toBlob(settle, "image/png"));
+    const picture = new Promise((/** @type {(png: Blob | null) => void} */ resolve) => shown.toBlob(resolve, "image/png"));
     this.flat.pixelRatio = 1;
     this.quality.forget();
     this.#resize();
@@ -199,8 +199,8 @@ export class SceneView {
    * @returns {Promise<HTMLCanvasElement>}
    */
   photograph(world) {
-    return new Promise((settle) => {
-      this.sittings.push({ world, settle });
+    return new Promise((resolve) => {
+      this.photoRequests.push({ world, resolve });
       this.invalidate();
     });
   }
@@ -232,7 +232,7 @@ export class SceneView {
     return caster.ray;
   }
 
-  /** How much of the ground one CSS pixel shows, about where the camera looks; metres. */
+  /** How much of the ground one CSS pixel shows, about where the camera looks; meters. */
   get pixelSize() {
     const { height } = this.size;
     if (this.isFlat) return (this.flat.camera.top - this.flat.camera.bottom) / Math.max(1, height);
@@ -268,17 +268,17 @@ export class SceneView {
     if (grown) this.camera.frame(this.playground.corners(), sketch !== null && this.framed);
     this.framed = sketch !== null;
     this.objects.update(state.objects);
-    this.mover.refresh();
-    this.ghost.update(this.mover.held, this.mover.mode);
+    this.dragController.refresh();
+    this.ghost.update(this.dragController.held, this.dragController.mode);
     this.sketchModel.update(sketch);
     const moving = this.#updateRobots(state, nowMs);
     const pose = this.#selectedPose();
     if (pose !== null) this.camera.follow(pose);
-    const sitting = this.sittings.shift();
-    sitting?.settle(photograph(sitting.world, this.has3d ? this.renderer : null));
+    const photoRequest = this.photoRequests.shift();
+    photoRequest?.resolve(photograph(photoRequest.world, this.has3d ? this.renderer : null));
     this.#draw(nowMs);
     this.frames += 1;
-    if (this.sittings.length > 0) this.invalidate();
+    if (this.photoRequests.length > 0) this.invalidate();
     this.#placeLabels();
     if (moving) this.invalidate();
     if (this.quality.note(nowMs, moving)) this.#resize();
@@ -298,9 +298,9 @@ export class SceneView {
     this.flat.draw(state, {
       nowMs,
       senses: (name) => this.#isSensing(name),
-      held: this.mover.held,
+      held: this.dragController.held,
       sketch: this.sketch(),
-      colour: (name) => robotColour(names, name),
+      color: (name) => robotColor(names, name),
       changed: () => this.invalidate(),
     });
   }
@@ -327,12 +327,12 @@ export class SceneView {
       entry.trail.update(robot.trail);
       moving = entry.model.update(robot, nowMs) || moving;
       const sounds = robot.sound[0] > 0 || robot.sound[1] > 0;
-      const colour = names.length > 1 ? robotColour(names, name) : "";
-      this.tags.show(name, (sounds ? "♪ " : "") + this.robotTitle(name), colour);
+      const color = names.length > 1 ? robotColor(names, name) : "";
+      this.tags.show(name, (sounds ? "♪ " : "") + this.robotTitle(name), color);
     }
-    const standing = this.#standing(state, names);
-    this.near.update(standing.filter(({ frame }) => !this.#isSmall(frame)));
-    this.far.update(standing.filter(({ frame }) => this.#isSmall(frame)));
+    const drawn = this.#drawnRobots(state, names);
+    this.near.update(drawn.filter(({ frame }) => !this.#isSmall(frame)));
+    this.far.update(drawn.filter(({ frame }) => this.#isSmall(frame)));
     return moving;
   }
 
@@ -342,7 +342,7 @@ export class SceneView {
   }
 
   /** The robots that are drawn. @param {State} state @param {string[]} names */
-  #standing({ robots }, names) {
+  #drawnRobots({ robots }, names) {
     return names.flatMap((name) => {
       const group = this.robots.get(name)?.model.group;
       if (!group?.visible) return [];
@@ -368,8 +368,8 @@ export class SceneView {
     }
     const { robots, selected } = this.state();
     const group = this.robots.get(selected)?.model.group;
-    const numbers = this.showNumbers && group?.visible ? numbersOf(robots[selected]) : [];
-    this.numbers.show(numbers, ({ x, y, z }) =>
+    const numbers = this.showNumbers && group?.visible ? valueLabelsOf(robots[selected]) : [];
+    this.valueLabels.show(numbers, ({ x, y, z }) =>
       group === undefined ? null : this.#project(group.localToWorld(new THREE.Vector3(x, y, z))),
     );
   }

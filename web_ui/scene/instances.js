@@ -18,7 +18,7 @@ export class Instances {
     this.mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
     /** @type {(THREE.Matrix4 | null)[]} */ this.locals = new Array(each * robots).fill(null);
     this.places = new Float32Array(16 * each * robots);
-    /** @type {Float32Array | null} */ this.colours = null;
+    /** @type {Float32Array | null} */ this.colors = null;
     this.robots = 0;
     this.changed = true;
   }
@@ -28,10 +28,10 @@ export class Instances {
     this.locals[robot * this.each + index] = local;
   }
 
-  /** @param {number} robot @param {number} index @param {THREE.Color} colour */
-  tint(robot, index, colour) {
-    this.colours ??= new Float32Array(3 * this.locals.length);
-    colour.toArray(this.colours, 3 * (robot * this.each + index));
+  /** @param {number} robot @param {number} index @param {THREE.Color} color */
+  tint(robot, index, color) {
+    this.colors ??= new Float32Array(3 * this.locals.length);
+    color.toArray(this.colors, 3 * (robot * this.each + index));
     this.changed = true;
   }
 
@@ -49,13 +49,13 @@ export class Instances {
     if (!this.changed && robots === this.robots) return;
     this.changed = false;
     this.robots = robots;
-    if (this.colours !== null) this.mesh.instanceColor ??= attribute(this.locals.length, 3);
+    if (this.colors !== null) this.mesh.instanceColor ??= attribute(this.locals.length, 3);
     const { instanceMatrix, instanceColor } = this.mesh;
     let drawn = 0;
     for (let number = 0; number < robots * this.each; number++) {
       if (this.locals[number] === null) continue;
       copy(this.places, number, instanceMatrix, drawn);
-      if (this.colours !== null && instanceColor !== null) copy(this.colours, number, instanceColor, drawn);
+      if (this.colors !== null && instanceColor !== null) copy(this.colors, number, instanceColor, drawn);
       drawn += 1;
     }
     this.mesh.count = drawn;

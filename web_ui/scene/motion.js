@@ -1,4 +1,4 @@
-// Where a robot is drawn: between the last two poses told, so that 20 messages a second look smooth.
+// Where a robot is drawn: between the last two poses reported, so that 20 messages a second look smooth.
 // Pure; all times are the page's own milliseconds.
 
 /** @typedef {import("../state/robot.js").Pose} Pose */

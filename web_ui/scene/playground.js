@@ -146,7 +146,7 @@ function isSameSolid(one, two) {
 }
 
 /**
- * Whether two strips are the same: a trail is told again as a whole when the pen has drawn on.
+ * Whether two strips are the same: a trail is reported again as a whole when the pen has drawn on.
  *
  * @param {Marker} one
  * @param {Marker} two
@@ -172,8 +172,8 @@ function triangles({ points, colors, scale }) {
     ),
   );
   if (colors.length > 0) {
-    const colour = new THREE.Color();
-    const values = colors.flatMap(({ r, g, b }) => colour.setRGB(r, g, b, THREE.SRGBColorSpace).toArray());
+    const color = new THREE.Color();
+    const values = colors.flatMap(({ r, g, b }) => color.setRGB(r, g, b, THREE.SRGBColorSpace).toArray());
     geometry.setAttribute("color", new THREE.Float32BufferAttribute(values, 3));
   }
   geometry.computeVertexNormals();

@@ -3,7 +3,7 @@
 
 import * as THREE from "three";
 
-import { whenShiftGoes } from "../shift.js";
+import { onShiftRelease } from "../input/sticky_press.js";
 
 /** @typedef {{ robot: string, button: string }} Target */
 
@@ -40,7 +40,7 @@ export function watchPointer({ element, camera, targets, press, hover }) {
   };
   /** @param {Target} target */
   const keep = (target) => {
-    if (kept.length === 0) whenShiftGoes(() => kept.splice(0).forEach((each) => press(each, false)));
+    if (kept.length === 0) onShiftRelease(() => kept.splice(0).forEach((each) => press(each, false)));
     kept.push(target);
   };
 

@@ -1,4 +1,4 @@
-// One robot: its frame at its pose, what pointers hit in it, and where its parts are. `fleet.js` draws it.
+// One robot: its frame at its pose, what pointers hit in it, and where its parts are. `instances.js` draws it.
 
 import * as THREE from "three";
 

@@ -4,7 +4,7 @@
 import { applyMarkers } from "./markers.js";
 import { PARAMETERS, TRANSFORMS, isSensed, splitTopic } from "./names.js";
 import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
-import { placedBy } from "./transforms.js";
+import { applyTransforms } from "./transforms.js";
 
 /** @typedef {import("./robot.js").Robot} Robot */
 /** @typedef {import("./robot.js").Program} Program */
@@ -18,7 +18,7 @@ import { placedBy } from "./transforms.js";
  * @property {Fault | null} fault
  */
 /** @typedef {"program" | "playground"} What */
-/** @typedef {{ name: string, description: string }} Behaviour */
+/** @typedef {{ name: string, description: string }} Behavior */
 /** @typedef {{ title: string, description: string }} Titles */
 /** @typedef {Titles & { name: string, translations: Readonly<Record<string, Titles>> }} PlaygroundInfo  by language */
 /**
@@ -35,7 +35,7 @@ import { placedBy } from "./transforms.js";
  * @property {string[]} movables  names of things that can be moved
  */
 /**
- * What a person is told beside the thing itself; `cause` names what it is about, so that it goes when that is gone.
+ * What a person is reported beside the thing itself; `cause` names what it is about, so that it goes when that is gone.
  *
  * @typedef {{ id: number, level: "info" | "warning" | "error", text: string, cause: string }} Notice
  */
@@ -51,7 +51,7 @@ import { placedBy } from "./transforms.js";
  * @property {Readonly<Record<string, any>>} parameters
  * @property {Simulator | null} simulator
  * @property {PlaygroundInfo[]} playgrounds
- * @property {Behaviour[]} behaviours  built-in programs
+ * @property {Behavior[]} behaviors  built-in programs
  * @property {ReadonlyMap<string, Marker>} markers  what stays where it is
  * @property {ReadonlyMap<string, Marker>} objects  movable things and doors
  * @property {Readonly<Record<string, Robot>>} robots
@@ -103,7 +103,7 @@ export const INITIAL = {
   parameters: {},
   simulator: null,
   playgrounds: [],
-  behaviours: [],
+  behaviors: [],
   markers: new Map(),
   objects: new Map(),
   robots: {},
@@ -139,8 +139,8 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
     if (state.greeted) return { ...known, timeNs: 0 };
     // Another simulator: what was known belongs to one that is no more.
     const { connection, notices, noticeCount, selected } = state;
-    const told = notices.filter(({ cause }) => !isSimulators(cause));
-    return { ...INITIAL, connection, notices: told, noticeCount, selected, readOnly, greeted: true, server: name, sessionId };
+    const remaining = notices.filter(({ cause }) => !isSimulators(cause));
+    return { ...INITIAL, connection, notices: remaining, noticeCount, selected, readOnly, greeted: true, server: name, sessionId };
   },
   channels: withChannels,
   services: (state, { names }) => ({ ...state, services: names }),
@@ -154,7 +154,7 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
     },
   }),
   status(state, { status }) {
-    if (typeof status.id === "string" && status.id.startsWith("parameter:")) return state; // told where it was asked
+    if (typeof status.id === "string" && status.id.startsWith("parameter:")) return state; // reported where it was asked
     if (status.id === "access") return state; // the connection panel says so in the page's language
     return withNotice(
       state,
@@ -165,13 +165,13 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   },
   removeStatus: (state, { ids }) => withoutNotices(state, ids.map(statusCause)),
   fault: (state, { what }) => withNotice(state, "error", what),
-  select: (state, { robot }) => withoutUnheard({ ...state, selected: robot }, state.selected),
+  select: (state, { robot }) => withoutStaleReadings({ ...state, selected: robot }, state.selected),
   upload: (state, { what, name, text }) =>
     withoutNotices(withUpload(state, what, { name, text, phase: "sending", fault: null }), [uploadCause(what), FILE]),
-  uploaded(state, { what, message, fault: told = null }) {
+  uploaded(state, { what, message, fault: reported = null }) {
     const upload = state.uploads[/** @type {What} */ (what)];
     if (upload === null) return state;
-    const fault = message === null ? null : (told ?? locate(message, upload.name));
+    const fault = message === null ? null : (reported ?? locate(message, upload.name));
     return withUpload(state, what, { ...upload, phase: fault === null ? "accepted" : "refused", fault });
   },
   forget: (state, { what }) => withUpload(state, what, null),
@@ -187,7 +187,7 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
  * @param {string} robot
  * @returns {State}
  */
-function withoutUnheard(state, robot) {
+function withoutStaleReadings(state, robot) {
   const known = state.robots[robot];
   if (known === undefined || isSensed(state, robot)) return state;
   return { ...state, robots: { ...state.robots, [robot]: { ...known, proximity: {}, ground: {}, raw: {} } } };
@@ -200,7 +200,7 @@ function withChannels(state, { topics }) {
     const part = splitTopic(topic);
     if (part?.name === "_ground_truth/odom") names.add(part.robot);
   }
-  const there = [...names].filter((name) => isThere(state, name)).sort(byName);
+  const there = [...names].filter((name) => isKnownRobot(state, name)).sort(byName);
   const robots = Object.fromEntries(there.map((name) => [name, state.robots[name] ?? NEW_ROBOT]));
   return { ...state, topics, robots, selected: selection(state.selected, robots) };
 }
@@ -216,7 +216,7 @@ function byName(one, other) {
  * @param {State} state
  * @param {string} robot
  */
-function isThere({ simulator }, robot) {
+function isKnownRobot({ simulator }, robot) {
   return simulator?.robots?.includes(robot) ?? true;
 }
 
@@ -227,34 +227,34 @@ function withTopic(state, { topic, value, nowMs = 0 }) {
   if (part.robot === null) return GLOBAL_STEPS[part.name](state, value, nowMs);
   if (part.name === "_aseba/status")
     return { ...state, programs: { ...state.programs, [part.robot]: readStatus(value) } };
-  if (!isThere(state, part.robot)) return state;
+  if (!isKnownRobot(state, part.robot)) return state;
   const robot = reduceRobot(state.robots[part.robot] ?? NEW_ROBOT, part.name, value, nowMs);
   return { ...state, robots: { ...state.robots, [part.robot]: robot } };
 }
 
 const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any, nowMs: number) => State>} */ ({
-  [TRANSFORMS]: placedBy,
+  [TRANSFORMS]: applyTransforms,
   "/_markers": (state, value) => ({ ...state, markers: applyMarkers(state.markers, value.markers) }),
   "/_markers/objects": (state, value) => ({ ...state, objects: applyMarkers(state.objects, value.markers) }),
   "/simulator/_state"(state, value) {
-    const told = JSON.parse(value.data);
+    const reported = JSON.parse(value.data);
     const simulator = {
-      playground: told.playground ?? "",
-      title: told.title ?? told.playground ?? "",
-      notes: told.notes ?? [],
-      paused: told.paused ?? false,
-      factor: told.real_time_factor ?? 1,
-      achieved: told.achieved ?? 0,
-      robots: told.robots?.map((/** @type {any} */ { name }) => name) ?? null,
+      playground: reported.playground ?? "",
+      title: reported.title ?? reported.playground ?? "",
+      notes: reported.notes ?? [],
+      paused: reported.paused ?? false,
+      factor: reported.real_time_factor ?? 1,
+      achieved: reported.achieved ?? 0,
+      robots: reported.robots?.map((/** @type {any} */ { name }) => name) ?? null,
       worldNames: Object.fromEntries(
-        (told.robots ?? []).map((/** @type {any} */ { name, robot = name }) => [name, robot]),
+        (reported.robots ?? []).map((/** @type {any} */ { name, robot = name }) => [name, robot]),
       ),
-      fallen: (told.robots ?? []).filter((/** @type {any} */ robot) => robot.fallen).map((/** @type {any} */ { name }) => name),
-      movables: told.movables ?? [],
+      fallen: (reported.robots ?? []).filter((/** @type {any} */ robot) => robot.fallen).map((/** @type {any} */ { name }) => name),
+      movables: reported.movables ?? [],
     };
     return withChannels({ ...state, simulator }, state);
   },
-  "/aseba_runtime/_behaviours": (state, value) => ({ ...state, behaviours: JSON.parse(value.data) }),
+  "/aseba_runtime/_behaviours": (state, value) => ({ ...state, behaviors: JSON.parse(value.data) }),
   "/simulator/_playgrounds": (state, value) => ({
     ...state,
     playgrounds: JSON.parse(value.data).map(
@@ -316,8 +316,8 @@ const NODE_AND_PARAMETER = new RegExp(`^(${Object.values(PARAMETERS).join("|").r
  * @returns {Fault}
  */
 export function locate(message, name = "") {
-  const told = message.replace(NODE_AND_PARAMETER, "");
-  const text = name !== "" && told.startsWith(`${name}:`) ? told.slice(name.length + 1).trim() : told;
+  const reported = message.replace(NODE_AND_PARAMETER, "");
+  const text = name !== "" && reported.startsWith(`${name}:`) ? reported.slice(name.length + 1).trim() : reported;
   const match = /line (\d+), column (\d+):?\s*/.exec(text);
   if (match === null) return { text, line: null, column: null };
   return { text: text.replace(match[0], ""), line: Number(match[1]), column: Number(match[2]) };

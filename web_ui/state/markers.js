@@ -1,7 +1,7 @@
 // The playground as markers by namespace and id, the way RViz keeps them.
 
 /** @typedef {{ x: number, y: number, z: number }} Vector */
-/** @typedef {{ r: number, g: number, b: number, a: number }} Colour */
+/** @typedef {{ r: number, g: number, b: number, a: number }} Color */
 /**
  * @typedef {object} Marker
  * @property {string} ns
@@ -10,9 +10,9 @@
  * @property {number} action
  * @property {{ position: Vector, orientation: { x: number, y: number, z: number, w: number } }} pose
  * @property {Vector} scale
- * @property {Colour} color
+ * @property {Color} color
  * @property {Vector[]} points
- * @property {Colour[]} colors
+ * @property {Color[]} colors
  * @property {{ data: ArrayLike<number>, image?: ImageBitmap | HTMLCanvasElement }} [texture]  a picture over the whole of
  *   the marker: PNG, empty for none, or already read
  */

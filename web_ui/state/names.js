@@ -43,11 +43,11 @@ export const ROBOT_TOPICS = [
 ];
 
 /** Of more robots than these, what only panels and beams show is asked of the selected one alone. */
-export const CROWD = 4;
+export const MANY_ROBOTS = 4;
 
 /** What every robot is drawn by. */
 const DRAWN = /^(?:_ground_truth|joint_states|_led|buttons|_pen|_sound|_aseba)\b/;
-/** What the transforms tell as well while time goes on. */
+/** What the transforms report as well while time goes on. */
 const PLACED = /^(?:_ground_truth|joint_states)\b/;
 
 /** @typedef {{ isByTransforms: boolean }} Placed */
@@ -59,8 +59,8 @@ const PLACED = /^(?:_ground_truth|joint_states)\b/;
  */
 
 /** @param {Pick<Watching, "robots">} state */
-function isCrowd({ robots }) {
-  return Object.keys(robots).length > CROWD;
+function hasManyRobots({ robots }) {
+  return Object.keys(robots).length > MANY_ROBOTS;
 }
 
 /**
@@ -70,7 +70,7 @@ function isCrowd({ robots }) {
  * @param {string} robot
  */
 export function isSensed({ robots, selected }, robot) {
-  return robot === selected || Object.keys(robots).length <= CROWD;
+  return robot === selected || Object.keys(robots).length <= MANY_ROBOTS;
 }
 
 /**
@@ -82,15 +82,15 @@ export function isSensed({ robots, selected }, robot) {
 export function isWatched(state, topic) {
   const part = splitTopic(topic);
   if (part === null) return false;
-  if (part.robot === null) return topic !== TRANSFORMS || isCrowd(state);
+  if (part.robot === null) return topic !== TRANSFORMS || hasManyRobots(state);
   if (isSensed(state, part.robot)) return true;
   if (PLACED.test(part.name) && state.robots[part.robot]?.isByTransforms && !state.simulator?.paused) return false;
   return DRAWN.test(part.name);
 }
 
 /** Another text whenever `isWatched` may say something else of the same topics. @param {Watching} state */
-export function watchedFor(state) {
-  if (!isCrowd(state)) return "";
+export function subscriptionKey(state) {
+  if (!hasManyRobots(state)) return "";
   const placed = Object.values(state.robots).filter(({ isByTransforms }) => isByTransforms).length;
   return `${state.selected} ${placed} ${state.simulator?.paused}`;
 }
@@ -100,7 +100,7 @@ export const PARAMETERS = /** @type {const} */ ({
   factor: "/simulator.real_time_factor",
   stepTicks: "/simulator.step_ticks",
   source: "/aseba_runtime.script.source",
-  behaviour: "/aseba_runtime.behaviour",
+  behavior: "/aseba_runtime.behaviour",
   programName: "/aseba_runtime.script.name",
 });
 

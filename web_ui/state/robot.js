@@ -4,7 +4,7 @@ import { applyMarkers } from "./markers.js";
 import { BUTTONS } from "./names.js";
 
 /** @typedef {import("./markers.js").Marker} Marker */
-/** @typedef {{ x: number, y: number, z: number, yaw: number, roll: number, pitch: number }} Pose  metres, radians */
+/** @typedef {{ x: number, y: number, z: number, yaw: number, roll: number, pitch: number }} Pose  meters, radians */
 /** @typedef {{ pose: Pose, stampNs: number, arrivedMs: number }} PoseSample */
 /**
  * @typedef {object} Program
@@ -22,7 +22,7 @@ import { BUTTONS } from "./names.js";
  * @property {{ left: number, right: number }} wheels            rad
  * @property {{ left: number, right: number }} wheelSpeeds       rad/s
  * @property {Record<string, number[]>} leds                     levels 0…1 by group
- * @property {Record<string, number>} proximity                  metres, Infinity: nothing
+ * @property {Record<string, number>} proximity                  meters, Infinity: nothing
  * @property {Record<string, number>} ground                     Range: ±Infinity
  * @property {Record<string, number[]>} raw                      Thymio integers by sensor
  * @property {Record<string, boolean>} buttons
@@ -30,7 +30,7 @@ import { BUTTONS } from "./names.js";
  * @property {ArrayLike<number> | null} wave                     period of its tones
  * @property {ArrayLike<number> | null} samples                  of its last sound that is no tone
  * @property {ReadonlyMap<string, Marker>} trail                 what its pen has drawn
- * @property {boolean} isByTransforms                            whether the common transforms tell where it is
+ * @property {boolean} isByTransforms                            whether the common transforms report where it is
  */
 
 /** @type {Robot} */
@@ -119,7 +119,7 @@ function readJoints(robot, value) {
   };
 }
 
-/** All LED levels in one array, cut by the labelled dimensions. @param {any} value */
+/** All LED levels in one array, cut by the labeled dimensions. @param {any} value */
 function splitGroups(value) {
   /** @type {Record<string, number[]>} */
   const groups = {};

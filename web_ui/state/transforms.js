@@ -22,9 +22,9 @@ const WHEELS = /** @type {const} */ ({ left: "left_wheel_link", right: "right_wh
  * @param {number} nowMs  wall time of arrival, for drawing only
  * @returns {S}
  */
-export function placedBy(state, message, nowMs) {
+export function applyTransforms(state, message, nowMs) {
   const frames = new Map();
-  for (const told of message.transforms) frames.set(told.child_frame_id, told);
+  for (const reported of message.transforms) frames.set(reported.child_frame_id, reported);
   /** @type {Record<string, Robot>} */
   const moved = {};
   for (const [name, robot] of Object.entries(state.robots)) {

@@ -29,7 +29,7 @@ export function createTour({ language, step: first, stepped, close }) {
   const next = h("button", { type: "button", class: "primary", onclick: () => go(1) });
   const card = h(
     "dialog",
-    { class: "tour", "aria-labelledby": "tour-title", "aria-describedby": "tour-text" },
+    { class: "tour", "aria-labeledby": "tour-title", "aria-describedby": "tour-text" },
     h(
       "div",
       { class: "tour-head" },
@@ -96,7 +96,7 @@ export function createTour({ language, step: first, stepped, close }) {
   return {
     render,
     /** It is on the page now. */
-    begin() {
+    start() {
       document.body.append(ring, card);
       card.show();
       show();

@@ -89,7 +89,7 @@ export const de = {
   "bar.grid": "Größe des Rasters",
   "bar.snap": "Dinge stehen auf",
   "bar.lines": "Linien",
-  "bar.centres": "Feldmitten",
+  "bar.centers": "Feldmitten",
   "file.try": "Jetzt ausprobieren",
   "file.tryHelp": "An den Simulator geben und dorthin gehen",
   "file.save": "Speichern",

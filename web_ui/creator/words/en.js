@@ -89,7 +89,7 @@ export const en = {
   "bar.grid": "Size of the grid",
   "bar.snap": "Things stand on",
   "bar.lines": "lines",
-  "bar.centres": "centres",
+  "bar.centers": "centres",
   "file.try": "Try it now",
   "file.tryHelp": "Give it to the simulator and go there",
   "file.save": "Save",

@@ -89,7 +89,7 @@ export const fr = {
   "bar.grid": "Taille de la grille",
   "bar.snap": "Les objets se posent sur",
   "bar.lines": "lignes",
-  "bar.centres": "centres",
+  "bar.centers": "centres",
   "file.try": "Essayer",
   "file.tryHelp": "Le donner au simulateur et y aller",
   "file.save": "Enregistrer",

@@ -89,7 +89,7 @@ export const it = {
   "bar.grid": "Passo della griglia",
   "bar.snap": "Gli oggetti stanno su",
   "bar.lines": "linee",
-  "bar.centres": "centri",
+  "bar.centers": "centri",
   "file.try": "Provare ora",
   "file.tryHelp": "Darlo al simulatore e andarci",
   "file.save": "Salvare",

@@ -1,4 +1,4 @@
-// A line with which an event or constant is added: name, number, button; wrong input is told in place.
+// A line with which an event or constant is added: name, number, button; wrong input is reported in place.
 
 import { h, setText } from "../../panels/dom.js";
 import { WORD } from "../help.js";

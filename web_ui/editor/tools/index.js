@@ -19,7 +19,7 @@ import { variablesTool } from "./variables.js";
 /**
  * @typedef {object} ToolContext
  * @property {import("../../i18n/index.js").Translate} t
- * @property {import("../desk.js").Desk} desk
+ * @property {import("../editor_session.js").EditorSession} session
  * @property {(text: string) => void} announce
  * @property {(text: string) => void} insert          into the program, at the cursor
  * @property {(name: string, values: number[]) => Promise<{ ok: boolean, message: string }>} setVariable
@@ -34,7 +34,7 @@ const TOOLS = [variablesTool, eventsTool, constantsTool, plotTool, referenceTool
 
 /** @param {ToolContext} context */
 export function toolbox(context) {
-  const { t, desk } = context;
+  const { t, session } = context;
   const tools = TOOLS.map((create) => create(context));
   const tabs = tools.map(({ name }) =>
     h(
@@ -50,18 +50,18 @@ export function toolbox(context) {
     ),
   );
   const panels = tools.map(({ name, element }) =>
-    h("div", { role: "tabpanel", class: "tool", id: `tool-${name}`, "aria-labelledby": `tool-tab-${name}` }, element),
+    h("div", { role: "tabpanel", class: "tool", id: `tool-${name}`, "aria-labeledby": `tool-tab-${name}` }, element),
   );
   /** @param {string} name */
   const choose = (name) => {
-    desk.tool = name;
+    session.tool = name;
     context.redraw();
   };
   const list = h("div", { role: "tablist", class: "tabs", "aria-label": t("tools") }, ...tabs);
   list.addEventListener("keydown", ({ key }) => {
     const step = key === "ArrowRight" ? 1 : key === "ArrowLeft" ? -1 : 0;
     if (step === 0) return;
-    const index = (tools.findIndex(({ name }) => name === desk.tool) + step + tools.length) % tools.length;
+    const index = (tools.findIndex(({ name }) => name === session.tool) + step + tools.length) % tools.length;
     choose(tools[index].name);
     tabs[index].focus();
   });
@@ -70,7 +70,7 @@ export function toolbox(context) {
     /** @param {View} view */
     render(view) {
       tools.forEach((tool, index) => {
-        const chosen = tool.name === desk.tool;
+        const chosen = tool.name === session.tool;
         setAttribute(tabs[index], "aria-selected", String(chosen));
         setAttribute(tabs[index], "tabindex", chosen ? "0" : "-1");
         panels[index].hidden = !chosen;

@@ -5,7 +5,7 @@ import { download } from "../download.js";
 import { csv, parseNumbers } from "../numbers.js";
 
 /** @param {import("./index.js").ToolContext} context @returns {import("./index.js").Tool} */
-export function variablesTool({ t, desk, announce, setVariable, redraw }) {
+export function variablesTool({ t, session, announce, setVariable, redraw }) {
   const filter = h("input", { type: "search", placeholder: t("filter"), "aria-label": t("filter"), oninput: redraw });
   const hidden = h("input", { type: "checkbox", onchange: redraw });
   const body = h("tbody");
@@ -70,7 +70,7 @@ export function variablesTool({ t, desk, announce, setVariable, redraw }) {
       "aria-label": t("variables.watch", { name }),
       title: t("variables.watch", { name }),
       onclick: () => {
-        desk.toggleWatch(name);
+        session.toggleWatch(name);
         redraw();
       },
     });
@@ -108,9 +108,9 @@ export function variablesTool({ t, desk, announce, setVariable, redraw }) {
         return name.toLowerCase().includes(wanted) && (hidden.checked || !secret);
       });
       const sorted = [
-        ...names.filter((name) => desk.watched.has(name)),
-        ...names.filter((name) => !desk.watched.has(name) && !known.has(name)), // the program's own
-        ...names.filter((name) => !desk.watched.has(name) && known.has(name)),
+        ...names.filter((name) => session.watched.has(name)),
+        ...names.filter((name) => !session.watched.has(name) && !known.has(name)), // the program's own
+        ...names.filter((name) => !session.watched.has(name) && known.has(name)),
       ];
       if (sorted.join() !== listed) {
         if (body.querySelector("input") !== null) return; // somebody is typing
@@ -131,7 +131,7 @@ export function variablesTool({ t, desk, announce, setVariable, redraw }) {
         const text = values.get(name)?.join(" ") ?? "";
         setText(row.value, text);
         setAttribute(row.value, "aria-label", t("variables.value", { name, value: text }));
-        const watched = desk.watched.has(name);
+        const watched = session.watched.has(name);
         setText(row.star, watched ? "★" : "☆");
         setAttribute(row.star, "aria-pressed", String(watched));
       }

@@ -7,7 +7,7 @@ import { needed, optional, RULES } from "../rules.js";
 /** @type {import("./index.js").Kind} */
 export const activation = {
   name: "activation",
-  group: "thing",
+  group: "object",
   fields: {
     x_m: needed(RULES.coordinate),
     y_m: needed(RULES.coordinate),

@@ -6,7 +6,7 @@ import { needed, optional, RULES } from "../rules.js";
 /** @type {import("./index.js").Kind} */
 export const door = {
   name: "door",
-  group: "thing",
+  group: "object",
   fields: {
     closed_x_m: needed(RULES.coordinate),
     closed_y_m: needed(RULES.coordinate),

@@ -15,7 +15,7 @@ import { wall } from "./wall.js";
 /**
  * @typedef {object} Kind
  * @property {string} name
- * @property {"ground" | "paint" | "thing" | "robot"} group
+ * @property {"ground" | "paint" | "object" | "robot"} group
  * @property {import("../rules.js").Fields} fields   besides `kind`, and for shapes `name`
  * @property {[string, string][]} points   keys of the places by which it is where it is; the first is its middle
  * @property {string} [path]        key of a list of points

@@ -14,7 +14,7 @@ const PARTS = /** @type {const} */ ([
 /** @type {import("./index.js").Kind} */
 export const uFigure = {
   name: "u_figure",
-  group: "thing",
+  group: "object",
   fields: {
     unit_m: needed(RULES.extent),
     height_m: needed(RULES.extent),

@@ -6,7 +6,7 @@ import { needed, optional, RULES } from "../rules.js";
 /** @type {import("./index.js").Kind} */
 export const wall = {
   name: "wall",
-  group: "thing",
+  group: "object",
   fields: {
     start_x_m: needed(RULES.coordinate),
     start_y_m: needed(RULES.coordinate),

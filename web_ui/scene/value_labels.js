@@ -10,7 +10,7 @@ import { MAX_RANGE_M } from "./rays.js";
 const BESIDE_M = 0.03;
 
 /** Every number with its place in the robot's frame. @param {Robot} robot @returns {{ text: string, place: Place }[]} */
-export function numbersOf({ raw, proximity }) {
+export function valueLabelsOf({ raw, proximity }) {
   const beams = PROXIMITY.map((name, index) => {
     const { x, y, z, yaw } = PROXIMITY_PLACES[name];
     const range = proximity[name];
@@ -26,7 +26,7 @@ export function numbersOf({ raw, proximity }) {
   );
 }
 
-export class Numbers {
+export class ValueLabels {
   /** @param {HTMLElement} layer */
   constructor(layer) {
     this.layer = layer;

@@ -1,6 +1,6 @@
 // Keys on the 3D view: arrows and Enter are the robot's buttons, with Shift they turn the camera.
 
-/** @typedef {import("./scene/index.js").SceneView} SceneView */
+/** @typedef {import("../scene/index.js").SceneView} SceneView */
 
 const BUTTON_KEYS = /** @type {Record<string, string>} */ ({
   ArrowUp: "forward",
@@ -15,7 +15,7 @@ const TURNS = /** @type {Record<string, [number, number]>} */ ({
   ArrowUp: [0, 1],
   ArrowDown: [0, -1],
 });
-const VIEW_KEYS = /** @type {Record<string, import("./scene/camera.js").ViewName>} */ ({
+const VIEW_KEYS = /** @type {Record<string, import("../scene/camera.js").ViewName>} */ ({
   Home: "home",
   t: "top",
   f: "follow",
@@ -43,24 +43,24 @@ export function plainKey({ key }) {
 /**
  * @param {HTMLElement} element  which must have the focus
  * @param {SceneView} scene
- * @param {import("./move/mover.js").Mover} mover
+ * @param {import("../move/drag_controller.js").DragController} dragController
  * @param {(button: string, pressed: boolean) => void} press
  */
-export function watchKeyboard(element, scene, mover, press) {
+export function watchKeyboard(element, scene, dragController, press) {
   /** @type {Set<string>} */ const held = new Set();
   element.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { shiftKey, repeat } = event;
     const key = plainKey(event);
-    if (key === "m") mover.setMode(!mover.mode);
-    else if (mover.mode && key in MOVES) {
+    if (key === "m") dragController.setMode(!dragController.mode);
+    else if (dragController.mode && key in MOVES) {
       const [x, y, turn] = MOVES[key];
       const steps = shiftKey && turn === 0 ? FAR : 1;
-      mover.nudge(x * steps, y * steps, turn);
-    } else if (mover.mode && key === "Enter") void mover.drop();
-    else if (mover.mode && key === "n") mover.next();
-    else if (mover.mode && key === "Escape") {
-      mover.setMode(false);
+      dragController.nudge(x * steps, y * steps, turn);
+    } else if (dragController.mode && key === "Enter") void dragController.drop();
+    else if (dragController.mode && key === "n") dragController.next();
+    else if (dragController.mode && key === "Escape") {
+      dragController.setMode(false);
       event.stopPropagation(); // and nothing is stopped
     } else if (shiftKey && key in TURNS) scene.camera.turn(...TURNS[key]);
     else if (key in BUTTON_KEYS) {
@@ -70,7 +70,7 @@ export function watchKeyboard(element, scene, mover, press) {
       }
     } else if (key === "+" || key === "=") scene.zoom(1);
     else if (key === "-") scene.zoom(-1);
-    else if (key in VIEW_KEYS) scene.look(VIEW_KEYS[key]);
+    else if (key in VIEW_KEYS) scene.setView(VIEW_KEYS[key]);
     else return;
     event.preventDefault();
   });

@@ -1,17 +1,17 @@
 // What outlives a change of language, or a look at the robot: the programs, what is known of the robots, what is watched.
 
-import { note } from "../memory.js";
+import { trySetItem } from "../browser/local_storage.js";
 import { History } from "./history.js";
 import { INITIAL, reduce } from "./state.js";
-import { Keeper } from "./storage.js";
+import { FileStore } from "./file_store.js";
 import { ALL, Workspace } from "./workspace.js";
 
 const WATCHED_KEY = "editor.watched";
 const SIZE_KEY = "editor.fontSize";
 const SIZES = [10, 11, 12, 13, 14, 16, 18, 20, 24, 28, 32]; // pixels
 
-export class Desk {
-  /** @param {import("../memory.js").Memory} storage @param {() => number} now */
+export class EditorSession {
+  /** @param {import("../browser/local_storage.js").KeyValueStore} storage @param {() => number} now */
   constructor(storage, now) {
     this.storage = storage;
     this.state = INITIAL;
@@ -19,7 +19,7 @@ export class Desk {
     this.tool = "variables";
     /** @type {Map<string, any>} how each text was left: its cursor, what can be undone */ this.texts = new Map();
     /** @type {() => void} */ this.onText = () => {};
-    this.workspace = new Workspace({ keeper: new Keeper(storage), now, changed: () => this.onText() });
+    this.workspace = new Workspace({ fileStore: new FileStore(storage), now, changed: () => this.onText() });
     /** @type {Set<string>} */ this.watched = new Set(JSON.parse(storage.getItem(WATCHED_KEY) ?? "[]"));
     this.fontSize = Number(storage.getItem(SIZE_KEY)) || 14;
   }
@@ -49,7 +49,7 @@ export class Desk {
   /** @param {string} key  a variable, or `eventKey` of an event */
   toggleWatch(key) {
     if (!this.watched.delete(key)) this.watched.add(key);
-    note(this.storage, WATCHED_KEY, JSON.stringify([...this.watched]));
+    trySetItem(this.storage, WATCHED_KEY, JSON.stringify([...this.watched]));
     for (const name of [...this.history.series.keys()]) {
       const owner = name.endsWith(")") ? eventKey(name.replace(/\(\d+\)$/, "")) : name.replace(/\[\d+\]$/, "");
       if (!this.watched.has(owner)) this.history.series.delete(name);
@@ -60,7 +60,7 @@ export class Desk {
   resize(step) {
     const index = SIZES.findIndex((size) => size >= this.fontSize);
     this.fontSize = SIZES[Math.min(Math.max(index + step, 0), SIZES.length - 1)];
-    note(this.storage, SIZE_KEY, String(this.fontSize));
+    trySetItem(this.storage, SIZE_KEY, String(this.fontSize));
   }
 
   /** Tabs there are for these robots. @param {readonly string[]} robots */

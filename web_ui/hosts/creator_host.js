@@ -1,14 +1,14 @@
 // The place of the playground creator on the page: loads it when it is first opened, and lets it be tried in the
 // simulator.
 
-import { memory } from "./memory.js";
-import { faultView } from "./panels/fault.js";
-import { parse } from "./playground/document.js";
-import { CONNECTION } from "./state/index.js";
+import { localStore } from "../browser/local_storage.js";
+import { faultView } from "../panels/fault.js";
+import { parse } from "../playground/document.js";
+import { CONNECTION } from "../state/index.js";
 
-/** @typedef {import("./creator/index.js").Creator} Creator */
-/** @typedef {import("./creator/workshop.js").Workshop} Workshop */
-/** @typedef {import("./panels/index.js").Context} Context */
+/** @typedef {import("../creator/index.js").Creator} Creator */
+/** @typedef {import("../creator/creator_session.js").CreatorSession} CreatorSession */
+/** @typedef {import("../panels/index.js").Context} Context */
 
 /** The tools stand at the left of the view. */
 const PALETTE_PX = 66;
@@ -17,26 +17,26 @@ export class CreatorHost {
   /**
    * @param {object} options
    * @param {(slot: "stage" | "creator" | "footer") => HTMLElement} options.slot
-   * @param {() => import("./scene/index.js").SceneView} options.scene
+   * @param {() => import("../scene/index.js").SceneView} options.scene
    */
   constructor({ slot, scene }) {
     this.slot = slot;
     this.scene = scene;
     this.isOpen = false;
-    /** @type {typeof import("./creator/index.js") | null} */ this.module = null;
-    /** @type {Workshop | null} */ this.workshop = null;
+    /** @type {typeof import("../creator/index.js") | null} */ this.module = null;
+    /** @type {CreatorSession | null} */ this.session = null;
     /** @type {Creator | null} */ this.creator = null;
     /** @type {Context | null} */ this.context = null;
   }
 
   /** What the scene draws instead of the simulator's world; null while nobody builds. */
   get world() {
-    return this.isOpen ? (this.workshop?.world ?? null) : null;
+    return this.isOpen ? (this.session?.world ?? null) : null;
   }
 
   /** What is drawn over it. */
   get sketch() {
-    return this.isOpen ? (this.workshop?.sketch ?? null) : null;
+    return this.isOpen ? (this.session?.sketch ?? null) : null;
   }
 
   /** Once a frame, before it is drawn. */
@@ -47,29 +47,29 @@ export class CreatorHost {
   }
 
   /** The page has other words, or is new. @param {Context} context */
-  dress(context) {
+  setContext(context) {
     this.context = context;
     if (this.isOpen) this.#build();
   }
 
-  /** Go on building, or with this playground. @param {import("./playground/document.js").Playground} [playground] */
+  /** Go on building, or with this playground. @param {import("../playground/document.js").Playground} [playground] */
   async open(playground) {
     const { context } = this;
     if (context === null) return;
-    this.module ??= await import("./creator/index.js").catch(() => null);
+    this.module ??= await import("../creator/index.js").catch(() => null);
     if (this.module === null) {
       context.store.dispatch({ type: "notice", level: "error", text: context.t("app.notLoaded"), cause: CONNECTION });
       return;
     }
     const title = this.module.WORDS[context.language]["new.title"];
-    this.workshop ??= new this.module.Workshop({
-      shelf: memory,
+    this.session ??= new this.module.CreatorSession({
+      storage: localStore,
       title,
-      tell: (phrase) => this.creator?.tell(phrase),
+      report: (phrase) => this.creator?.report(phrase),
       changed: () => this.scene().invalidate(),
     });
     if (playground !== undefined) {
-      this.workshop.take(playground, { word: "did.opened", values: { name: playground.title } });
+      this.session.replacePlayground(playground, { word: "did.opened", values: { name: playground.title } });
       this.scene().reframe();
     }
     if (!this.isOpen) {
@@ -77,12 +77,12 @@ export class CreatorHost {
       window.addEventListener("pagehide", this.#keep);
       document.body.classList.add("building");
       this.slot("creator").hidden = false;
-      context.mover.setMode(false);
+      context.dragController.setMode(false);
       context.editor.close(); // there is room for one of them
       this.scene().camera.setInset(PALETTE_PX);
       this.#build();
     }
-    this.scene().look("home");
+    this.scene().setView("home");
   }
 
   /** Go on with a playground of the simulator's. Fails with a Fault for one that is not ours. @param {string} text */
@@ -97,7 +97,7 @@ export class CreatorHost {
 
   close() {
     if (!this.isOpen) return;
-    this.workshop?.keep();
+    this.session?.keep();
     this.isOpen = false;
     window.removeEventListener("pagehide", this.#keep);
     this.creator?.destroy();
@@ -105,13 +105,13 @@ export class CreatorHost {
     document.body.classList.remove("building");
     this.slot("creator").hidden = true;
     this.scene().camera.setInset(0);
-    this.scene().look("home");
+    this.scene().setView("home");
   }
 
   /** What tests see of it: plain data; null before it is first opened. */
   snapshot() {
-    if (this.workshop === null) return null;
-    const { playground, selected, placing, ghost, cameraOn, history } = this.workshop.builder;
+    if (this.session === null) return null;
+    const { playground, selected, placing, ghost, cameraOn, history } = this.session.model;
     return {
       isOpen: this.isOpen,
       playground,
@@ -124,26 +124,26 @@ export class CreatorHost {
     };
   }
 
-  #keep = () => this.workshop?.keep();
+  #keep = () => this.session?.keep();
 
   /** Give it to the simulator; what it refuses stays here, with its reason. */
   async #tryIt() {
-    const { context, workshop, creator } = this;
-    if (context === null || workshop === null || creator === null) return;
+    const { context, session, creator } = this;
+    if (context === null || session === null || creator === null) return;
     const { actions, store, t } = context;
     creator.refuse(null);
-    await actions.loadPlayground(workshop.fileName, new TextEncoder().encode(workshop.text));
+    await actions.loadPlayground(session.fileName, new TextEncoder().encode(session.text));
     const upload = store.state.uploads.playground;
     if (upload?.phase === "accepted") this.close();
-    else creator.refuse(faultView(t, t("playground.refused", { name: workshop.fileName }), upload?.fault ?? null));
+    else creator.refuse(faultView(t, t("playground.refused", { name: session.fileName }), upload?.fault ?? null));
   }
 
   #build() {
-    const { module, workshop, context } = this;
-    if (module === null || workshop === null || context === null) return;
+    const { module, session, context } = this;
+    if (module === null || session === null || context === null) return;
     this.creator?.destroy();
     this.creator = module.createCreator({
-      workshop,
+      session,
       language: context.language,
       pageText: context.t,
       scene: this.scene(),

@@ -2,8 +2,8 @@
 
 import { h, setAttribute, setText } from "../panels/dom.js";
 
-/** @param {import("../i18n/index.js").Translate} t @param {import("./builder.js").Builder} builder */
-export function thingsList(t, builder) {
+/** @param {import("../i18n/index.js").Translate} t @param {import("./creator_model.js").CreatorModel} model */
+export function itemList(t, model) {
   const summary = h("summary");
   const list = h("ul", { class: "things" });
   const element = h("details", { class: "things-list" }, summary, list);
@@ -12,14 +12,14 @@ export function thingsList(t, builder) {
   return {
     element,
     render() {
-      const { items } = builder.playground;
+      const { items } = model.playground;
       if (items !== shown) {
         shown = items;
         rows = items.map(({ kind, name }) => ({
           name,
           button: h(
             "button",
-            { type: "button", class: "plain", "data-thing": name, onclick: () => builder.select(name) },
+            { type: "button", class: "plain", "data-thing": name, onclick: () => model.select(name) },
             name,
             h("small", {}, t(`kind.${kind}`)),
           ),
@@ -27,7 +27,7 @@ export function thingsList(t, builder) {
         list.replaceChildren(...rows.map(({ button }) => h("li", {}, button)));
         setText(summary, t("things", { count: items.length }));
       }
-      for (const { name, button } of rows) setAttribute(button, "aria-pressed", String(name === builder.selected));
+      for (const { name, button } of rows) setAttribute(button, "aria-pressed", String(name === model.selected));
     },
   };
 }

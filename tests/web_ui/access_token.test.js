@@ -1,16 +1,16 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { memoryOf } from "../../web_ui/memory.js";
+import { storageOrMap } from "../../web_ui/browser/local_storage.js";
 import { Session } from "../../web_ui/protocol/session.js";
 import { INITIAL, reduce } from "../../web_ui/state/index.js";
-import { takeToken, tokenIn, withoutToken } from "../../web_ui/token.js";
+import { resolveToken, tokenIn, withoutToken } from "../../web_ui/browser/access_token.js";
 
 const ADDRESS = "http://10.1.2.3:8080/";
 
-/** A tab's memory that keeps everything for itself. */
-function shelf() {
-  return memoryOf(() => {
+/** A tab's localStore that keeps everything for itself. */
+function storage() {
+  return storageOrMap(() => {
     throw new Error("forbidden");
   });
 }
@@ -31,22 +31,22 @@ for (const [rest, token, clean] of /** @type {[string, string | null, string][]}
 }
 
 test("the token leaves the address and is there after a reload", () => {
-  const tab = shelf();
+  const tab = storage();
   /** @type {string[]} */ const shown = [];
-  assert.equal(takeToken(tab, `${ADDRESS}#token=abcd`, (address) => shown.push(address)), "abcd");
+  assert.equal(resolveToken(tab, `${ADDRESS}#token=abcd`, (address) => shown.push(address)), "abcd");
   assert.deepEqual(shown, [ADDRESS]);
-  assert.equal(takeToken(tab, ADDRESS, () => assert.fail("nothing to take away")), "abcd");
-  assert.equal(takeToken(shelf(), ADDRESS, () => assert.fail("nothing to take away")), "");
+  assert.equal(resolveToken(tab, ADDRESS, () => assert.fail("nothing to take away")), "abcd");
+  assert.equal(resolveToken(storage(), ADDRESS, () => assert.fail("nothing to take away")), "");
 });
 
 test("a token that cannot be kept stays in the address", () => {
   const full = {
-    ...shelf(),
+    ...storage(),
     setItem() {
       throw new Error("no room");
     },
   };
-  assert.equal(takeToken(full, `${ADDRESS}#token=abcd`, () => assert.fail("it would be lost")), "abcd");
+  assert.equal(resolveToken(full, `${ADDRESS}#token=abcd`, () => assert.fail("it would be lost")), "abcd");
 });
 
 test("a connection that is refused says whether a token was given", () => {

@@ -1,13 +1,13 @@
 // What a person can do, as the messages, calls and parameters that do it. No document, no scene.
 
-import { CHECK_SERVICE, checkRequest, firstFault } from "./editor/checking.js";
-import { startOf } from "./move/start.js";
-import { FILE } from "./state/index.js";
-import { PARAMETERS, robotTopic } from "./state/names.js";
-import { textOf } from "./textfile.js";
+import { CHECK_SERVICE, checkRequest, firstFault } from "../editor/checking.js";
+import { startOf } from "../move/start.js";
+import { FILE } from "../state/index.js";
+import { PARAMETERS, robotTopic } from "../state/names.js";
+import { textOf } from "../browser/text_file.js";
 
-/** @typedef {import("./protocol/client.js").Client} Client */
-/** @typedef {import("./state/store.js").Store} Store */
+/** @typedef {import("../protocol/client.js").Client} Client */
+/** @typedef {import("../state/store.js").Store} Store */
 
 /** Of rcl_interfaces/msg/ParameterType. */
 const DOUBLE_ARRAY = 8;
@@ -60,15 +60,15 @@ export class Actions {
   press(robot, button, pressed) {
     const topic = robotTopic(robot, `_press/${button}`);
     const since = this.held.get(topic);
-    const tell = () => this.client.publish(topic, "std_msgs/msg/Bool", { data: pressed });
+    const send = () => this.client.publish(topic, "std_msgs/msg/Bool", { data: pressed });
     if (pressed) {
       this.held.set(topic, this.now());
-      return tell();
+      return send();
     }
     const rest = since === undefined ? 0 : since + SHORTEST_PRESS_MS - this.now();
-    if (rest <= 0) return tell();
+    if (rest <= 0) return send();
     this.later(() => {
-      if (this.held.get(topic) === since) tell(); // else it is held again
+      if (this.held.get(topic) === since) send(); // else it is held again
     }, rest);
   }
 
@@ -83,7 +83,7 @@ export class Actions {
     this.client.publish(robotTopic(this.store.state.selected, name), type, value);
   }
 
-  /** Everything stands still: every program stopped, every wheel told zero. */
+  /** Everything stands still: every program stopped, every wheel reported zero. */
   async stop() {
     const { services, robots } = this.store.state;
     const stops = services.filter((name) => name.endsWith("/aseba/stop"));
@@ -131,7 +131,7 @@ export class Actions {
    * Put a robot or a movable thing somewhere; whether the simulator did.
    *
    * @param {string} name   in the world
-   * @param {{ x: number, y: number, yaw: number }} pose  metres, radians
+   * @param {{ x: number, y: number, yaw: number }} pose  meters, radians
    */
   async place(name, { x, y, yaw }) {
     const value = { type: DOUBLE_ARRAY, double_array_value: [x, y, yaw] };
@@ -152,17 +152,17 @@ export class Actions {
   }
 
   /**
-   * What is loaded once more begins anew: a parameter that is set to what it is changes nothing.
+   * What is loaded once more restarts: a parameter that is set to what it is changes nothing.
    *
    * @param {string} loaded
    */
-  async #beginAnew(loaded) {
+  async #restartPrograms(loaded) {
     const isSame = this.loaded === loaded;
     this.loaded = loaded;
     if (!isSame) return;
     const robots = Object.keys(this.store.state.robots);
     if (loaded.startsWith("program")) {
-      await this.client.setParameters([{ name: PARAMETERS.behaviour, value: "" }]);
+      await this.client.setParameters([{ name: PARAMETERS.behavior, value: "" }]);
     }
     for (const verb of ["reset", "run"]) {
       await Promise.all(robots.map((robot) => this.call(robotTopic(robot, `aseba/${verb}`))));
@@ -177,11 +177,11 @@ export class Actions {
     await this.place(name, startOf(this.store.state, text, name));
   }
 
-  /** Switch the robots on with a built-in behaviour. @param {string} name */
-  async setBehaviour(name) {
-    const answer = await this.client.setParameters([{ name: PARAMETERS.behaviour, value: name }]);
-    if (answer.ok) await this.#beginAnew(`behaviour ${name}`);
-    this.#report(PARAMETERS.behaviour, answer);
+  /** Switch the robots on with a built-in behavior. @param {string} name */
+  async setBehavior(name) {
+    const answer = await this.client.setParameters([{ name: PARAMETERS.behavior, value: name }]);
+    if (answer.ok) await this.#restartPrograms(`behavior ${name}`);
+    this.#report(PARAMETERS.behavior, answer);
   }
 
   /** @param {string} name @param {string} text */
@@ -191,7 +191,7 @@ export class Actions {
       { name: PARAMETERS.programName, value: name },
       { name: PARAMETERS.source, value: text },
     ]);
-    if (answer.ok) await this.#beginAnew(`program ${text}`);
+    if (answer.ok) await this.#restartPrograms(`program ${text}`);
     const fault = answer.ok ? null : await this.#faultOf(text);
     this.store.dispatch({ type: "uploaded", what: "program", message: answer.ok ? null : answer.message, fault });
   }

@@ -3,7 +3,7 @@
 import { optional, RULES } from "../rules.js";
 
 /** Movable when there is a mass. */
-export const LOAD = {
+export const PUSHABLE = {
   mass_kg: optional(RULES.mass, null),
   friction: optional(RULES.friction, 0.25),
   restitution: optional(RULES.restitution, 0.1),

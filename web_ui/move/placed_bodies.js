@@ -3,14 +3,14 @@
 
 import { MARKER } from "../state/markers.js";
 
-/** @typedef {[number, number]} Point  metres */
+/** @typedef {[number, number]} Point  meters */
 /** @typedef {{ x: number, y: number, yaw: number }} Pose */
 /** @typedef {import("../state/markers.js").Marker} Marker */
 /** @typedef {import("../state/index.js").State} State */
 /**
- * @typedef {object} Thing
+ * @typedef {object} PlacedBody
  * @property {string} name        in the world
- * @property {string | null} robot  name of the robot in topics; null for other things
+ * @property {string | null} robot  name of the robot in topics; null for other bodies
  * @property {Pose} pose
  * @property {Point[][]} outline  convex polygons in its own frame
  * @property {number} height
@@ -33,22 +33,22 @@ export const ROBOT_OUTLINE = (() => {
   return [[...front, [ROBOT.rear, ROBOT.half], [ROBOT.rear, -ROBOT.half]]];
 })();
 
-/** Robots and movable things, which a hand can take. @param {State} state @returns {Thing[]} */
+/** Robots and movable bodies, which a hand can take. @param {State} state @returns {PlacedBody[]} */
 export function movables(state) {
   const names = state.simulator?.movables ?? [];
-  const things = [...state.objects.values()].map(thingOf);
-  return [...robots(state), ...things.filter(({ name }) => names.includes(name))];
+  const bodies = [...state.objects.values()].map(bodyOf);
+  return [...robots(state), ...bodies.filter(({ name }) => names.includes(name))];
 }
 
-/** All that can be in the way of a thing. @param {State} state @param {string} name */
+/** All that can be in the way of a body. @param {State} state @param {string} name */
 export function obstacles(state, name) {
   const solids = [...state.markers.values(), ...state.objects.values()].filter(({ ns }) => ns.startsWith("solid/"));
-  return [...robots(state), ...solids.map(thingOf)].filter((thing) => thing.name !== name);
+  return [...robots(state), ...solids.map(bodyOf)].filter((body) => body.name !== name);
 }
 
-/** The first obstacle that a thing would meet at a pose, or null. @param {Thing} thing @param {Pose} pose @param {Thing[]} others */
-export function blocker(thing, pose, others) {
-  const mine = placed(thing.outline, pose);
+/** The first obstacle that a body would meet at a pose, or null. @param {PlacedBody} body @param {Pose} pose @param {PlacedBody[]} others */
+export function blocker(body, pose, others) {
+  const mine = placed(body.outline, pose);
   return (
     others.find(({ outline, pose: there }) => {
       const theirs = placed(outline, there);
@@ -58,24 +58,24 @@ export function blocker(thing, pose, others) {
 }
 
 /**
- * The thing that a ray of view meets first, and how high; null when it meets none.
+ * The body that a ray of view meets first, and how high; null when it meets none.
  *
  * @param {{ origin: { x: number, y: number, z: number }, direction: { x: number, y: number, z: number } }} ray
- * @param {Thing[]} things
- * @returns {{ thing: Thing, z: number, x: number, y: number } | null}
+ * @param {PlacedBody[]} bodies
+ * @returns {{ body: PlacedBody, z: number, x: number, y: number } | null}
  */
-export function hit(ray, things) {
+export function hit(ray, bodies) {
   if (ray.direction.z >= 0) return null;
-  const top = Math.max(0, ...things.map(({ height }) => height));
+  const top = Math.max(0, ...bodies.map(({ height }) => height));
   for (let step = STEPS_OF_HEIGHT; step >= 0; step--) {
     const z = (top * step) / STEPS_OF_HEIGHT;
     const place = atHeight(ray, z);
     if (place === null) continue;
-    const thing = things.find(
+    const body = bodies.find(
       ({ outline, pose, height }) =>
         z <= height && placed(outline, pose).some((polygon) => inside(polygon, [place.x, place.y])),
     );
-    if (thing !== undefined) return { thing, z, ...place };
+    if (body !== undefined) return { body, z, ...place };
   }
   return null;
 }
@@ -87,12 +87,12 @@ export function atHeight({ origin, direction }, z) {
   return { x: origin.x + far * direction.x, y: origin.y + far * direction.y };
 }
 
-/** How far a thing reaches from its middle. @param {Thing} thing */
+/** How far a body reaches from its middle. @param {PlacedBody} body */
 export function reach({ outline }) {
   return Math.max(...outline.flat().map(([x, y]) => Math.hypot(x, y)));
 }
 
-/** @param {State} state @returns {Thing[]} */
+/** @param {State} state @returns {PlacedBody[]} */
 function robots({ robots: known, simulator }) {
   return Object.entries(known).flatMap(([robot, { latest }]) => {
     if (latest === null) return [];
@@ -102,8 +102,8 @@ function robots({ robots: known, simulator }) {
   });
 }
 
-/** @param {Marker} marker @returns {Thing} */
-function thingOf({ ns, type, pose: { position, orientation: q }, scale, points }) {
+/** @param {Marker} marker @returns {PlacedBody} */
+function bodyOf({ ns, type, pose: { position, orientation: q }, scale, points }) {
   const yaw = Math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
   const pose = { x: position.x, y: position.y, yaw };
   const name = ns.slice(ns.indexOf("/") + 1);

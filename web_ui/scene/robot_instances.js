@@ -1,9 +1,9 @@
 // Many robots at once: each piece of the model is one draw call, however many robots there are. Robots that are near
-// are one fleet, those that are small on the screen another. The lists below are where a new piece is added.
+// are one instances, those that are small on the screen another. The lists below are where a new piece is added.
 
 import * as THREE from "three";
 
-import { createBlob } from "./blob.js";
+import { createContactShadow } from "./contact_shadow.js";
 import { createBody, createFarBody } from "./body.js";
 import { createButtons } from "./buttons.js";
 import { createGroundPatches } from "./ground_patches.js";
@@ -14,7 +14,7 @@ import { createWheels } from "./wheels.js";
 /** @typedef {import("../state/robot.js").Robot} Robot */
 /** @typedef {import("./instances.js").Instances} Instances */
 /** @typedef {{ robot: Robot, hovered: string | null, sensing: boolean }} Look  button under the pointer; beams and patches shown */
-/** @typedef {{ look: Look, frame: THREE.Matrix4 }} Standing   a robot as it looks, in its frame */
+/** @typedef {{ look: Look, frame: THREE.Matrix4 }} DrawnRobot   a robot as it looks, in its frame */
 /**
  * @typedef {object} Piece
  * @property {Instances[]} parts
@@ -22,11 +22,11 @@ import { createWheels } from "./wheels.js";
  * @property {() => void} [dispose]
  */
 
-/** @typedef {{ robots: number, fine: boolean }} Room   for robots at most, drawn finely or as seen from far */
+/** @typedef {{ robots: number, fine: boolean }} Capacity   for robots at most, drawn finely or as seen from far */
 
-/** @typedef {(room: Room) => Piece} Maker */
-const FINE = /** @type {Maker[]} */ ([
-  createBlob,
+/** @typedef {(capacity: Capacity) => Piece} PieceFactory */
+const FINE = /** @type {PieceFactory[]} */ ([
+  createContactShadow,
   createBody,
   createWheels,
   createLeds,
@@ -34,19 +34,19 @@ const FINE = /** @type {Maker[]} */ ([
   createGroundPatches,
   createButtons,
 ]);
-const COARSE = /** @type {Maker[]} */ ([createBlob, createFarBody, createLeds, createRays, createGroundPatches]);
+const COARSE = /** @type {PieceFactory[]} */ ([createContactShadow, createFarBody, createLeds, createRays, createGroundPatches]);
 
-export class Fleet {
+export class RobotInstances {
   /** @param {{ fine: boolean }} how */
   constructor({ fine }) {
     this.fine = fine;
     this.group = new THREE.Group();
     this.capacity = 0;
     /** @type {Piece[]} */ this.pieces = [];
-    /** @type {Standing[]} */ this.shown = [];
+    /** @type {DrawnRobot[]} */ this.shown = [];
   }
 
-  /** Show these robots and no others. @param {Standing[]} robots */
+  /** Show these robots and no others. @param {DrawnRobot[]} robots */
   update(robots) {
     if (robots.length > this.capacity) this.#grow(robots.length);
     robots.forEach(({ look, frame }, slot) => {
@@ -63,12 +63,12 @@ export class Fleet {
     for (const { parts } of this.pieces) for (const part of parts) part.show(robots.length);
   }
 
-  /** Room for twice as many as are needed now. @param {number} robots */
+  /** Capacity for twice as many as are needed now. @param {number} robots */
   #grow(robots) {
     this.dispose();
     this.capacity = robots === 1 ? 1 : 2 * robots;
-    const room = { robots: this.capacity, fine: this.fine };
-    this.pieces = (this.fine ? FINE : COARSE).map((create) => create(room));
+    const capacity = { robots: this.capacity, fine: this.fine };
+    this.pieces = (this.fine ? FINE : COARSE).map((create) => create(capacity));
     for (const { parts } of this.pieces) this.group.add(...parts.map(({ mesh }) => mesh));
   }
 

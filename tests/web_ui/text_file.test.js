@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { decoded } from "../../web_ui/textfile.js";
+import { decoded } from "../../web_ui/browser/text_file.js";
 
 /** @param {string} encoding */
 const file = (encoding) => `<?xml version="1.0" encoding="${encoding}"?>\n<network># größer</network>`;

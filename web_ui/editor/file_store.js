@@ -7,7 +7,7 @@
  * @property {number} time        milliseconds since 1970
  * @property {boolean} [unsaved]  in no file: it is the only copy
  */
-/** @typedef {import("../memory.js").Memory} Shelf */
+/** @typedef {import("../browser/local_storage.js").KeyValueStore} KeyValueStore */
 
 const RECENT_KEY = "editor.recent";
 const DRAFT_KEY = "editor.draft.";
@@ -15,10 +15,10 @@ export const KEPT_FILES = 10;
 /** A browser gives a page about 5 million characters. */
 export const KEPT_CHARACTERS = 1_000_000;
 
-export class Keeper {
-  /** @param {Shelf} shelf */
-  constructor(shelf) {
-    this.shelf = shelf;
+export class FileStore {
+  /** @param {KeyValueStore} storage */
+  constructor(storage) {
+    this.storage = storage;
   }
 
   /** Newest first. @returns {Kept[]} */
@@ -43,14 +43,14 @@ export class Keeper {
 
   /** @param {string} tab @param {Kept | null} draft  null: there is nothing to keep */
   keepDraft(tab, draft) {
-    if (draft === null) this.shelf.removeItem(DRAFT_KEY + tab);
+    if (draft === null) this.storage.removeItem(DRAFT_KEY + tab);
     else this.#write(DRAFT_KEY + tab, draft);
   }
 
   /** @param {string} key @returns {any} */
   #read(key) {
     try {
-      return JSON.parse(this.shelf.getItem(key) ?? "null");
+      return JSON.parse(this.storage.getItem(key) ?? "null");
     } catch {
       return null; // written by something else
     }
@@ -59,10 +59,10 @@ export class Keeper {
   /** Whether there was room. @param {string} key @param {any} value */
   #write(key, value) {
     try {
-      this.shelf.setItem(key, JSON.stringify(value));
+      this.storage.setItem(key, JSON.stringify(value));
       return true;
     } catch {
-      this.shelf.removeItem(key); // full: rather nothing than an old one
+      this.storage.removeItem(key); // full: rather nothing than an old one
       return false;
     }
   }

@@ -6,7 +6,7 @@
 const KNOWN = ["running", "paused", "stopped", "fault", "off"];
 
 /** @param {string} state @param {Translate} t @param {boolean} [timePaused]  a program that runs waits for time then */
-export function stateWord(state, t, timePaused = false) {
+export function stateLabel(state, t, timePaused = false) {
   if (timePaused && state === "running") return t("state.runningPaused");
   return t(KNOWN.includes(state) ? `state.${state}` : "state.unknown");
 }
@@ -17,12 +17,12 @@ export function lineOf(values) {
 }
 
 /** Where it waits or failed, in brackets; nothing while it runs. @param {Values} values @param {Translate} t */
-export function placeWords(values, t) {
+export function lineLabel(values, t) {
   const line = lineOf(values);
   return line > 0 && values.state !== "running" ? ` (${t("state.line", { line })})` : "";
 }
 
 /** Why it failed, in a language if the runtime speaks it; empty when it has not. @param {Values} values @param {string} language */
-export function faultWords(values, language) {
+export function faultMessage(values, language) {
   return JSON.parse(values.faults || "{}")[language] ?? values.fault ?? "";
 }

@@ -11,7 +11,7 @@ import { worldOf } from "../playground/world.js";
 
 const SMALL = { width: 240, height: 160 };
 
-export class Shelf {
+export class ThumbnailCache {
   /** @param {(world: import("../state/index.js").State) => Promise<HTMLCanvasElement>} photograph */
   constructor(photograph) {
     this.photograph = photograph;

@@ -1,45 +1,45 @@
-// The bench on which a playground is built: the builder, what the scene draws of it, and the draft that the browser
+// The bench on which a playground is built: the model, what the scene draws of it, and the draft that the browser
 // keeps. It outlives the panels, which are made anew for another language.
 
 import { Markers } from "../playground/markers.js";
 import { parse, write } from "../playground/document.js";
 import { Pictures } from "../playground/pictures.js";
 import { worldOf } from "../playground/world.js";
-import { Builder } from "./builder.js";
+import { CreatorModel } from "./creator_model.js";
 import { newPlayground } from "./commands.js";
 import { sketchOf } from "./sketch.js";
 
 /** @typedef {import("../playground/document.js").Playground} Playground */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 /** @typedef {import("../state/index.js").State} State */
-/** @typedef {import("../memory.js").Memory} Shelf */
+/** @typedef {import("../browser/local_storage.js").KeyValueStore} KeyValueStore */
 
 const DRAFT_KEY = "creator.draft";
 /** Whether the draft is in a file. */
 const SAVED_KEY = "creator.draftSaved";
 const KEEP_AFTER_MS = 400;
 
-export class Workshop {
+export class CreatorSession {
   /**
    * @param {object} options
-   * @param {Shelf} options.shelf
+   * @param {KeyValueStore} options.storage
    * @param {string} options.title      of a new playground
-   * @param {(phrase: Phrase) => void} options.tell
+   * @param {(phrase: Phrase) => void} options.report
    * @param {() => void} options.changed   something is to be drawn
    */
-  constructor({ shelf, title, tell, changed }) {
-    this.shelf = shelf;
-    this.told = changed;
+  constructor({ storage, title, report, changed }) {
+    this.storage = storage;
+    this.onChange = changed;
     const draft = this.#draft();
-    this.builder = new Builder({ playground: draft ?? newPlayground(title), tell, changed: () => this.#changed() });
+    this.model = new CreatorModel({ playground: draft ?? newPlayground(title), report, changed: () => this.#changed() });
     this.pictures = new Pictures(() => {
       this.drawn = null;
       this.#changed();
     });
     this.markers = new Markers((uri) => this.pictures.get(uri));
-    const isSaved = draft === null || shelf.getItem(SAVED_KEY) === "true";
-    /** @type {Playground | null} as it was saved last */ this.saved = isSaved ? this.builder.playground : null;
-    this.kept = this.builder.playground;
+    const isSaved = draft === null || storage.getItem(SAVED_KEY) === "true";
+    /** @type {Playground | null} as it was saved last */ this.saved = isSaved ? this.model.playground : null;
+    this.kept = this.model.playground;
     /** @type {{ of: Playground, as: Playground, same: boolean } | null} what was compared last */ this.compared = null;
     this.timer = 0;
     /** @type {{ of: Playground["items"], carried: string | undefined, world: State } | null} what was drawn last */
@@ -50,7 +50,7 @@ export class Workshop {
   /** Whether no file has it as it is. */
   get isUnsaved() {
     const { saved } = this;
-    const { playground } = this.builder;
+    const { playground } = this.model;
     if (saved === null || playground === saved) return saved === null;
     if (this.compared?.of !== playground || this.compared.as !== saved) {
       this.compared = { of: playground, as: saved, same: write(playground) === write(saved) };
@@ -60,7 +60,7 @@ export class Workshop {
 
   /** The playground as the scene draws it: without what is carried. */
   get world() {
-    const { playground, selecting } = this.builder;
+    const { playground, selecting } = this.model;
     const carried = selecting.ghost?.item.name;
     const { items } = playground;
     if (this.drawn === null || this.drawn.of !== items || this.drawn.carried !== carried) {
@@ -71,18 +71,18 @@ export class Workshop {
   }
 
   get sketch() {
-    this.sketched ??= sketchOf(this.builder);
+    this.sketched ??= sketchOf(this.model);
     return this.sketched;
   }
 
   /** The file. */
   get text() {
-    return write(this.builder.playground);
+    return write(this.model.playground);
   }
 
   /** Its name as a file: the title's letters and digits. */
   get fileName() {
-    const stem = this.builder.playground.title
+    const stem = this.model.playground.title
       .normalize("NFKD")
       .replace(/\p{M}/gu, "")
       .replace(/[^\w]+/g, "_")
@@ -91,7 +91,7 @@ export class Workshop {
   }
 
   noteSaved() {
-    this.saved = this.builder.playground;
+    this.saved = this.model.playground;
     this.#store();
     this.#changed();
   }
@@ -102,10 +102,10 @@ export class Workshop {
    * @param {Playground} playground
    * @param {Phrase} did
    */
-  take(playground, did) {
-    this.builder.selected = null;
-    this.builder.placing = null;
-    this.builder.become(playground, did);
+  replacePlayground(playground, did) {
+    this.model.selected = null;
+    this.model.placing = null;
+    this.model.replacePlayground(playground, did);
     this.saved = playground;
     this.#changed();
   }
@@ -113,34 +113,34 @@ export class Workshop {
   /** Let the browser keep the draft now. */
   keep() {
     clearTimeout(this.timer);
-    if (this.kept === this.builder.playground) return;
+    if (this.kept === this.model.playground) return;
     this.#store();
   }
 
   #store() {
-    this.kept = this.builder.playground;
+    this.kept = this.model.playground;
     try {
-      this.shelf.setItem(DRAFT_KEY, this.text);
-      this.shelf.setItem(SAVED_KEY, String(!this.isUnsaved));
+      this.storage.setItem(DRAFT_KEY, this.text);
+      this.storage.setItem(SAVED_KEY, String(!this.isUnsaved));
     } catch {
-      this.shelf.removeItem(DRAFT_KEY); // too large: rather nothing than an old one
-      this.builder.tell({ word: "tell.noDraft" });
+      this.storage.removeItem(DRAFT_KEY); // too large: rather nothing than an old one
+      this.model.report({ word: "tell.noDraft" });
     }
   }
 
   #changed() {
     this.sketched = null;
-    if (this.builder.playground !== this.kept) {
+    if (this.model.playground !== this.kept) {
       clearTimeout(this.timer);
       this.timer = Number(setTimeout(() => this.keep(), KEEP_AFTER_MS));
     }
-    this.told();
+    this.onChange();
   }
 
   /** @returns {Playground | null} */
   #draft() {
     try {
-      return parse(this.shelf.getItem(DRAFT_KEY) ?? "");
+      return parse(this.storage.getItem(DRAFT_KEY) ?? "");
     } catch {
       return null; // none, or of another version
     }

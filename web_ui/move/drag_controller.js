@@ -1,32 +1,32 @@
-// The hand that takes a robot or a movable thing, carries its ghost about, and puts it down. No document, no scene.
+// The hand that takes a robot or a movable body, carries its ghost about, and puts it down. No document, no scene.
 
-import { atHeight, blocker, hit, movables, obstacles, reach } from "./things.js";
+import { atHeight, blocker, hit, movables, obstacles, reach } from "./placed_bodies.js";
 
-/** @typedef {import("./things.js").Thing} Thing */
-/** @typedef {import("./things.js").Pose} Pose */
+/** @typedef {import("./placed_bodies.js").PlacedBody} PlacedBody */
+/** @typedef {import("./placed_bodies.js").Pose} Pose */
 /** @typedef {Parameters<typeof hit>[0]} Ray */
 /** @typedef {import("../state/index.js").State} State */
-/** @typedef {{ thing: Thing, pose: Pose, blocker: string | null }} Held   blocker: what stands where the ghost is */
+/** @typedef {{ body: PlacedBody, pose: Pose, blocker: string | null }} Held   blocker: what stands where the ghost is */
 
 /** The ring about what is held, by which it is turned: so far beyond its outline, and so wide to be hit. */
 export const RING = { beyond: 0.025, width: 0.03 };
 const STEP_M = 0.01;
 const STEP_RAD = Math.PI / 12;
 
-export class Mover {
+export class DragController {
   /**
    * @param {object} options
    * @param {() => State} options.state
    * @param {(name: string, pose: Pose) => Promise<boolean>} options.place  asks the simulator; whether it did
    * @param {() => void} options.changed
-   * @param {(key: string, values: Record<string, string | number>) => void} options.tell
+   * @param {(key: string, values: Record<string, string | number>) => void} options.report
    */
-  constructor({ state, place, changed, tell }) {
+  constructor({ state, place, changed, report }) {
     this.state = state;
     this.place = place;
     this.changed = changed;
-    this.tell = tell;
-    /** Whether a pointer on a thing moves it without Shift. */
+    this.report = report;
+    /** Whether a pointer on a body moves it without Shift. */
     this.mode = false;
     /** @type {Held | null} */ this.held = null;
     /** @type {{ turning: boolean, z: number, dx: number, dy: number } | null} the pointer's part in it */
@@ -46,8 +46,8 @@ export class Mover {
     if (!wanted) return false;
     const floor = atHeight(ray, 0);
     if (this.mode && this.held !== null && floor !== null) {
-      const { thing, pose } = this.held;
-      const away = Math.hypot(floor.x - pose.x, floor.y - pose.y) - reach(thing) - RING.beyond;
+      const { body, pose } = this.held;
+      const away = Math.hypot(floor.x - pose.x, floor.y - pose.y) - reach(body) - RING.beyond;
       if (Math.abs(away) < RING.width / 2) {
         const dx = pose.yaw - Math.atan2(floor.y - pose.y, floor.x - pose.x);
         this.grip = { turning: true, z: 0, dx, dy: 0 };
@@ -56,8 +56,8 @@ export class Mover {
     }
     const found = hit(ray, movables(this.state()));
     if (found === null) return false;
-    this.#hold(found.thing);
-    const { pose } = found.thing;
+    this.#hold(found.body);
+    const { pose } = found.body;
     this.grip = { turning: false, z: found.z, dx: pose.x - found.x, dy: pose.y - found.y };
     return true;
   }
@@ -80,14 +80,14 @@ export class Mover {
     this.#carry({ x: pose.x + x * STEP_M, y: pose.y + y * STEP_M, yaw: pose.yaw + turn * STEP_RAD });
     const { x: nowX, y: nowY, yaw } = this.held.pose;
     const values = { x: (nowX * 100).toFixed(0), y: (nowY * 100).toFixed(0), yaw: degrees(yaw) };
-    if (this.held.blocker === null) this.tell("move.at", values);
-    else this.tell("move.taken", { ...values, by: this.held.blocker });
+    if (this.held.blocker === null) this.report("move.at", values);
+    else this.report("move.taken", { ...values, by: this.held.blocker });
   }
 
-  /** Take the next thing in hand. */
+  /** Take the next body in hand. */
   next() {
     this.#hold(this.#choice(1));
-    if (this.held !== null) this.tell("move.holds", { name: this.held.thing.name || "thymio" });
+    if (this.held !== null) this.report("move.holds", { name: this.held.body.name || "thymio" });
   }
 
   /** Put it down where the ghost is: the simulator decides. */
@@ -95,12 +95,12 @@ export class Mover {
     const { held } = this;
     this.grip = null;
     if (held === null) return;
-    const { thing, pose } = held;
-    await this.place(thing.name, pose);
+    const { body, pose } = held;
+    await this.place(body.name, pose);
     if (this.held !== held) return;
-    // In its mode the thing stays in hand, where it stands now.
+    // In its mode the body stays in hand, where it stands now.
     this.held = null;
-    if (this.mode) this.#follow(thing.name);
+    if (this.mode) this.#follow(body.name);
     this.changed();
   }
 
@@ -111,43 +111,43 @@ export class Mover {
     this.changed();
   }
 
-  /** The state has changed: a ghost that nobody drags goes with its thing. */
+  /** The state has changed: a ghost that nobody drags goes with its body. */
   refresh() {
     if (this.held === null || !this.mode || this.grip !== null) return;
-    const { thing, pose } = this.held;
-    const { x, y, yaw } = thing.pose;
-    if (pose.x === x && pose.y === y && pose.yaw === yaw) this.#follow(thing.name);
+    const { body, pose } = this.held;
+    const { x, y, yaw } = body.pose;
+    if (pose.x === x && pose.y === y && pose.yaw === yaw) this.#follow(body.name);
   }
 
   /** @param {string} name */
   #follow(name) {
-    const thing = movables(this.state()).find((one) => one.name === name);
-    if (thing === undefined) this.held = null;
-    else this.held = { thing, pose: thing.pose, blocker: null };
+    const body = movables(this.state()).find((one) => one.name === name);
+    if (body === undefined) this.held = null;
+    else this.held = { body, pose: body.pose, blocker: null };
   }
 
   /** @param {number} ahead  in the list of all, after what is held or the selected robot */
   #choice(ahead) {
-    const things = movables(this.state());
-    const name = this.held?.thing.name;
-    const now = things.findIndex((one) =>
+    const bodies = movables(this.state());
+    const name = this.held?.body.name;
+    const now = bodies.findIndex((one) =>
       name === undefined ? one.robot === this.state().selected : one.name === name,
     );
-    return things[(Math.max(0, now) + ahead) % Math.max(1, things.length)];
+    return bodies[(Math.max(0, now) + ahead) % Math.max(1, bodies.length)];
   }
 
-  /** @param {Thing | undefined} thing */
-  #hold(thing) {
-    this.held = thing === undefined ? null : { thing, pose: thing.pose, blocker: null };
+  /** @param {PlacedBody | undefined} body */
+  #hold(body) {
+    this.held = body === undefined ? null : { body, pose: body.pose, blocker: null };
     this.changed();
   }
 
   /** @param {Pose} pose */
   #carry(pose) {
     if (this.held === null) return;
-    const { thing } = this.held;
-    const found = blocker(thing, pose, obstacles(this.state(), thing.name));
-    this.held = { thing, pose, blocker: found === null ? null : found.name };
+    const { body } = this.held;
+    const found = blocker(body, pose, obstacles(this.state(), body.name));
+    this.held = { body, pose, blocker: found === null ? null : found.name };
     this.changed();
   }
 }

@@ -85,7 +85,7 @@ function tilt(roll, pitch) {
 }
 
 /** @param {Context} context @returns {import("./index.js").Panel} */
-export function surroundingsPanel({ t, actions, store }) {
+export function stimuliPanel({ t, actions, store }) {
   /** What was set for each robot, as nobody tells it. @type {Map<string, Record<string, number>>} */
   const settings = new Map();
   const setting = () => {
@@ -180,13 +180,13 @@ export function surroundingsPanel({ t, actions, store }) {
 
 /** The pen in the hole between the wheels. @param {Context["t"]} t @param {Context["actions"]} actions */
 function pen(t, actions) {
-  const colour = h("input", { type: "color", value: "#c0182a", "aria-label": t("pen.colour"), title: t("pen.colour") });
+  const color = h("input", { type: "color", value: "#c0182a", "aria-label": t("pen.color"), title: t("pen.color") });
   const width = h("input", { type: "number", min: 1, max: 100, step: 1, value: 10, "aria-label": t("pen.width") });
   const choose = (/** @type {string} */ tool) => {
     if (width.value !== "" && width.checkValidity()) {
       actions.operate("_pen/width", "std_msgs/msg/Float32", { data: Number(width.value) / 1000 });
     }
-    const [r, g, b] = [1, 3, 5].map((at) => parseInt(colour.value.slice(at, at + 2), 16) / 255);
+    const [r, g, b] = [1, 3, 5].map((at) => parseInt(color.value.slice(at, at + 2), 16) / 255);
     actions.operate("_pen/color", "std_msgs/msg/ColorRGBA", { r, g, b, a: tool === "eraser" ? 0 : 1 });
     actions.operate("pen/down", "std_msgs/msg/Bool", { data: tool !== "up" });
   };
@@ -195,8 +195,8 @@ function pen(t, actions) {
     { "aria-label": t("pen"), "data-operate": "pen" },
     ...["up", "down", "eraser"].map((tool) => h("option", { value: tool }, t(`pen.${tool}`))),
   );
-  for (const input of [tools, colour, width]) input.addEventListener("change", () => choose(tools.value));
+  for (const input of [tools, color, width]) input.addEventListener("change", () => choose(tools.value));
   return [
-    h("div", { class: "row" }, tools, colour, h("label", { class: "width" }, width, h("span", {}, "mm"))),
+    h("div", { class: "row" }, tools, color, h("label", { class: "width" }, width, h("span", {}, "mm"))),
   ];
 }

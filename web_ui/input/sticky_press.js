@@ -5,7 +5,7 @@
  *
  * @param {() => void} free
  */
-export function whenShiftGoes(free) {
+export function onShiftRelease(free) {
   const ending = new AbortController();
   const { signal } = ending;
   const end = () => {

@@ -1,7 +1,7 @@
 // What must be true of a playground as a whole, and whether an item can be where it is. Pure.
 // The rules are those of thymio_sim_ros/sim/playground/checks.py: what passes here, the simulator takes.
 
-import { holds, overlap } from "./geometry.js";
+import { containsPoint, overlap } from "./geometry.js";
 import { kindNamed } from "./kinds/index.js";
 import { partsOf, valuesOf } from "./parts.js";
 import { check, Fault, needed, RULES } from "./rules.js";
@@ -20,7 +20,7 @@ const MOST_PARTS = 10_000;
  * @param {Item} item
  * @returns {Phrase | null}
  */
-export function objection(others, item) {
+export function findProblem(others, item) {
   const kind = kindNamed(item.kind);
   if (kind === undefined) return null;
   try {
@@ -63,7 +63,7 @@ export function isOnGround(others, item) {
   if (kind === undefined || kind.group === "ground") return true;
   const floors = others.flatMap((other) => partsOf(other).floors);
   if (floors.length === 0) return true;
-  return groundPoints(item).every((point) => floors.some((floor) => holds(floor, point)));
+  return groundPoints(item).every((point) => floors.some((floor) => containsPoint(floor, point)));
 }
 
 /** What hangs over an edge: the simulator takes it with a remark. @param {readonly Item[]} items */

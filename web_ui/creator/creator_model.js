@@ -1,7 +1,7 @@
 // Who builds: the playground with its history, what is selected, what is in hand, and all that can be done with it.
-// No document, no scene: pointers and keys call it, and it says what to draw and what to tell.
+// No document, no scene: pointers and keys call it, and it says what to draw and what to report.
 
-import { isOnGround, objection } from "../playground/judge.js";
+import { isOnGround, findProblem } from "../playground/validation.js";
 import * as commands from "./commands.js";
 import { History } from "./history.js";
 import { canTurn, changed, middleOf, moved, turned } from "./place.js";
@@ -20,22 +20,22 @@ const TURN = Math.PI / 12;
 const FINE_TURN = Math.PI / 180;
 const FINE_M = 0.001;
 
-export class Builder {
+export class CreatorModel {
   /**
    * @param {object} options
    * @param {Playground} options.playground
-   * @param {(phrase: Phrase) => void} options.tell   to a person, also one who does not see
+   * @param {(phrase: Phrase) => void} options.report   to a person, also one who does not see
    * @param {() => void} options.changed
    */
-  constructor({ playground, tell, changed: told }) {
+  constructor({ playground, report, changed: onChange }) {
     this.history = new History(playground);
-    this.tell = tell;
-    this.told = told;
+    this.report = report;
+    this.onChange = onChange;
     /** @type {string | null} name of the selected item */ this.selected = null;
     /** @type {import("./snap.js").Grid} */ this.grid = { size: 0.05, on: "lines" };
     /** Whether pointers and wheel turn the camera. */
     this.cameraOn = true;
-    /** Metres on the ground for each pixel. */
+    /** Meters on the ground for each pixel. */
     this.pixel = 0.001;
     /** @type {Point | null} where the pointer is on the ground */ this.pointer = null;
     this.selecting = new Selecting(this);
@@ -67,11 +67,11 @@ export class Builder {
     if (kind === null) this.placing = null;
     else {
       if (kind === "activation" && !this.playground.items.some((item) => item.kind === "door")) {
-        return this.tell({ word: "problem.noDoor" });
+        return this.report({ word: "problem.noDoor" });
       }
       this.selected = null;
       this.placing = new Placing(this, kind, values);
-      this.tell({ word: this.placing.isPath ? "tell.path" : "tell.placing", values: { kind } });
+      this.report({ word: this.placing.isPath ? "tell.path" : "tell.placing", values: { kind } });
     }
     this.changed();
   }
@@ -82,7 +82,7 @@ export class Builder {
     this.selecting.cancel();
     this.placing = null;
     this.selected = name;
-    if (name !== null) this.tell({ word: "tell.selected", values: { name } });
+    if (name !== null) this.report({ word: "tell.selected", values: { name } });
     this.changed();
   }
 
@@ -108,7 +108,7 @@ export class Builder {
     if (item.name !== name && others.some((other) => other.name === item.name)) {
       return { word: "problem.name", values: { name: item.name } };
     }
-    return objection(others, item) ?? (isOnGround(others, item) ? null : { word: "problem.outside" });
+    return findProblem(others, item) ?? (isOnGround(others, item) ? null : { word: "problem.outside" });
   }
 
   /** Go on with another playground. @param {Playground} next @param {Phrase} did @param {string} [series] */
@@ -129,7 +129,7 @@ export class Builder {
   replace(name, item, did, series) {
     const problem = this.problemOf(item, name);
     if (problem !== null) {
-      this.tell(problem);
+      this.report(problem);
       return false;
     }
     if (this.selected === name) this.selected = item.name;
@@ -186,7 +186,7 @@ export class Builder {
   tellPlace(item, problem = null) {
     const [x, y] = middleOf(item);
     const degrees = Math.round(((item.yaw_rad ?? 0) * 180) / Math.PI);
-    this.tell(problem ?? { word: "tell.at", values: { x: centimetres(x), y: centimetres(y), degrees } });
+    this.report(problem ?? { word: "tell.at", values: { x: centimeters(x), y: centimeters(y), degrees } });
   }
 
   remove() {
@@ -194,7 +194,7 @@ export class Builder {
     if (item === null) return;
     const did = { word: "did.removed", values: { name: item.name } };
     this.do(commands.removed(this.playground, item.name), did);
-    this.tell(did);
+    this.report(did);
   }
 
   /** A copy beside it is selected; where that is taken, farther off. */
@@ -203,13 +203,13 @@ export class Builder {
     if (item === null) return;
     let copy = commands.copyOf(this.playground, item);
     const { items } = this.playground;
-    for (let far = 1; far < 8 && objection(items, copy) !== null; far++) copy = moved(copy, 0.05, -0.05);
-    const problem = objection(items, copy);
-    if (problem !== null) return this.tell(problem);
+    for (let far = 1; far < 8 && findProblem(items, copy) !== null; far++) copy = moved(copy, 0.05, -0.05);
+    const problem = findProblem(items, copy);
+    if (problem !== null) return this.report(problem);
     this.selected = copy.name;
     const did = { word: "did.copied", values: { name: copy.name } };
     this.do(commands.added(this.playground, copy), did);
-    this.tell(did);
+    this.report(did);
   }
 
   /** Over or under its neighbours. @param {number} by */
@@ -220,7 +220,7 @@ export class Builder {
     const next = commands.raised(this.playground, item.name, by);
     if (next === this.playground) return;
     this.do(next, did);
-    this.tell(did);
+    this.report(did);
   }
 
   /**
@@ -229,7 +229,7 @@ export class Builder {
    * @param {Playground} next
    * @param {Phrase} did
    */
-  become(next, did) {
+  replacePlayground(next, did) {
     this.selecting.cancel();
     this.do(next, did);
     return null;
@@ -249,10 +249,10 @@ export class Builder {
 
   /** @param {string} word @param {Phrase | null} did */
   #say(word, did) {
-    if (did === null) return this.tell({ word: "tell.nothing" });
+    if (did === null) return this.report({ word: "tell.nothing" });
     if (this.item === null) this.selected = null;
     this.placing?.refresh();
-    this.tell({ word, values: { did: did.word, ...did.values } });
+    this.report({ word, values: { did: did.word, ...did.values } });
     this.changed();
   }
 
@@ -261,7 +261,7 @@ export class Builder {
     if (this.selecting.ghost !== null) this.selecting.cancel();
     else if (this.placing !== null) {
       this.placing = null;
-      this.tell({ word: "tell.cancelled" });
+      this.report({ word: "tell.cancelled" });
     } else if (this.selected !== null) this.selected = null;
     else return false;
     this.changed();
@@ -270,7 +270,7 @@ export class Builder {
 
   toggleCamera() {
     this.cameraOn = !this.cameraOn;
-    this.tell({ word: this.cameraOn ? "tell.cameraOn" : "tell.cameraOff" });
+    this.report({ word: this.cameraOn ? "tell.cameraOn" : "tell.cameraOff" });
     this.changed();
   }
 
@@ -281,11 +281,11 @@ export class Builder {
   }
 
   changed() {
-    this.told();
+    this.onChange();
   }
 }
 
-/** @param {number} metres */
-export function centimetres(metres) {
-  return rounded(metres * 100);
+/** @param {number} meters */
+export function centimeters(meters) {
+  return rounded(meters * 100);
 }

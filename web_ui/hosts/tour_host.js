@@ -1,34 +1,34 @@
 // The tour's place on the page: shown at a first visit, never again once it was closed, and whenever it is asked for.
 
-import { memory, note } from "./memory.js";
-import { CONNECTION } from "./state/index.js";
+import { localStore, trySetItem } from "../browser/local_storage.js";
+import { CONNECTION } from "../state/index.js";
 
-/** @typedef {import("./tour/index.js").Tour} Tour */
-/** @typedef {import("./panels/index.js").Context} Context */
+/** @typedef {import("../tour/index.js").Tour} Tour */
+/** @typedef {import("../panels/index.js").Context} Context */
 
 const KEY = "tour";
 const CLOSED = "closed";
 
 /**
- * Whether the tour begins by itself. In the address, `tour=off` prevents it, for kiosks and tests, and `tour=on` begins
+ * Whether the tour starts by itself. In the address, `tour=off` prevents it, for kiosks and tests, and `tour=on` starts
  * it even where it was closed.
  *
  * @param {object} visit
  * @param {string} visit.search             of the address
- * @param {Pick<import("./memory.js").Memory, "getItem">} visit.shelf
+ * @param {Pick<import("../browser/local_storage.js").KeyValueStore, "getItem">} visit.storage
  * @param {unknown} visit.entry             what the browser's history keeps of this visit, also where it stores nothing
  */
-export function begins({ search, shelf, entry }) {
+export function shouldStart({ search, storage, entry }) {
   const asked = new URLSearchParams(search).get("tour");
   if (asked === "on" || asked === "off") return asked === "on";
-  return shelf.getItem(KEY) !== CLOSED && /** @type {any} */ (entry)?.[KEY] !== CLOSED;
+  return storage.getItem(KEY) !== CLOSED && /** @type {any} */ (entry)?.[KEY] !== CLOSED;
 }
 
 export class TourHost {
   constructor() {
     this.step = 0;
     /** @type {Tour | null} */ this.tour = null;
-    /** @type {typeof import("./tour/index.js") | null} */ this.module = null;
+    /** @type {typeof import("../tour/index.js") | null} */ this.module = null;
     /** @type {Context | null} */ this.context = null;
     /** @type {Element | null} what had the focus before */ this.before = null;
   }
@@ -38,20 +38,20 @@ export class TourHost {
   }
 
   /** The page has other words, or is new. @param {Context} context */
-  dress(context) {
+  setContext(context) {
     this.context = context;
     if (this.isOpen) this.#build();
   }
 
   /** Once, when the page is there. */
-  begin() {
-    if (begins({ search: location.search, shelf: memory, entry: history.state })) void this.open();
+  start() {
+    if (shouldStart({ search: location.search, storage: localStore, entry: history.state })) void this.open();
   }
 
   async open() {
     if (this.isOpen) return;
     const { activeElement } = document;
-    this.module ??= await import("./tour/index.js").catch(() => null);
+    this.module ??= await import("../tour/index.js").catch(() => null);
     if (this.module === null) {
       const { store, t } = /** @type {Context} */ (this.context);
       store.dispatch({ type: "notice", level: "error", text: t("app.notLoaded"), cause: CONNECTION });
@@ -66,7 +66,7 @@ export class TourHost {
   close() {
     this.tour?.destroy();
     this.tour = null;
-    note(memory, KEY, CLOSED);
+    trySetItem(localStore, KEY, CLOSED);
     history.replaceState({ ...history.state, [KEY]: CLOSED }, "");
     const place = this.before instanceof HTMLElement && this.before !== document.body ? this.before : null;
     (place?.isConnected ? place : /** @type {HTMLElement | null} */ (document.querySelector("#tour-switch")))?.focus();
@@ -88,6 +88,6 @@ export class TourHost {
       },
       close: () => this.close(),
     });
-    this.tour.begin();
+    this.tour.start();
   }
 }

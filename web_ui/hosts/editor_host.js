@@ -1,11 +1,11 @@
 // The place of the editor on the page: loads it when it is first opened, gives it messages while it is open.
 
-import { memory } from "./memory.js";
-import { CONNECTION } from "./state/index.js";
+import { localStore } from "../browser/local_storage.js";
+import { CONNECTION } from "../state/index.js";
 
-/** @typedef {import("./editor/index.js").Editor} Editor */
-/** @typedef {import("./editor/desk.js").Desk} Desk */
-/** @typedef {import("./panels/index.js").Context} Context */
+/** @typedef {import("../editor/index.js").Editor} Editor */
+/** @typedef {import("../editor/editor_session.js").EditorSession} EditorSession */
+/** @typedef {import("../panels/index.js").Context} Context */
 
 const TOPIC = /^\/(?:[^/]+\/)?_aseba\/(?:target|variables|events)$|^\/aseba_runtime\/_behaviours$/;
 
@@ -13,7 +13,7 @@ export class EditorHost {
   /**
    * @param {object} options
    * @param {HTMLElement} options.slot
-   * @param {() => import("./protocol/client.js").Client} options.client
+   * @param {() => import("../protocol/client.js").Client} options.client
    * @param {() => void} options.changed   opened or closed
    */
   constructor({ slot, client, changed }) {
@@ -21,8 +21,8 @@ export class EditorHost {
     this.client = client;
     this.changed = changed;
     this.isOpen = false;
-    /** @type {typeof import("./editor/index.js") | null} */ this.module = null;
-    /** @type {Desk | null} */ this.desk = null;
+    /** @type {typeof import("../editor/index.js") | null} */ this.module = null;
+    /** @type {EditorSession | null} */ this.session = null;
     /** @type {Editor | null} */ this.editor = null;
     /** @type {Context | null} */ this.context = null;
   }
@@ -32,10 +32,10 @@ export class EditorHost {
     return this.isOpen && TOPIC.test(topic);
   }
 
-  /** @param {import("./protocol/client.js").ClientEvent} event @param {string} selected  robot */
+  /** @param {import("../protocol/client.js").ClientEvent} event @param {string} selected  robot */
   receive(event, selected) {
-    if (this.desk === null || (event.type !== "message" && event.type !== "disconnected")) return;
-    this.desk.receive(event, selected);
+    if (this.session === null || (event.type !== "message" && event.type !== "disconnected")) return;
+    this.session.receive(event, selected);
     this.redraw();
   }
 
@@ -44,19 +44,19 @@ export class EditorHost {
   }
 
   /** The page has other words, or is new. @param {Context} context */
-  dress(context) {
+  setContext(context) {
     this.context = context;
     if (this.isOpen) this.#build();
   }
 
   async open() {
     if (this.isOpen) return;
-    this.module ??= await import("./editor/index.js").catch(() => null);
+    this.module ??= await import("../editor/index.js").catch(() => null);
     if (this.module === null) {
       this.context?.store.dispatch({ type: "notice", level: "error", text: this.context.t("app.notLoaded"), cause: CONNECTION });
       return;
     }
-    this.desk ??= new this.module.Desk(memory, Date.now);
+    this.session ??= new this.module.EditorSession(localStore, Date.now);
     this.isOpen = true;
     document.body.classList.add("with-editor");
     this.slot.hidden = false;
@@ -83,11 +83,11 @@ export class EditorHost {
   }
 
   #build() {
-    if (this.module === null || this.desk === null || this.context === null) return;
+    if (this.module === null || this.session === null || this.context === null) return;
     this.editor?.destroy();
     const { t, language, store, announce } = this.context;
     this.editor = this.module.createEditor({
-      desk: this.desk,
+      session: this.session,
       client: this.client(),
       store,
       language,
@@ -96,6 +96,6 @@ export class EditorHost {
       close: () => this.close(),
     });
     this.slot.replaceChildren(this.editor.element);
-    this.editor.begin();
+    this.editor.start();
   }
 }

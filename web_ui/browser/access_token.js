@@ -1,6 +1,6 @@
 // The token of this page's address. Kept for reloads of this tab, and taken out of the address, which others may see.
 
-/** @typedef {import("./memory.js").Memory} Memory */
+/** @typedef {import("./local_storage.js").KeyValueStore} KeyValueStore */
 
 const KEY = "token";
 
@@ -25,15 +25,15 @@ export function withoutToken(address) {
 /**
  * The token to use: that of the address, else the one that is kept; "" is none.
  *
- * @param {Memory} shelf    of this tab
+ * @param {KeyValueStore} storage    of this tab
  * @param {string} address
  * @param {(address: string) => void} show   writes another address into the browser's bar
  */
-export function takeToken(shelf, address, show) {
+export function resolveToken(storage, address, show) {
   const given = tokenIn(address);
-  if (given === null) return shelf.getItem(KEY) ?? "";
+  if (given === null) return storage.getItem(KEY) ?? "";
   try {
-    shelf.setItem(KEY, given);
+    storage.setItem(KEY, given);
     show(withoutToken(address));
   } catch {
     // It cannot be kept, so it stays in the address.

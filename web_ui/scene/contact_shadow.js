@@ -9,17 +9,17 @@ const SIZE_M = 0.17;
 const DARKEST = 150 / 255;
 const PLACE = placeOf({ x: 0.022, y: 0, z: 0.0006 });
 
-/** @param {import("./fleet.js").Room} room */
-export function createBlob({ robots }) {
+/** @param {import("./robot_instances.js").Capacity} room */
+export function createContactShadow({ robots }) {
   const texture = spot(48, [0, 0, 0], (share) => DARKEST * Math.min(1, share * 1.8) ** 1.5);
   const material = new THREE.MeshBasicMaterial({ map: texture, transparent: true, depthWrite: false });
-  const blob = new Instances(new THREE.PlaneGeometry(SIZE_M, SIZE_M), material, { each: 1, robots });
-  blob.mesh.renderOrder = 1;
+  const shadow = new Instances(new THREE.PlaneGeometry(SIZE_M, SIZE_M), material, { each: 1, robots });
+  shadow.mesh.renderOrder = 1;
   return {
-    parts: [blob],
+    parts: [shadow],
     /** @param {number} slot */
     show(slot) {
-      blob.put(slot, 0, PLACE);
+      shadow.put(slot, 0, PLACE);
     },
     dispose: () => texture.dispose(),
   };
