@@ -29,7 +29,7 @@ test("a fault is reported in the language of the page if the runtime speaks it",
 
 test("a program that runs while time is paused says so, and one that has ended does not", () => {
   const t = translator("en");
-  assert.equal(stateLabel("running", t, true), "running, time is paused");
+  assert.equal(stateLabel("running", t, true), "running, simulation paused");
   assert.equal(stateLabel("running", t, false), "running");
   assert.equal(stateLabel("stopped", t, true), "stopped");
 });

@@ -91,7 +91,7 @@ def test_a_pause_holds_the_sound(suite, page, tmp_path):
     page.wait_for_function("() => window.heard[0].state === 'running'")
 
 
-def test_a_built_in_behaviour_is_chosen_and_shows_its_colour(suite, page):
+def test_a_built_in_behavior_is_chosen_and_shows_its_color(suite, page):
     open_page(page, suite("--playground", "base"))
     page.select_option("#behavior-choice", "friendly")
     page.wait_for_function("() => window.thymio.state().program?.name.startsWith('friendly')")

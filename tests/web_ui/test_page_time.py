@@ -23,7 +23,7 @@ def test_a_step_moves_the_clock_as_far_as_was_chosen_and_a_program_says_that_tim
     state = page.locator(".card.program .state")
     playwright.expect(state).to_have_text("running")
     page.locator(".time button.primary").click()
-    playwright.expect(state).to_have_text("running, time is paused")
+    playwright.expect(state).to_have_text("running, simulation paused")
     step = page.locator(".steps button")
     playwright.expect(step).to_be_enabled()
     page.wait_for_function("() => window.thymio.state().timeNs > 0")

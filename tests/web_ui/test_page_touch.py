@@ -94,7 +94,7 @@ def test_a_finger_carries_the_robot(suite, tablet):
     wait_until_settled(tablet, "robot")
     tablet.wait_for_function("() => window.thymio.state().services.includes('/simulator/set_poses')")
     before = tablet.evaluate(POSE)
-    tablet.get_by_role("button", name="Move things").tap()
+    tablet.get_by_role("button", name="Move objects").tap()
     tablet.wait_for_function("() => window.thymio.held() !== null")  # a tap becomes a click only later
     fingers = Fingers(tablet)
     x, y = place_of(tablet, "robot")

@@ -37,7 +37,7 @@ def visit(page, address):
 def test_it_is_shown_once_goes_by_keys_stops_no_robot_and_comes_back_by_its_button(first_visit):
     page, address = first_visit
     visit(page, address)
-    tour = page.get_by_role("dialog", name="The world of your robot")
+    tour = page.get_by_role("dialog", name="Your robot's world")
     playwright.expect(tour).to_contain_text("1 of 5")
     playwright.expect(page.locator(".tour .primary")).to_be_focused()
     page.wait_for_function("() => window.thymio.state().program?.state === 'running'")

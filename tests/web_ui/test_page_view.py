@@ -79,7 +79,7 @@ def test_the_view_is_saved_as_a_picture_and_the_robot_sees_with_its_own_eye(suit
     assert page.evaluate(CANVAS) == coarse
 
 
-def test_two_robots_have_colours_and_numbers_are_at_the_beams_of_the_selected_one(suite, page):
+def test_two_robots_have_colors_and_numbers_are_at_the_beams_of_the_selected_one(suite, page):
     open_page(page, suite("--playground", "two_robots", "--program", "none"))
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
     page.wait_for_function("() => document.querySelectorAll('.robot-label').length === 2")
