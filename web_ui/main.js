@@ -1,4 +1,4 @@
-// The page's start: connects protocol, state, scene and panels, and lets each do its own work.
+// Entry point: connects protocol, state, scene and panels.
 
 import { Actions, isProgram } from "./input/actions.js";
 import { CreatorHost } from "./hosts/creator_host.js";
@@ -30,7 +30,7 @@ function element(selector) {
   return /** @type {HTMLElement} */ (found);
 }
 
-/** Where the bridge listens: reported by the server of this page, on the host the page came from. */
+/** The WebSocket address of the bridge: the port comes from the page's server, the host from the page's address. */
 async function bridgeAddress() {
   const answer = await fetch("config.json").catch(() => null);
   const config = answer?.ok ? await answer.json().catch(() => ({})) : {};
@@ -39,7 +39,7 @@ async function bridgeAddress() {
 
 async function main() {
   const token = resolveToken(tabStore, location.href, (shown) => history.replaceState(null, "", shown));
-  // An address that differs in its token only does not make the browser load the page again.
+  // Browsers do not reload a page if only the fragment with the token changes.
   window.addEventListener("hashchange", () => {
     if (tokenIn(location.href) !== null) location.reload();
   });
@@ -178,7 +178,7 @@ async function main() {
   client.start();
   tour.start();
 
-  // Read-only, for tests: what the page knows, what it has drawn, and where a part is on the screen.
+  // Read-only access for tests: state, drawn frames, and screen positions of parts.
   Object.defineProperty(window, "thymio", {
     value: Object.freeze({
       state: () => snapshot(store.state),

@@ -51,7 +51,9 @@ def wait_until_moved(page: Any, far_m: float, act: Any) -> None:
 
 
 def test_the_basic_mode_drives_by_the_arrows(class_page):
-    choose_behavior(class_page, "Thesis: basic (white)", "The arrow buttons drive the robot until it meets an obstacle.")
+    choose_behavior(
+        class_page, "Thesis: basic (white)", "The arrow buttons drive the robot until it meets an obstacle."
+    )
     wait_until_moved(class_page, 0.05, robot_button(class_page, "Forward").click)
     wait_for_service(class_page, "/aseba/stop")
     class_page.get_by_role("banner").get_by_role("button", name="Stop").click()

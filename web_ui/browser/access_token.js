@@ -1,16 +1,16 @@
-// The token of this page's address. Kept for reloads of this tab, and taken out of the address, which others may see.
+// The access token in the page's address. It is kept for reloads of this tab and removed from the visible address.
 
 /** @typedef {import("./local_storage.js").KeyValueStore} KeyValueStore */
 
 const KEY = "token";
 
-/** The token in an address, after # or ?; null: it has none. @param {string} address */
+/** The token in an address, after # or ?; null if there is none. @param {string} address */
 export function tokenIn(address) {
   const { hash, searchParams } = new URL(address);
   return new URLSearchParams(hash.slice(1)).get(KEY) ?? searchParams.get(KEY);
 }
 
-/** The same address without its token. @param {string} address */
+/** The address without its token. @param {string} address */
 export function withoutToken(address) {
   const url = new URL(address);
   url.searchParams.delete(KEY);
@@ -23,11 +23,11 @@ export function withoutToken(address) {
 }
 
 /**
- * The token to use: that of the address, else the one that is kept; "" is none.
+ * The token to use: the one in the address, else the stored one; "" if there is none.
  *
- * @param {KeyValueStore} storage    of this tab
+ * @param {KeyValueStore} storage    session storage of this tab
  * @param {string} address
- * @param {(address: string) => void} show   writes another address into the browser's bar
+ * @param {(address: string) => void} show   replaces the address in the browser's address bar
  */
 export function resolveToken(storage, address, show) {
   const given = tokenIn(address);
@@ -36,7 +36,7 @@ export function resolveToken(storage, address, show) {
     storage.setItem(KEY, given);
     show(withoutToken(address));
   } catch {
-    // It cannot be kept, so it stays in the address.
+    // Storage failed, so the token stays in the address.
   }
   return given;
 }

@@ -1,6 +1,6 @@
-// A program or playground dropped anywhere on the page.
+// Reports files that are dropped anywhere on the page.
 
-/** @param {HTMLElement} hint  shown while a file is over the page @param {(file: File) => void} open */
+/** @param {HTMLElement} hint  shown while a file is dragged over the page @param {(file: File) => void} open */
 export function watchDrops(hint, open) {
   let depth = 0;
   /** @param {number} change */

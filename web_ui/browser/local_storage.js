@@ -1,8 +1,8 @@
-// What the browser keeps of this page from visit to visit. Where it may not, it is kept as long as the page is open.
+// Settings that the browser keeps between visits. Where storage is forbidden, they last while the page is open.
 
-/** @typedef {Pick<Storage, "getItem" | "setItem" | "removeItem">} KeyValueStore   setItem fails where there is no room */
+/** @typedef {Pick<Storage, "getItem" | "setItem" | "removeItem">} KeyValueStore   setItem throws when the storage is full */
 
-/** @param {() => Storage} browsers  fails where the browser forbids it @returns {KeyValueStore} */
+/** @param {() => Storage} browsers  throws where the browser forbids storage @returns {KeyValueStore} */
 export function storageOrMap(browsers) {
   try {
     return browsers();
@@ -18,10 +18,16 @@ export function storageOrMap(browsers) {
 
 export const localStore = storageOrMap(() => localStorage);
 
-/** As long as the tab is open. */
+/** Storage that lasts while the tab is open. */
 export const tabStore = storageOrMap(() => sessionStorage);
 
-/** Keep a choice; without room for it, it holds for this visit. @param {KeyValueStore} storage @param {string} key @param {string} value */
+/**
+ * Store a setting. If the storage is full, remove the old value instead: the setting then lasts for this visit only.
+ *
+ * @param {KeyValueStore} storage
+ * @param {string} key
+ * @param {string} value
+ */
 export function trySetItem(storage, key, value) {
   try {
     storage.setItem(key, value);

@@ -1,4 +1,4 @@
-// Below the view: undo and redo, camera, grid; and what is going on.
+// The bar below the view: undo and redo, camera, grid, and the latest status message.
 
 import { h, icon, setAttribute, setText } from "../panels/dom.js";
 import { CREATOR_ICONS } from "./icons.js";

@@ -1,5 +1,5 @@
-// Who builds: the playground with its history, what is selected, what is in hand, and all that can be done with it.
-// No document, no scene: pointers and keys call it, and it says what to draw and what to report.
+// The state of the creator: the playground with its history, the selection, the item being placed, and all operations.
+// No DOM and no 3D scene: pointer and keys call it; it reports what to draw and what to announce.
 
 import { isOnGround, findProblem } from "../playground/validation.js";
 import * as commands from "./commands.js";
@@ -24,7 +24,7 @@ export class CreatorModel {
   /**
    * @param {object} options
    * @param {Playground} options.playground
-   * @param {(phrase: Phrase) => void} options.report   to a person, also one who does not see
+   * @param {(phrase: Phrase) => void} options.report   announces a message, also to screen readers
    * @param {() => void} options.changed
    */
   constructor({ playground, report, changed: onChange }) {
@@ -33,9 +33,9 @@ export class CreatorModel {
     this.onChange = onChange;
     /** @type {string | null} name of the selected item */ this.selected = null;
     /** @type {import("./snap.js").Grid} */ this.grid = { size: 0.05, on: "lines" };
-    /** Whether pointers and wheel turn the camera. */
+    /** Whether pointer and wheel move the camera. */
     this.cameraOn = true;
-    /** Meters on the ground for each pixel. */
+    /** Size of one pixel on the ground, in meters. */
     this.pixel = 0.001;
     /** @type {Point | null} where the pointer is on the ground */ this.pointer = null;
     this.selecting = new Selecting(this);
@@ -51,17 +51,22 @@ export class CreatorModel {
     return commands.itemNamed(this.playground, this.selected);
   }
 
-  /** What is in hand, where it would be. @returns {Ghost | null} */
+  /** The item being placed or dragged, at its current position. @returns {Ghost | null} */
   get ghost() {
     return this.placing?.ghost ?? this.selecting.ghost;
   }
 
-  /** The grid in force. @param {boolean} free @returns {import("./snap.js").Grid | null} */
+  /** The grid in effect; null while it is ignored. @param {boolean} free @returns {import("./snap.js").Grid | null} */
   gridFor(free) {
     return free ? null : this.grid;
   }
 
-  /** Take a kind in hand, or nothing. @param {string | null} kind @param {Record<string, any>} [values] */
+  /**
+   * Start placing items of a kind; null ends placing.
+   *
+   * @param {string | null} kind
+   * @param {Record<string, any>} [values]
+   */
   choose(kind, values = {}) {
     this.selecting.cancel();
     if (kind === null) this.placing = null;
@@ -86,7 +91,7 @@ export class CreatorModel {
     this.changed();
   }
 
-  /** The next item in their order. @param {number} by */
+  /** Select the next item in file order. @param {number} by */
   selectNext(by) {
     const { items } = this.playground;
     if (items.length === 0) return;
@@ -96,8 +101,8 @@ export class CreatorModel {
   }
 
   /**
-   * Why an item cannot be in the place of one of that name; what is off the ground may be opened, but not put
-   * there.
+   * Why an item cannot replace the named one; null if it can. Items outside the ground are accepted when a file is
+   * opened, but cannot be placed there.
    *
    * @param {Item} item
    * @param {string} name
@@ -111,7 +116,13 @@ export class CreatorModel {
     return findProblem(others, item) ?? (isOnGround(others, item) ? null : { word: "problem.outside" });
   }
 
-  /** Go on with another playground. @param {Playground} next @param {Phrase} did @param {string} [series] */
+  /**
+   * Replace the playground and record the step in the history.
+   *
+   * @param {Playground} next
+   * @param {Phrase} did
+   * @param {string} [series]
+   */
   do(next, did, series) {
     this.history.do(next, did, series);
     if (this.item === null) this.selected = null;
@@ -119,7 +130,7 @@ export class CreatorModel {
   }
 
   /**
-   * Put an item in the place of one; whether it could.
+   * Replace the named item; returns whether that was possible.
    *
    * @param {string} name
    * @param {Item} item
@@ -138,7 +149,7 @@ export class CreatorModel {
   }
 
   /**
-   * Other values for what is in hand, else for what is selected; why not, or null.
+   * Change values of the item being placed, else of the selected item; returns the problem, or null.
    *
    * @param {Record<string, any>} values
    * @returns {Phrase | null}
@@ -155,12 +166,18 @@ export class CreatorModel {
     return null;
   }
 
-  /** Something that is off the ground already can be changed there. @param {Item} item */
+  /** An item that is already outside the ground may be changed there. @param {Item} item */
   #wasInside(item) {
     return isOnGround(commands.othersOf(this.playground, item.name), item);
   }
 
-  /** Steps by keys. @param {number} x @param {number} y @param {{ far?: boolean, fine?: boolean }} [how] */
+  /**
+   * Move by keys, in grid steps.
+   *
+   * @param {number} x
+   * @param {number} y
+   * @param {{ far?: boolean, fine?: boolean }} [how]
+   */
   nudge(x, y, { far = false, fine = false } = {}) {
     const step = fine ? FINE_M : this.grid.size * (far ? 5 : 1);
     if (this.placing !== null) return this.placing.nudge(x * step, y * step);
@@ -171,7 +188,7 @@ export class CreatorModel {
     if (this.replace(item.name, next, did, `move ${item.name}`)) this.tellPlace(next);
   }
 
-  /** Turn what is in hand or selected, counter-clockwise. @param {number} steps @param {boolean} [fine] */
+  /** Turn the item being placed or selected, counter-clockwise. @param {number} steps @param {boolean} [fine] */
   turn(steps, fine = false) {
     const angle = steps * (fine ? FINE_TURN : TURN);
     if (this.placing !== null) return this.placing.turn(angle);
@@ -197,7 +214,7 @@ export class CreatorModel {
     this.report(did);
   }
 
-  /** A copy beside it is selected; where that is taken, farther off. */
+  /** Duplicate the selected item and select the copy; it is placed farther away if the position is occupied. */
   duplicate() {
     const { item } = this;
     if (item === null) return;
@@ -212,7 +229,7 @@ export class CreatorModel {
     this.report(did);
   }
 
-  /** Over or under its neighbours. @param {number} by */
+  /** Bring the selected item forward or send it backward. @param {number} by */
   raise(by) {
     const { item } = this;
     if (item === null) return;
@@ -224,7 +241,7 @@ export class CreatorModel {
   }
 
   /**
-   * A change of the whole: titles, ground, another file; why not, or null.
+   * Replace the whole playground: title, ground, or another file. Returns null: it is always accepted.
    *
    * @param {Playground} next
    * @param {Phrase} did
@@ -256,7 +273,7 @@ export class CreatorModel {
     this.changed();
   }
 
-  /** Escape: what is in hand goes, else the selection; whether there was something. */
+  /** Escape: cancel placing or dragging, else clear the selection; returns whether anything changed. */
   cancel() {
     if (this.selecting.ghost !== null) this.selecting.cancel();
     else if (this.placing !== null) {

@@ -1,5 +1,5 @@
-// The bench on which a playground is built: the model, what the scene draws of it, and the draft that the browser
-// keeps. It outlives the panels, which are made anew for another language.
+// An editing session of the creator: the model, the world drawn from it, and the draft kept by the browser.
+// It outlives the panels, which are rebuilt when the language changes.
 
 import { Markers } from "../playground/markers.js";
 import { parse, write } from "../playground/document.js";
@@ -15,7 +15,7 @@ import { sketchOf } from "./sketch.js";
 /** @typedef {import("../browser/local_storage.js").KeyValueStore} KeyValueStore */
 
 const DRAFT_KEY = "creator.draft";
-/** Whether the draft is in a file. */
+/** Whether the draft has been saved as a file. */
 const SAVED_KEY = "creator.draftSaved";
 const KEEP_AFTER_MS = 400;
 
@@ -23,9 +23,9 @@ export class CreatorSession {
   /**
    * @param {object} options
    * @param {KeyValueStore} options.storage
-   * @param {string} options.title      of a new playground
+   * @param {string} options.title      title of a new playground
    * @param {(phrase: Phrase) => void} options.report
-   * @param {() => void} options.changed   something is to be drawn
+   * @param {() => void} options.changed   requests a new frame
    */
   constructor({ storage, title, report, changed }) {
     this.storage = storage;
@@ -47,7 +47,7 @@ export class CreatorSession {
     /** @type {import("./sketch.js").Sketch | null} */ this.sketched = null;
   }
 
-  /** Whether no file has it as it is. */
+  /** Whether there are changes that no file contains. */
   get isUnsaved() {
     const { saved } = this;
     const { playground } = this.model;
@@ -58,7 +58,7 @@ export class CreatorSession {
     return !this.compared.same;
   }
 
-  /** The playground as the scene draws it: without what is carried. */
+  /** The playground as the scene draws it, without the item being dragged. */
   get world() {
     const { playground, selecting } = this.model;
     const carried = selecting.ghost?.item.name;
@@ -67,7 +67,7 @@ export class CreatorSession {
       const seen = carried === undefined ? items : items.filter(({ name }) => name !== carried);
       this.drawn = { of: items, carried, world: worldOf(seen, this.markers) };
     }
-    return this.drawn.world; // the same while only the pointer moves
+    return this.drawn.world; // unchanged while only the pointer moves
   }
 
   get sketch() {
@@ -75,12 +75,12 @@ export class CreatorSession {
     return this.sketched;
   }
 
-  /** The file. */
+  /** The playground as file content. */
   get text() {
     return write(this.model.playground);
   }
 
-  /** Its name as a file: the title's letters and digits. */
+  /** The file name: letters and digits of the title. */
   get fileName() {
     const stem = this.model.playground.title
       .normalize("NFKD")
@@ -97,7 +97,7 @@ export class CreatorSession {
   }
 
   /**
-   * Another playground on the bench; the one before comes back by undoing.
+   * Open another playground; undo restores the previous one.
    *
    * @param {Playground} playground
    * @param {Phrase} did
@@ -110,7 +110,7 @@ export class CreatorSession {
     this.#changed();
   }
 
-  /** Let the browser keep the draft now. */
+  /** Store the draft in the browser now. */
   keep() {
     clearTimeout(this.timer);
     if (this.kept === this.model.playground) return;
@@ -123,7 +123,7 @@ export class CreatorSession {
       this.storage.setItem(DRAFT_KEY, this.text);
       this.storage.setItem(SAVED_KEY, String(!this.isUnsaved));
     } catch {
-      this.storage.removeItem(DRAFT_KEY); // too large: rather nothing than an old one
+      this.storage.removeItem(DRAFT_KEY); // too large: no draft is better than an outdated one
       this.model.report({ word: "tell.noDraft" });
     }
   }
@@ -142,7 +142,7 @@ export class CreatorSession {
     try {
       return parse(this.storage.getItem(DRAFT_KEY) ?? "");
     } catch {
-      return null; // none, or of another version
+      return null; // no draft, or one of another version
     }
   }
 }

@@ -1,25 +1,25 @@
-// One control for each kind of field. Each has an element, and takes over values that changed elsewhere.
+// Form controls, one per kind of field. Each has an element and updates it when values change elsewhere.
 
 import { h, renew, setText } from "../panels/dom.js";
 import { shown, taken, unitOf } from "./units.js";
 
 /** @typedef {import("../playground/rules.js").Field} Field */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
-/** @typedef {(values: Record<string, any>) => Phrase | null} Commit  why not, or null */
+/** @typedef {(values: Record<string, any>) => Phrase | null} Commit  returns the problem, or null */
 /** @typedef {{ element: HTMLElement, update: (values: Record<string, any>) => void }} Control */
 /**
  * @typedef {object} Setting
  * @property {import("../i18n/index.js").Translate} t
  * @property {(phrase: Phrase) => string} say
  * @property {Commit} commit
- * @property {() => readonly string[]} doors   names that a plate can have
+ * @property {() => readonly string[]} doors   names of the doors that a plate can open
  * @property {(file: File) => Promise<string | null>} readPicture
  */
 
 let serial = 0;
 
 /**
- * A labeled control with room for what is wrong with it.
+ * A labeled control with space for an error message.
  *
  * @param {string} label
  * @param {HTMLElement} input
@@ -61,7 +61,7 @@ function numberControl({ t, say, commit }, key, { rule }) {
   input.addEventListener("change", take);
   input.addEventListener("keydown", (event) => {
     if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
-    event.preventDefault(); // the browser's own step would be 1 of anything
+    event.preventDefault(); // the browser's default step is 1 in any unit
     input.value = String(Math.round((input.valueAsNumber + (event.key === "ArrowUp" ? step : -step)) * 1e4) / 1e4);
     take();
   });
@@ -76,7 +76,7 @@ function numberControl({ t, say, commit }, key, { rule }) {
   };
 }
 
-/** @param {Setting} setting @param {string} key @param {string} type  of the browser's input @returns {Control} */
+/** @param {Setting} setting @param {string} key @param {string} type  of the input element @returns {Control} */
 function textControl({ t, say, commit }, key, type) {
   const input = h("input", { type, "data-field": key, autocomplete: "off", spellcheck: "false" });
   const { element, report } = labeled(t(`field.${key}`), input);
@@ -106,7 +106,7 @@ function flagControl({ t, commit }, key) {
   };
 }
 
-/** The door that a plate opens. @param {Setting} setting @param {string} key @returns {Control} */
+/** Selects the door that a plate opens. @param {Setting} setting @param {string} key @returns {Control} */
 function doorControl({ t, say, commit, doors }, key) {
   const select = h("select", { "data-field": key });
   const { element, report } = labeled(t(`field.${key}`), select);
@@ -129,7 +129,7 @@ function doorControl({ t, say, commit, doors }, key) {
 }
 
 /**
- * A list of points as pairs of numbers; the view has handles for them.
+ * Edits a list of points as pairs of numbers; the view has handles for them.
  *
  * @param {Setting} setting
  * @param {string} key
@@ -194,7 +194,7 @@ function pointsControl({ t, say, commit }, key, { rule }) {
   };
 }
 
-/** Another picture. @param {Setting} setting @param {string} key @returns {Control} */
+/** Replaces the image. @param {Setting} setting @param {string} key @returns {Control} */
 function imageControl({ t, say, commit, readPicture }, key) {
   const input = h("input", { type: "file", accept: "image/png,image/jpeg,image/svg+xml", "data-field": key });
   const { element, report } = labeled(t(`field.${key}`), input);
@@ -210,7 +210,7 @@ function imageControl({ t, say, commit, readPicture }, key) {
 }
 
 /**
- * Something that may be left out as a whole: walls, a pen.
+ * Edits an optional group: walls, a pen.
  *
  * @param {Setting} setting
  * @param {string} key
@@ -239,7 +239,7 @@ function groupControl(setting, key, { rule }) {
 }
 
 /**
- * Movable, and how heavy.
+ * Edits whether an object is movable, and its mass.
  *
  * @param {Setting} setting
  * @param {import("../playground/rules.js").Fields} fields
@@ -264,7 +264,7 @@ export function loadControl(setting, fields) {
 }
 
 /**
- * The control of a field.
+ * The control for a field.
  *
  * @param {Setting} setting
  * @param {string} key

@@ -1,4 +1,4 @@
-// The form of what is in hand or selected: all of its values, by numbers.
+// The form with all values of the item being placed or selected.
 
 import { h, icon, renew, setText } from "../panels/dom.js";
 import { kindNamed } from "../playground/kinds/index.js";
@@ -11,7 +11,7 @@ import { CREATOR_ICONS } from "./icons.js";
 /** @typedef {import("./fields.js").Setting} Setting */
 /** @typedef {import("./fields.js").Control} Control */
 
-/** Before all others: what it is called, and where it is. */
+/** These fields come first: name and position. */
 const FIRST = ["name", "x_m", "y_m"];
 const LOAD_KEYS = ["mass_kg", "friction", "restitution"];
 
@@ -89,7 +89,7 @@ export function itemForm(setting, model) {
       const values = valuesOf(shown);
       for (const one of controls) one.update(values);
       const elements = controls.map((one) => one.element);
-      if (isOther) renew(fields, elements); // also after another name, of what is the same
+      if (isOther) renew(fields, elements); // also when the same item was renamed
       for (const { icon: verb, button } of verbs) {
         const turns = verb === "turnLeft" || verb === "turnRight";
         button.hidden = turns ? !canTurn(shown) || placing?.isPath === true : placing !== null;
@@ -98,7 +98,7 @@ export function itemForm(setting, model) {
   };
 }
 
-/** Places of a wall or door come from the pointer while it is placed. @param {string} key */
+/** While a wall or door is placed, its end points come from the pointer. @param {string} key */
 function isEnd(key) {
   return /^(start|end|opened|closed)_/.test(key);
 }

@@ -1,4 +1,4 @@
-// The playground creator's panels: tools on the view, the form beside it, the bar below. All of it acts on the
+// Panels of the playground creator: tools over the view, the form beside it, the bar below it. All of them act on the
 // session.
 
 import "./creator.css";
@@ -27,23 +27,23 @@ import { CreatorSession } from "./creator_session.js";
 
 export { CreatorSession, WORDS };
 
-/** What only a file of another kind misses. */
+/** Expectations that only a file of another kind violates. */
 const OF_ANOTHER_KIND = ["fault.json", "fault.object", "fault.format"];
 
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 /**
  * @typedef {object} Creator
  * @property {{ stage: HTMLElement, side: HTMLElement, footer: HTMLElement }} elements
- * @property {(offline: string) => void} render   once a frame: takes over what pointers did, and shows it; why the
- *   simulator cannot be asked, if so
+ * @property {(offline: string) => void} render   once per frame: applies pointer moves and updates the panels; `offline` says
+ * why the simulator cannot be reached, else it is empty
  * @property {(phrase: Phrase) => void} report
- * @property {(fault: HTMLElement[] | null) => void} refuse   what is wrong with a file; null: nothing
- * @property {(file: File) => void} open   another playground from a file of ours
+ * @property {(fault: HTMLElement[] | null) => void} refuse   shows the errors of a file; null clears them
+ * @property {(file: File) => void} open   opens a playground file
  * @property {() => void} destroy
  */
 
 /**
- * A phrase in words: kinds by their names, and what was done inside it.
+ * Translate a phrase, including kinds and nested descriptions of steps.
  *
  * @param {import("../i18n/index.js").Translate} t
  * @param {Phrase} phrase
@@ -103,7 +103,7 @@ export function createCreator({ session, language, pageText, scene, announce, tr
   const unsaved = h("span", { class: "unsaved", title: t("file.unsaved") });
   const name = h("strong", { class: "name" });
   const hint = h("p", { class: "hint building-hint" });
-  /** Then keys go on in the view. @param {() => void} act */
+  /** Run an action, then return the keyboard focus to the view. @param {() => void} act */
   const andBack = (act) => () => {
     act();
     canvas.focus();

@@ -1,4 +1,4 @@
-// The list of all that is in the playground; a click selects it.
+// The list of all items of the playground; a click selects one.
 
 import { h, setAttribute, setText } from "../panels/dom.js";
 

@@ -1,5 +1,5 @@
-// Keys while one builds. They work on the view only, so that writing in fields acts on nothing else; undo and redo
-// also from the buttons around it.
+// Keyboard control of the creator. Keys act only while the view has the focus, so that typing in fields is safe;
+// undo and redo also work from the surrounding buttons.
 
 import { plainKey } from "../input/keyboard.js";
 
@@ -11,19 +11,19 @@ const STEPS = /** @type {Record<string, [number, number]>} */ ({
   ArrowLeft: [-1, 0],
   ArrowRight: [1, 0],
 });
-/** Counter-clockwise, clockwise: as where things are moved while the world runs. */
+/** Counter-clockwise and clockwise: the same keys as for moving objects in the running world. */
 const TURNS = /** @type {Record<string, number>} */ ({ ",": 1, "<": 1, ".": -1, ">": -1, r: 1 });
-/** What the camera keeps. */
+/** Keys that the camera keeps. */
 const CAMERA_KEYS = ["+", "=", "-", "Home", "t"];
 
 /**
  * @param {object} options
  * @param {HTMLElement} options.stage
  * @param {HTMLElement} options.canvas
- * @param {readonly HTMLElement[]} options.around   where undo and redo work too
+ * @param {readonly HTMLElement[]} options.around   elements where undo and redo work too
  * @param {CreatorModel} options.model
- * @param {() => void} options.editFields   go on in the form
- * @returns {() => void}  ends it
+ * @param {() => void} options.editFields   moves the focus to the form
+ * @returns {() => void}  removes the listeners
  */
 export function watchBuildingKeys({ stage, canvas, around, model, editFields }) {
   const ending = new AbortController();
@@ -37,7 +37,7 @@ export function watchBuildingKeys({ stage, canvas, around, model, editFields }) 
       shiftAlone = event.key === "Shift" && !event.repeat;
       const isTheirs = CAMERA_KEYS.includes(plainKey(event)) || event.key === "Tab" || isCameraTurn(model, event);
       if (isTheirs && !event.ctrlKey && !event.metaKey) return;
-      event.stopPropagation(); // no robot's button is pressed, and Escape stops none
+      event.stopPropagation(); // do not press robot buttons, and do not stop robots by Escape
       if (act(model, event, editFields)) event.preventDefault();
     },
     { capture: true, signal },
@@ -59,7 +59,7 @@ export function watchBuildingKeys({ stage, canvas, around, model, editFields }) 
         const isText = event.target instanceof HTMLInputElement && !["checkbox", "color"].includes(event.target.type);
         if (event.target === canvas || isText || event.target instanceof HTMLTextAreaElement) return;
         if (travel(model, event)) event.preventDefault();
-        else if (event.key === "Escape" && model.cancel()) event.stopPropagation(); // and no robot is stopped
+        else if (event.key === "Escape" && model.cancel()) event.stopPropagation(); // do not stop the robots
       },
       { signal },
     );
@@ -68,7 +68,7 @@ export function watchBuildingKeys({ stage, canvas, around, model, editFields }) 
 }
 
 /**
- * Shift and arrows turn the camera while nothing is in hand or selected.
+ * Shift and arrows turn the camera while no item is placed or selected.
  *
  * @param {CreatorModel} model
  * @param {KeyboardEvent} event
@@ -77,7 +77,12 @@ function isCameraTurn({ placing, selected }, { key, shiftKey }) {
   return shiftKey && key in STEPS && placing === null && selected === null;
 }
 
-/** Undo and redo; whether it was one. @param {CreatorModel} model @param {KeyboardEvent} event */
+/**
+ * Handle undo and redo; returns whether the key was one of them.
+ *
+ * @param {CreatorModel} model
+ * @param {KeyboardEvent} event
+ */
 function travel(model, { key, ctrlKey, metaKey, shiftKey }) {
   if (!ctrlKey && !metaKey) return false;
   const letter = key.toLowerCase();
@@ -88,7 +93,7 @@ function travel(model, { key, ctrlKey, metaKey, shiftKey }) {
 }
 
 /**
- * Whether the key did something.
+ * Returns whether the key had an effect.
  *
  * @param {CreatorModel} model
  * @param {KeyboardEvent} event

@@ -1,10 +1,10 @@
-// The tools: select, or put something down.
+// The tool palette: select, or place an item.
 
 import { h, icon, setAttribute } from "../panels/dom.js";
 import { CREATOR_ICONS } from "./icons.js";
 import { readPicture } from "./read_picture.js";
 
-/** In their order on the page. */
+/** In display order. */
 const TOOLS = [
   "select",
   "rectangle",
@@ -24,7 +24,7 @@ const TOOLS = [
  * @param {object} options
  * @param {import("../i18n/index.js").Translate} options.t
  * @param {import("./creator_model.js").CreatorModel} options.model
- * @param {HTMLElement} options.canvas   which gets the focus, so that keys go on there
+ * @param {HTMLElement} options.canvas   gets the focus so that keys act on the view
  */
 export function palette({ t, model, canvas }) {
   const file = h("input", {

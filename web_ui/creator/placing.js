@@ -1,4 +1,4 @@
-// Something new in hand: it follows the pointer or the keys, is put down again and again, and goes with Escape.
+// Placing new items: the item follows pointer or keys, is placed repeatedly, and Escape ends it.
 
 import { kindNamed } from "../playground/kinds/index.js";
 import { distance } from "../playground/geometry.js";
@@ -10,7 +10,7 @@ import { rounded, snapped } from "./snap.js";
 /** @typedef {import("../playground/geometry.js").Point} Point */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 
-/** Nearer than this, a point is the same; without a grid a hand is not that steady. */
+/** Points nearer than this count as the same; without a grid the tolerance is in pixels. */
 const SAME_M = 0.0005;
 const SAME_PX = 8;
 const ASIDE_M = 0.15;
@@ -24,7 +24,7 @@ export class Placing {
     const ground = groundOf(playground);
     /** @type {Point} where it would be put */
     this.place = snapped(ground === null ? [0, 0] : middleOf(ground), model.grid);
-    /** Meters within which a point is the same. */
+    /** Tolerance for the same point, in meters. */
     this.same = SAME_M;
     /** @type {Point[]} of a path, so far */ this.points = [];
     /** @type {Point[]} taken back */ this.takenBack = [];
@@ -39,7 +39,7 @@ export class Placing {
     if (!this.isPath) this.#makeRoom();
   }
 
-  /** Not on top of a robot to begin with. */
+  /** Avoid starting on top of a robot. */
   #makeRoom() {
     const [x, y] = this.place;
     const places = [0, 1, 2, 3].flatMap((far) =>
@@ -52,24 +52,28 @@ export class Placing {
     this.place = free ?? places[0];
   }
 
-  /** Whether several places are asked for. */
+  /** Whether the item needs several points. */
   get isPath() {
     return (kindNamed(this.kind)?.clicks ?? 1) > 1;
   }
 
-  /** Where it would stand; null for a path without its first point. @returns {import("./creator_model.js").Ghost | null} */
+  /**
+   * The item at its current position; null for a path without a first point.
+   *
+   * @returns {import("./creator_model.js").Ghost | null}
+   */
   get ghost() {
     const item = this.isPath ? this.#pathTo(this.place) : movedTo(this.#whole(), this.place);
     return item === null ? null : { item, problem: this.model.problemOf(item, item.name) };
   }
 
-  /** The pointer is there. @param {Point} place @param {boolean} free  of the grid */
+  /** Move to a pointer position. @param {Point} place @param {boolean} free  of the grid */
   hover(place, free) {
     this.place = snapped(place, this.model.gridFor(free));
     this.same = free ? SAME_PX * this.model.pixel : SAME_M;
   }
 
-  /** Put it down, or one point of it. */
+  /** Place the item, or one point of it. */
   put() {
     const { model } = this;
     if (this.isPath) return this.#putPoint();
@@ -79,7 +83,7 @@ export class Placing {
     this.#add(ghost.item);
   }
 
-  /** The path is complete. @param {boolean} [closed] */
+  /** Complete the path. @param {boolean} [closed] */
   finish(closed = false) {
     if (this.kind !== "track") return;
     if (this.points.length < 2) return this.model.report({ word: "problem.twoPoints" });
@@ -90,7 +94,7 @@ export class Placing {
     this.#add(item);
   }
 
-  /** Take back the last point; whether there was one. */
+  /** Remove the last point; returns whether there was one. */
   undoPoint() {
     const point = this.points.pop();
     if (point === undefined) return false;
@@ -128,7 +132,12 @@ export class Placing {
     this.model.changed();
   }
 
-  /** Other values for those to come. @param {Record<string, any>} values @returns {Phrase | null} */
+  /**
+   * Change values of the items to come; returns the problem, or null.
+   *
+   * @param {Record<string, any>} values
+   * @returns {Phrase | null}
+   */
   edit(values) {
     const { model } = this;
     const next = changed(this.pattern, values);
@@ -147,7 +156,7 @@ export class Placing {
     return null;
   }
 
-  /** The playground has changed under it. */
+  /** Update the name after the playground has changed. */
   refresh() {
     this.pattern = changed(this.pattern, { name: this.#name() });
   }
@@ -171,7 +180,7 @@ export class Placing {
   }
 
   /**
-   * What it would be if the pointer were its last point; null when there is not enough of it.
+   * The path with an additional last point; null while there are too few points.
    *
    * @param {Point} place
    * @returns {Item | null}
@@ -195,7 +204,7 @@ export class Placing {
     model.report(did);
   }
 
-  /** The pattern with a place, as places are needed. */
+  /** The pattern with coordinates, which some functions need. */
   #whole() {
     const points = kindNamed(this.kind)?.points ?? [];
     const [first] = points;
@@ -208,7 +217,7 @@ export class Placing {
   }
 
   /**
-   * What a new one takes from the playground: a picture its width, a plate its last door.
+   * Defaults from the playground: the width of an image, the last door for a plate.
    *
    * @param {string} kind
    * @returns {Record<string, any>}

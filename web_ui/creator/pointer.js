@@ -1,5 +1,5 @@
-// Pointer and wheel while one builds. Handlers only note what happened and ask for a frame; places are taken over once
-// a frame (`flush`), however many moves there were. They come before the camera's, which gets what is not ours.
+// Pointer and wheel control of the creator. Handlers only record events and request a frame; `flush` applies them once
+// per frame, however many moves arrived. They run before the camera's handlers, which get everything that is left.
 
 import { atHeight } from "../move/placed_bodies.js";
 import { WheelSteps } from "./wheel.js";
@@ -7,12 +7,12 @@ import { WheelSteps } from "./wheel.js";
 /** @typedef {import("./creator_model.js").CreatorModel} CreatorModel */
 /** @typedef {{ clientX: number, clientY: number, altKey: boolean }} Spot */
 
-/** A pointer that went up nearer than this has clicked. */
+/** A pointer released within this distance has clicked. */
 const CLICK_PX = 6;
 
 /**
  * @param {object} options
- * @param {HTMLElement} options.stage    that containsPoint the canvas
+ * @param {HTMLElement} options.stage    element that contains the canvas
  * @param {HTMLElement} options.canvas
  * @param {CreatorModel} options.model
  * @param {import("../scene/index.js").SceneView} options.scene
@@ -51,7 +51,7 @@ export function watchBuilding({ stage, canvas, model, scene }) {
   on("pointerdown", (/** @type {PointerEvent} */ event) => {
     canvas.focus();
     if (down !== null) {
-      down.click = false; // a second finger is the camera's
+      down.click = false; // a second finger moves the camera
       return;
     }
     if (event.button !== 0) return;

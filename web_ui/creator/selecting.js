@@ -1,5 +1,5 @@
-// Taking what stands there: select it, carry it, turn it by its ring, move its points. Until it is let go, it is a
-// ghost.
+// Selecting existing items: drag them, turn them by the ring, move their points. A dragged item is shown as a ghost
+// until it is released.
 
 import { atHeight } from "../move/placed_bodies.js";
 import { kindNamed } from "../playground/kinds/index.js";
@@ -24,7 +24,7 @@ export class Selecting {
     /** @type {import("./creator_model.js").Ghost | null} */ this.ghost = null;
   }
 
-  /** A pointer goes down; whether it took something. @param {Ray} ray */
+  /** Pointer down; returns whether something was grabbed. @param {Ray} ray */
   grab(ray) {
     const { model } = this;
     const ground = pointOn(ray, 0);
@@ -36,19 +36,19 @@ export class Selecting {
       return true;
     }
     const found = itemAt(model.playground.items, ray);
-    if (found === null || hasKnob(found)) return false; // the ground is the camera's, and a click selects it
+    if (found === null || hasKnob(found)) return false; // drags on the ground move the camera; a click selects it
     model.select(found.name);
     const z = heightOf(found) / 2;
     this.grip = { item: found, handle: { type: "middle" }, from: pointOn(ray, z) ?? ground, z };
     return true;
   }
 
-  /** A pointer went down and up on nothing that can be taken. @param {Ray} ray */
+  /** Click on something that cannot be dragged: select what is there, or nothing. @param {Ray} ray */
   click(ray) {
     this.model.select(itemAt(this.model.playground.items, ray)?.name ?? null);
   }
 
-  /** @param {Ray} ray @param {boolean} free  of the grid */
+  /** @param {Ray} ray @param {boolean} free  whether the grid is ignored */
   drag(ray, free) {
     const { model, grip } = this;
     if (grip === null) return;
@@ -59,7 +59,7 @@ export class Selecting {
     model.changed();
   }
 
-  /** Let go: it is there now, or where it was. */
+  /** Pointer up: apply the change, or restore the item if the position is invalid. */
   drop() {
     const { model, ghost, grip } = this;
     this.cancel();
@@ -93,7 +93,7 @@ function carried({ item, handle, from }, place, grid) {
   if (Math.hypot(dx, dy) < 1e-4) return item;
   const isPath = kindNamed(item.kind)?.points.length === 0 || item.kind === "wall";
   if (!isPath) return movedTo(item, snapped([x + dx, y + dy], grid));
-  const [[firstX, firstY]] = pointsOf(item); // a path keeps its first point on the grid, not its middle
+  const [[firstX, firstY]] = pointsOf(item); // a path keeps its first point on the grid, not its center
   const [toX, toY] = snapped([firstX + dx, firstY + dy], grid);
   return movedTo(item, [x + toX - firstX, y + toY - firstY]);
 }

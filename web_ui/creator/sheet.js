@@ -1,4 +1,4 @@
-// The playground as a whole: title, description, what it stands on.
+// The form of the playground as a whole: title, description, main ground.
 
 import { h } from "../panels/dom.js";
 import { grounded, groundOf, titled } from "./commands.js";
@@ -10,7 +10,7 @@ import { valuesOf } from "../playground/parts.js";
 /** @typedef {import("./fields.js").Control} Control */
 
 const GROUNDS = ["rectangle", "octagon", "none"];
-/** What is asked about the ground here; the rest when it is selected. */
+/** Fields of the ground that are shown here; the others appear when it is selected. */
 const GROUND_KEYS = ["size_x_m", "size_y_m", "side_m", "color", "walls"];
 
 /** @param {Omit<import("./fields.js").Setting, "commit">} setting @param {import("./creator_model.js").CreatorModel} model */

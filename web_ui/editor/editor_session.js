@@ -1,4 +1,5 @@
-// What outlives a change of language, or a look at the robot: the programs, what is known of the robots, what is watched.
+// State of the editor that outlives a change of language or closing the editor: programs, robot data, watched
+// variables.
 
 import { trySetItem } from "../browser/local_storage.js";
 import { History } from "./history.js";
@@ -24,7 +25,7 @@ export class EditorSession {
     this.fontSize = Number(storage.getItem(SIZE_KEY)) || 14;
   }
 
-  /** @param {import("./state.js").Message} message @param {string} selected  robot that is plotted */
+  /** @param {import("./state.js").Message} message @param {string} selected  the robot whose values are plotted */
   receive(message, selected) {
     const before = this.state;
     this.state = reduce(before, message);
@@ -63,13 +64,13 @@ export class EditorSession {
     trySetItem(this.storage, SIZE_KEY, String(this.fontSize));
   }
 
-  /** Tabs there are for these robots. @param {readonly string[]} robots */
+  /** The tabs for these robots. @param {readonly string[]} robots */
   tabs(robots) {
     return robots.length < 2 ? [ALL] : [ALL, ...robots];
   }
 }
 
-/** Events are watched under a name that no variable has. @param {string} name */
+/** The key under which an event is watched; no variable has such a name. @param {string} name */
 export function eventKey(name) {
   return `event ${name}`;
 }

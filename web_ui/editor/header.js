@@ -1,4 +1,4 @@
-// Above the text: whose program, its file and name, whether it is saved and loaded, and a draft that was left.
+// The header: robot tabs, node, file name, saved and loaded state, and a draft to restore.
 
 import { h, icon, ICONS, setAttribute } from "../panels/dom.js";
 import { isInRobot, isUnsaved } from "./documents.js";
@@ -7,9 +7,9 @@ import { ALL } from "./workspace.js";
 /**
  * @param {object} options
  * @param {import("../i18n/index.js").Translate} options.t
- * @param {(kept: import("./file_store.js").Kept) => string} options.draftLabel   says of a text that it is in no file
+ * @param {(kept: import("./file_store.js").Kept) => string} options.draftLabel   text about an unsaved draft
  * @param {import("./editor_session.js").EditorSession} options.session
- * @param {(robot: string) => void} options.select   a robot's tab was chosen
+ * @param {(robot: string) => void} options.select   called when the tab of a robot is chosen
  * @param {() => void} options.redraw
  * @param {() => void} options.close
  */
@@ -118,7 +118,7 @@ export function header({ t, draftLabel, session, select, redraw, close }) {
   return {
     element,
     draft,
-    /** @param {string[]} wanted  tabs @param {import("./aesl.js").Aesl} file */
+    /** @param {string[]} wanted  the tabs to show @param {import("./aesl.js").Aesl} file */
     render(wanted, file) {
       drawTabs(wanted);
       drawFile(file);

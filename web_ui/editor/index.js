@@ -1,5 +1,5 @@
-// The editor on the page: tabs, toolbar, text, tools and footer around one session. It draws what the session, the page's
-// state and the text say, and hands on what a person does.
+// The editor: connects tabs, toolbar, text, tools and footer of one session. It draws the state of session, page and
+// text, and forwards user actions.
 
 import { openSearchPanel } from "@codemirror/search";
 
@@ -59,14 +59,14 @@ export function createEditor({ session, client, store, language, pageText, annou
   /** @type {any} */ let statusShown = null;
   /** @type {ReturnType<typeof setTimeout> | undefined} */ let checkTimer;
   let checks = 0;
-  let isChecked = true; // or on the way; false: nobody was there to ask
+  let isChecked = true; // or in progress; false: the check service was not available
   let scheduled = false;
   let said = "";
 
   const robots = () => Object.keys(store.state.robots);
   /** The robot whose values are shown. */
   const robot = () => (workspace.tab === ALL ? store.state.selected : workspace.tab);
-  /** The robot the tab's program is for; null for all. */
+  /** The robot that the tab's program is for; null for all robots. */
   const owner = () => (workspace.tab === ALL ? null : workspace.tab);
   const status = () => store.state.programs[robot()] ?? null;
   const lexicon = new Lexicon(language);
@@ -114,7 +114,7 @@ export function createEditor({ session, client, store, language, pageText, annou
     repairLabel: (content, repair) => repairLabel(t, content, repair),
     correct: () => correct(),
   });
-  /** Do what the hint proposes; the text is checked again. */
+  /** Apply the proposed repair; the text is checked again. */
   const correct = () => {
     if (correction === null || !text.repair(correction.text, correction.repair)) return;
     correction = null;
@@ -123,7 +123,7 @@ export function createEditor({ session, client, store, language, pageText, annou
   };
   const hints = hintBar(t, correct);
 
-  /** Ask the compiler, a moment after the last change. */
+  /** Check the text shortly after the last change. */
   const checkSoon = () => {
     clearTimeout(checkTimer);
     checkTimer = setTimeout(check, CHECK_DELAY_MS);
@@ -133,7 +133,7 @@ export function createEditor({ session, client, store, language, pageText, annou
     const source = workspace.code;
     const known = readAesl(workspace.current.text);
     const answer = await link.check({ source, language, events: allEvents(known), constants: known.constants });
-    if (number !== checks || source !== workspace.code) return; // a later one is on its way
+    if (number !== checks || source !== workspace.code) return; // a newer check is in progress
     verdict = answer;
     if (answer === null) {
       isChecked = false;
@@ -156,7 +156,7 @@ export function createEditor({ session, client, store, language, pageText, annou
     redraw();
   };
 
-  /** Another text is on the session. */
+  /** Show another text. */
   const show = () => {
     text.show(`${workspace.tab} ${workspace.current.node} ${workspace.current.name}`, workspace.code);
     verdict = null;
@@ -169,7 +169,7 @@ export function createEditor({ session, client, store, language, pageText, annou
   session.onText = show;
 
   const firstLine = () => Number(status()?.values.first_line ?? 1) || 1;
-  /** Whether the robot stands in just the text on the screen. */
+  /** Whether the robot runs exactly the text that is shown. */
   const isShown = () => {
     const { source } = workspace.current;
     const program = target()?.program;
@@ -192,7 +192,7 @@ export function createEditor({ session, client, store, language, pageText, annou
     const { ok, message } = await link.setBreakpoints(owner(), lines);
     if (!ok) {
       report(message, "error");
-      statusShown = null; // what is in force comes back
+      statusShown = null; // restores the breakpoints in effect
       redraw();
     }
   };
@@ -215,12 +215,12 @@ export function createEditor({ session, client, store, language, pageText, annou
       const notes = await link.notes(source, language);
       if (notes.length > 0) report(`${t("editor.loaded", { name })}: ${notes.join("; ")}`, "warning");
     }
-    // Those that stand there now: one may have been set while the robot answered.
+    // Send the current breakpoints: one may have been set while the request was in progress.
     if (workspace.tab === tab && breakpointLines(text.view.state).length > 0) await sendBreakpoints();
     redraw();
     return true;
   };
-  /** A line of the file as one of the code on the screen. @param {number} line */
+  /** Convert a line of the file to a line of the code that is shown. @param {number} line */
   const codeLine = (line) => {
     const units = file.nodes[workspace.current.node]?.units ?? [];
     const before = units.length === 0 ? 1 : fileText.slice(0, units[0].from).split("\n").length;
@@ -403,7 +403,7 @@ export function createEditor({ session, client, store, language, pageText, annou
     redraw,
     open,
     openText,
-    /** The editor is on the page now. */
+    /** Call after the editor has been added to the page. */
     start() {
       show();
       render();

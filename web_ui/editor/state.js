@@ -1,4 +1,4 @@
-// What the editor knows from the robots: targets, variables, events, built-in behaviors (docs/aseba_ros.md).
+// Robot data of the editor: targets, variables, events, built-in behaviors (docs/aseba_ros.md).
 // Pure: `state = reduce(state, message)`.
 
 /** @typedef {{ name: string, help: string }} Named */

@@ -1,4 +1,4 @@
-// The editor's buttons: files on the left, the robot on the right, and the keys that do the same.
+// The toolbar: file buttons on the left, robot buttons on the right, and their keyboard shortcuts.
 
 import { plainKey } from "../input/keyboard.js";
 import { fileButton, h, icon, ICONS, lock } from "../panels/dom.js";
@@ -7,10 +7,10 @@ import { fileButton, h, icon, ICONS, lock } from "../panels/dom.js";
 /** @typedef {import("./file_store.js").Kept} Kept */
 /** @typedef {{ recent: Kept } | { sample: string }} Choice */
 /**
- * @typedef {object} EditorCommands   what the buttons do
+ * @typedef {object} EditorCommands   actions of the buttons
  * @property {() => void} newFile
  * @property {(file: File) => void} open
- * @property {(choice: Choice) => void} choose   of the list of recent files and samples
+ * @property {(choice: Choice) => void} choose   called for an entry of the list of recent files and examples
  * @property {() => void} save
  * @property {() => void} load
  * @property {() => void} run
@@ -37,7 +37,7 @@ const VERBS = /** @type {const} */ ([
 /**
  * @param {import("../i18n/index.js").Translate} t
  * @param {EditorCommands} commands
- * @param {(kept: Kept) => string} draftLabel   says of a text that it is in no file
+ * @param {(kept: Kept) => string} draftLabel   text about an unsaved draft
  */
 export function toolbar(t, commands, draftLabel) {
   /** @param {string} name @param {string} path @param {string} key @param {() => void} act @param {boolean} [worded] */
@@ -107,7 +107,7 @@ export function toolbar(t, commands, draftLabel) {
      * @param {(verb: Verb) => boolean} can
      * @param {readonly Kept[]} recent
      * @param {readonly { name: string, description: string }[]} samples
-     * @param {string} offline  why no robot can be reached; empty: it can
+     * @param {string} offline  why the robots cannot be reached; empty if they can
      */
     render(can, recent, samples, offline) {
       for (const button of [load, run]) lock(button, offline);
@@ -134,7 +134,8 @@ export function toolbar(t, commands, draftLabel) {
 }
 
 /**
- * Keys: the function keys wherever the focus is, the others inside the editor. Returns what ends it.
+ * Keyboard shortcuts: function keys work everywhere, the others inside the editor. Returns a function that removes
+ * them.
  *
  * @param {HTMLElement} element
  * @param {EditorCommands} commands
@@ -161,7 +162,7 @@ export function watchKeys(element, commands) {
     if (!event.repeat) act();
   };
   window.addEventListener("keydown", press, true);
-  // Escape closes what is open in the editor; it does not stop the robots as elsewhere on the page.
+  // Escape closes lists and panels in the editor; unlike elsewhere on the page it does not stop the robots.
   element.addEventListener("keydown", (event) => event.key === "Escape" && event.stopPropagation());
   return () => window.removeEventListener("keydown", press, true);
 }

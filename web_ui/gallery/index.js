@@ -1,4 +1,4 @@
-// The gallery: a window with a picture of every shipped playground, to choose one.
+// The gallery dialog: a thumbnail of every shipped playground, to choose one.
 
 import { faultView } from "../panels/fault.js";
 import { buttonOf, fileButton, h, icon, ICONS, lock, setAttribute, setText } from "../panels/dom.js";
@@ -25,7 +25,7 @@ export function galleryDialog({ t, language, actions, thumbnails, store, creator
   });
   const dialog = h(
     "dialog",
-    { class: "gallery", "aria-labeledby": "gallery-title" },
+    { class: "gallery", "aria-labelledby": "gallery-title" },
     h("div", { class: "gallery-head" }, h("h2", { id: "gallery-title" }, t("gallery")), close),
     fault,
     list,
@@ -37,12 +37,12 @@ export function galleryDialog({ t, language, actions, thumbnails, store, creator
     ),
   );
   close.addEventListener("click", () => dialog.close());
-  dialog.addEventListener("click", (event) => event.target === dialog && dialog.close()); // beside it
-  dialog.addEventListener("close", () => scene.invalidate()); // messages go back to the page
-  dialog.addEventListener("keydown", (event) => event.stopPropagation()); // Escape closes, and stops no robot
+  dialog.addEventListener("click", (event) => event.target === dialog && dialog.close()); // a click outside
+  dialog.addEventListener("close", () => scene.invalidate()); // notices move back to the page
+  dialog.addEventListener("keydown", (event) => event.stopPropagation()); // Escape closes the dialog and does not stop robots
   /** @type {{ name: string, button: HTMLButtonElement }[]} */ let cards = [];
   let listed = "";
-  /** The upload before the choice that is on its way to the simulator; undefined: none is. */
+  /** The upload state before the choice that is in progress; undefined: none is in progress. */
   /** @type {import("../state/index.js").Upload | null | undefined} */ let before;
   const attempt = () => {
     before = store.state.uploads.playground;
@@ -103,7 +103,7 @@ export function galleryDialog({ t, language, actions, thumbnails, store, creator
       before = undefined;
       forget();
       dialog.showModal();
-      scene.invalidate(); // messages are shown in it from now on
+      scene.invalidate(); // notices are shown inside the dialog from now on
       render(store.state);
       (cards.find(({ button }) => button.ariaCurrent === "true")?.button ?? close).focus();
     },

@@ -1,5 +1,4 @@
-// The shipped playgrounds: read from the server when they are first wanted, with a picture of each drawn from its
-// data.
+// Thumbnails of the shipped playgrounds: loaded from the server on demand and drawn from the playground data.
 
 import { parse } from "../playground/document.js";
 import { Markers } from "../playground/markers.js";
@@ -7,7 +6,7 @@ import { Pictures } from "../playground/pictures.js";
 import { worldOf } from "../playground/world.js";
 
 /** @typedef {import("../playground/document.js").Playground} Playground */
-/** @typedef {{ playground: Playground, picture: string }} Sample  picture: address of an image */
+/** @typedef {{ playground: Playground, picture: string }} Sample  picture: URL of the image */
 
 const SMALL = { width: 240, height: 160 };
 
@@ -20,13 +19,13 @@ export class ThumbnailCache {
     /** @type {Map<string, Promise<Sample | null>>} */ this.samples = new Map();
   }
 
-  /** A shipped playground with its picture; null for one that cannot be had. @param {string} name */
+  /** A shipped playground with its thumbnail; null if it is not available. @param {string} name */
   sample(name) {
     let sample = this.samples.get(name);
     if (sample === undefined) {
       sample = this.#make(name).catch(() => null);
       this.samples.set(name, sample);
-      sample.then((found) => found === null && this.samples.delete(name)); // asked again next time
+      sample.then((found) => found === null && this.samples.delete(name)); // retried next time
     }
     return sample;
   }

@@ -1,5 +1,4 @@
-// The place of the playground creator on the page: loads it when it is first opened, and lets it be tried in the
-// simulator.
+// Integrates the playground creator into the page: loads it on demand and runs its playground in the simulator.
 
 import { localStore } from "../browser/local_storage.js";
 import { faultView } from "../panels/fault.js";
@@ -10,7 +9,7 @@ import { CONNECTION } from "../state/index.js";
 /** @typedef {import("../creator/creator_session.js").CreatorSession} CreatorSession */
 /** @typedef {import("../panels/index.js").Context} Context */
 
-/** The tools stand at the left of the view. */
+/** Width of the tool palette at the left of the view. */
 const PALETTE_PX = 66;
 
 export class CreatorHost {
@@ -29,30 +28,34 @@ export class CreatorHost {
     /** @type {Context | null} */ this.context = null;
   }
 
-  /** What the scene draws instead of the simulator's world; null while nobody builds. */
+  /** The world to draw instead of the simulator's; null while the creator is closed. */
   get world() {
     return this.isOpen ? (this.session?.world ?? null) : null;
   }
 
-  /** What is drawn over it. */
+  /** The overlay to draw over the world. */
   get sketch() {
     return this.isOpen ? (this.session?.sketch ?? null) : null;
   }
 
-  /** Once a frame, before it is drawn. */
+  /** Call once per frame, before drawing. */
   render() {
     if (!this.isOpen || this.context === null) return;
     const { store, t } = this.context;
     this.creator?.render(store.state.connection === "connected" ? "" : t("connection.needed"));
   }
 
-  /** The page has other words, or is new. @param {Context} context */
+  /** Set the context: on start, and after a change of language. @param {Context} context */
   setContext(context) {
     this.context = context;
     if (this.isOpen) this.#build();
   }
 
-  /** Go on building, or with this playground. @param {import("../playground/document.js").Playground} [playground] */
+  /**
+   * Open the creator, continuing the session or with a new playground.
+   *
+   * @param {import("../playground/document.js").Playground} [playground]
+   */
   async open(playground) {
     const { context } = this;
     if (context === null) return;
@@ -78,19 +81,19 @@ export class CreatorHost {
       document.body.classList.add("building");
       this.slot("creator").hidden = false;
       context.dragController.setMode(false);
-      context.editor.close(); // there is room for one of them
+      context.editor.close(); // there is no room for both
       this.scene().camera.setInset(PALETTE_PX);
       this.#build();
     }
     this.scene().setView("home");
   }
 
-  /** Go on with a playground of the simulator's. Fails with a Fault for one that is not ours. @param {string} text */
+  /** Open a playground from text. Throws Fault if it is not in the format of this project. @param {string} text */
   async openText(text) {
     await this.open(parse(text));
   }
 
-  /** A file dropped on the page while one builds. @param {File} file */
+  /** Open a file that was dropped on the page. @param {File} file */
   openFile(file) {
     this.creator?.open(file);
   }
@@ -108,7 +111,7 @@ export class CreatorHost {
     this.scene().setView("home");
   }
 
-  /** What tests see of it: plain data; null before it is first opened. */
+  /** Plain data for tests; null before the creator was first opened. */
   snapshot() {
     if (this.session === null) return null;
     const { playground, selected, placing, ghost, cameraOn, history } = this.session.model;
@@ -126,7 +129,7 @@ export class CreatorHost {
 
   #keep = () => this.session?.keep();
 
-  /** Give it to the simulator; what it refuses stays here, with its reason. */
+  /** Load the playground into the simulator; if it is rejected, the creator stays open and shows the reason. */
   async #tryIt() {
     const { context, session, creator } = this;
     if (context === null || session === null || creator === null) return;

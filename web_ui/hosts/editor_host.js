@@ -1,4 +1,4 @@
-// The place of the editor on the page: loads it when it is first opened, gives it messages while it is open.
+// Integrates the Aseba editor into the page: loads it on demand and forwards messages while it is open.
 
 import { localStore } from "../browser/local_storage.js";
 import { CONNECTION } from "../state/index.js";
@@ -14,7 +14,7 @@ export class EditorHost {
    * @param {object} options
    * @param {HTMLElement} options.slot
    * @param {() => import("../protocol/client.js").Client} options.client
-   * @param {() => void} options.changed   opened or closed
+   * @param {() => void} options.changed   called when it is opened or closed
    */
   constructor({ slot, client, changed }) {
     this.slot = slot;
@@ -27,7 +27,7 @@ export class EditorHost {
     /** @type {Context | null} */ this.context = null;
   }
 
-  /** Whether the editor needs this topic now. @param {string} topic */
+  /** Whether the editor currently needs a topic. @param {string} topic */
   wants(topic) {
     return this.isOpen && TOPIC.test(topic);
   }
@@ -43,7 +43,7 @@ export class EditorHost {
     if (this.isOpen) this.editor?.redraw();
   }
 
-  /** The page has other words, or is new. @param {Context} context */
+  /** Set the context: on start, and after a change of language. @param {Context} context */
   setContext(context) {
     this.context = context;
     if (this.isOpen) this.#build();
@@ -76,7 +76,7 @@ export class EditorHost {
     this.changed();
   }
 
-  /** A program dropped or refused elsewhere on the page. @param {string} name @param {string} text */
+  /** Open a program that was dropped on the page or rejected elsewhere. @param {string} name @param {string} text */
   async openText(name, text) {
     await this.open();
     this.editor?.openText(name, text);

@@ -1,4 +1,4 @@
-// The tour's place on the page: shown at a first visit, never again once it was closed, and whenever it is asked for.
+// Integrates the tour into the page: shown at the first visit, never again after it was closed, and on request.
 
 import { localStore, trySetItem } from "../browser/local_storage.js";
 import { CONNECTION } from "../state/index.js";
@@ -10,13 +10,13 @@ const KEY = "tour";
 const CLOSED = "closed";
 
 /**
- * Whether the tour starts by itself. In the address, `tour=off` prevents it, for kiosks and tests, and `tour=on` starts
- * it even where it was closed.
+ * Whether the tour starts by itself. In the address, `tour=off` prevents it (kiosks, tests), and `tour=on` starts it
+ * even if it was closed before.
  *
  * @param {object} visit
- * @param {string} visit.search             of the address
+ * @param {string} visit.search             query part of the address
  * @param {Pick<import("../browser/local_storage.js").KeyValueStore, "getItem">} visit.storage
- * @param {unknown} visit.entry             what the browser's history keeps of this visit, also where it stores nothing
+ * @param {unknown} visit.entry             history state of this visit; available even without storage
  */
 export function shouldStart({ search, storage, entry }) {
   const asked = new URLSearchParams(search).get("tour");
@@ -37,13 +37,13 @@ export class TourHost {
     return this.tour !== null;
   }
 
-  /** The page has other words, or is new. @param {Context} context */
+  /** Set the context: on start, and after a change of language. @param {Context} context */
   setContext(context) {
     this.context = context;
     if (this.isOpen) this.#build();
   }
 
-  /** Once, when the page is there. */
+  /** Call once, when the page is ready. */
   start() {
     if (shouldStart({ search: location.search, storage: localStore, entry: history.state })) void this.open();
   }
@@ -62,7 +62,7 @@ export class TourHost {
     this.#build();
   }
 
-  /** For good: only the button in the header brings it back. */
+  /** Close the tour permanently: only the button in the header opens it again. */
   close() {
     this.tour?.destroy();
     this.tour = null;
@@ -72,7 +72,7 @@ export class TourHost {
     (place?.isConnected ? place : /** @type {HTMLElement | null} */ (document.querySelector("#tour-switch")))?.focus();
   }
 
-  /** Once a frame: what it speaks of may have moved. */
+  /** Call once per frame: the described element may have moved. */
   render() {
     this.tour?.render();
   }

@@ -1,4 +1,4 @@
-// What a person can do, as the messages, calls and parameters that do it. No document, no scene.
+// User actions, as messages, service calls and parameters. No DOM and no 3D scene.
 
 import { CHECK_SERVICE, checkRequest, firstFault } from "../editor/checking.js";
 import { startOf } from "../move/start.js";
@@ -9,17 +9,22 @@ import { textOf } from "../browser/text_file.js";
 /** @typedef {import("../protocol/client.js").Client} Client */
 /** @typedef {import("../state/store.js").Store} Store */
 
-/** Of rcl_interfaces/msg/ParameterType. */
+/** From rcl_interfaces/msg/ParameterType. */
 const DOUBLE_ARRAY = 8;
-/** A file larger than this is no program. */
+/** Maximum size of a program file in bytes. */
 export const LARGEST_PROGRAM = 1_000_000;
-/** A playground may hold pictures; as text it must fit into one message of the bridge. */
+/**
+ * Maximum size of a playground file in bytes. It may contain images, and as text it must fit into one message of the
+ * bridge.
+ */
 export const LARGEST_PLAYGROUND = 3_000_000;
 
-/** At a quarter of the speed of time this is more than the 20 ms between two looks (docs/spec/thymio-robot.md section 3). */
+/**
+ * Longer than the 20 ms between two button polls even at a quarter of real time (docs/spec/thymio-robot.md section 3).
+ */
 const SHORTEST_PRESS_MS = 120;
 
-/** What the ending of a file's name says about it. */
+/** File kinds by file name extension. */
 const KINDS = { program: /\.(aesl|aseba|txt)$/i, playground: /\.(json|playground|xml|zip)$/i };
 
 /** @param {{ name: string }} file */
@@ -33,8 +38,8 @@ export class Actions {
    * @param {Client} options.client
    * @param {Store} options.store
    * @param {(key: string, values?: Record<string, any>) => string} options.t
-   * @param {() => string} options.language  of the page
-   * @param {() => number} [options.now]  milliseconds
+   * @param {() => string} options.language  language of the page
+   * @param {() => number} [options.now]  clock in milliseconds
    * @param {(act: () => void, ms: number) => void} [options.later]
    */
   constructor({ client, store, t, language, now = () => performance.now(), later = setTimeout.bind(globalThis) }) {
@@ -50,8 +55,8 @@ export class Actions {
   }
 
   /**
-   * A finger on or off one of a robot's buttons. The robot looks at them now and then: a touch that would be too short
-   * to be seen lasts a little longer.
+   * Press or release a button of a robot. The robot polls its buttons, so a touch that is too short to be seen is
+   * prolonged.
    *
    * @param {string} robot
    * @param {string} button
@@ -68,12 +73,12 @@ export class Actions {
     const rest = since === undefined ? 0 : since + SHORTEST_PRESS_MS - this.now();
     if (rest <= 0) return send();
     this.later(() => {
-      if (this.held.get(topic) === since) send(); // else it is held again
+      if (this.held.get(topic) === since) send(); // otherwise it has been pressed again
     }, rest);
   }
 
   /**
-   * What an operator does to the selected robot.
+   * Apply a stimulus to the selected robot.
    *
    * @param {string} name    topic relative to the robot
    * @param {string} type
@@ -83,7 +88,7 @@ export class Actions {
     this.client.publish(robotTopic(this.store.state.selected, name), type, value);
   }
 
-  /** Everything stands still: every program stopped, every wheel reported zero. */
+  /** Stop everything: all programs, and all wheels. */
   async stop() {
     const { services, robots } = this.store.state;
     const stops = services.filter((name) => name.endsWith("/aseba/stop"));
@@ -93,12 +98,12 @@ export class Actions {
     }
   }
 
-  /** run, stop or reset the selected robot's program. @param {"run" | "stop" | "reset"} verb */
+  /** Run, stop or reset the program of the selected robot. @param {"run" | "stop" | "reset"} verb */
   program(verb) {
     return this.call(this.programService(verb));
   }
 
-  /** The service that does this for the selected robot. @param {"run" | "stop" | "reset"} verb */
+  /** The name of that service for the selected robot. @param {"run" | "stop" | "reset"} verb */
   programService(verb) {
     const { services, selected } = this.store.state;
     const own = robotTopic(selected, `aseba/${verb}`);
@@ -110,7 +115,7 @@ export class Actions {
     return this.call("/simulator/pause", { data: paused });
   }
 
-  /** Let so many ticks of 10 ms pass while time is paused. @param {number} ticks */
+  /** Run a number of ticks of 10 ms while the simulation is paused. @param {number} ticks */
   async step(ticks) {
     const chosen = await this.client.setParameters([{ name: PARAMETERS.stepTicks, value: ticks }]);
     if (!chosen.ok) return this.#report("/simulator/step", chosen);
@@ -128,9 +133,9 @@ export class Actions {
   }
 
   /**
-   * Put a robot or a movable thing somewhere; whether the simulator did.
+   * Move a robot or an object; returns whether the simulator accepted the pose.
    *
-   * @param {string} name   in the world
+   * @param {string} name   name in the world
    * @param {{ x: number, y: number, yaw: number }} pose  meters, radians
    */
   async place(name, { x, y, yaw }) {
@@ -152,7 +157,7 @@ export class Actions {
   }
 
   /**
-   * What is loaded once more restarts: a parameter that is set to what it is changes nothing.
+   * Restart programs that are loaded again: setting a parameter to its current value has no effect.
    *
    * @param {string} loaded
    */
@@ -169,7 +174,7 @@ export class Actions {
     }
   }
 
-  /** Put a robot that fell where it started, or beside it where that is taken. @param {string} robot  in topics */
+  /** Return a fallen robot to its start pose, or next to it if that is occupied. @param {string} robot  in topics */
   async putBack(robot) {
     const text = await this.playgroundText();
     if (text === null) return;
@@ -177,7 +182,7 @@ export class Actions {
     await this.place(name, startOf(this.store.state, text, name));
   }
 
-  /** Switch the robots on with a built-in behavior. @param {string} name */
+  /** Start a built-in behavior on the robots. @param {string} name */
   async setBehavior(name) {
     const answer = await this.client.setParameters([{ name: PARAMETERS.behavior, value: name }]);
     if (answer.ok) await this.#restartPrograms(`behavior ${name}`);
@@ -196,14 +201,14 @@ export class Actions {
     this.store.dispatch({ type: "uploaded", what: "program", message: answer.ok ? null : answer.message, fault });
   }
 
-  /** The compiler's own words in the language of the page; null where it has none. @param {string} source */
+  /** The compiler's error message in the language of the page; null if there is none. @param {string} source */
   async #faultOf(source) {
     const question = checkRequest({ source, language: this.language(), events: [], constants: [] });
     const { ok, value } = await this.client.call(CHECK_SERVICE, question);
     return ok && value !== undefined ? firstFault(value) : null;
   }
 
-  /** @param {string} name @param {Uint8Array} [content]  of a file, else `name` is one of the list */
+  /** @param {string} name @param {Uint8Array} [content]  content of a file; without it, `name` is a shipped playground */
   async loadPlayground(name, content) {
     this.store.dispatch({ type: "upload", what: "playground", name, text: "" });
     const value =
@@ -216,14 +221,14 @@ export class Actions {
     this.store.dispatch({ type: "uploaded", what: "playground", message: answer.ok ? null : answer.message });
   }
 
-  /** The playground that runs, as the text of our format; null when the simulator does not say. */
+  /** The running playground as JSON text; null if the simulator does not report it. */
   async playgroundText() {
     const answer = await this.client.call("/simulator/get_playground");
     this.#report("/simulator/get_playground", answer);
     return answer.ok ? answer.message : null;
   }
 
-  /** A file chosen or dropped: its ending says what it is. @param {File} file */
+  /** Load a chosen or dropped file according to its extension. @param {File} file */
   async loadFile(file) {
     if (isProgram(file)) {
       if (file.size > LARGEST_PROGRAM) return this.refuse("file.tooLarge", file);
@@ -246,7 +251,12 @@ export class Actions {
     this.#report(service, await this.client.call(service, request));
   }
 
-  /** A refusal is shown until the same thing succeeds. @param {string} cause @param {{ ok: boolean, message: string }} answer */
+  /**
+   * Show an error until the same action succeeds.
+   *
+   * @param {string} cause
+   * @param {{ ok: boolean, message: string }} answer
+   */
   #report(cause, { ok, message }) {
     this.store.dispatch({ type: "solved", cause });
     if (!ok) this.store.dispatch({ type: "notice", level: "error", text: message, cause });
@@ -255,7 +265,7 @@ export class Actions {
 
 /** @param {Uint8Array} bytes */
 function base64(bytes) {
-  const step = 0x8000; // as many arguments as a function surely takes
+  const step = 0x8000; // few enough to be arguments of one call
   let text = "";
   for (let from = 0; from < bytes.length; from += step) {
     text += String.fromCharCode(...bytes.subarray(from, from + step));

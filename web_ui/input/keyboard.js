@@ -1,4 +1,4 @@
-// Keys on the 3D view: arrows and Enter are the robot's buttons, with Shift they turn the camera.
+// Keyboard control of the 3D view: arrows and Enter press the robot's buttons; with Shift, arrows turn the camera.
 
 /** @typedef {import("../scene/index.js").SceneView} SceneView */
 
@@ -22,7 +22,7 @@ const VIEW_KEYS = /** @type {Record<string, import("../scene/camera.js").ViewNam
   e: "eye",
 });
 
-/** In move mode: steps along x and y of the world, and quarters of an hour of turning. */
+/** Move mode: steps along x and y of the world, and turning steps. */
 const MOVES = /** @type {Record<string, [number, number, number]>} */ ({
   ArrowUp: [0, 1, 0],
   ArrowDown: [0, -1, 0],
@@ -35,13 +35,13 @@ const MOVES = /** @type {Record<string, [number, number, number]>} */ ({
 });
 const FAR = 5; // steps with Shift
 
-/** The key, a letter as without Caps Lock and Shift. @param {KeyboardEvent} event */
+/** The key, with letters in lower case regardless of Caps Lock and Shift. @param {KeyboardEvent} event */
 export function plainKey({ key }) {
   return key.length === 1 ? key.toLowerCase() : key;
 }
 
 /**
- * @param {HTMLElement} element  which must have the focus
+ * @param {HTMLElement} element  element that must have the focus
  * @param {SceneView} scene
  * @param {import("../move/drag_controller.js").DragController} dragController
  * @param {(button: string, pressed: boolean) => void} press
@@ -61,7 +61,7 @@ export function watchKeyboard(element, scene, dragController, press) {
     else if (dragController.mode && key === "n") dragController.next();
     else if (dragController.mode && key === "Escape") {
       dragController.setMode(false);
-      event.stopPropagation(); // and nothing is stopped
+      event.stopPropagation(); // do not stop the robots
     } else if (shiftKey && key in TURNS) scene.camera.turn(...TURNS[key]);
     else if (key in BUTTON_KEYS) {
       if (!repeat) {

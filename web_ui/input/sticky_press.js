@@ -1,7 +1,7 @@
-// What a mouse clicks while Shift is down stays held, as several fingers would hold it.
+// Sticky presses: what is clicked while Shift is down stays pressed, as if held by several fingers.
 
 /**
- * Call once when Shift is let go, or the page is left.
+ * Call back once when Shift is released or the window loses the focus.
  *
  * @param {() => void} free
  */

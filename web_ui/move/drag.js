@@ -1,5 +1,5 @@
-// Pointers that carry bodies: in move mode, or with Shift, which holds the robots' buttons. They come before the buttons
-// and the camera.
+// Pointer control for moving bodies: in move mode, or with Shift (which also makes button presses sticky). These
+// handlers run before those of buttons and camera.
 
 /** @typedef {import("./drag_controller.js").DragController} DragController */
 

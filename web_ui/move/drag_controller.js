@@ -1,4 +1,4 @@
-// The hand that takes a robot or a movable body, carries its ghost about, and puts it down. No document, no scene.
+// Moves a robot or an object: selects it, shows it as a ghost while it is dragged, and places it. No DOM, no 3D scene.
 
 import { atHeight, blocker, hit, movables, obstacles, reach } from "./placed_bodies.js";
 
@@ -6,9 +6,9 @@ import { atHeight, blocker, hit, movables, obstacles, reach } from "./placed_bod
 /** @typedef {import("./placed_bodies.js").Pose} Pose */
 /** @typedef {Parameters<typeof hit>[0]} Ray */
 /** @typedef {import("../state/index.js").State} State */
-/** @typedef {{ body: PlacedBody, pose: Pose, blocker: string | null }} Held   blocker: what stands where the ghost is */
+/** @typedef {{ body: PlacedBody, pose: Pose, blocker: string | null }} Held   blocker: name of the obstacle at the position of the ghost */
 
-/** The ring about what is held, by which it is turned: so far beyond its outline, and so wide to be hit. */
+/** The ring for turning: its distance from the outline, and the width that can be hit. */
 export const RING = { beyond: 0.025, width: 0.03 };
 const STEP_M = 0.01;
 const STEP_RAD = Math.PI / 12;
@@ -17,7 +17,7 @@ export class DragController {
   /**
    * @param {object} options
    * @param {() => State} options.state
-   * @param {(name: string, pose: Pose) => Promise<boolean>} options.place  asks the simulator; whether it did
+   * @param {(name: string, pose: Pose) => Promise<boolean>} options.place  asks the simulator; returns whether it accepted the pose
    * @param {() => void} options.changed
    * @param {(key: string, values: Record<string, string | number>) => void} options.report
    */
@@ -26,7 +26,7 @@ export class DragController {
     this.place = place;
     this.changed = changed;
     this.report = report;
-    /** Whether a pointer on a body moves it without Shift. */
+    /** Whether a drag on a body moves it without Shift. */
     this.mode = false;
     /** @type {Held | null} */ this.held = null;
     /** @type {{ turning: boolean, z: number, dx: number, dy: number } | null} the pointer's part in it */
@@ -41,7 +41,7 @@ export class DragController {
     this.changed();
   }
 
-  /** A pointer goes down; whether it took something. @param {Ray} ray @param {boolean} wanted  by mode or Shift */
+  /** Pointer down; returns whether a body was grabbed. @param {Ray} ray @param {boolean} wanted  by mode or Shift */
   grab(ray, wanted) {
     if (!wanted) return false;
     const floor = atHeight(ray, 0);
@@ -62,7 +62,7 @@ export class DragController {
     return true;
   }
 
-  /** The pointer is elsewhere. @param {Ray} ray */
+  /** Pointer move. @param {Ray} ray */
   drag(ray) {
     if (this.held === null || this.grip === null) return;
     const { turning, z, dx, dy } = this.grip;
@@ -73,7 +73,13 @@ export class DragController {
     else this.#carry({ ...pose, x: place.x + dx, y: place.y + dy });
   }
 
-  /** Steps by keys: along x, along y, and turning counter-clockwise. @param {number} x @param {number} y @param {number} [turn] */
+  /**
+   * Move by keys, in steps: along x, along y, and turning counter-clockwise.
+   *
+   * @param {number} x
+   * @param {number} y
+   * @param {number} [turn]
+   */
   nudge(x, y, turn = 0) {
     if (this.held === null) return;
     const { pose } = this.held;
@@ -84,13 +90,13 @@ export class DragController {
     else this.report("move.taken", { ...values, by: this.held.blocker });
   }
 
-  /** Take the next body in hand. */
+  /** Select the next body. */
   next() {
     this.#hold(this.#choice(1));
     if (this.held !== null) this.report("move.holds", { name: this.held.body.name || "thymio" });
   }
 
-  /** Put it down where the ghost is: the simulator decides. */
+  /** Place the body at the ghost; the simulator accepts or rejects the pose. */
   async drop() {
     const { held } = this;
     this.grip = null;
@@ -98,20 +104,20 @@ export class DragController {
     const { body, pose } = held;
     await this.place(body.name, pose);
     if (this.held !== held) return;
-    // In its mode the body stays in hand, where it stands now.
+    // In move mode the body stays selected at its new pose.
     this.held = null;
     if (this.mode) this.#follow(body.name);
     this.changed();
   }
 
-  /** Let go; nothing has moved. */
+  /** Cancel the drag; nothing has moved. */
   cancel() {
     this.held = null;
     this.grip = null;
     this.changed();
   }
 
-  /** The state has changed: a ghost that nobody drags goes with its body. */
+  /** The state has changed: a ghost that is not being dragged follows its body. */
   refresh() {
     if (this.held === null || !this.mode || this.grip !== null) return;
     const { body, pose } = this.held;
@@ -126,7 +132,7 @@ export class DragController {
     else this.held = { body, pose: body.pose, blocker: null };
   }
 
-  /** @param {number} ahead  in the list of all, after what is held or the selected robot */
+  /** @param {number} ahead  offset in the list of bodies, from the selected body or robot */
   #choice(ahead) {
     const bodies = movables(this.state());
     const name = this.held?.body.name;

@@ -1,5 +1,5 @@
-// What stands in the world, as footprints on the ground: what can be taken in hand, and what is in its way. Pure.
-// A hint for the hand only: whether a place is free is decided by the simulator.
+// Footprints of all bodies of the world: which can be moved, and which are in the way. Pure.
+// Only a preview for the user: the simulator decides whether a position is free.
 
 import { MARKER } from "../state/markers.js";
 
@@ -9,17 +9,17 @@ import { MARKER } from "../state/markers.js";
 /** @typedef {import("../state/index.js").State} State */
 /**
  * @typedef {object} PlacedBody
- * @property {string} name        in the world
+ * @property {string} name        name in the world
  * @property {string | null} robot  name of the robot in topics; null for other bodies
  * @property {Pose} pose
- * @property {Point[][]} outline  convex polygons in its own frame
+ * @property {Point[][]} outline  convex polygons in the frame of the body
  * @property {number} height
  */
 
-/** The robot's outline (docs/spec/thymio-robot.md section 1.1). */
+/** Outline of the robot (docs/spec/thymio-robot.md section 1.1). */
 const ROBOT = { radius: 0.08, half: 0.055, rear: -0.03, height: 0.053 };
 const ROUND = 20;
-/** Footprints that share less than this only touch. */
+/** Footprints that overlap by less than this only touch. */
 const TOUCHING_M = 0.0005;
 const STEPS_OF_HEIGHT = 24;
 
@@ -33,20 +33,26 @@ export const ROBOT_OUTLINE = (() => {
   return [[...front, [ROBOT.rear, ROBOT.half], [ROBOT.rear, -ROBOT.half]]];
 })();
 
-/** Robots and movable bodies, which a hand can take. @param {State} state @returns {PlacedBody[]} */
+/** Bodies that can be moved: robots and movable objects. @param {State} state @returns {PlacedBody[]} */
 export function movables(state) {
   const names = state.simulator?.movables ?? [];
   const bodies = [...state.objects.values()].map(bodyOf);
   return [...robots(state), ...bodies.filter(({ name }) => names.includes(name))];
 }
 
-/** All that can be in the way of a body. @param {State} state @param {string} name */
+/** Bodies that may be in the way of the named one. @param {State} state @param {string} name */
 export function obstacles(state, name) {
   const solids = [...state.markers.values(), ...state.objects.values()].filter(({ ns }) => ns.startsWith("solid/"));
   return [...robots(state), ...solids.map(bodyOf)].filter((body) => body.name !== name);
 }
 
-/** The first obstacle that a body would meet at a pose, or null. @param {PlacedBody} body @param {Pose} pose @param {PlacedBody[]} others */
+/**
+ * The first obstacle at a pose of a body, or null.
+ *
+ * @param {PlacedBody} body
+ * @param {Pose} pose
+ * @param {PlacedBody[]} others
+ */
 export function blocker(body, pose, others) {
   const mine = placed(body.outline, pose);
   return (
@@ -58,7 +64,8 @@ export function blocker(body, pose, others) {
 }
 
 /**
- * The body that a ray of view meets first, and how high; null when it meets none.
+ * The first body on a line of sight and the height of the hit; null if there is none. The ray is sampled at heights
+ * from top to ground, since all bodies are prisms.
  *
  * @param {{ origin: { x: number, y: number, z: number }, direction: { x: number, y: number, z: number } }} ray
  * @param {PlacedBody[]} bodies
@@ -80,14 +87,19 @@ export function hit(ray, bodies) {
   return null;
 }
 
-/** Where a ray of view comes through a height; null when it never does. @param {Parameters<typeof hit>[0]} ray @param {number} z */
+/**
+ * The point of a line of sight at height z; null if it never reaches that height.
+ *
+ * @param {Parameters<typeof hit>[0]} ray
+ * @param {number} z
+ */
 export function atHeight({ origin, direction }, z) {
   const far = (z - origin.z) / direction.z;
   if (!Number.isFinite(far) || far < 0) return null;
   return { x: origin.x + far * direction.x, y: origin.y + far * direction.y };
 }
 
-/** How far a body reaches from its middle. @param {PlacedBody} body */
+/** The radius of a body about its center. @param {PlacedBody} body */
 export function reach({ outline }) {
   return Math.max(...outline.flat().map(([x, y]) => Math.hypot(x, y)));
 }
@@ -119,7 +131,7 @@ function bodyOf({ ns, type, pose: { position, orientation: q }, scale, points })
     );
     return { name, robot: null, pose, outline: [round], height: scale.z };
   }
-  // A prism: the triangles of its top.
+  // A prism: its outline consists of the triangles of its top.
   const top = Math.max(...points.map(({ z }) => z));
   /** @type {Point[][]} */ const outline = [];
   for (let at = 0; at + 2 < points.length; at += 3) {
@@ -138,7 +150,13 @@ export function placed(outline, { x, y, yaw }) {
   );
 }
 
-/** Whether two convex polygons share more than an edge: no side of either keeps them apart. @param {Point[]} one @param {Point[]} two */
+/**
+ * Whether two convex polygons overlap (separating axis test): they do not if their projections on the normal of any
+ * edge are disjoint.
+ *
+ * @param {Point[]} one
+ * @param {Point[]} two
+ */
 export function overlap(one, two) {
   return [one, two].every((polygon) =>
     polygon.every(([x, y], index) => {

@@ -1,9 +1,9 @@
-// What a robot does without a program of one's own: the menu, and every built-in behavior with its color.
+// The choice of built-in behaviors: the menu, and each behavior with its color.
 
 import { programOf } from "../state/index.js";
 import { h, lock, setAttribute } from "./dom.js";
 
-/** The colors the robot itself shows in each of them (docs/behaviours.md). */
+/** The colors that the robot shows in each behavior (docs/behaviours.md). */
 export const COLORS = /** @type {Record<string, string>} */ ({
   friendly: "#12c22f",
   explorer: "#f2d600",
@@ -17,7 +17,7 @@ export const COLORS = /** @type {Record<string, string>} */ ({
 });
 
 /**
- * A choice of the robot's own behaviors, to stand in another panel.
+ * The choice of a built-in behavior, embedded in another panel.
  *
  * @param {import("./index.js").Context} context
  * @returns {{ element: HTMLElement, render: (state: import("../state/index.js").State) => void }}
@@ -63,7 +63,12 @@ export function behaviorChoice({ t, actions }) {
   };
 }
 
-/** A name for people; one that a plug-in or a teacher added is shown as it is. @param {string} name @param {import("../i18n/index.js").Translate} t */
+/**
+ * The displayed name; behaviors added by a plug-in or a teacher keep their own.
+ *
+ * @param {string} name
+ * @param {import("../i18n/index.js").Translate} t
+ */
 function titleOf(name, t) {
   const key = `behavior.${name}`;
   const text = t(key);

@@ -1,11 +1,11 @@
-// The robot's five buttons as a cross; a button shows as pressed when the robot says so.
+// The robot's five buttons as a cross; a button is shown as pressed when the robot reports it.
 
 import { localStore, trySetItem } from "../browser/local_storage.js";
 import { BUTTONS } from "../state/names.js";
 import { h, holdable, icon, ICONS, lock, setAttribute } from "./dom.js";
 
 const CHEVRON = "M4 8.500 5.800 6.700 12 12.900l6.200-6.200L20 8.500l-8 8z";
-/** Where the browser remembers that the pad is hidden on a small screen. */
+/** Storage key: whether the pad is hidden on small screens. */
 const FOLDED_KEY = "padFolded";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
@@ -25,7 +25,7 @@ export function dpadPanel({ t, actions, store }) {
     { class: "dpad", id: "dpad", role: "group", "aria-label": t("dpad"), "data-drives": "" },
     ...buttons.map(({ button }) => button),
   );
-  // On a phone the pad can be hidden, so that it covers nothing of the scene.
+  // On phones the pad can be hidden so that it does not cover the view.
   const fold = h(
     "button",
     { type: "button", class: "fold", "aria-controls": "dpad", onclick: () => setFolded(!element.hasAttribute("data-folded")) },

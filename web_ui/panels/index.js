@@ -1,4 +1,4 @@
-// The panels, in the order in which they stand on the page. To add one: a file, and a line here.
+// All panels, in display order. To add one: a file, and a line here.
 
 import { connectionPanel } from "./connection.js";
 import { creatorSwitchPanel } from "./creator_switch.js";
@@ -34,9 +34,9 @@ import { viewsPanel } from "./views.js";
  * @property {import("../hosts/editor_host.js").EditorHost} editor
  * @property {import("../hosts/creator_host.js").CreatorHost} creator
  * @property {import("../hosts/tour_host.js").TourHost} tour
- * @property {import("../gallery/thumbnail_cache.js").ThumbnailCache} thumbnails   shipped playgrounds with their pictures
- * @property {string} address   of the simulator, for people
- * @property {(text: string) => void} announce   to the live region
+ * @property {import("../gallery/thumbnail_cache.js").ThumbnailCache} thumbnails   shipped playgrounds with their thumbnails
+ * @property {string} address   address of the simulator, for display
+ * @property {(text: string) => void} announce   writes to the live region for screen readers
  */
 /**
  * @typedef {object} Panel

@@ -1,4 +1,4 @@
-// The playground: choose one of the shipped ones or open a file; a refused one leaves the old world.
+// The playground panel: choose a shipped playground or open a file; a rejected one changes nothing.
 
 import { galleryDialog } from "../gallery/index.js";
 import { drivingCard, showRefusal } from "./card.js";
@@ -118,7 +118,7 @@ export function playgroundPanel(context) {
       fault.replaceChildren(close, ...faultView(t, headline, playground.fault));
       const words = `${headline} ${faultText(t, playground.fault)}`;
       announce(words);
-      if (!creator.isOpen) showRefusal(element, store, words, "playground"); // it says itself what is wrong with what it gave
+      if (!creator.isOpen) showRefusal(element, store, words, "playground"); // the creator reports errors of its own playgrounds
     },
   };
 }

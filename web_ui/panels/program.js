@@ -1,5 +1,5 @@
-// The program in the robot: its name and state, open another, run, stop, restart. What the compiler
-// refuses is shown in its own text, at its place, while the old program goes on.
+// The program of the robot: name and state, open, run, stop, restart. Compiler errors are shown in the rejected text
+// while the previous program keeps running.
 
 import { programOf } from "../state/index.js";
 import { faultMessage, lineLabel, stateLabel } from "../state/program_status.js";

@@ -1,4 +1,4 @@
-// Which robot the panels show; there only when there are several.
+// Tabs that choose the robot for the panels; hidden if there is only one robot.
 
 import { robotColor } from "../state/robot_colors.js";
 import { h, setAttribute } from "./dom.js";

@@ -1,11 +1,11 @@
-// What an operator does to the selected robot: tap it, clap, tilt it, warm it, point a remote control, give it a pen.
+// Stimuli for the selected robot: tap, clap, tilt, noise, light, temperature, battery, remote control, pen.
 
 import { drivingCard } from "./card.js";
 import { h, lock } from "./dom.js";
 
 /** @typedef {import("./index.js").Context} Context */
 
-/** Keys of a remote control and their RC5 commands; the arrows are those of the robot's own. */
+/** Keys of a remote control and their RC5 commands; the arrows correspond to the robot's buttons. */
 const KEYS = /** @type {[string, number][]} */ ([
   ["1", 1],
   ["2", 2],
@@ -24,7 +24,7 @@ const KEYS = /** @type {[string, number][]} */ ([
   ["▼", 81],
 ]);
 
-/** Words for the keys that have no digit. */
+/** Labels of the keys without a digit. */
 const KEY_NAMES = /** @type {Record<number, string>} */ ({
   80: "button.forward",
   81: "button.backward",
@@ -36,7 +36,7 @@ const KEY_NAMES = /** @type {Record<number, string>} */ ({
 const DEGREE = Math.PI / 180;
 
 /**
- * Sliders: smallest, largest, step, start, unit, and what they publish.
+ * Sliders: minimum, maximum, step, initial value, unit, and the message they publish.
  *
  * @type {{ name: string, low: number, high: number, step: number, start: number, unit: string,
  *   send: (value: number, other: (name: string) => number) => [topic: string, type: string, value: any] }[]}
@@ -86,7 +86,7 @@ function tilt(roll, pitch) {
 
 /** @param {Context} context @returns {import("./index.js").Panel} */
 export function stimuliPanel({ t, actions, store }) {
-  /** What was set for each robot, as nobody tells it. @type {Map<string, Record<string, number>>} */
+  /** The last settings of each robot; no topic reports them. @type {Map<string, Record<string, number>>} */
   const settings = new Map();
   const setting = () => {
     const { selected } = store.state;

@@ -1,4 +1,4 @@
-// How to look: overview, from above, following; and whether the sensor beams are shown.
+// Camera views: overview, from above, follow, robot's view; sensor beams on or off.
 
 import { VIEWS } from "../scene/camera.js";
 import { h, icon, ICONS, lock, setAttribute } from "./dom.js";
@@ -34,7 +34,7 @@ export function viewsPanel({ t, scene, store, dragController, announce }) {
       onclick: () => {
         dragController.setMode(!dragController.mode);
         if (!dragController.mode) return;
-        scene.canvas.focus(); // where its keys are
+        scene.canvas.focus(); // so that its keys work
         announce(t("move.help"));
       },
     },

@@ -1,5 +1,5 @@
-// What must be true of a playground as a whole, and whether an item can be where it is. Pure.
-// The rules are those of thymio_sim_ros/sim/playground/checks.py: what passes here, the simulator takes.
+// Checks a playground as a whole, and whether an item can be at its position. Pure.
+// The same rules as in thymio_sim_ros/sim/playground/checks.py: the simulator accepts what passes here.
 
 import { containsPoint, overlap } from "./geometry.js";
 import { kindNamed } from "./kinds/index.js";
@@ -10,13 +10,13 @@ import { check, Fault, needed, RULES } from "./rules.js";
 /** @typedef {import("./document.js").Playground} Playground */
 /** @typedef {import("./rules.js").Phrase} Phrase */
 
-/** As the simulator's (sim/playground/reader.py). */
+/** The same limit as the simulator's (sim/playground/reader.py). */
 const MOST_PARTS = 10_000;
 
 /**
- * Why an item cannot be among others; null when it can.
+ * The problem of an item among others; null if there is none.
  *
- * @param {readonly Item[]} others  without the item itself
+ * @param {readonly Item[]} others  all items except this one
  * @param {Item} item
  * @returns {Phrase | null}
  */
@@ -36,7 +36,7 @@ export function findProblem(others, item) {
 }
 
 /**
- * The name of what is in an item's way: only robots need a place of their own.
+ * The name of an item in the way, or null: robots must not overlap solid items.
  *
  * @param {readonly Item[]} others
  * @param {Item} item
@@ -53,7 +53,7 @@ export function blockerOf(others, item) {
 }
 
 /**
- * Whether an item has ground under it; where there is no ground at all, nothing falls.
+ * Whether an item is on ground. Without any ground, nothing can fall.
  *
  * @param {readonly Item[]} others
  * @param {Item} item
@@ -66,12 +66,12 @@ export function isOnGround(others, item) {
   return groundPoints(item).every((point) => floors.some((floor) => containsPoint(floor, point)));
 }
 
-/** What hangs over an edge: the simulator takes it with a remark. @param {readonly Item[]} items */
+/** Items that extend over an edge: the simulator accepts them with a warning. @param {readonly Item[]} items */
 export function offGround(items) {
   return items.filter((item) => !isOnGround(items, item));
 }
 
-/** Whether there is surely no ground; a shape of another package may be one. @param {readonly Item[]} items */
+/** Whether there is certainly no ground; a shape of a plug-in may be one. @param {readonly Item[]} items */
 export function lacksGround(items) {
   return items.every((item) => kindNamed(item.kind) !== undefined && partsOf(item).floors.length === 0);
 }
@@ -86,7 +86,7 @@ function groundPoints(item) {
 }
 
 /**
- * Check a playground whose items are each as they should be. Throws a Fault with the key of what is wrong.
+ * Check a playground whose items are valid individually. Throws a Fault with the key of the error.
  *
  * @param {Playground} playground
  */

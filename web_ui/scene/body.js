@@ -1,4 +1,4 @@
-// The shell: outline of the real robot (flat back, round front), wheel arches, pen hole, LEGO studs.
+// The shell of the robot: outline (flat back, round front), wheel arches, pen hole, LEGO studs.
 
 import * as THREE from "three";
 
@@ -22,8 +22,8 @@ const TYRE = 0x343b44;
 
 /** @typedef {import("./robot_instances.js").Look} Look */
 
-const TINT = 0.72; // share of the top light's color in the shell when it is full
-const SHINE = 0.12; // how much brighter the shell is then
+const TINT = 0.72; // share of the top light's color in the shell at full brightness
+const SHINE = 0.12; // increase of brightness at full light
 const SHELL = new THREE.Color(WHITE);
 const HERE = new THREE.Matrix4();
 
@@ -56,7 +56,11 @@ export function createBody({ robots }) {
   };
 }
 
-/** A robot that is small on the screen: body and wheels in one piece. @param {import("./robot_instances.js").Capacity} room */
+/**
+ * A robot that is small on the screen: body and wheels in one piece.
+ *
+ * @param {import("./robot_instances.js").Capacity} room
+ */
 export function createFarBody({ robots }) {
   const wheel = () => new THREE.CylinderGeometry(WHEEL.radius, WHEEL.radius, WHEEL.width, 8);
   const shape = merged([
@@ -77,14 +81,19 @@ export function createFarBody({ robots }) {
   };
 }
 
-/** The top light shines through the shell. @param {THREE.Color} color  is set @param {import("../state/robot.js").Robot} robot */
+/**
+ * The color of the shell with the top light shining through it.
+ *
+ * @param {THREE.Color} color  is set
+ * @param {import("../state/robot.js").Robot} robot
+ */
 function shellColor(color, { leds: { top } }) {
   glow(color, SHELL, top, TINT);
   return color.multiplyScalar(1 + SHINE * Math.max(0, ...(top ?? [])));
 }
 
 /**
- * The body seen from above; with notches where the wheels are.
+ * The outline seen from above, with notches for the wheels.
  *
  * @param {boolean} arches
  * @param {number} inset

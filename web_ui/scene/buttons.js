@@ -1,5 +1,5 @@
-// The five buttons on the robot's top: they light up under the pointer and sink when pressed.
-// An invisible, larger disc around each is what pointer and finger hit.
+// The five buttons on top of the robot: highlighted under the pointer, lowered when pressed.
+// The hit target of each is a larger, invisible disc.
 
 import * as THREE from "three";
 
@@ -15,7 +15,7 @@ const COLORS = {
   hover: new THREE.Color(0x1769d1),
   pressed: new THREE.Color(0x0b2f66),
 };
-/** Degrees from ahead; the center has none. */
+/** Direction in degrees from straight ahead; the center button has none. */
 const HEADINGS = /** @type {Record<string, number>} */ ({ forward: 0, left: 90, backward: 180, right: -90 });
 
 /** @param {import("./robot_instances.js").Capacity} room */
@@ -51,7 +51,7 @@ export function createButtons({ robots }) {
   };
 }
 
-/** What pointers hit, in the robot's frame. @param {string} robot */
+/** The hit targets, in the robot's frame. @param {string} robot */
 export function createTargets(robot) {
   const geometry = new THREE.CircleGeometry(TOUCH_RADIUS_M, 16);
   const material = new THREE.MeshBasicMaterial({ visible: false });

@@ -1,4 +1,4 @@
-// A soft spot under the robot in place of a shadow: it costs nothing and shows where the robot stands.
+// A soft spot under the robot instead of a computed shadow: cheap, and it shows where the robot stands.
 
 import * as THREE from "three";
 

@@ -1,5 +1,5 @@
-// The view from above in two dimensions, for browsers without WebGL, for a picture that was lost for good, and for slow
-// machines. Its camera is one of the 3D view's kind, so that pointers, labels and ghosts work the same.
+// The 2D view from above: for browsers without WebGL, after a lost WebGL context, and for slow machines. It uses a
+// camera like the 3D view, so that pointers, labels and ghosts work the same way.
 
 import * as THREE from "three";
 
@@ -15,12 +15,12 @@ import { drawSketch } from "./sketch.js";
 /** @typedef {import("../state/robot.js").Robot} Robot */
 
 const MARGIN = 1.06;
-const FOLLOW_M = 0.9; // height of the picture while it follows a robot
+const FOLLOW_M = 0.9; // height of the visible area while following a robot
 const ABOVE_M = 5;
 const HALF_BEAM = 0.15; // rad
 
 export class FlatView {
-  /** @param {HTMLCanvasElement} canvas  that lies over the 3D one */
+  /** @param {HTMLCanvasElement} canvas  canvas over the 3D canvas */
   constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext("2d");
@@ -34,7 +34,7 @@ export class FlatView {
   }
 
   /**
-   * Let the whole world, or the surroundings of a robot, fill the picture.
+   * Show the whole world, or the area around a robot.
    *
    * @param {THREE.Vector3[]} corners
    * @param {{ x: number, y: number } | null} followed
@@ -58,11 +58,11 @@ export class FlatView {
    * @param {State} state
    * @param {object} options
    * @param {number} options.nowMs
-   * @param {(name: string) => boolean} options.senses  whether beams are drawn
+   * @param {(name: string) => boolean} options.senses  whether the beams of a robot are drawn
    * @param {import("../move/drag_controller.js").Held | null} options.held
    * @param {import("../creator/sketch.js").Sketch | null} options.sketch
    * @param {(name: string) => string} options.color
-   * @param {() => void} options.changed   called when a picture has arrived
+   * @param {() => void} options.changed   called when an image has been decoded
    */
   draw(state, { nowMs, senses, held, sketch, color, changed }) {
     const { context, canvas, camera } = this;
@@ -72,7 +72,7 @@ export class FlatView {
     context.fillRect(0, 0, canvas.width, canvas.height);
     const scale = canvas.height / (camera.top - camera.bottom);
     const { x, y } = camera.position;
-    // Meters, y up.
+    // From here on in meters, y up.
     context.setTransform(scale, 0, 0, -scale, canvas.width / 2 - x * scale, canvas.height / 2 + y * scale);
     const lowFirst = [...state.markers.values(), ...state.objects.values()].sort((a, b) => top(a) - top(b));
     for (const marker of lowFirst) this.#marker(context, marker, changed);
@@ -96,7 +96,7 @@ export class FlatView {
     context.setTransform(1, 0, 0, 1, 0, 0);
   }
 
-  /** As it is shown on the page; as it was made, if it is not. */
+  /** The image as shown on the page; the original if there is none. */
   get #size() {
     const { clientWidth, clientHeight, width, height } = this.canvas;
     if (clientWidth === 0) return { width, height };
@@ -157,7 +157,7 @@ export class FlatView {
         this.pictures.set(marker, bitmap);
         changed();
       },
-      () => {}, // it stays the mosaic of its triangles
+      () => {}, // drawn as the mosaic of its triangles
     );
     return null;
   }

@@ -1,4 +1,4 @@
-// What a hand carries: half-transparent where it would stand, red where the place is taken; a ring turns it.
+// The ghost of a dragged body: translucent, red if the position is occupied; with a ring for turning.
 
 import * as THREE from "three";
 
@@ -20,7 +20,7 @@ export class Ghost {
     /** @type {string | null} */ this.shown = null;
   }
 
-  /** @param {Held | null} held @param {boolean} ring  whether it can be turned by a ring */
+  /** @param {Held | null} held @param {boolean} ring  whether the ring is shown */
   update(held, ring) {
     this.group.visible = held !== null;
     if (held === null) return;

@@ -1,4 +1,4 @@
-// The color of a thing that a three-colored light shines through.
+// The color of a material that an RGB light shines through.
 
 import * as THREE from "three";
 
@@ -8,7 +8,7 @@ import * as THREE from "three";
  * @param {THREE.Color} target
  * @param {THREE.Color} off
  * @param {readonly number[] | undefined} levels
- * @param {number} most  share of the light's color when full
+ * @param {number} most  share of the light's color at full brightness
  */
 export function glow(target, off, levels = [0, 0, 0], most) {
   const largest = Math.max(...levels);
@@ -19,11 +19,11 @@ export function glow(target, off, levels = [0, 0, 0], most) {
 }
 
 /**
- * A round spot, opaque in its middle.
+ * A round spot, opaque in its center.
  *
  * @param {number} size  pixels
  * @param {[number, number, number]} color  0…255
- * @param {(share: number) => number} opacity  0…1 of what is 1 in the middle and 0 at the edge
+ * @param {(share: number) => number} opacity  opacity 0…1 as a function of 1 in the center to 0 at the edge
  */
 export function spot(size, color, opacity) {
   const data = new Uint8Array(size * size * 4);

@@ -1,5 +1,5 @@
-// The two ground sensors: a patch on the floor below each, filled with the gray it sees, long enough to
-// look out from under the nose.
+// The two ground sensors: a patch on the floor below each, filled with the measured gray, long enough to
+// be visible in front of the robot.
 
 import * as THREE from "three";
 

@@ -1,4 +1,4 @@
-// The 3D view: draws the state when something changed, in one animation loop. It never decides.
+// The 3D view: draws the state when something changed, in one animation loop. It makes no decisions.
 
 import * as THREE from "three";
 
@@ -24,11 +24,11 @@ import { isSensed } from "../state/names.js";
 /** @typedef {import("./camera.js").ViewName} ViewName */
 /** @typedef {import("./pointer.js").Target} Target */
 
-/** A lost picture that has not come back by then is drawn in 2D. */
+/** If a lost WebGL context is not restored within this time, the view switches to 2D. */
 const LOST_FOR_GOOD_MS = 4000;
-/** From above, a name stands this far over its robot. */
+/** Distance of a name above its robot in the 2D view. */
 const FLAT_LABEL_PX = 24;
-/** A robot that is smaller than this, in pixels as they are drawn, is drawn coarsely. */
+/** Robots smaller than this on the screen, in drawn pixels, use the coarse model. */
 const SMALL_PX = 40;
 const SIZE_M = 0.11;
 
@@ -36,15 +36,15 @@ export class SceneView {
   /**
    * @param {object} options
    * @param {HTMLCanvasElement} options.canvas
-   * @param {HTMLCanvasElement} options.flatCanvas  over it, for two dimensions
+   * @param {HTMLCanvasElement} options.flatCanvas  canvas over it, for the 2D view
    * @param {HTMLElement} options.labels       layer for the robots' names
    * @param {() => State} options.state
-   * @param {(nowMs: number) => void} options.beforeDraw   the panels' turn in the same frame
+   * @param {(nowMs: number) => void} options.beforeDraw   updates the panels in the same frame
    * @param {(target: Target, pressed: boolean) => void} options.press
-   * @param {import("../move/drag_controller.js").DragController} options.dragController   what a hand carries
+   * @param {import("../move/drag_controller.js").DragController} options.dragController   the dragged body
    * @param {(name: string) => string} options.robotTitle
-   * @param {() => import("../creator/sketch.js").Sketch | null} options.sketch   what a builder sees over it; null while nobody builds
-   * @param {(trouble: "lost" | "gone" | null) => void} options.contextLost   gone: for good, drawn in 2D
+   * @param {() => import("../creator/sketch.js").Sketch | null} options.sketch   overlay of the creator; null while it is closed
+   * @param {(trouble: "lost" | "gone" | null) => void} options.contextLost   gone: permanently, drawn in 2D
    */
   constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, dragController, robotTitle, sketch, contextLost }) {
     this.canvas = canvas;
@@ -59,7 +59,7 @@ export class SceneView {
     this.framed = false;
     this.frames = 0;
     this.requested = false;
-    this.size = { width: 0, height: 0 }; // of the canvas in CSS pixels: asking it after a label was moved lays out the page
+    this.size = { width: 0, height: 0 }; // of the canvas in CSS pixels; cached, because reading it after moving a label forces a layout
     this.showSensors = true;
     this.showNumbers = false;
     this.valueLabels = new ValueLabels(labels);
@@ -105,7 +105,7 @@ export class SceneView {
       camera: () => this.eye,
       targets: () =>
         this.sketch() !== null
-          ? [] // a robot that is placed has no buttons
+          ? [] // robots in the creator have no buttons
           : [...this.robots.values()].flatMap(({ model }) => (model.group.visible ? model.targets.meshes : [])),
       press,
       hover: (target) => {
@@ -119,7 +119,7 @@ export class SceneView {
     this.#resize();
   }
 
-  /** Ask for one frame; any number of calls before it are one. */
+  /** Request one frame; several calls before it have the effect of one. */
   invalidate() {
     if (this.requested) return;
     this.requested = true;
@@ -131,17 +131,17 @@ export class SceneView {
     this.camera.setView(view, this.#selectedPose());
   }
 
-  /** Whether this browser can draw in 3D now. */
+  /** Whether 3D drawing is available now. */
   get has3d() {
     return this.renderer !== null && !this.isLost;
   }
 
-  /** Whether the view is drawn from above in 2D: for want of 3D, or by choice. */
+  /** Whether the view is drawn in 2D from above, because 3D is missing or by choice. */
   get isFlat() {
     return this.wantsFlat || !this.has3d;
   }
 
-  /** The camera that is looked through. */
+  /** The active camera. */
   get eye() {
     return this.isFlat ? this.flat.camera : this.camera.camera;
   }
@@ -164,7 +164,7 @@ export class SceneView {
     this.#resize();
   }
 
-  /** Nearer or farther. @param {number} steps */
+  /** Zoom in or out. @param {number} steps */
   zoom(steps) {
     if (this.isFlat) this.flat.zoom = Math.min(8, Math.max(0.5, this.flat.zoom * 1.15 ** steps));
     else this.camera.zoom(steps);
@@ -172,8 +172,9 @@ export class SceneView {
   }
 
   /**
-   * The view as PNG in full resolution, however coarsely it is drawn now; null where the browser cannot. All of it is
-   * one task: the browser shows no frame of the large canvas.
+   * The view as PNG in full resolution, whatever the current quality; null if the browser cannot create it. This runs
+   * in
+   * one task, so that the browser never shows a frame of the large canvas.
    *
    * @returns {Promise<Blob | null>}
    */
@@ -182,8 +183,8 @@ export class SceneView {
     const ratio = pictureRatio(this.size, window.devicePixelRatio);
     this.renderer?.setPixelRatio(ratio);
     this.flat.pixelRatio = ratio;
-    this.#updateRobots(this.state(), nowMs); // none is drawn coarsely that is large in the picture
-    this.#draw(nowMs); // a 3D picture is only there until the browser has shown it
+    this.#updateRobots(this.state(), nowMs); // robots that are large in the image need the fine model
+    this.#draw(nowMs); // WebGL content is readable only until the browser has shown the frame
     const shown = this.isFlat ? this.flat.canvas : this.canvas;
     const picture = new Promise((/** @type {(png: Blob | null) => void} */ resolve) => shown.toBlob(resolve, "image/png"));
     this.flat.pixelRatio = 1;
@@ -193,7 +194,7 @@ export class SceneView {
   }
 
   /**
-   * A small picture of another world, drawn in one of the next frames.
+   * A thumbnail of another world, drawn in one of the next frames.
    *
    * @param {State} world
    * @returns {Promise<HTMLCanvasElement>}
@@ -212,7 +213,7 @@ export class SceneView {
   }
 
   /**
-   * A part's place in CSS pixels of the window; null while it is not drawn.
+   * The position of a part in CSS pixels of the window; null while it is not drawn.
    *
    * @param {string} part
    * @param {string} [robot]
@@ -223,7 +224,7 @@ export class SceneView {
     return place == null ? null : this.#toWindow(place);
   }
 
-  /** The line of sight through a pointer. @param {{ clientX: number, clientY: number }} event */
+  /** The line of sight through a pointer position. @param {{ clientX: number, clientY: number }} event */
   rayOf({ clientX, clientY }) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const place = new THREE.Vector2(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2);
@@ -232,7 +233,7 @@ export class SceneView {
     return caster.ray;
   }
 
-  /** How much of the ground one CSS pixel shows, about where the camera looks; meters. */
+  /** The size of one CSS pixel on the ground near the camera's target, in meters. */
   get pixelSize() {
     const { height } = this.size;
     if (this.isFlat) return (this.flat.camera.top - this.flat.camera.bottom) / Math.max(1, height);
@@ -241,14 +242,14 @@ export class SceneView {
     return (2 * far * Math.tan((camera.fov * Math.PI) / 360)) / Math.max(1, height);
   }
 
-  /** Let the next playground that is built fill the view. */
+  /** Fit the next world of the creator into the view. */
   reframe() {
     this.framed = false;
     this.invalidate();
   }
 
   /**
-   * Where a point of the world is in CSS pixels of the window.
+   * Project a point of the world to CSS pixels of the window.
    *
    * @param {number} x
    * @param {number} y
@@ -293,7 +294,7 @@ export class SceneView {
     }
     const state = this.state();
     this.flat.aim(this.camera.corners, this.camera.goesAlong ? this.#selectedPose() : null);
-    this.scene.updateMatrixWorld(); // what the renderer would do, for pointers
+    this.scene.updateMatrixWorld(); // the renderer would do this; hit tests need it
     const names = Object.keys(state.robots);
     this.flat.draw(state, {
       nowMs,
@@ -341,7 +342,7 @@ export class SceneView {
     return this.showSensors && !this.framed && isSensed(this.state(), name);
   }
 
-  /** The robots that are drawn. @param {State} state @param {string[]} names */
+  /** The visible robots. @param {State} state @param {string[]} names */
   #drawnRobots({ robots }, names) {
     return names.flatMap((name) => {
       const group = this.robots.get(name)?.model.group;
@@ -351,7 +352,7 @@ export class SceneView {
     });
   }
 
-  /** Whether a robot there is too small on the screen for fine detail. @param {THREE.Matrix4} frame */
+  /** Whether a robot at this position is too small on the screen for fine detail. @param {THREE.Matrix4} frame */
   #isSmall(frame) {
     const { camera } = this.camera;
     const away = camera.position.distanceTo(new THREE.Vector3().setFromMatrixPosition(frame));

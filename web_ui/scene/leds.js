@@ -1,4 +1,4 @@
-// All lights: a disc each with a soft glow, and the two colored strips; the top light colors the shell (body.js).
+// All lights: a disc with a soft glow each, and the two colored strips; the top light colors the shell (body.js).
 
 import * as THREE from "three";
 
@@ -11,15 +11,23 @@ import { LIGHTS, RGB_LIGHTS } from "./parts.js";
 const OFF = new THREE.Color(0xc3cad2);
 const STRIP_OFF = new THREE.Color(0xcfd6dd);
 const STRIPS = /** @type {const} */ (["bottom_left", "bottom_right"]);
-const GLOW = 4.2; // size of the halo of a full light, in radii
-const BEFORE_M = 0.0004; // of the halo before its disc
-const FAR = 2.5; // size of a light that is seen from far, in radii: without halo, and only while it shines
-/** Those seen from far; the others are on the sides and under the nose, and some of them shine all the time. */
+const GLOW = 4.2; // size of the halo at full brightness, in radii
+const BEFORE_M = 0.0004; // distance of the halo in front of its disc
+const FAR = 2.5; // size of a light on a distant robot, in radii: without halo, and only while it is lit
+/**
+ * Lights that are drawn on distant robots. The others are on the sides and under the front, and some are always lit.
+ */
 const SEEN_FROM_FAR = new Set(["circle", "buttons", "proximity"]);
 
 const UP = new THREE.Vector3(0, 0, 1);
 
-/** A disc of this size where a light is. @param {import("./parts.js").Light} light @param {number} radius @param {number} before  meters */
+/**
+ * A disc of this size at a light.
+ *
+ * @param {import("./parts.js").Light} light
+ * @param {number} radius
+ * @param {number} before  meters
+ */
 function facing({ place, normal }, radius, before) {
   const direction = new THREE.Vector3(normal.x, normal.y, normal.z);
   return new THREE.Matrix4().compose(

@@ -1,4 +1,4 @@
-// Several shapes of one color each as one geometry with colored corners, so that they are drawn at once.
+// Merges several shapes, each of one color, into one geometry with vertex colors, for a single draw call.
 
 import * as THREE from "three";
 import { mergeGeometries, mergeVertices } from "three/addons/utils/BufferGeometryUtils.js";

@@ -1,4 +1,4 @@
-// Small pictures of whole worlds, one after the other, drawn with what draws the view: in a corner of its canvas,
+// Thumbnails of worlds, drawn one at a time with the renderer of the view: in a corner of its canvas,
 // before the view is drawn over it in the same frame.
 
 import * as THREE from "three";
@@ -14,12 +14,12 @@ import { RobotModel } from "./robot.js";
 /** @typedef {import("../state/index.js").State} State */
 
 const FROM = new THREE.Vector3(-0.22, -0.85, 0.95).normalize();
-/** Drawn finer than shown, which smooths the edges. */
+/** Oversampling, which smooths the edges. */
 const SIZE = { width: 480, height: 320 };
 
 /**
  * @param {State} world
- * @param {THREE.WebGLRenderer | null} renderer  null: from above in 2D
+ * @param {THREE.WebGLRenderer | null} renderer  null: 2D from above
  * @returns {HTMLCanvasElement}
  */
 export function photograph(world, renderer) {

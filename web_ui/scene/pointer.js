@@ -1,5 +1,5 @@
-// Fingers and mouse on the canvas: hover and press the buttons on the robots, several at once.
-// Handlers only note what happened; what misses every button is left to the camera.
+// Pointer control of the robots' buttons: hover and press, several at once.
+// Handlers only record events; pointers that miss all buttons are left to the camera.
 
 import * as THREE from "three";
 
@@ -14,7 +14,7 @@ import { onShiftRelease } from "../input/sticky_press.js";
  * @param {() => THREE.Object3D[]} options.targets
  * @param {(target: Target, pressed: boolean) => void} options.press
  * @param {(target: Target | null) => void} options.hover
- * @returns {{ isAt: (event: PointerEvent) => boolean }}  whether a button is there
+ * @returns {{ isAt: (event: PointerEvent) => boolean }}  whether there is a button
  */
 export function watchPointer({ element, camera, targets, press, hover }) {
   const caster = new THREE.Raycaster();
@@ -44,7 +44,7 @@ export function watchPointer({ element, camera, targets, press, hover }) {
     kept.push(target);
   };
 
-  // Captured, so that the camera's own handlers do not see a press on a button.
+  // Registered for the capture phase, so that the camera's handlers do not see a press on a button.
   element.addEventListener(
     "pointerdown",
     (event) => {

@@ -1,5 +1,5 @@
-// What the seven proximity sensors see: a beam each, as long as the range, with a dot where it ends.
-// Far or nothing is pale blue, near is red; the sensor panel has the numbers.
+// The beams of the seven proximity sensors, as long as the measured range, with a dot at the end.
+// Pale blue is far or nothing, red is near; the sensor panel shows the numbers.
 
 import * as THREE from "three";
 
@@ -52,14 +52,14 @@ function beam(opacity) {
   return new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false, opacity, ...flat });
 }
 
-/** A flat fan of length 1 along x: scaled, it is the beam. */
+/** A flat fan of length 1 along x; scaled, it is the beam. */
 function fan() {
   const width = Math.tan(HALF_ANGLE);
   const corners = [0, -0.01, 0, 1, -width, 0, 1, width, 0, 0, -0.01, 0, 1, width, 0, 0, 0.01, 0];
   return new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(corners, 3));
 }
 
-/** @param {number} share  of the maximum range @param {THREE.Color} target */
+/** @param {number} share  share of the maximum range @param {THREE.Color} target */
 function colorOf(share, target) {
   if (share < 0.5) target.copy(NEAR).lerp(MIDDLE, share * 2);
   else target.copy(MIDDLE).lerp(FAR, share * 2 - 1);

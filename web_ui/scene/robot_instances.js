@@ -1,5 +1,5 @@
-// Many robots at once: each piece of the model is one draw call, however many robots there are. Robots that are near
-// are one instances, those that are small on the screen another. The lists below are where a new piece is added.
+// Draws all robots with instancing: each piece of the model is one draw call, whatever the number of robots. Near
+// robots and small ones on the screen are two separate sets. To add a piece, extend the lists below.
 
 import * as THREE from "three";
 
@@ -13,16 +13,16 @@ import { createWheels } from "./wheels.js";
 
 /** @typedef {import("../state/robot.js").Robot} Robot */
 /** @typedef {import("./instances.js").Instances} Instances */
-/** @typedef {{ robot: Robot, hovered: string | null, sensing: boolean }} Look  button under the pointer; beams and patches shown */
-/** @typedef {{ look: Look, frame: THREE.Matrix4 }} DrawnRobot   a robot as it looks, in its frame */
+/** @typedef {{ robot: Robot, hovered: string | null, sensing: boolean }} Look  button under the pointer; whether beams and patches are shown */
+/** @typedef {{ look: Look, frame: THREE.Matrix4 }} DrawnRobot   the appearance of a robot, and its frame */
 /**
  * @typedef {object} Piece
  * @property {Instances[]} parts
- * @property {(slot: number, look: Look, before: Look | null) => void} show  before: what was shown there, null: nothing
+ * @property {(slot: number, look: Look, before: Look | null) => void} show  before: what was shown in this slot, null: nothing
  * @property {() => void} [dispose]
  */
 
-/** @typedef {{ robots: number, fine: boolean }} Capacity   for robots at most, drawn finely or as seen from far */
+/** @typedef {{ robots: number, fine: boolean }} Capacity   maximum number of robots, and level of detail */
 
 /** @typedef {(capacity: Capacity) => Piece} PieceFactory */
 const FINE = /** @type {PieceFactory[]} */ ([
@@ -46,7 +46,7 @@ export class RobotInstances {
     /** @type {DrawnRobot[]} */ this.shown = [];
   }
 
-  /** Show these robots and no others. @param {DrawnRobot[]} robots */
+  /** Show exactly these robots. @param {DrawnRobot[]} robots */
   update(robots) {
     if (robots.length > this.capacity) this.#grow(robots.length);
     robots.forEach(({ look, frame }, slot) => {
@@ -63,7 +63,7 @@ export class RobotInstances {
     for (const { parts } of this.pieces) for (const part of parts) part.show(robots.length);
   }
 
-  /** Capacity for twice as many as are needed now. @param {number} robots */
+  /** Allocate slots for twice the current number of robots. @param {number} robots */
   #grow(robots) {
     this.dispose();
     this.capacity = robots === 1 ? 1 : 2 * robots;

@@ -1,11 +1,11 @@
-// Draws what a model is reported (creator/sketch.js): grid, ghosts, outlines and handles, over the playground.
+// Draws the overlay of the creator (creator/sketch.js): grid, ghosts, outlines and handles.
 
 import * as THREE from "three";
 
 /** @typedef {import("../creator/sketch.js").Sketch} Sketch */
 /** @typedef {import("../creator/sketch.js").Tone} Tone */
 
-/** One row per tone: its color, and how much of it is seen. */
+/** One row per tone: its color and opacities. */
 export const TONES = /** @type {Record<Tone, { color: number, area: number, line: number }>} */ ({
   free: { color: 0x1769d1, area: 0.45, line: 1 },
   taken: { color: 0xd11a1a, area: 0.55, line: 1 },
@@ -29,7 +29,7 @@ export class SketchModel {
             transparent: true,
             opacity: area,
             depthWrite: false,
-            polygonOffset: true, // it lies on the faces of what it is about
+            polygonOffset: true, // avoids z-fighting with the faces it covers
             polygonOffsetFactor: -2,
             polygonOffsetUnits: -2,
           }),
@@ -84,7 +84,7 @@ export class SketchModel {
 }
 
 /**
- * The same in two dimensions; the context is in meters, y up.
+ * The same overlay in 2D; the context is in meters, y up.
  *
  * @param {CanvasRenderingContext2D} context
  * @param {Sketch} sketch

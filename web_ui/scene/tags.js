@@ -1,4 +1,4 @@
-// The robots' names over them: elements of a layer over the canvas, written only where something changed.
+// Labels with the robots' names: elements in a layer over the canvas, updated only where something changed.
 
 /** @typedef {{ x: number, y: number }} Spot  CSS pixels of the layer */
 
@@ -9,7 +9,7 @@ export class NameTags {
     /** @type {Map<string, { label: HTMLElement, transform: string, color: string }>} */ this.tags = new Map();
   }
 
-  /** @param {string} robot @param {string} title @param {string} color  of its spot; none if empty */
+  /** @param {string} robot @param {string} title @param {string} color  of its dot; empty: no dot */
   show(robot, title, color) {
     let tag = this.tags.get(robot);
     if (tag === undefined) {
@@ -25,7 +25,12 @@ export class NameTags {
     tag.label.style.setProperty("--color", color);
   }
 
-  /** Its lower middle is to be there; null: out of sight. @param {string} robot @param {Spot | null} spot */
+  /**
+   * Position a label by the center of its lower edge; null hides it.
+   *
+   * @param {string} robot
+   * @param {Spot | null} spot
+   */
   place(robot, spot) {
     const tag = this.tags.get(robot);
     if (tag === undefined) return;

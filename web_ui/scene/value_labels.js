@@ -1,4 +1,4 @@
-// Thymio's integers at the beams and ground patches of the selected robot, as text over the picture.
+// Labels with Thymio's integers at the beams and ground patches of the selected robot.
 
 import { GROUND, PROXIMITY } from "../state/names.js";
 import { GROUND_PLACES, PROXIMITY_PLACES } from "./parts.js";
@@ -9,7 +9,12 @@ import { MAX_RANGE_M } from "./rays.js";
 
 const BESIDE_M = 0.03;
 
-/** Every number with its place in the robot's frame. @param {Robot} robot @returns {{ text: string, place: Place }[]} */
+/**
+ * Every value with its position in the robot's frame.
+ *
+ * @param {Robot} robot
+ * @returns {{ text: string, place: Place }[]}
+ */
 export function valueLabelsOf({ raw, proximity }) {
   const beams = PROXIMITY.map((name, index) => {
     const { x, y, z, yaw } = PROXIMITY_PLACES[name];

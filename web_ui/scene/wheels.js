@@ -1,4 +1,4 @@
-// Two wheels that turn with the joint states; spokes make the turning visible.
+// Two wheels that turn with the joint states; spokes make the rotation visible.
 
 import * as THREE from "three";
 

@@ -1,5 +1,5 @@
-// The page's state and the one function that changes it: `state = reduce(state, message)`.
-// Pure: no clock, no socket, no document; a message carries what it needs.
+// The page's state and the function that changes it: `state = reduce(state, message)`.
+// Pure: no clock, no socket, no DOM; messages carry everything that is needed.
 
 import { applyMarkers } from "./markers.js";
 import { PARAMETERS, TRANSFORMS, isSensed, splitTopic } from "./names.js";
@@ -9,9 +9,9 @@ import { applyTransforms } from "./transforms.js";
 /** @typedef {import("./robot.js").Robot} Robot */
 /** @typedef {import("./robot.js").Program} Program */
 /** @typedef {import("./markers.js").Marker} Marker */
-/** @typedef {{ text: string, line: number | null, column: number | null }} Fault  1-based place, where known */
+/** @typedef {{ text: string, line: number | null, column: number | null }} Fault  position from 1, if known */
 /**
- * @typedef {object} Upload   something given to the simulator, and what came of it
+ * @typedef {object} Upload   a file sent to the simulator, and the result
  * @property {string} name
  * @property {string} text
  * @property {"sending" | "accepted" | "refused"} phase
@@ -25,25 +25,25 @@ import { applyTransforms } from "./transforms.js";
  * @typedef {object} Simulator
  * @property {string} playground
  * @property {string} title
- * @property {string[]} notes   what its file says that is left out or looks like a mistake
+ * @property {string[]} notes   warnings about the file
  * @property {boolean} paused
- * @property {number} factor     wanted
+ * @property {number} factor     wanted real-time factor
  * @property {number} achieved
- * @property {string[] | null} robots  names; null where it does not say
- * @property {Readonly<Record<string, string>>} worldNames  of the robots, by those in topics
+ * @property {string[] | null} robots  names; null if not reported
+ * @property {Readonly<Record<string, string>>} worldNames  names of the robots in the world, by their names in topics
  * @property {string[]} fallen    robots that fell off an edge, by their names in topics
- * @property {string[]} movables  names of things that can be moved
+ * @property {string[]} movables  names of movable objects
  */
 /**
- * What a person is reported beside the thing itself; `cause` names what it is about, so that it goes when that is gone.
+ * A notice for the user; `cause` identifies its reason, so that it disappears when the reason is resolved.
  *
  * @typedef {{ id: number, level: "info" | "warning" | "error", text: string, cause: string }} Notice
  */
 /**
  * @typedef {object} State
  * @property {"connecting" | "connected" | "lost" | "noToken" | "wrongToken"} connection
- * @property {boolean} readOnly   whether the server lets this page watch only
- * @property {boolean} greeted    whether the server of this connection has said who it is
+ * @property {boolean} readOnly   whether the server restricts this page to read-only access
+ * @property {boolean} greeted    whether the server of this connection has identified itself
  * @property {string} server
  * @property {string} sessionId
  * @property {string[]} topics
@@ -51,16 +51,16 @@ import { applyTransforms } from "./transforms.js";
  * @property {Readonly<Record<string, any>>} parameters
  * @property {Simulator | null} simulator
  * @property {PlaygroundInfo[]} playgrounds
- * @property {Behavior[]} behaviors  built-in programs
- * @property {ReadonlyMap<string, Marker>} markers  what stays where it is
- * @property {ReadonlyMap<string, Marker>} objects  movable things and doors
+ * @property {Behavior[]} behaviors  built-in behaviors
+ * @property {ReadonlyMap<string, Marker>} markers  static markers
+ * @property {ReadonlyMap<string, Marker>} objects  movable objects and doors
  * @property {Readonly<Record<string, Robot>>} robots
- * @property {Readonly<Record<string, Program>>} programs  by namespace of the runtime that says so
- * @property {string} selected     name of the robot the panels show
+ * @property {Readonly<Record<string, Program>>} programs  by namespace of the runtime
+ * @property {string} selected     name of the robot in the panels
  * @property {number} timeNs       simulated time
  * @property {Readonly<{ program: Upload | null, playground: Upload | null }>} uploads
  * @property {Notice[]} notices
- * @property {number} noticeCount  how many there ever were: their ids
+ * @property {number} noticeCount  total number of notices so far, the source of their ids
  */
 
 /**
@@ -86,9 +86,9 @@ import { applyTransforms } from "./transforms.js";
 
 const KEPT_NOTICES = 4;
 
-/** Cause of notices about a file that was not even sent. */
+/** Cause of notices about a file that was rejected by the page. */
 export const FILE = "file";
-/** Cause of notices about what needs the simulator. */
+/** Cause of notices about missing connection. */
 export const CONNECTION = "connection";
 
 /** @type {State} */
@@ -135,9 +135,9 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   serverInfo(state, { name, sessionId, readOnly = false }) {
     const known = { ...state, greeted: true, server: name, sessionId, readOnly };
     if (sessionId === state.sessionId && sessionId !== "") return known;
-    // On a connection that goes on, the simulation began anew: its topics stay, its time does not.
+    // On the same connection the simulation was restarted: topics stay, time is reset.
     if (state.greeted) return { ...known, timeNs: 0 };
-    // Another simulator: what was known belongs to one that is no more.
+    // Another simulator: discard the data of the previous one.
     const { connection, notices, noticeCount, selected } = state;
     const remaining = notices.filter(({ cause }) => !isSimulators(cause));
     return { ...INITIAL, connection, notices: remaining, noticeCount, selected, readOnly, greeted: true, server: name, sessionId };
@@ -154,8 +154,8 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
     },
   }),
   status(state, { status }) {
-    if (typeof status.id === "string" && status.id.startsWith("parameter:")) return state; // reported where it was asked
-    if (status.id === "access") return state; // the connection panel says so in the page's language
+    if (typeof status.id === "string" && status.id.startsWith("parameter:")) return state; // reported at the control that set it
+    if (status.id === "access") return state; // the connection panel shows it, translated
     return withNotice(
       state,
       /** @type {const} */ (["info", "warning", "error"])[status.level] ?? "error",
@@ -181,7 +181,7 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
 });
 
 /**
- * What a robot measured is forgotten when it is not followed any more: it would look like what it measures now.
+ * Discard the readings of a robot that is no longer subscribed to: they would look current.
  *
  * @param {State} state
  * @param {string} robot
@@ -205,13 +205,13 @@ function withChannels(state, { topics }) {
   return { ...state, topics, robots, selected: selection(state.selected, robots) };
 }
 
-/** thymio_2 before thymio_10. @param {string} one @param {string} other */
+/** Numeric order: thymio_2 before thymio_10. @param {string} one @param {string} other */
 function byName(one, other) {
   return one.localeCompare(other, "en", { numeric: true });
 }
 
 /**
- * Whether the simulator, if it says so, has this robot: a topic may outlive it.
+ * Whether the simulator has this robot, if it reports its robots: a topic may outlive its robot.
  *
  * @param {State} state
  * @param {string} robot
@@ -280,23 +280,23 @@ function withNotice(state, level, text, cause = "") {
   return { ...state, noticeCount: id, notices: [...state.notices, { id, level, text, cause }].slice(-KEPT_NOTICES) };
 }
 
-/** Without the notices of causes that are gone. @param {State} state @param {readonly string[]} causes @returns {State} */
+/** Remove the notices of resolved causes. @param {State} state @param {readonly string[]} causes @returns {State} */
 function withoutNotices(state, causes) {
   const notices = state.notices.filter(({ cause }) => cause === "" || !causes.includes(cause));
   return notices.length === state.notices.length ? state : { ...state, notices };
 }
 
-/** Cause of notices about a file that was refused. @param {What} what */
+/** Cause of notices about a rejected file. @param {What} what */
 export function uploadCause(what) {
   return `upload ${what}`;
 }
 
-/** Cause of what the bridge reports under an id. @param {string} id */
+/** Cause of status messages of the bridge, by id. @param {string} id */
 function statusCause(id) {
   return `status ${id}`;
 }
 
-/** Whether a cause is gone with the simulator that reported it. @param {string} cause */
+/** Whether a cause ends with the simulator that reported it. @param {string} cause */
 function isSimulators(cause) {
   return cause.startsWith("status ") || cause.startsWith("/");
 }
@@ -309,10 +309,10 @@ function withUpload(state, what, upload) {
 const NODE_AND_PARAMETER = new RegExp(`^(${Object.values(PARAMETERS).join("|").replaceAll(".", "\\.")}):\\s*`);
 
 /**
- * The place and the words of a refusal: "/node.parameter: name: line 3, column 5: words".
+ * Split a rejection into position and message: "/node.parameter: name: line 3, column 5: message".
  *
  * @param {string} message
- * @param {string} [name]  of what was refused, which need not be repeated
+ * @param {string} [name]  name of the rejected file, which is removed from the message
  * @returns {Fault}
  */
 export function locate(message, name = "") {
@@ -323,7 +323,7 @@ export function locate(message, name = "") {
   return { text: text.replace(match[0], ""), line: Number(match[1]), column: Number(match[2]) };
 }
 
-/** The program state of the selected robot, else of the runtime they share. @param {State} state */
+/** The program state of the selected robot, else of the shared runtime. @param {State} state */
 export function programOf(state) {
   return state.programs[state.selected] ?? state.programs[""] ?? null;
 }
@@ -334,7 +334,7 @@ function visible(robot) {
 }
 
 /**
- * What tests see of the state: plain data, with the selected robot and its program at hand.
+ * A snapshot of the state for tests: plain data, with the selected robot and its program.
  *
  * @param {State} state
  */

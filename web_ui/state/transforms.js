@@ -1,4 +1,4 @@
-// Where the robots of a crowd are, from the transforms that all of them share: one message instead of two a robot.
+// Poses of many robots from their shared transforms: one message instead of two per robot.
 
 import { isSensed } from "./names.js";
 import { poseOf } from "./robot.js";
@@ -14,7 +14,7 @@ const BODY = "base_link";
 const WHEELS = /** @type {const} */ ({ left: "left_wheel_link", right: "right_wheel_link" });
 
 /**
- * Robots whose own topics are not followed, placed by a TFMessage; those whose frames are not in it stay as they are.
+ * Place robots whose own topics are not subscribed to by a TFMessage; robots without frames in it are unchanged.
  *
  * @template {{ robots: Readonly<Record<string, Robot>>, selected: string }} S
  * @param {S} state

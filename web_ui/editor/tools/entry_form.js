@@ -1,4 +1,4 @@
-// A line with which an event or constant is added: name, number, button; wrong input is reported in place.
+// A form row to add an event or constant: name, number, button; errors are shown in place.
 
 import { h, setText } from "../../panels/dom.js";
 import { WORD } from "../help.js";
@@ -10,7 +10,7 @@ import { parseNumbers } from "../numbers.js";
  * @param {"event" | "constant"} options.kind
  * @param {number} options.least
  * @param {number} options.greatest
- * @param {string} options.label   of the number
+ * @param {string} options.label   label of the number
  * @param {(name: string, value: number) => void} options.add
  */
 export function entryForm({ t, kind, least, greatest, label, add }) {

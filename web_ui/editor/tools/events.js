@@ -1,4 +1,4 @@
-// The program's events: send, add, remove, plot; and the log of what robots said.
+// The program's events: send, add, remove, plot; and the log of received events.
 
 import { h, lock, renew, setAttribute, setText } from "../../panels/dom.js";
 import { LARGEST_EVENT } from "../aesl.js";

@@ -8,20 +8,20 @@ import { referenceTool } from "./reference.js";
 import { variablesTool } from "./variables.js";
 
 /**
- * @typedef {object} View   what a tool draws
+ * @typedef {object} View   the data that tools draw
  * @property {string} robot
  * @property {import("../state.js").Target | null} target
  * @property {import("../state.js").Variables | null} variables
  * @property {readonly import("../state.js").LoggedEvent[]} log
  * @property {import("../aesl.js").Aesl} file
- * @property {string} offline   why no robot can be reached; empty: it can
+ * @property {string} offline   why the robots cannot be reached; empty if they can
  */
 /**
  * @typedef {object} ToolContext
  * @property {import("../../i18n/index.js").Translate} t
  * @property {import("../editor_session.js").EditorSession} session
  * @property {(text: string) => void} announce
- * @property {(text: string) => void} insert          into the program, at the cursor
+ * @property {(text: string) => void} insert          inserts text into the program at the cursor
  * @property {(name: string, values: number[]) => Promise<{ ok: boolean, message: string }>} setVariable
  * @property {(event: string, values: number[]) => void} emit
  * @property {(kind: "event" | "constant", name: string, value: number | null) => void} define
@@ -50,7 +50,7 @@ export function toolbox(context) {
     ),
   );
   const panels = tools.map(({ name, element }) =>
-    h("div", { role: "tabpanel", class: "tool", id: `tool-${name}`, "aria-labeledby": `tool-tab-${name}` }, element),
+    h("div", { role: "tabpanel", class: "tool", id: `tool-${name}`, "aria-labelledby": `tool-tab-${name}` }, element),
   );
   /** @param {string} name */
   const choose = (name) => {

@@ -1,4 +1,4 @@
-// What is watched, over time: a canvas with one line per value, and its numbers as CSV.
+// The plot of watched values: a canvas with one line per value, and CSV export.
 
 import { h, setText } from "../../panels/dom.js";
 import { download } from "../download.js";

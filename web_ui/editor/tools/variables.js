@@ -1,4 +1,4 @@
-// All variables with their values, as they change; a click edits, a star watches and plots.
+// All variables with live values; a click edits one, a star watches and plots it.
 
 import { h, setAttribute, setText } from "../../panels/dom.js";
 import { download } from "../download.js";
@@ -36,7 +36,7 @@ export function variablesTool({ t, session, announce, setVariable, redraw }) {
     let open = true;
     const close = (/** @type {boolean} */ focus) => {
       if (!open) return;
-      open = false; // taking it away blurs it, which comes here again
+      open = false; // removing the element blurs it, which calls this function again
       trouble.hidden = true;
       input.replaceWith(cell);
       if (focus) cell.focus();
@@ -113,7 +113,7 @@ export function variablesTool({ t, session, announce, setVariable, redraw }) {
         ...names.filter((name) => !session.watched.has(name) && known.has(name)),
       ];
       if (sorted.join() !== listed) {
-        if (body.querySelector("input") !== null) return; // somebody is typing
+        if (body.querySelector("input") !== null) return; // the user is typing
         listed = sorted.join();
         const focused = /** @type {HTMLElement | null} */ (body.querySelector(":focus"));
         body.replaceChildren(
@@ -123,7 +123,7 @@ export function variablesTool({ t, session, announce, setVariable, redraw }) {
             return row.row;
           }),
         );
-        focused?.focus(); // moving its row took it away
+        focused?.focus(); // reordering the rows removed the focus
       }
       for (const name of sorted) {
         const row = rows.get(name);

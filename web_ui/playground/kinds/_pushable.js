@@ -1,8 +1,8 @@
-// What things that stand have in common; not a kind of its own.
+// Fields that pushable objects share; not a kind.
 
 import { optional, RULES } from "../rules.js";
 
-/** Movable when there is a mass. */
+/** An object is movable if it has a mass. */
 export const PUSHABLE = {
   mass_kg: optional(RULES.mass, null),
   friction: optional(RULES.friction, 0.25),

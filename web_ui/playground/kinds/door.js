@@ -1,4 +1,4 @@
-// A box that slides between two places while a robot stands on a plate that names it.
+// A box that slides between two positions while a robot is on a pressure plate that names it.
 
 import { boxSolid } from "../primitives.js";
 import { needed, optional, RULES } from "../rules.js";

@@ -1,4 +1,4 @@
-// A straight wall from one point to another; both ends reach half a thickness farther, so that corners close.
+// A straight wall between two points; both ends extend by half the thickness so that corners close.
 
 import { boxSolid } from "../primitives.js";
 import { needed, optional, RULES } from "../rules.js";
