@@ -30,7 +30,7 @@ for (const [rest, token, clean] of /** @type {[string, string | null, string][]}
   });
 }
 
-test("the token leaves the address and is there after a reload", () => {
+test("the token is removed from the address and is available after a reload", () => {
   const tab = storage();
   /** @type {string[]} */ const shown = [];
   assert.equal(resolveToken(tab, `${ADDRESS}#token=abcd`, (address) => shown.push(address)), "abcd");
@@ -39,7 +39,7 @@ test("the token leaves the address and is there after a reload", () => {
   assert.equal(resolveToken(storage(), ADDRESS, () => assert.fail("nothing to take away")), "");
 });
 
-test("a token that cannot be kept stays in the address", () => {
+test("a token that cannot be stored stays in the address", () => {
   const full = {
     ...storage(),
     setItem() {
@@ -49,18 +49,18 @@ test("a token that cannot be kept stays in the address", () => {
   assert.equal(resolveToken(full, `${ADDRESS}#token=abcd`, () => assert.fail("it would be lost")), "abcd");
 });
 
-test("a connection that is refused says whether a token was given", () => {
+test("a rejected connection reports whether a token was given", () => {
   const lost = reduce(INITIAL, { type: "disconnected" });
   assert.equal(reduce(lost, { type: "refused", withToken: false }).connection, "noToken");
   assert.equal(reduce(lost, { type: "refused", withToken: true }).connection, "wrongToken");
 });
 
-test("what the server says about the token is left to the page's own words", () => {
+test("the server's message about the token is replaced by the page's text", () => {
   const status = { level: 2, message: "a token is needed", id: "access" };
   assert.deepEqual(reduce(INITIAL, { type: "status", status }).notices, []);
 });
 
-test("a read-only session publishes nothing, and the page knows", () => {
+test("a read-only session publishes nothing, and the state says so", () => {
   /** @type {any[]} */ const sent = [];
   /** @type {any[]} */ const events = [];
   const session = new Session({ send: (data) => sent.push(data), emit: (event) => events.push(event), wants: () => true });

@@ -37,21 +37,21 @@ function prepared() {
   return { model, reported, click, names, item };
 }
 
-test("places snap to lines, to the middles of fields, or not at all", () => {
+test("points snap to lines, to cell centers, or not at all", () => {
   assert.deepEqual(snapped([0.123, -0.061], { size: 0.05, on: "lines" }), [0.1, -0.05]);
   assert.deepEqual(snapped([0.123, -0.061], { size: 0.05, on: "centers" }), [0.125, -0.075]);
   assert.deepEqual(snapped([0.123, -0.061], null), [0.123, -0.061]);
   assert.ok(Object.is(rounded(-1e-9), 0));
 });
 
-test("numbers are real numbers with their units", () => {
+test("numbers are converted between units", () => {
   assert.equal(taken(0.5, "m"), 0.005);
   assert.equal(taken(1.5, "kg"), 0.0015);
   assert.equal(shown(0.123456, "m"), 12.3456);
   assert.equal(shown(taken(37.5, "rad"), "rad"), 37.5);
 });
 
-test("what was done is undone and done again in its order, and a new step forgets what was undone", () => {
+test("steps are undone and redone in order, and a new step discards undone ones", () => {
   const [one, two, three] = ["1", "2", "3"].map(newPlayground);
   const history = new History(one);
   history.do(two, { word: "a" });
@@ -65,7 +65,7 @@ test("what was done is undone and done again in its order, and a new step forget
   assert.equal(history.redo(), null);
 });
 
-test("steps of one series are one step until something comes between", () => {
+test("consecutive steps of one series count as one", () => {
   const [one, two, three, four] = ["1", "2", "3", "4"].map(newPlayground);
   const history = new History(one);
   history.do(two, { word: "moved" }, "move box");
@@ -78,7 +78,7 @@ test("steps of one series are one step until something comes between", () => {
   assert.equal(history.present, three);
 });
 
-test("a box is put down on the grid, several times, until Escape", () => {
+test("a box is placed on the grid, repeatedly, until Escape", () => {
   const { model, click, names, item } = prepared();
   model.choose("box");
   click(0.26, 0.21);
@@ -90,7 +90,7 @@ test("a box is put down on the grid, several times, until Escape", () => {
   assert.equal(model.cancel(), false);
 });
 
-test("nothing is put down on a robot or outside the ground, and it is said why", () => {
+test("nothing can be placed on a robot or outside the ground, and the reason is reported", () => {
   const { model, reported, click, names } = prepared();
   model.choose("cylinder");
   click(0, 0);
@@ -103,7 +103,7 @@ test("nothing is put down on a robot or outside the ground, and it is said why",
   assert.deepEqual(names(), ["ground", "thymio"]);
 });
 
-test("the ghost is turned by steps, and what is put down is turned as it was", () => {
+test("the ghost turns by steps, and the item is placed with its rotation", () => {
   const { model, click, item } = prepared();
   model.choose("box");
   model.turn(3);
@@ -112,7 +112,7 @@ test("the ghost is turned by steps, and what is put down is turned as it was", (
   assert.ok(Math.abs((item("box_1")?.yaw_rad ?? 0) - (44 * Math.PI) / 180) < 1e-9);
 });
 
-test("a track keeps all of its points, however it is ended", () => {
+test("a track keeps all of its points, however it is finished", () => {
   const { model, click, item } = prepared();
   model.choose("track");
   for (const [x, y] of [[-0.3, -0.3], [0.3, -0.3], [0.3, 0.3]]) click(x, y); // prettier-ignore
@@ -125,7 +125,7 @@ test("a track keeps all of its points, however it is ended", () => {
   assert.equal(item("track_3")?.points_m.length, 3);
 });
 
-test("while a track is drawn undo takes back its points, and Escape all of it", () => {
+test("while a track is drawn, undo removes its points and Escape the whole track", () => {
   const { model, click, names } = prepared();
   model.choose("track");
   click(0.1, 0.3);
@@ -139,7 +139,7 @@ test("while a track is drawn undo takes back its points, and Escape all of it", 
   assert.equal(model.history.past.length, 0);
 });
 
-test("a track of one point is not ended", () => {
+test("a track of one point cannot be finished", () => {
   const { model, reported, click } = prepared();
   model.choose("track");
   click(0.1, 0.3);
@@ -147,7 +147,7 @@ test("a track of one point is not ended", () => {
   assert.deepEqual(reported.at(-1), { word: "problem.twoPoints" });
 });
 
-test("walls go on from where the last one ended", () => {
+test("the next wall starts where the last one ended", () => {
   const { model, click, item } = prepared();
   model.choose("wall");
   for (const [x, y] of [[-0.3, 0.2], [0.3, 0.2], [0.3, 0.4]]) click(x, y); // prettier-ignore
@@ -155,7 +155,7 @@ test("walls go on from where the last one ended", () => {
   assert.deepEqual([item("wall_2")?.start_x_m, item("wall_2")?.end_y_m], [0.3, 0.4]);
 });
 
-test("every kind can be put down, moved, turned, copied and removed, and all of it undone to the beginning", () => {
+test("every kind can be placed, moved, turned, copied and removed, and all of it undone", () => {
   for (const { name: kind } of SHAPES) {
     const { model, click, names, item } = prepared();
     const start = model.playground;
@@ -188,7 +188,7 @@ test("every kind can be put down, moved, turned, copied and removed, and all of 
   }
 });
 
-test("what stands is taken, carried on the grid, and put back where it cannot be", () => {
+test("an item is dragged on the grid, and restored if the position is invalid", () => {
   const { model, reported, click, item } = prepared();
   model.choose("box");
   click(0.3, 0.3);
@@ -206,7 +206,7 @@ test("what stands is taken, carried on the grid, and put back where it cannot be
   assert.equal(item("box_1")?.x_m, 0.2);
 });
 
-test("the ring turns, points are moved one by one, and the ground only by its knob", () => {
+test("the ring turns, points move one by one, and the ground moves by its knob only", () => {
   const { model, click, item } = prepared();
   model.choose("box");
   click(0.3, 0.3);
@@ -231,7 +231,7 @@ test("the ring turns, points are moved one by one, and the ground only by its kn
   assert.equal(model.selected, "ground");
 });
 
-test("values are changed by numbers, and refused with a reason", () => {
+test("values are edited as numbers, and rejected with a reason", () => {
   const { model, click, item } = prepared();
   model.choose("box");
   click(0.3, 0.3);
@@ -246,7 +246,7 @@ test("values are changed by numbers, and refused with a reason", () => {
   assert.equal(model.selected, "crate");
 });
 
-test("a door keeps its plates by another name, and takes them with it when it goes", () => {
+test("a renamed door keeps its plates, and a removed door removes them", () => {
   const { model, reported, click, item, names } = prepared();
   model.choose("activation");
   assert.equal(reported.at(-1)?.word, "problem.noDoor");
@@ -271,14 +271,14 @@ test("the ground becomes an octagon and back, or none, and keeps color and walls
   assert.equal(groundOf(grounded(model.playground, "none")), null);
 });
 
-test("names are free ones", () => {
+test("new names are unused", () => {
   const playground = newPlayground("Mine");
   assert.equal(freeName(playground, "thymio"), "thymio_1");
   assert.equal(freeName(playground, "box"), "box_1");
   assert.equal(freeName(playground, "crate"), "crate");
 });
 
-test("moving and turning keep what they should", () => {
+test("moving and turning keep all other values", () => {
   const wall = { kind: "wall", name: "w", start_x_m: 0, start_y_m: 0, end_x_m: 0.4, end_y_m: 0, color: "#000000" };
   assert.deepEqual(middleOf(wall), [0.2, 0]);
   assert.deepEqual(pointsOf(turned(wall, Math.PI / 2)), [[0.2, -0.2], [0.2, 0.2]]); // prettier-ignore
@@ -286,7 +286,7 @@ test("moving and turning keep what they should", () => {
   assert.deepEqual(pointsOf(withPoint(wall, 1, [0.3, 0.3]))[1], [0.3, 0.3]);
 });
 
-test("what is drawn over it says whether a place is free", () => {
+test("the overlay shows whether a position is free", () => {
   const { model } = prepared();
   model.choose("box");
   model.placing?.hover([0.3, 0.3], false);
@@ -295,7 +295,7 @@ test("what is drawn over it says whether a place is free", () => {
   assert.deepEqual(new Set(sketchOf(model).areas.map(({ tone }) => tone)), new Set(["taken"]));
 });
 
-test("the draft is kept by the browser and there again; without room it is said", () => {
+test("the draft is stored and restored; a full storage is reported", () => {
   /** @type {Map<string, string>} */ const kept = new Map();
   const storage = {
     getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
@@ -328,7 +328,7 @@ test("the draft is kept by the browser and there again; without room it is said"
   clearTimeout(session.timer);
 });
 
-test("the creator has every word in every language, with the same values", () => {
+test("the creator has every text in every language, with the same values", () => {
   /** @param {string} text */
   const values = (text) => [...text.matchAll(/\{\w+\}/g)].map(([name]) => name).sort();
   for (const table of Object.values(WORDS)) {
@@ -341,7 +341,7 @@ test("the creator has every word in every language, with the same values", () =>
   }
 });
 
-test("a picture is as wide as the ground, and without a grid a shaky second click ends a track", () => {
+test("an image is as wide as the ground, and without a grid an inexact second click finishes a track", () => {
   const { model, click, item } = prepared();
   model.choose("picture", { image: "data:image/png;base64,AA==" });
   click(0, 0);
@@ -351,14 +351,14 @@ test("a picture is as wide as the ground, and without a grid a shaky second clic
   assert.deepEqual(item("track_1")?.points_m, [[0.1, 0.3], [0.3, 0.3]]); // prettier-ignore
 });
 
-test("what is taken in hand starts where there is room", () => {
+test("a new item starts at a free position", () => {
   const { model } = prepared();
   model.choose("box");
   assert.deepEqual(model.placing?.place, [0.15, 0]);
   assert.equal(model.ghost?.problem, null);
 });
 
-test("what a smaller ground leaves outside is reported, and can still be changed", () => {
+test("items outside a smaller ground are reported, and can still be changed", () => {
   const { model, click, item } = prepared();
   model.choose("box");
   click(0.4, 0.4);
@@ -373,7 +373,7 @@ test("what a smaller ground leaves outside is reported, and can still be changed
   assert.equal(item("box_1")?.height_m, 0.2);
 });
 
-test("while only the pointer moves the world that is drawn stays the same", () => {
+test("the drawn world stays the same object while only the pointer moves", () => {
   const storage = { getItem: () => null, setItem: () => {}, removeItem: () => {} };
   const session = new CreatorSession({ storage, title: "Mine", report: () => {}, changed: () => {} });
   session.model.choose("box");
@@ -387,7 +387,7 @@ test("while only the pointer moves the world that is drawn stays the same", () =
   clearTimeout(session.timer);
 });
 
-test("a notch of any mouse is one step, and a touchpad's way adds up", () => {
+test("a notch of any mouse is one step, and touchpad distances are accumulated", () => {
   const notches = [
     { deltaY: 120, deltaMode: 0 },
     { deltaY: 100, deltaMode: 0 },
@@ -406,7 +406,7 @@ test("a notch of any mouse is one step, and a touchpad's way adds up", () => {
   assert.equal(steps.reduce((sum, one) => sum + one, 0), 2);
 });
 
-test("a playground without any ground gets one under all that stands there", () => {
+test("a playground without ground gets one below all items", () => {
   const bare = grounded(newPlayground("Mine"), "none");
   assert.ok(lacksGround(bare.items));
   assert.ok(!lacksGround(newPlayground("Mine").items));
@@ -418,7 +418,7 @@ test("a playground without any ground gets one under all that stands there", () 
   parse(write(whole));
 });
 
-test("what was saved is saved after a reload too, and what is as in the file counts as saved", () => {
+test("the saved state survives a reload, and a playground equal to its file counts as saved", () => {
   /** @type {Map<string, string>} */ const kept = new Map();
   const storage = {
     getItem: (/** @type {string} */ key) => kept.get(key) ?? null,

@@ -49,7 +49,7 @@ test("the editor's topics are those of robots with and without a name", () => {
   assert.equal(splitEditorTopic("/aseba/events/ping"), null);
 });
 
-test("variables are cut by their labels", () => {
+test("variables are split by their labels", () => {
   const state = reduce(
     INITIAL,
     message(
@@ -80,7 +80,7 @@ test("the log keeps the newest events, each with its robot, and can be emptied",
   assert.deepEqual(reduce(state, { type: "forgetLog" }).log, []);
 });
 
-test("what is watched is plotted, of the selected robot only", () => {
+test("watched variables of the selected robot are plotted", () => {
   const session = new EditorSession(newStorage(), () => 0);
   session.toggleWatch("b");
   session.toggleWatch(eventKey("ping"));
@@ -112,16 +112,16 @@ test("series become a table with one row per time", () => {
   assert.deepEqual(history.series.get("a")?.values, [5]);
 });
 
-test("numbers are whole, in range, and as many as needed", () => {
+test("numbers must be whole, in range, and of the required count", () => {
   assert.deepEqual(parseNumbers(" 1, -32768 3 ", 3).values, [1, -32768, 3]);
   assert.equal(parseNumbers("1 2", 3).trouble?.key, "number.count");
   for (const bad of ["32768", "1.5", "a", "--1"]) assert.equal(parseNumbers(bad, 1).trouble?.key, "number.range", bad);
 });
 
-test("grid lines stand at round numbers", () =>
+test("grid lines are at round numbers", () =>
   assert.deepEqual([roundStep(100, 4), roundStep(7, 4), roundStep(60, 5)], [50, 2, 20]));
 
-test("a remark stands at its characters, whatever their width", () => {
+test("a diagnostic is at its characters, whatever their width", () => {
   const text = "a = 1\n# 😀😀 b\n😀 c";
   const remark = { line: 3, column: 3, length: 1, message: "no" };
   assert.deepEqual(marks(text, { errors: [remark], warnings: [] }), [
@@ -131,7 +131,7 @@ test("a remark stands at its characters, whatever their width", () => {
   assert.equal(placeless.from, 0);
 });
 
-test("remarks below the text or beside a line stay in the text", () => {
+test("diagnostics outside the text are moved into it", () => {
   for (const [line, column] of [
     [99, 1],
     [1, 99],
@@ -142,7 +142,7 @@ test("remarks below the text or beside a line stay in the text", () => {
   }
 });
 
-test("a verdict is read from the reason of the answer", () => {
+test("a verdict is parsed from the reason of the answer", () => {
   const use = { variables: [1, 2], bytecode: [3, 4], stack: [5, 6] };
   const reason = JSON.stringify({ errors: [], warnings: [], nodes: [{ use, variables: [{ name: "a" }] }] });
   assert.deepEqual(readVerdict({ result: { successful: true, reason } }).use, use);
@@ -189,7 +189,7 @@ for (const [before, names] of /** @type {[string, string[]][]} */ ([
   ["a = 12", []],
   ["a = pro", ["count", "SPEED", "prox.horizontal", "if", "while"]],
 ])) {
-  test(`'${before}' is completed with what fits there`, () => {
+  test(`'${before}' is completed`, () => {
     assert.deepEqual(
       suggestions(before, VOCABULARY).items.map(({ name }) => name),
       names,
@@ -205,11 +205,11 @@ test("a name is explained where it stands", () => {
   assert.equal(explain("nothing", 2, VOCABULARY), null);
 });
 
-test("a signature says what the parameters hold", () => {
+test("a signature shows the sizes of the parameters", () => {
   assert.equal(signature(/** @type {any} */ (VOCABULARY.target?.natives[0])), "math.max(dest[], a, b[2])");
 });
 
-test("what a robot runs is shown until a person has changed something", () => {
+test("the running program is shown until the user has changed something", () => {
   const { session } = workspace();
   session.setRobotProgram(ALL, program("a = 1"));
   assert.equal(session.code, "a = 1");
@@ -221,7 +221,7 @@ test("what a robot runs is shown until a person has changed something", () => {
   assert.equal(session.code, "a = 4");
 });
 
-test("a new program and an opened file stay when a robot tells of its own", () => {
+test("a new program and an opened file stay when a robot reports its program", () => {
   const { session } = workspace();
   session.setRobotProgram(ALL, program("a = 1"));
   session.newFile();
@@ -232,7 +232,7 @@ test("a new program and an opened file stay when a robot tells of its own", () =
   assert.equal(session.code, "b = 1");
 });
 
-test("what a robot tells back after loading changes nothing", () => {
+test("the robot's report after loading changes nothing", () => {
   const { session, shown } = workspace();
   session.edit("a = 1");
   session.loaded(ALL, session.current.text);
@@ -241,7 +241,7 @@ test("what a robot tells back after loading changes nothing", () => {
   assert.equal(shown(), before);
 });
 
-test("a file that is no program is refused at its place, and what was there stays", () => {
+test("X", () => {
   const { session } = workspace();
   session.edit("a = 1");
   assert.deepEqual(session.open("bad.aesl", "<network>\n<node></network>"), {
@@ -253,7 +253,7 @@ test("a file that is no program is refused at its place, and what was there stay
   assert.equal(session.code, "a = 1");
 });
 
-test("what another file replaces unsaved is among the recent ones", () => {
+test("unsaved text replaced by another file is added to the recent files", () => {
   const { session } = workspace();
   session.edit("a = 1");
   session.rename("mine");
@@ -265,7 +265,7 @@ test("what another file replaces unsaved is among the recent ones", () => {
   );
 });
 
-test("unsaved texts of one name stay apart, and a saved one does not take their place", () => {
+test("unsaved texts of the same name are kept separately, and a saved one does not replace them", () => {
   const { session } = workspace();
   for (const code of ["a = 1", "a = 2"]) {
     session.edit(code);
@@ -277,7 +277,7 @@ test("unsaved texts of one name stay apart, and a saved one does not take their 
   assert.deepEqual(codes, ["a = 4", "a = 2", "a = 1"]);
 });
 
-test("a draft that is written over is among the recent files", () => {
+test("a draft that is overwritten is added to the recent files", () => {
   for (const over of [
     (/** @type {Workspace} */ session) => session.edit("b = 1"),
     (/** @type {Workspace} */ session) => session.define("constant", "B", 1),
@@ -294,7 +294,7 @@ test("a draft that is written over is among the recent files", () => {
   }
 });
 
-test("an unsaved text of the recent files is unsaved again when one goes on with it", () => {
+test("an unsaved text restored from the recent files is unsaved again", () => {
   const { session } = workspace();
   session.edit("a = 1");
   session.newFile();
@@ -304,7 +304,7 @@ test("an unsaved text of the recent files is unsaved again when one goes on with
   assert.ok(isUnsaved(session.current));
 });
 
-test("a draft that was restored is one text, not two", () => {
+test("a restored draft exists only once", () => {
   const { session, storage } = workspace();
   session.edit("a = 1");
   const next = workspace(storage).session;
@@ -314,7 +314,7 @@ test("a draft that was restored is one text, not two", () => {
   assert.deepEqual(next.fileStore.recent(), []);
 });
 
-test("an unsaved text waits for the next visit, a saved one does not", () => {
+test("an unsaved text is offered at the next visit, a saved one is not", () => {
   const { session, storage } = workspace();
   session.edit("a = 1");
   const next = workspace(storage).session;
@@ -328,7 +328,7 @@ test("an unsaved text waits for the next visit, a saved one does not", () => {
   assert.equal(last.at(ALL) && last.draft, null);
 });
 
-test("recent files are few, and something broken in the storage is nothing", () => {
+test("the number of recent files is limited, and invalid storage content is ignored", () => {
   const storage = newStorage();
   const fileStore = new FileStore(storage);
   for (let index = 0; index < KEPT_FILES + 5; index++) fileStore.remember({ name: `${index}`, text: "", time: index });
@@ -337,7 +337,7 @@ test("recent files are few, and something broken in the storage is nothing", () 
   assert.deepEqual(fileStore.recent(), []);
 });
 
-test("of recent files the newest are kept for which the browser has room", () => {
+test("the newest recent files that fit into the storage are kept", () => {
   const storage = newStorage();
   const { setItem } = storage;
   storage.setItem = (key, value) => {
@@ -352,7 +352,7 @@ test("of recent files the newest are kept for which the browser has room", () =>
   );
 });
 
-test("a choice that cannot be kept holds all the same", () => {
+test("a setting that cannot be stored still takes effect", () => {
   const storage = newStorage();
   storage.setItem("editor.fontSize", "20");
   storage.setItem = () => {
@@ -365,7 +365,7 @@ test("a choice that cannot be kept holds all the same", () => {
   assert.equal(storage.getItem("editor.fontSize"), null);
 });
 
-test("a program for all takes the place of those that single robots had", async () => {
+test("a program for all replaces the programs of single robots", async () => {
   /** @type {any[]} */ const asked = [];
   const client = { setParameters: async (/** @type {any} */ given) => (asked.push(given), { ok: true, message: "" }) };
   const link = new Link(/** @type {any} */ (client));
@@ -385,7 +385,7 @@ test("a program for all takes the place of those that single robots had", async 
   );
 });
 
-test("a variable's refusal is reported with its reason", async () => {
+test("a rejected variable is reported with its reason", async () => {
   const value = { results: [{ successful: false, reason: "too large" }] };
   const link = new Link(/** @type {any} */ ({ call: async () => ({ ok: true, message: "", value }) }));
   assert.deepEqual(await link.setVariable("", "a", [1]), { ok: false, message: "too large" });
@@ -408,7 +408,7 @@ const REFUSED = {
   hint: { kind: "hint-block-word", message: "'do' belongs here", edit: { line: 1, column: 4, end_line: 1, end_column: 4, text: " do" } },
 };
 
-test("a hint becomes a sentence and a change of the text", () => {
+test("a hint is converted to a sentence and a change of the text", () => {
   const [mark] = marks("😀ab\n123456", { errors: [REFUSED], warnings: [] });
   assert.equal(mark.hint, "'do' belongs here");
   assert.deepEqual(mark.repair, { from: 4, to: 4, insert: " do" });
@@ -417,7 +417,7 @@ test("a hint becomes a sentence and a change of the text", () => {
   assert.deepEqual(notesOf(answer), ["guessed"]);
 });
 
-test("the button of a repair says what it does", () => {
+test("the button of a repair describes it", () => {
   /** @param {string} key @param {Record<string, any>} [values] */
   const t = (key, values = {}) => [key, ...Object.values(values)].join(" ");
   assert.equal(repairLabel(t, "a = 1", { from: 2, to: 3, insert: "==" }), "hint.change ==");

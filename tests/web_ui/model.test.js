@@ -57,7 +57,7 @@ test("twenty robots take as many draw calls as one", () => {
   }
 });
 
-test("a robot seen from far is a fifth of one that is near", () => {
+test("a distant robot has a fifth of the triangles of a near one", () => {
   const [fine, coarse] = [true, false].map((detail) => {
     const instances = new RobotInstances({ fine: detail });
     instances.update(standing(1));
@@ -66,7 +66,7 @@ test("a robot seen from far is a fifth of one that is near", () => {
   assert.ok(coarse < fine / 5, `${coarse} of ${fine}`);
 });
 
-test("what cannot be seen is not drawn: from far, a robot is its body and the lights that shine", () => {
+test("invisible parts are not drawn: a distant robot is its body and the lit lights", () => {
   const instances = new RobotInstances({ fine: false });
   const look = { sensing: false, hovered: null };
   /** @param {Partial<import("../../web_ui/state/robot.js").Robot>} state */
@@ -79,7 +79,7 @@ test("what cannot be seen is not drawn: from far, a robot is its body and the li
   assert.equal(sum(copies(instances)), 20 * 2);
 });
 
-test("what is drawn of several robots is where they are, whatever is left out before it", () => {
+test("parts of several robots are at the right positions, whatever is left out before them", () => {
   const instances = new RobotInstances({ fine: false });
   const [dark, lit] = standing(2);
   instances.update([dark, { ...lit, look: { ...lit.look, robot: { ...NEW_ROBOT, leds: { circle: [0, 1] } } } }]);
@@ -90,7 +90,7 @@ test("what is drawn of several robots is where they are, whatever is left out be
   assert.ok(red > blue, "yellow, as all of the circle");
 });
 
-test("a robot that did not change costs nothing, one that moved is drawn where it is", () => {
+test("an unchanged robot is not updated, a moved one is drawn at its pose", () => {
   const instances = new RobotInstances({ fine: true });
   const robots = standing(2);
   instances.update(robots);
@@ -104,7 +104,7 @@ test("a robot that did not change costs nothing, one that moved is drawn where i
   assert.ok(versions().every((version, index) => version > before[index]));
 });
 
-test("a robot that comes after others have gone has nothing of theirs", () => {
+test("a robot that reuses a slot has nothing of the previous robot", () => {
   const instances = new RobotInstances({ fine: true });
   const lit = { circle: [1, 0, 0, 0, 0, 0, 0, 0] };
   instances.update(standing(2, { leds: lit, proximity: { center: 0.05 } }));
@@ -148,7 +148,7 @@ function placeOf(mesh, index) {
   return mesh.instanceMatrix.array.slice(16 * index, 16 * index + 16);
 }
 
-test("a robot stands where it is said to, and its parts with it", () => {
+test("a robot and its parts are drawn at the reported pose", () => {
   const model = new RobotModel("");
   const pose = { x: 1, y: 2, z: 0, yaw: Math.PI / 2, roll: 0, pitch: 0 };
   const latest = { pose, stampNs: 0, arrivedMs: 0 };
@@ -167,13 +167,13 @@ test("a robot that leans on its nose has its front below", () => {
   assert.ok(front !== null && back !== null && front.z < back.z && front.y > back.y);
 });
 
-test("a robot nobody has placed is not drawn", () => {
+test("a robot without a pose is not drawn", () => {
   const model = new RobotModel("");
   model.update(NEW_ROBOT, 0);
   assert.equal(model.group.visible, false);
 });
 
-test("a trail grows without its finished strokes being made anew", () => {
+test("a trail grows without rebuilding its finished strokes", () => {
   const strip = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   /** @param {number} id @param {number} points */
   const stroke = (id, points) => ({
@@ -193,7 +193,7 @@ test("a trail grows without its finished strokes being made anew", () => {
   assert.notEqual(model.meshes.get("pen/1")?.mesh, growing);
 });
 
-test("only markers that changed are made anew", () => {
+test("only changed markers are rebuilt", () => {
   const wall = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const first = applyMarkers(new Map(), [wall, { ...wall, id: 8, type: 3 }]);
   const model = new PlaygroundModel();
@@ -236,7 +236,7 @@ test("every kind of marker is drawn in meters", () => {
   assert.deepEqual(sizes, ["0.200", "0.200", "0.200", "0.000", "0.000"]);
 });
 
-test("a picture is a flat sheet of the marker's size, shown as soon as it has arrived", async () => {
+test("an image is a flat sheet of the marker's size, shown as soon as it is decoded", async () => {
   const wall = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const bitmap = /** @type {any} */ ({ width: 2, height: 1 });
   /** @type {Blob[]} */ const decoded = [];

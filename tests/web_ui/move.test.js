@@ -53,7 +53,7 @@ function prepared({ accepted = true } = {}) {
   return { dragController, asked, reported };
 }
 
-test("robots and movable bodies can be taken, walls and doors cannot", () => {
+test("robots and movable objects can be moved, walls and doors cannot", () => {
   assert.deepEqual(movables(world()).map(({ name }) => name), ["thymio", "can"]);
   assert.deepEqual(obstacles(world(), "can").map(({ name }) => name), ["thymio", "wall", "door"]);
 });
@@ -64,7 +64,7 @@ test("squares that only touch do not overlap", () => {
   assert.equal(overlap(square(0), square(1)), false);
 });
 
-test("a robot has a place beside a wall, but not in it", () => {
+test("a robot fits beside a wall, but not in it", () => {
   const [robot] = movables(world());
   const others = obstacles(world(), robot.name);
   assert.equal(blocker(robot, { x: 0.6, y: 0, yaw: 0 }, others), null);
@@ -84,7 +84,7 @@ test("a prism's footprint is its top", () => {
   assert.equal(reach(body), 1);
 });
 
-test("a pointer takes the body that its line of sight meets first", () => {
+test("a pointer grabs the first body on its line of sight", () => {
   const bodies = movables(world());
   assert.equal(hit(down(0.02, 0), bodies)?.body.name, "thymio");
   assert.equal(hit(down(0.3, 0.01), bodies)?.body.name, "can");
@@ -94,7 +94,7 @@ test("a pointer takes the body that its line of sight meets first", () => {
   assert.equal(hit({ ...slanting, direction: { x: 1, y: 0, z: 0 } }, bodies), null);
 });
 
-test("what is dragged keeps the place of the finger on it, and is asked for when put down", async () => {
+test("a dragged body keeps its offset to the pointer, and the simulator is asked when it is dropped", async () => {
   const { dragController, asked } = prepared();
   assert.equal(dragController.grab(down(0.05, 0.01), false), false);
   assert.equal(dragController.grab(down(0.05, 0.01), true), true);
@@ -106,7 +106,7 @@ test("what is dragged keeps the place of the finger on it, and is asked for when
   assert.equal(dragController.held, null);
 });
 
-test("a ghost knows what stands in its place", () => {
+test("a ghost reports the obstacle at its position", () => {
   const { dragController } = prepared();
   dragController.grab(down(0.3, 0), true);
   dragController.drag(down(1, 0));
@@ -115,7 +115,7 @@ test("a ghost knows what stands in its place", () => {
   assert.equal(dragController.held?.blocker, null);
 });
 
-test("the ring turns what is held in move mode", () => {
+test("the ring turns the selected body in move mode", () => {
   const { dragController } = prepared();
   dragController.setMode(true);
   assert.equal(dragController.held?.body.name, "thymio");
@@ -125,7 +125,7 @@ test("the ring turns what is held in move mode", () => {
   assert.ok(dragController.held !== null && Math.abs(dragController.held.pose.yaw - Math.PI / 2) < 1e-9 && dragController.held.pose.x === 0);
 });
 
-test("keys move, turn, take the next body and put it down", async () => {
+test("keys move, turn, select the next body and drop it", async () => {
   const { dragController, asked, reported } = prepared();
   dragController.setMode(true);
   dragController.next();
@@ -140,7 +140,7 @@ test("keys move, turn, take the next body and put it down", async () => {
   assert.equal(dragController.held, null);
 });
 
-test("an empty world leaves the hand empty", async () => {
+test("nothing is selected in an empty world", async () => {
   const dragController = new DragController({ state: () => INITIAL, place: async () => true, changed: () => {}, report: () => {} });
   dragController.setMode(true);
   dragController.next();
@@ -155,19 +155,19 @@ function floor(size, robot) {
   return JSON.stringify({ format: 1, title: "Floor", shapes, robots: [{ name: "thymio", ...robot }] });
 }
 
-test("a robot that fell is put where it started", () => {
+test("a fallen robot is returned to its start", () => {
   const found = startOf(world(), floor(2, { x_m: -0.5, y_m: 0.5, yaw_rad: 1 }), "thymio");
   assert.deepEqual(found, { x: -0.5, y: 0.5, yaw: 1 });
 });
 
-test("where something stands at the start it is put beside it, on the ground", () => {
+test("if the start is occupied, a fallen robot is placed next to it, on the ground", () => {
   const start = { x_m: 0.25, y_m: 0 }; // its front would be in the can
   assert.deepEqual(startOf(world(), floor(2, start), "thymio"), { x: 0.4, y: 0, yaw: 0 });
   const onSmallFloor = startOf(world(), floor(0.6, start), "thymio");
   assert.deepEqual([onSmallFloor.x.toFixed(3), onSmallFloor.y.toFixed(3)], ["0.250", "0.150"]);
 });
 
-test("a robot that came later is put at the start of another, or beside it", () => {
+test("a robot without a start is placed at the start of another, or next to it", () => {
   const found = startOf(world(), floor(2, { x_m: 0, y_m: 0 }), "anna");
   assert.ok(Math.hypot(found.x, found.y) > 0.1);
 });

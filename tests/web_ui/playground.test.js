@@ -115,7 +115,7 @@ const BOX = {
   color: "#112233",
 };
 
-test("titles are of any characters, counted as people count them; halves of them are refused", () => {
+test("titles may contain any characters, counted as code points; lone surrogates are rejected", () => {
   const titled = (/** @type {string} */ title) => parse(JSON.stringify({ format: 1, title })).title;
   for (const title of ["Labyrinth 🤖", "متاهة", "🤖".repeat(2000)]) assert.equal(titled(title), title);
   for (const title of ["🤖".repeat(2001), "\ud83e", "two\nlines"]) {
@@ -138,7 +138,7 @@ for (const [what, given, key, word] of /** @type {[string, string, string, strin
   ["a track of one place", text([{ kind: "track", points_m: [[0, 0], [0, 0]], width_m: 0.1, color: "#000000" }]), "shapes[0].points_m", "fault.places"], // prettier-ignore
   ["a plate without its door", text([{ kind: "activation", x_m: 0, y_m: 0, size_x_m: 0.1, size_y_m: 0.1, area_m: [[0, 0], [1, 0], [0, 1]], door: "gate" }]), "shapes[0].door", "fault.door"], // prettier-ignore
 ])) {
-  test(`${what} is refused with its place`, () => {
+  test(`${what} is rejected with its location`, () => {
     assert.throws(
       () => parse(given),
       (error) => error instanceof Fault && error.key === key && error.expected.word === word,
@@ -151,12 +151,12 @@ test("a shape of another package is kept as it is", () => {
   assert.deepEqual(JSON.parse(write(parse(text([spiral])))).shapes, [spiral]);
 });
 
-test("what has no name is called as the simulator calls it", () => {
+test("unnamed shapes get the same names as in the simulator", () => {
   const { name: _name, ...unnamed } = BOX;
   assert.equal(parse(text([unnamed])).items[0].name, "box_0");
 });
 
-test("an item may not stand on a robot, though things may stand in each other", () => {
+test("an item may not overlap a robot, but objects may overlap each other", () => {
   const [robot] = parse(text([], [{ name: "thymio", x_m: 0, y_m: 0 }])).items;
   const crate = { ...BOX, x_m: 0.05 };
   assert.equal(blockerOf([robot], crate), "thymio");
@@ -165,18 +165,18 @@ test("an item may not stand on a robot, though things may stand in each other", 
   assert.equal(findProblem([robot], { ...BOX, x_m: 0.13 + 1e-9 }), null);
 });
 
-test("a limit that is passed is an findProblem with its key", () => {
+test("a value out of range is a problem with its key", () => {
   assert.equal(findProblem([], { ...BOX, height_m: 0 })?.values?.key, "height_m");
 });
 
-test("ground containsPoint what is on it and on its edge", () => {
+test("an item on a ground or on its edge is on the ground", () => {
   const ground = { kind: "rectangle", name: "g", size_x_m: 1, size_y_m: 1, color: "#ffffff" };
   assert.equal(isOnGround([ground], { ...BOX, x_m: 0.5 }), true);
   assert.equal(isOnGround([ground], { ...BOX, x_m: 0.51 }), false);
   assert.equal(isOnGround([], { ...BOX, x_m: 9 }), true);
 });
 
-test("markers of what stays the same stay the same", () => {
+test("unchanged items keep their markers", () => {
   const markers = new Markers(() => null);
   const items = [{ kind: "rectangle", name: "g", size_x_m: 1, size_y_m: 1, color: "#ffffff", walls: {} }, BOX];
   const before = markers.of(items);

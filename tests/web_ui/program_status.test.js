@@ -6,7 +6,7 @@ import { faultMessage, lineOf, lineLabel, stateLabel } from "../../web_ui/state/
 
 const FAILED = { state: "fault", line: "7", first_line: "5", fault: "division by zero" };
 
-test("a state has a word in each language, and one that is new is unknown", () => {
+test("a state has a label in each language, and a new one is unknown", () => {
   assert.deepEqual(["off", "fault", "dreaming"].map((state) => stateLabel(state, translator("de"))), ["aus", "Fehler", "unbekannt"]);
 });
 
@@ -19,7 +19,7 @@ test("the line counts from where the code starts, and is not reported while the 
   assert.equal(lineLabel({ ...FAILED, state: "running" }, translator("fr")), "");
 });
 
-test("a fault is reported in the language of the page if the runtime speaks it", () => {
+test("a fault is shown in the language of the page if the runtime has a translation", () => {
   const faults = JSON.stringify({ en: "division by zero", de: "Division durch null" });
   assert.equal(faultMessage({ ...FAILED, faults }, "de"), "Division durch null");
   assert.equal(faultMessage({ ...FAILED, faults }, "it"), "division by zero");
@@ -27,7 +27,7 @@ test("a fault is reported in the language of the page if the runtime speaks it",
   assert.equal(faultMessage({ state: "running", fault: "", faults: "{}" }, "de"), "");
 });
 
-test("a program that runs while time is paused says so, and one that has ended does not", () => {
+test("a program that runs while the simulation is paused says so, and a stopped one does not", () => {
   const t = translator("en");
   assert.equal(stateLabel("running", t, true), "running, simulation paused");
   assert.equal(stateLabel("running", t, false), "running");

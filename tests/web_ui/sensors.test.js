@@ -23,7 +23,7 @@ const ROBOT = {
   },
 };
 
-test("every value stands in SI units beside Thymio's integer, ready for a spreadsheet", () => {
+test("every value is shown in SI units beside Thymio's integer, ready for a spreadsheet", () => {
   const lines = asText(groupsOf((key) => key), ROBOT).split("\n").map((line) => line.split("\t")); // prettier-ignore
   const find = (/** @type {string} */ label, group = "sensors.others") =>
     lines.find(([title, name]) => title === group && name === label)?.slice(2);
@@ -37,12 +37,12 @@ test("every value stands in SI units beside Thymio's integer, ready for a spread
   assert.deepEqual(find("proximity.center", "sensors.proximity"), ["5.0 cm", "3000"]);
 });
 
-test("a robot that has said nothing yet has empty values", () => {
+test("a robot without messages has empty values", () => {
   const text = asText(groupsOf((key) => key), NEW_ROBOT); // prettier-ignore
   assert.ok(!text.includes("NaN") && !text.includes("undefined"));
 });
 
-test("numbers stand at the ends of the beams and beside the ground patches", () => {
+test("value labels are at the ends of the beams and beside the ground patches", () => {
   const numbers = valueLabelsOf(ROBOT);
   assert.deepEqual(
     numbers.map(({ text }) => text),
@@ -52,7 +52,7 @@ test("numbers stand at the ends of the beams and beside the ground patches", () 
   assert.deepEqual(valueLabelsOf(NEW_ROBOT), []);
 });
 
-test("a quality chosen by hand stays, and automatic restarts", () => {
+test("a fixed quality stays, and automatic starts over", () => {
   const quality = new Quality(1);
   quality.choose("fine");
   for (let frame = 0; frame < 200; frame++) assert.equal(quality.note(frame * 200, true), false);

@@ -17,7 +17,7 @@ function utf16(text, isLittle = true) {
 /** @param {string} text */
 const latin = (text) => Uint8Array.from(text, (letter) => letter.charCodeAt(0));
 
-test("a file is read in the encoding that it says, and says how it will be written", () => {
+test("a file is decoded as declared, and its declaration is rewritten", () => {
   assert.equal(decoded(latin(file("iso-8859-1"))), file("UTF-8"));
   assert.equal(decoded(utf16(file("UTF-16"))), file("UTF-8"));
   assert.equal(decoded(utf16(file("UTF-16"), false)), file("UTF-8"));
@@ -29,14 +29,14 @@ test("text in UTF-8 stays as it is", () => {
   assert.equal(decoded(Uint8Array.of(0xef, 0xbb, 0xbf, 0x61)), "a");
 });
 
-test("what is no text in its encoding is refused", () => {
+test("invalid bytes are rejected", () => {
   for (const bytes of [latin("# größer"), latin(file("utf-8")), utf16("ab").subarray(0, 5)]) {
     assert.throws(() => decoded(bytes), TypeError);
   }
   assert.throws(() => decoded(utf8.encode(file("klingon"))), RangeError);
 });
 
-test("UTF-16 is known by the first tag, and what declares it wrongly is UTF-8", () => {
+test("UTF-16 is detected by the first tag, and a wrong declaration of it means UTF-8", () => {
   const text = '<?xml version="1.0" encoding="UTF-16"?><network/>';
   const right = text.replace("UTF-16", "UTF-8");
   const low = Uint8Array.from([...text].flatMap((letter) => [letter.charCodeAt(0), 0]));

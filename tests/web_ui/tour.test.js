@@ -16,13 +16,13 @@ test("the tour starts at a first visit, and never again once it was closed", () 
   assert.equal(shouldStart({ search: "", storage: storage(null), entry: { tour: "closed" } }), false); // nothing can be stored
 });
 
-test("the address decides for a kiosk or a class", () => {
+test("the address overrides the stored choice", () => {
   assert.equal(shouldStart({ search: "?token=abc&tour=off", storage: storage(null), entry: null }), false);
   assert.equal(shouldStart({ search: "?tour=on", storage: storage("closed"), entry: { tour: "closed" } }), true);
 });
 
 for (const language of Object.keys(LANGUAGES)) {
-  test(`the tour has every word in ${language}, with the same values`, () => {
+  test(`the tour has every text in ${language}, with the same values`, () => {
     /** @param {string} text */
     const values = (text) => [...text.matchAll(/\{\w+\}/g)].map(([name]) => name).sort();
     assert.deepEqual(Object.keys(WORDS[language]), Object.keys(WORDS.en));
@@ -31,7 +31,7 @@ for (const language of Object.keys(LANGUAGES)) {
   });
 }
 
-test("the card stands beside what it speaks of, and always in the window", () => {
+test("the card is beside its target, and always inside the window", () => {
   const card = { width: 320, height: 170 };
   const targets = [
     { left: 14, top: 600, width: 160, height: 160 },
@@ -56,7 +56,7 @@ test("the card stands beside what it speaks of, and always in the window", () =>
   }
 });
 
-test("a large target has the card in its upper part, and nothing to see has it in the middle of the window", () => {
+test("on a large target the card is in its upper part, without a target in the center of the window", () => {
   const card = { width: 300, height: 200 };
   const window = { width: 1000, height: 800 };
   const view = { left: 0, top: 60, width: 1000, height: 740 };

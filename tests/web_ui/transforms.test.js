@@ -48,7 +48,7 @@ function paused(state, paused) {
   return reduce(state, { type: "message", topic: "/simulator/_state", value, timeNs: 0n });
 }
 
-test("a robot of a crowd stands where its two transforms put it", () => {
+test("with many robots, a pose is computed from two transforms", () => {
   const { robots } = reported(standing(NAMES), frames("b"), 70);
   const { pose, stampNs, arrivedMs } = /** @type {any} */ (robots.b.latest);
   const expected = { x: 2, y: 1, z: 0.1, yaw: Math.PI / 2 + 0.5, roll: 0, pitch: 0 };
@@ -59,7 +59,7 @@ test("a robot of a crowd stands where its two transforms put it", () => {
   assert.equal(robots.c.latest, null);
 });
 
-test("a robot that leans does so in its own direction", () => {
+test("a robot leans in its own direction", () => {
   const lean = { x: 0, y: Math.sin(0.1), z: 0, w: Math.cos(0.1) };
   const [odometry] = frames("b");
   const leaning = transform("b/odom", "b/base_link", [0, 0, 0], lean, 1);
@@ -67,14 +67,14 @@ test("a robot that leans does so in its own direction", () => {
   for (const [found, value] of [[yaw, Math.PI / 2], [pitch, 0.2], [roll, 0]]) assert.ok(Math.abs(found - value) < 1e-12);
 });
 
-test("what comes twice is one place, and the next one follows it", () => {
+test("a repeated transform is one sample, and the next one follows it", () => {
   const once = reported(standing(NAMES), frames("b"), 10);
   assert.equal(reported(once, frames("b"), 20).robots.b.latest?.arrivedMs, 10);
   const { previous, latest } = reported(once, frames("b", { sec: 2 }), 60).robots.b;
   assert.deepEqual([previous?.stampNs, latest?.stampNs, latest?.arrivedMs], [1e9, 2e9, 60]);
 });
 
-test("the selected robot, and few of them, are reported where they are by their own topics", () => {
+test("the selected robot, and a few robots, get their poses from their own topics", () => {
   const crowd = standing(NAMES);
   assert.equal(crowd.selected, "a");
   assert.equal(reported(crowd, frames("a")), crowd);
@@ -82,13 +82,13 @@ test("the selected robot, and few of them, are reported where they are by their 
   assert.equal(reported(few, frames("b")), few);
 });
 
-test("frames of other names place nobody", () => {
+test("unknown frames place no robot", () => {
   const crowd = standing(NAMES);
   assert.equal(reported(crowd, frames("b", { odometry: "wheels" })), crowd);
   assert.equal(reported(crowd, frames("b").slice(1)), crowd);
 });
 
-test("own topics are asked for until the transforms have reported, and again while time stands still", () => {
+test("robot topics are subscribed to until the transforms have arrived, and again while paused", () => {
   const topics = ["/tf", "/a/joint_states", "/b/_ground_truth/odom", "/b/joint_states", "/b/_led/state"];
   const watched = (/** @type {State} */ state) => topics.filter((topic) => isWatched(state, topic));
   const crowd = standing(NAMES);
