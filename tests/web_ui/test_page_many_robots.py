@@ -1,4 +1,4 @@
-"""A crowd in the page: all robots move in the picture, though few topics tell where they are."""
+"""Many robots: all of them move in the view, although few topics are subscribed to."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def crowd(suite, page, tmp_path) -> Any:
     return page
 
 
-def test_all_robots_of_a_crowd_move_by_the_transforms_they_share(crowd):
+def test_all_of_many_robots_move_by_their_shared_transforms(crowd):
     crowd.wait_for_function(f"() => ({PLACED})() === 5")
     selected = crowd.evaluate("() => window.thymio.state().selected")
     assert selected == NAMES[0]
@@ -52,7 +52,7 @@ def test_all_robots_of_a_crowd_move_by_the_transforms_they_share(crowd):
     crowd.wait_for_function("() => window.thymio.state().robot.raw.motor !== undefined")
 
 
-def test_who_comes_while_time_stands_still_sees_where_all_stand(crowd, other_page):
+def test_a_browser_that_connects_while_paused_gets_all_poses(crowd, other_page):
     crowd.wait_for_function(f"() => ({PLACED})() === 5")
     crowd.get_by_role("button", name="Pause").click()
     crowd.wait_for_function("() => window.thymio.state().simulator.paused")
