@@ -86,7 +86,7 @@ async function main() {
   });
   const canvas = /** @type {HTMLCanvasElement} */ (element("#view"));
   const trouble = element("#trouble");
-  /** @type {"lost" | "gone" | null} what is wrong with the 3D picture */ let graphics = null;
+  /** @type {"lost" | "gone" | null} state of the 3D view; null: working */ let graphics = null;
   const showTrouble = () => {
     trouble.hidden = graphics === null;
     trouble.dataset.kind = graphics ?? "";

@@ -12,7 +12,7 @@ import { WheelSteps } from "../../web_ui/creator/wheel.js";
 import { WORDS } from "../../web_ui/creator/words/index.js";
 import { CreatorSession } from "../../web_ui/creator/creator_session.js";
 import { parse, write } from "../../web_ui/playground/document.js";
-import { lacksGround, offGround } from "../../web_ui/playground/validation.js";
+import { lacksGround, itemsOffGround } from "../../web_ui/playground/validation.js";
 import { SHAPES } from "../../web_ui/playground/kinds/index.js";
 
 /** Straight down. @param {number} x @param {number} y */
@@ -365,7 +365,7 @@ test("items outside a smaller ground are reported, and can still be changed", ()
   model.select("ground");
   assert.equal(model.edit({ size_x_m: 0.5 }), null);
   assert.deepEqual(
-    offGround(model.playground.items).map(({ name }) => name),
+    itemsOffGround(model.playground.items).map(({ name }) => name),
     ["box_1"],
   );
   model.select("box_1");
@@ -414,7 +414,7 @@ test("a playground without ground gets one below all items", () => {
   const far = { ...bare, items: [...bare.items, { kind: "robot", name: "other", x_m: 2, y_m: -0.5 }] };
   const whole = withGround(far);
   assert.ok(!lacksGround(whole.items));
-  assert.deepEqual(offGround(whole.items), []);
+  assert.deepEqual(itemsOffGround(whole.items), []);
   parse(write(whole));
 });
 

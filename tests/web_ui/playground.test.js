@@ -32,9 +32,9 @@ function schemaOf({ type, low, high, pattern, longest, fewest, fields }) {
 /** @param {Fields} fields @param {Record<string, any>} extra */
 function objectOf(fields, extra) {
   const properties = Object.fromEntries(
-    Object.entries(fields).map(([key, { rule, otherwise }]) => {
-      const hasDefault = otherwise !== undefined && otherwise !== null;
-      return [key, { ...schemaOf(rule), ...(hasDefault ? { default: otherwise } : {}) }];
+    Object.entries(fields).map(([key, { rule, defaultValue }]) => {
+      const hasDefault = defaultValue !== undefined && defaultValue !== null;
+      return [key, { ...schemaOf(rule), ...(hasDefault ? { default: defaultValue } : {}) }];
     }),
   );
   const required = Object.entries(fields)

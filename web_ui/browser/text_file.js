@@ -28,7 +28,7 @@ export function decoded(bytes) {
   const head = new TextDecoder("iso-8859-1").decode(bytes.subarray(0, HEAD));
   const [marked] = MARKS.find(([, first, second]) => bytes[0] === first && bytes[1] === second) ?? [];
   const declared = DECLARED.exec(head)?.[2] ?? "utf-8";
-  const encoding = marked ?? (/^utf-?16/i.test(declared) ? "utf-8" : declared); // bytes in UTF-16 could not show a readable declaration
+  const encoding = marked ?? (/^utf-?16/i.test(declared) ? "utf-8" : declared); // a readable declaration cannot be in UTF-16
   const text = new TextDecoder(encoding, { fatal: true }).decode(bytes);
   return /^utf-?8$/i.test(marked ?? declared) ? text : text.replace(DECLARED, "$1UTF-8");
 }

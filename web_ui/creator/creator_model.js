@@ -37,9 +37,9 @@ export class CreatorModel {
     this.cameraOn = true;
     /** Size of one pixel on the ground, in meters. */
     this.pixel = 0.001;
-    /** @type {Point | null} where the pointer is on the ground */ this.pointer = null;
+    /** @type {Point | null} position of the pointer on the ground */ this.pointer = null;
     this.selecting = new Selecting(this);
-    /** @type {Placing | null} what is being placed; null: things are selected */ this.placing = null;
+    /** @type {Placing | null} placing of new items; null while selecting */ this.placing = null;
   }
 
   get playground() {

@@ -38,11 +38,11 @@ export class CreatorSession {
     });
     this.markers = new Markers((uri) => this.pictures.get(uri));
     const isSaved = draft === null || storage.getItem(SAVED_KEY) === "true";
-    /** @type {Playground | null} as it was saved last */ this.saved = isSaved ? this.model.playground : null;
+    /** @type {Playground | null} as last saved */ this.saved = isSaved ? this.model.playground : null;
     this.kept = this.model.playground;
-    /** @type {{ of: Playground, as: Playground, same: boolean } | null} what was compared last */ this.compared = null;
+    /** @type {{ of: Playground, as: Playground, same: boolean } | null} cache of the last comparison */ this.compared = null;
     this.timer = 0;
-    /** @type {{ of: Playground["items"], carried: string | undefined, world: State } | null} what was drawn last */
+    /** @type {{ of: Playground["items"], dragged: string | undefined, world: State } | null} cache of the last drawn world */
     this.drawn = null;
     /** @type {import("./sketch.js").Sketch | null} */ this.sketched = null;
   }
@@ -61,11 +61,11 @@ export class CreatorSession {
   /** The playground as the scene draws it, without the item being dragged. */
   get world() {
     const { playground, selecting } = this.model;
-    const carried = selecting.ghost?.item.name;
+    const dragged = selecting.ghost?.item.name;
     const { items } = playground;
-    if (this.drawn === null || this.drawn.of !== items || this.drawn.carried !== carried) {
-      const seen = carried === undefined ? items : items.filter(({ name }) => name !== carried);
-      this.drawn = { of: items, carried, world: worldOf(seen, this.markers) };
+    if (this.drawn === null || this.drawn.of !== items || this.drawn.dragged !== dragged) {
+      const seen = dragged === undefined ? items : items.filter(({ name }) => name !== dragged);
+      this.drawn = { of: items, dragged, world: worldOf(seen, this.markers) };
     }
     return this.drawn.world; // unchanged while only the pointer moves
   }

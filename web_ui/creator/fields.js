@@ -250,7 +250,7 @@ export function loadControl(setting, fields) {
   const inner = ["mass_kg", "friction", "restitution"].map((key) => numberControl(setting, key, fields[key]));
   const box = h("div", { class: "fields inner" }, ...inner.map(({ element }) => element));
   input.addEventListener("change", () => {
-    const fixed = { mass_kg: null, friction: fields.friction.otherwise, restitution: fields.restitution.otherwise };
+    const fixed = { mass_kg: null, friction: fields.friction.defaultValue, restitution: fields.restitution.defaultValue };
     setting.commit(input.checked ? { mass_kg: 0.1 } : fixed);
   });
   return {

@@ -8,7 +8,7 @@ import { download } from "../editor/download.js";
 import { faultView, foreignView } from "../panels/fault.js";
 import { fileButton, h, icon, lock, setText } from "../panels/dom.js";
 import { parse } from "../playground/document.js";
-import { lacksGround, offGround } from "../playground/validation.js";
+import { lacksGround, itemsOffGround } from "../playground/validation.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { Fault } from "../playground/rules.js";
 import { textOf } from "../browser/text_file.js";
@@ -16,9 +16,9 @@ import { bar } from "./bar.js";
 import { newPlayground, withGround } from "./commands.js";
 import { itemForm } from "./form.js";
 import { CREATOR_ICONS } from "./icons.js";
-import { watchBuildingKeys } from "./keys.js";
+import { watchCreatorKeys } from "./keys.js";
 import { palette } from "./palette.js";
-import { watchBuilding } from "./pointer.js";
+import { watchCreatorPointer } from "./pointer.js";
 import { readPicture } from "./read_picture.js";
 import { sheetForm } from "./sheet.js";
 import { itemList } from "./item_list.js";
@@ -104,19 +104,19 @@ export function createCreator({ session, language, pageText, scene, announce, tr
   const name = h("strong", { class: "name" });
   const hint = h("p", { class: "hint building-hint" });
   /** Run an action, then return the keyboard focus to the view. @param {() => void} act */
-  const andBack = (act) => () => {
+  const thenFocusView = (act) => () => {
     act();
     canvas.focus();
   };
   const finish = h(
     "button",
-    { type: "button", class: "finish", onclick: andBack(() => model.placing?.finish()) },
+    { type: "button", class: "finish", onclick: thenFocusView(() => model.placing?.finish()) },
     icon(CREATOR_ICONS.done),
     t("hint.finish"),
   );
   const cancel = h(
     "button",
-    { type: "button", class: "cancel", onclick: andBack(() => model.cancel()) },
+    { type: "button", class: "cancel", onclick: thenFocusView(() => model.cancel()) },
     t("hint.cancel"),
   );
   const hints = h("div", { class: "building-hints" }, hint, finish, cancel);
@@ -214,9 +214,9 @@ export function createCreator({ session, language, pageText, scene, announce, tr
     announce(text);
   }
 
-  /** @type {import("../playground/document.js").Playground | null} */ let judged = null;
-  const pointers = watchBuilding({ stage, canvas, model, scene });
-  const endKeys = watchBuildingKeys({
+  /** @type {import("../playground/document.js").Playground | null} */ let checked = null;
+  const pointers = watchCreatorPointer({ stage, canvas, model, scene });
+  const removeKeys = watchCreatorKeys({
     stage,
     canvas,
     around: [side, tools.element, below.element],
@@ -241,11 +241,11 @@ export function createCreator({ session, language, pageText, scene, announce, tr
       scene.camera.controls.enabled = model.cameraOn;
       setText(name, model.playground.title || t("new.title"));
       unsaved.hidden = !session.isUnsaved;
-      if (model.playground !== judged) {
-        judged = model.playground;
-        const outside = offGround(judged.items).map((item) => item.name);
+      if (model.playground !== checked) {
+        checked = model.playground;
+        const outside = itemsOffGround(checked.items).map((item) => item.name);
         warning.hidden = outside.length === 0;
-        groundless.hidden = !lacksGround(judged.items);
+        groundless.hidden = !lacksGround(checked.items);
         setText(warning, outside.length === 0 ? "" : t("warn.outside", { names: outside.join(", ") }));
       }
       const { placing } = model;
@@ -263,7 +263,7 @@ export function createCreator({ session, language, pageText, scene, announce, tr
     },
     destroy() {
       pointers.destroy();
-      endKeys();
+      removeKeys();
       scene.camera.controls.enabled = true;
       canvas.setAttribute("aria-label", label);
       onStage.remove();

@@ -25,7 +25,7 @@ const CAMERA_KEYS = ["+", "=", "-", "Home", "t"];
  * @param {() => void} options.editFields   moves the focus to the form
  * @returns {() => void}  removes the listeners
  */
-export function watchBuildingKeys({ stage, canvas, around, model, editFields }) {
+export function watchCreatorKeys({ stage, canvas, around, model, editFields }) {
   const ending = new AbortController();
   const { signal } = ending;
   let shiftAlone = false;

@@ -63,7 +63,7 @@ export function turned(item, angle) {
     return [rounded(nextX), rounded(nextY)];
   };
   /** @type {Record<string, any>} */ const next = {};
-  if ("yaw_rad" in kind.fields) next.yaw_rad = tidyAngle(values.yaw_rad + angle);
+  if ("yaw_rad" in kind.fields) next.yaw_rad = roundAngle(values.yaw_rad + angle);
   for (const [keyX, keyY] of kind.points) [next[keyX], next[keyY]] = about([values[keyX], values[keyY]]);
   if (kind.path !== undefined && !kind.relative) next[kind.path] = values[kind.path].map(about);
   return changed(item, next);
@@ -110,8 +110,8 @@ export function yawOf(item) {
   return valuesOf(item).yaw_rad ?? 0;
 }
 
-/** Round an angle to whole thousandths of a degree where it is one, as in files. @param {number} angle */
-export function tidyAngle(angle) {
+/** Normalize an angle and round it to thousandths of a degree, as in files. @param {number} angle */
+export function roundAngle(angle) {
   const degrees = (wrapped(angle) * 180) / Math.PI;
   return (Math.round(degrees * 1000) / 1000) * (Math.PI / 180) + 0;
 }

@@ -22,13 +22,13 @@ export class Placing {
     this.kind = kind;
     const { playground } = model;
     const ground = groundOf(playground);
-    /** @type {Point} where it would be put */
+    /** @type {Point} current position */
     this.place = snapped(ground === null ? [0, 0] : middleOf(ground), model.grid);
     /** Tolerance for the same point, in meters. */
     this.same = SAME_M;
-    /** @type {Point[]} of a path, so far */ this.points = [];
-    /** @type {Point[]} taken back */ this.takenBack = [];
-    /** @type {Item} how the next one looks; its place does not matter */
+    /** @type {Point[]} points of the path so far */ this.points = [];
+    /** @type {Point[]} removed points, for redo */ this.takenBack = [];
+    /** @type {Item} values of the next item; its position is ignored */
     this.pattern = Object.freeze({
       kind,
       ...kindNamed(kind)?.fresh,

@@ -18,10 +18,10 @@ const CLICK_PX = 6;
  * @param {import("../scene/index.js").SceneView} options.scene
  * @returns {{ flush: () => void, destroy: () => void }}
  */
-export function watchBuilding({ stage, canvas, model, scene }) {
+export function watchCreatorPointer({ stage, canvas, model, scene }) {
   const ending = new AbortController();
   /** @type {Spot | null} */ let latest = null;
-  /** @type {{ id: number, x: number, y: number, ours: boolean, click: boolean } | null} */ let down = null;
+  /** @type {{ id: number, x: number, y: number, isDrag: boolean, click: boolean } | null} */ let down = null;
   const wheel = new WheelSteps();
 
   const flush = () => {
@@ -32,7 +32,7 @@ export function watchBuilding({ stage, canvas, model, scene }) {
     const ray = scene.rayOf(spot);
     const place = atHeight(ray, 0);
     model.pointer = place === null ? null : [place.x, place.y];
-    if (down?.ours) model.selecting.drag(ray, spot.altKey);
+    if (down?.isDrag) model.selecting.drag(ray, spot.altKey);
     else if (model.placing !== null && place !== null) {
       model.placing.hover([place.x, place.y], spot.altKey);
       model.changed();
@@ -55,32 +55,32 @@ export function watchBuilding({ stage, canvas, model, scene }) {
       return;
     }
     if (event.button !== 0) return;
-    const ours = model.placing === null && model.selecting.grab(scene.rayOf(event));
-    down = { id: event.pointerId, x: event.clientX, y: event.clientY, ours, click: true };
+    const isDrag = model.placing === null && model.selecting.grab(scene.rayOf(event));
+    down = { id: event.pointerId, x: event.clientX, y: event.clientY, isDrag, click: true };
     latest = event;
-    if (ours) canvas.setPointerCapture(event.pointerId);
-    if (ours || !model.cameraOn) event.stopPropagation();
+    if (isDrag) canvas.setPointerCapture(event.pointerId);
+    if (isDrag || !model.cameraOn) event.stopPropagation();
     scene.invalidate();
   });
   on("pointermove", (/** @type {PointerEvent} */ event) => {
-    if (down?.ours) event.stopPropagation();
+    if (down?.isDrag) event.stopPropagation();
     if (down !== null && Math.hypot(event.clientX - down.x, event.clientY - down.y) > CLICK_PX) down.click = false;
-    if (down !== null && !down.ours && !down.click) return; // the camera turns
+    if (down !== null && !down.isDrag && !down.click) return; // the camera turns
     latest = event;
     scene.invalidate();
   });
   on("pointerup", (/** @type {PointerEvent} */ event) => {
     if (event.pointerId !== down?.id) return;
-    const { ours, click } = down;
-    if (ours) event.stopPropagation();
-    if (!ours && !click) {
+    const { isDrag, click } = down;
+    if (isDrag) event.stopPropagation();
+    if (!isDrag && !click) {
       down = null;
       return;
     }
     latest = event;
     flush();
     down = null;
-    if (ours) model.selecting.drop();
+    if (isDrag) model.selecting.drop();
     else if (model.placing !== null) model.placing.put();
     else model.selecting.click(scene.rayOf(event));
   });

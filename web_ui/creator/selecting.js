@@ -54,7 +54,7 @@ export class Selecting {
     if (grip === null) return;
     const place = pointOn(ray, grip.z);
     if (place === null) return;
-    const item = carried(grip, place, model.gridFor(free));
+    const item = dragged(grip, place, model.gridFor(free));
     this.ghost = item === grip.item ? null : { item, problem: model.problemOf(item, item.name) };
     model.changed();
   }
@@ -79,7 +79,7 @@ export class Selecting {
 }
 
 /** @param {NonNullable<Selecting["grip"]>} grip @param {Point} place @param {import("./snap.js").Grid | null} grid */
-function carried({ item, handle, from }, place, grid) {
+function dragged({ item, handle, from }, place, grid) {
   const [x, y] = middleOf(item);
   if (handle.type === "ring") {
     const turn = Math.atan2(place[1] - y, place[0] - x) - Math.atan2(from[1] - y, from[0] - x);

@@ -18,7 +18,7 @@ export class EditorSession {
     this.state = INITIAL;
     this.history = new History();
     this.tool = "variables";
-    /** @type {Map<string, any>} how each text was left: its cursor, what can be undone */ this.texts = new Map();
+    /** @type {Map<string, any>} editor state of each text: cursor and undo history */ this.texts = new Map();
     /** @type {() => void} */ this.onText = () => {};
     this.workspace = new Workspace({ fileStore: new FileStore(storage), now, changed: () => this.onText() });
     /** @type {Set<string>} */ this.watched = new Set(JSON.parse(storage.getItem(WATCHED_KEY) ?? "[]"));

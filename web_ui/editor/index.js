@@ -328,7 +328,7 @@ export function createEditor({ session, client, store, language, pageText, annou
     h("div", { class: "editor-body" }, code, tools.element),
     h("div", { class: "editor-end" }, hints.element, foot.element),
   );
-  const forgetKeys = watchKeys(element, commands);
+  const removeKeys = watchKeys(element, commands);
 
   const drawStatus = () => {
     const now = status();
@@ -411,7 +411,7 @@ export function createEditor({ session, client, store, language, pageText, annou
     },
     destroy() {
       clearTimeout(checkTimer);
-      forgetKeys();
+      removeKeys();
       text.destroy();
       element.remove();
     },

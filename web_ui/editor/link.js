@@ -15,7 +15,7 @@ export class Link {
   /** @param {Client} client */
   constructor(client) {
     this.client = client;
-    /** @type {Map<string | null, string>} What was loaded last, by robot. */
+    /** @type {Map<string | null, string>} The last loaded program, by robot. */
     this.last = new Map();
   }
 

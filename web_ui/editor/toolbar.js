@@ -52,7 +52,7 @@ export function toolbar(t, commands, draftLabel) {
     );
   };
   const choice = h("select", { class: "recent", "aria-label": t("editor.choose") });
-  /** @type {Choice[]} what is listed, after the heading */ let choices = [];
+  /** @type {Choice[]} entries after the heading */ let choices = [];
   choice.addEventListener("change", () => {
     const chosen = choices[choice.selectedIndex - 1];
     choice.value = "";

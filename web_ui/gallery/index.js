@@ -39,7 +39,7 @@ export function galleryDialog({ t, language, actions, thumbnails, store, creator
   close.addEventListener("click", () => dialog.close());
   dialog.addEventListener("click", (event) => event.target === dialog && dialog.close()); // a click outside
   dialog.addEventListener("close", () => scene.invalidate()); // notices move back to the page
-  dialog.addEventListener("keydown", (event) => event.stopPropagation()); // Escape closes the dialog and does not stop robots
+  dialog.addEventListener("keydown", (event) => event.stopPropagation()); // Escape must not stop robots
   /** @type {{ name: string, button: HTMLButtonElement }[]} */ let cards = [];
   let listed = "";
   /** The upload state before the choice that is in progress; undefined: none is in progress. */

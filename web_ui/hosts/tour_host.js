@@ -30,7 +30,7 @@ export class TourHost {
     /** @type {Tour | null} */ this.tour = null;
     /** @type {typeof import("../tour/index.js") | null} */ this.module = null;
     /** @type {Context | null} */ this.context = null;
-    /** @type {Element | null} what had the focus before */ this.before = null;
+    /** @type {Element | null} previously focused element */ this.before = null;
   }
 
   get isOpen() {

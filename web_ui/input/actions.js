@@ -51,7 +51,7 @@ export class Actions {
     this.language = language;
     this.now = now;
     this.later = later;
-    /** @type {Map<string, number>} since when a button is held, by its topic */ this.held = new Map();
+    /** @type {Map<string, number>} time of the press, by topic of the button */ this.held = new Map();
   }
 
   /**
@@ -73,7 +73,7 @@ export class Actions {
     const rest = since === undefined ? 0 : since + SHORTEST_PRESS_MS - this.now();
     if (rest <= 0) return send();
     this.later(() => {
-      if (this.held.get(topic) === since) send(); // otherwise it has been pressed again
+      if (this.held.get(topic) === since) send(); // else it has been pressed again
     }, rest);
   }
 

@@ -29,7 +29,7 @@ export class DragController {
     /** Whether a drag on a body moves it without Shift. */
     this.mode = false;
     /** @type {Held | null} */ this.held = null;
-    /** @type {{ turning: boolean, z: number, dx: number, dy: number } | null} the pointer's part in it */
+    /** @type {{ turning: boolean, z: number, dx: number, dy: number } | null} offset of the pointer during a drag */
     this.grip = null;
   }
 

@@ -22,7 +22,7 @@ export function card(name, title, ...content) {
 }
 
 /** A card whose content controls the simulator: it is disabled while the page is read-only. @type {typeof card} */
-export function drivingCard(name, title, ...content) {
+export function controlCard(name, title, ...content) {
   const details = card(name, title, ...content);
   details.querySelector(".content")?.setAttribute("data-drives", "");
   return details;
@@ -34,7 +34,7 @@ export function drivingCard(name, title, ...content) {
  * @param {HTMLDetailsElement} element  the card
  * @param {import("../state/store.js").Store} store
  * @param {string} text
- * @param {import("../state/index.js").What} what
+ * @param {import("../state/index.js").UploadKind} what
  */
 export function showRefusal(element, store, text, what) {
   element.open = true;

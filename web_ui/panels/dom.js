@@ -88,7 +88,7 @@ export function lock(control, reason) {
  * @param {HTMLElement} element
  * @param {(pressed: boolean) => void} hold
  */
-export function holdable(element, hold) {
+export function momentary(element, hold) {
   /** @type {Set<string | number>} */ const holders = new Set();
   /** @param {string | number} who */
   const down = (who) => {

@@ -2,7 +2,7 @@
 
 import { localStore, trySetItem } from "../browser/local_storage.js";
 import { BUTTONS } from "../state/names.js";
-import { h, holdable, icon, ICONS, lock, setAttribute } from "./dom.js";
+import { h, momentary, icon, ICONS, lock, setAttribute } from "./dom.js";
 
 const CHEVRON = "M4 8.500 5.800 6.700 12 12.900l6.200-6.200L20 8.500l-8 8z";
 /** Storage key: whether the pad is hidden on small screens. */
@@ -17,7 +17,7 @@ export function dpadPanel({ t, actions, store }) {
       { type: "button", class: `pad ${name}`, "data-button": name, "aria-label": label, title: label },
       icon(name === "center" ? ICONS.dot : ICONS.arrow),
     );
-    holdable(button, (pressed) => actions.press(store.state.selected, name, pressed));
+    momentary(button, (pressed) => actions.press(store.state.selected, name, pressed));
     return { name, button };
   });
   const pad = h(

@@ -14,7 +14,7 @@ export function noticesPanel({ t, store }) {
 
   /** @param {number} id */
   const dismiss = (id) => store.dispatch({ type: "dismiss", id });
-  /** Keep a notice while the pointer or focus is on it. @param {number} id */
+  /** Dismiss a notice, but not while pointer or focus is on the notices. @param {number} id */
   const end = (id) => {
     if (element.matches(":hover, :focus-within")) ends.set(id, setTimeout(end, SUCCESS_MS, id));
     else dismiss(id);

@@ -1,7 +1,7 @@
 // The playground panel: choose a shipped playground or open a file; a rejected one changes nothing.
 
 import { galleryDialog } from "../gallery/index.js";
-import { drivingCard, showRefusal } from "./card.js";
+import { controlCard, showRefusal } from "./card.js";
 import { buttonOf, fileButton, h, icon, ICONS, lock, setText } from "./dom.js";
 import { faultText, faultView } from "./fault.js";
 
@@ -49,7 +49,7 @@ export function playgroundPanel(context) {
     open: (chosen) => actions.loadFile(chosen),
   });
   const controls = [select, pictures, copy, buttonOf(file)];
-  const element = drivingCard(
+  const element = controlCard(
     "playground",
     t("playground"),
     h("div", { class: "row" }, select),
@@ -118,7 +118,7 @@ export function playgroundPanel(context) {
       fault.replaceChildren(close, ...faultView(t, headline, playground.fault));
       const words = `${headline} ${faultText(t, playground.fault)}`;
       announce(words);
-      if (!creator.isOpen) showRefusal(element, store, words, "playground"); // the creator reports errors of its own playgrounds
+      if (!creator.isOpen) showRefusal(element, store, words, "playground"); // it shows its own errors
     },
   };
 }

@@ -4,7 +4,7 @@
 import { programOf } from "../state/index.js";
 import { faultMessage, lineLabel, stateLabel } from "../state/program_status.js";
 import { behaviorChoice } from "./behaviors.js";
-import { drivingCard, showRefusal } from "./card.js";
+import { controlCard, showRefusal } from "./card.js";
 import { buttonOf, fileButton, h, icon, ICONS, lock, setAttribute, setText } from "./dom.js";
 import { SUCCESS_MS } from "./notices.js";
 import { sourceView } from "./source.js";
@@ -40,7 +40,7 @@ export function programPanel(context) {
   });
   const open = buttonOf(file);
   const upload = h("div", { class: "upload", hidden: true });
-  const element = drivingCard(
+  const element = controlCard(
     "program",
     t("program"),
     h("div", { class: "current" }, name, lamp),

@@ -1,6 +1,6 @@
 // Stimuli for the selected robot: tap, clap, tilt, noise, light, temperature, battery, remote control, pen.
 
-import { drivingCard } from "./card.js";
+import { controlCard } from "./card.js";
 import { h, lock } from "./dom.js";
 
 /** @typedef {import("./index.js").Context} Context */
@@ -164,7 +164,7 @@ export function stimuliPanel({ t, actions, store }) {
     h("h3", {}, t("pen")),
     ...pen(t, actions),
   );
-  const element = drivingCard("surroundings", t("surroundings"), controls);
+  const element = controlCard("surroundings", t("surroundings"), controls);
   /** @type {string | null} */ let robot = null;
   return {
     slot: "side",

@@ -73,7 +73,7 @@ export function tidy(item) {
   const fields = kindNamed(item.kind)?.fields ?? {};
   return /** @type {Item} */ (
     Object.fromEntries(
-      Object.entries(item).filter(([key, value]) => !(key in fields) || value !== fields[key].otherwise),
+      Object.entries(item).filter(([key, value]) => !(key in fields) || value !== fields[key].defaultValue),
     )
   );
 }

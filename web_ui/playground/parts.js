@@ -43,8 +43,8 @@ export function valuesOf(item) {
 /** @param {import("./rules.js").Fields} fields @param {Record<string, any>} given @returns {Record<string, any>} */
 function filled(fields, given) {
   const values = { ...given };
-  for (const [key, { rule, otherwise }] of Object.entries(fields)) {
-    if (!(key in given)) values[key] = otherwise;
+  for (const [key, { rule, defaultValue }] of Object.entries(fields)) {
+    if (!(key in given)) values[key] = defaultValue;
     else if (rule.type === "object" && given[key] !== null) values[key] = filled(rule.fields ?? {}, given[key]);
   }
   return values;

@@ -13,7 +13,7 @@
  * @property {number} [fewest]   minimum number of points
  * @property {Fields} [fields]   fields of an object
  */
-/** @typedef {{ rule: Rule, required: boolean, otherwise?: any }} Field   otherwise: the default */
+/** @typedef {{ rule: Rule, required: boolean, defaultValue?: any }} Field   defaultValue: the default */
 /** @typedef {Readonly<Record<string, Field>>} Fields */
 /** @typedef {{ word: string, values?: Record<string, string | number> }} Phrase  a text key with the values to fill in */
 
@@ -51,8 +51,8 @@ export const RULES = {
 
 /** @param {Rule} rule @returns {Field} */
 export const needed = (rule) => ({ rule, required: true });
-/** @param {Rule} rule @param {any} otherwise @returns {Field} */
-export const optional = (rule, otherwise) => ({ rule, required: false, otherwise });
+/** @param {Rule} rule @param {any} defaultValue @returns {Field} */
+export const optional = (rule, defaultValue) => ({ rule, required: false, defaultValue });
 /** @param {Fields} fields @returns {Rule} */
 export const object = (fields) => ({ type: "object", fields });
 
@@ -86,8 +86,8 @@ export function check(fields, data, key) {
         values: { names: Object.keys(fields).join(", ") },
       });
   }
-  for (const [name, { rule, required, otherwise }] of Object.entries(fields)) {
-    if (otherwise === null && members[name] === null) continue;
+  for (const [name, { rule, required, defaultValue }] of Object.entries(fields)) {
+    if (defaultValue === null && members[name] === null) continue;
     if (Object.hasOwn(members, name)) checkValue(rule, members[name], join(key, name));
     else if (required) throw new Fault(join(key, name), "–", expectation(rule));
   }

@@ -67,7 +67,7 @@ export function isOnGround(others, item) {
 }
 
 /** Items that extend over an edge: the simulator accepts them with a warning. @param {readonly Item[]} items */
-export function offGround(items) {
+export function itemsOffGround(items) {
   return items.filter((item) => !isOnGround(items, item));
 }
 

@@ -210,7 +210,7 @@ export class Session {
         const value = decode(parseSchema(schemaName, schema), frame.payload);
         call.resolve({ ok: value.success ?? true, message: value.message ?? "", value });
       } catch (error) {
-        call.resolve({ ok: false, message: "an answer that cannot be read" });
+        call.resolve({ ok: false, message: "the answer cannot be decoded" });
         throw error;
       }
     }

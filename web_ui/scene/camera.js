@@ -31,7 +31,7 @@ export class Camera {
     /** @type {ViewName} */ this.view = "home";
     /** Whether the user has moved the camera since the view was chosen. */
     this.touched = false;
-    /** @type {THREE.Vector3[]} what the overview takes in */
+    /** @type {THREE.Vector3[]} corners that the overview shows */
     this.corners = [new THREE.Vector3(-0.5, -0.5, 0), new THREE.Vector3(0.5, 0.5, 0)];
     this.target = new THREE.Vector3();
     this.size = { width: 1, height: 1 };

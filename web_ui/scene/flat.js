@@ -29,7 +29,7 @@ export class FlatView {
     this.zoom = 1;
     /** Pixels per CSS pixel. */
     this.pixelRatio = 1;
-    /** @type {Map<Marker, ImageBitmap | null>} pictures on the ground; null while they are decoded */
+    /** @type {Map<Marker, ImageBitmap | null>} images on the ground; null while they are decoded */
     this.pictures = new Map();
   }
 
@@ -96,7 +96,7 @@ export class FlatView {
     context.setTransform(1, 0, 0, 1, 0, 0);
   }
 
-  /** The image as shown on the page; the original if there is none. */
+  /** The displayed size of the canvas in pixels; its own size if it is not displayed. */
   get #size() {
     const { clientWidth, clientHeight, width, height } = this.canvas;
     if (clientWidth === 0) return { width, height };

@@ -59,7 +59,7 @@ export class SceneView {
     this.framed = false;
     this.frames = 0;
     this.requested = false;
-    this.size = { width: 0, height: 0 }; // of the canvas in CSS pixels; cached, because reading it after moving a label forces a layout
+    this.size = { width: 0, height: 0 }; // CSS pixels; cached, since reading it after moving a label forces a layout
     this.showSensors = true;
     this.showNumbers = false;
     this.valueLabels = new ValueLabels(labels);

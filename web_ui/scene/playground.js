@@ -146,7 +146,8 @@ function isSameSolid(one, two) {
 }
 
 /**
- * Whether two strips are equal: the whole trail is published again whenever the pen has drawn.
+ * Whether two strips are equal: the whole trail is published again whenever the pen has drawn. Only the number of
+ * points and both ends are compared, because finished strokes do not change.
  *
  * @param {Marker} one
  * @param {Marker} two

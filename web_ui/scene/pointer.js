@@ -19,7 +19,7 @@ import { onShiftRelease } from "../input/sticky_press.js";
 export function watchPointer({ element, camera, targets, press, hover }) {
   const caster = new THREE.Raycaster();
   /** @type {Map<number, Target>} */ const held = new Map();
-  /** @type {Target[]} held as long as Shift is */ let kept = [];
+  /** @type {Target[]} pressed until Shift is released */ let kept = [];
 
   /** @param {PointerEvent} event @returns {Target | null} */
   const targetAt = (event) => {

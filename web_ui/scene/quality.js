@@ -35,7 +35,7 @@ const WINDOW = 24;
 const IDLE_MS = 1500;
 
 export class Quality {
-  /** @param {number} level index in `LEVELS` to begin with */
+  /** @param {number} level initial index in `LEVELS` */
   constructor(level) {
     this.first = level;
     this.level = level;

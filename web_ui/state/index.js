@@ -17,7 +17,7 @@ import { applyTransforms } from "./transforms.js";
  * @property {"sending" | "accepted" | "refused"} phase
  * @property {Fault | null} fault
  */
-/** @typedef {"program" | "playground"} What */
+/** @typedef {"program" | "playground"} UploadKind */
 /** @typedef {{ name: string, description: string }} Behavior */
 /** @typedef {{ title: string, description: string }} Titles */
 /** @typedef {Titles & { name: string, translations: Readonly<Record<string, Titles>> }} PlaygroundInfo  by language */
@@ -76,9 +76,9 @@ import { applyTransforms } from "./transforms.js";
  *   | { type: "removeStatus", ids: string[] }
  *   | { type: "fault", what: string }
  *   | { type: "select", robot: string }
- *   | { type: "upload", what: What, name: string, text: string }
- *   | { type: "uploaded", what: What, message: string | null, fault?: Fault | null }
- *   | { type: "forget", what: What }
+ *   | { type: "upload", what: UploadKind, name: string, text: string }
+ *   | { type: "uploaded", what: UploadKind, message: string | null, fault?: Fault | null }
+ *   | { type: "forget", what: UploadKind }
  *   | { type: "notice", level: Notice["level"], text: string, cause?: string }
  *   | { type: "solved", cause: string }
  *   | { type: "dismiss", id: number }} Message
@@ -139,7 +139,7 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
     if (state.greeted) return { ...known, timeNs: 0 };
     // Another simulator: discard the data of the previous one.
     const { connection, notices, noticeCount, selected } = state;
-    const remaining = notices.filter(({ cause }) => !isSimulators(cause));
+    const remaining = notices.filter(({ cause }) => !isSimulatorCause(cause));
     return { ...INITIAL, connection, notices: remaining, noticeCount, selected, readOnly, greeted: true, server: name, sessionId };
   },
   channels: withChannels,
@@ -154,7 +154,7 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
     },
   }),
   status(state, { status }) {
-    if (typeof status.id === "string" && status.id.startsWith("parameter:")) return state; // reported at the control that set it
+    if (typeof status.id === "string" && status.id.startsWith("parameter:")) return state; // shown where it was set
     if (status.id === "access") return state; // the connection panel shows it, translated
     return withNotice(
       state,
@@ -169,7 +169,7 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   upload: (state, { what, name, text }) =>
     withoutNotices(withUpload(state, what, { name, text, phase: "sending", fault: null }), [uploadCause(what), FILE]),
   uploaded(state, { what, message, fault: reported = null }) {
-    const upload = state.uploads[/** @type {What} */ (what)];
+    const upload = state.uploads[/** @type {UploadKind} */ (what)];
     if (upload === null) return state;
     const fault = message === null ? null : (reported ?? locate(message, upload.name));
     return withUpload(state, what, { ...upload, phase: fault === null ? "accepted" : "refused", fault });
@@ -286,7 +286,7 @@ function withoutNotices(state, causes) {
   return notices.length === state.notices.length ? state : { ...state, notices };
 }
 
-/** Cause of notices about a rejected file. @param {What} what */
+/** Cause of notices about a rejected file. @param {UploadKind} what */
 export function uploadCause(what) {
   return `upload ${what}`;
 }
@@ -297,11 +297,11 @@ function statusCause(id) {
 }
 
 /** Whether a cause ends with the simulator that reported it. @param {string} cause */
-function isSimulators(cause) {
+function isSimulatorCause(cause) {
   return cause.startsWith("status ") || cause.startsWith("/");
 }
 
-/** @param {State} state @param {What} what @param {Upload | null} upload @returns {State} */
+/** @param {State} state @param {UploadKind} what @param {Upload | null} upload @returns {State} */
 function withUpload(state, what, upload) {
   return { ...state, uploads: { ...state.uploads, [what]: upload } };
 }

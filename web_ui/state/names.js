@@ -52,13 +52,13 @@ const PLACED = /^(?:_ground_truth|joint_states)\b/;
 
 /** @typedef {{ isByTransforms: boolean }} Placed */
 /**
- * @typedef {object} Watching   the part of the state that determines the subscriptions
+ * @typedef {object} SubscriptionState   the part of the state that determines the subscriptions
  * @property {Readonly<Record<string, Placed>>} robots
  * @property {string} selected
  * @property {{ paused: boolean } | null} simulator
  */
 
-/** @param {Pick<Watching, "robots">} state */
+/** @param {Pick<SubscriptionState, "robots">} state */
 function hasManyRobots({ robots }) {
   return Object.keys(robots).length > MANY_ROBOTS;
 }
@@ -66,7 +66,7 @@ function hasManyRobots({ robots }) {
 /**
  * Whether beams and values of a robot are subscribed to.
  *
- * @param {Pick<Watching, "selected"> & { robots: Readonly<Record<string, unknown>> }} state
+ * @param {Pick<SubscriptionState, "selected"> & { robots: Readonly<Record<string, unknown>> }} state
  * @param {string} robot
  */
 export function isSensed({ robots, selected }, robot) {
@@ -76,7 +76,7 @@ export function isSensed({ robots, selected }, robot) {
 /**
  * Whether the page wants to subscribe to a topic now.
  *
- * @param {Watching} state
+ * @param {SubscriptionState} state
  * @param {string} topic
  */
 export function isWatched(state, topic) {
@@ -88,7 +88,7 @@ export function isWatched(state, topic) {
   return DRAWN.test(part.name);
 }
 
-/** A key that changes whenever `isWatched` may return another result for the same topics. @param {Watching} state */
+/** A key that changes whenever `isWatched` may return another result for the same topics. @param {SubscriptionState} state */
 export function subscriptionKey(state) {
   if (!hasManyRobots(state)) return "";
   const placed = Object.values(state.robots).filter(({ isByTransforms }) => isByTransforms).length;

@@ -14,7 +14,8 @@ const BODY = "base_link";
 const WHEELS = /** @type {const} */ ({ left: "left_wheel_link", right: "right_wheel_link" });
 
 /**
- * Place robots whose own topics are not subscribed to by a TFMessage; robots without frames in it are unchanged.
+ * Set the poses of robots from a TFMessage, unless their own topics are subscribed to. Robots without frames in it are
+ * unchanged.
  *
  * @template {{ robots: Readonly<Record<string, Robot>>, selected: string }} S
  * @param {S} state
@@ -35,7 +36,7 @@ export function applyTransforms(state, message, nowMs) {
     if (odometry?.header.frame_id !== MAP || body?.header.frame_id !== frame(ODOMETRY)) continue;
     const { sec, nanosec } = body.header.stamp;
     const stampNs = sec * 1e9 + nanosec;
-    const isNews = robot.latest?.stampNs !== stampNs;
+    const isNew = robot.latest?.stampNs !== stampNs;
     const { translation, rotation } = chained(odometry.transform, body.transform);
     const sample = { pose: poseOf(translation, rotation), stampNs, arrivedMs: nowMs };
     const angle = (/** @type {"left" | "right"} */ side) => {
@@ -44,7 +45,7 @@ export function applyTransforms(state, message, nowMs) {
     };
     moved[name] = {
       ...robot,
-      ...(isNews ? { previous: robot.latest, latest: sample } : {}),
+      ...(isNew ? { previous: robot.latest, latest: sample } : {}),
       wheels: { left: angle("left"), right: angle("right") },
       isByTransforms: true,
     };

@@ -30,7 +30,7 @@ export function entryForm({ t, kind, least, greatest, label, add }) {
   const trouble = h("p", { class: "fault", role: "alert", hidden: true });
   const form = h("form", { class: "entry" }, name, value, h("button", { type: "submit" }, t("add")), trouble);
   /** @param {string} text */
-  const complain = (text) => {
+  const showError = (text) => {
     trouble.hidden = text === "";
     setText(trouble, text);
   };
@@ -38,10 +38,10 @@ export function entryForm({ t, kind, least, greatest, label, add }) {
     event.preventDefault();
     const word = name.value.trim();
     if (new RegExp(`^${WORD.source}$`, "u").exec(word) === null || /^[0-9]/.test(word))
-      return complain(t("name.bad", { name: word }));
+      return showError(t("name.bad", { name: word }));
     const { values, trouble: wrong } = parseNumbers(value.value || "0", 1, least, greatest);
-    if (values === null) return complain(t(wrong.key, wrong.values));
-    complain("");
+    if (values === null) return showError(t(wrong.key, wrong.values));
+    showError("");
     add(word, values[0]);
     name.value = value.value = "";
     name.focus();

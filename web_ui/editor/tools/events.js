@@ -19,7 +19,7 @@ export function eventsTool({ t, session, emit, define, announce, redraw }) {
   const log = h("div", { class: "log", role: "log", tabindex: "0", "aria-label": t("events.log") });
   /** @type {import("./index.js").View | null} */ let shown = null;
   let listed = "";
-  /** @type {Map<string, HTMLElement>} with what was written in them */ let rows = new Map();
+  /** @type {Map<string, HTMLElement>} fields with typed values */ let rows = new Map();
   /** @type {readonly import("../state.js").LoggedEvent[] | null} */ let logged = null;
 
   const form = entryForm({

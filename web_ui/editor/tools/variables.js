@@ -41,7 +41,7 @@ export function variablesTool({ t, session, announce, setVariable, redraw }) {
       input.replaceWith(cell);
       if (focus) cell.focus();
     };
-    const complain = (/** @type {string} */ text) => {
+    const showError = (/** @type {string} */ text) => {
       trouble.hidden = false;
       setText(trouble, `${name}: ${text}`);
       input.setAttribute("aria-invalid", "true");
@@ -50,9 +50,9 @@ export function variablesTool({ t, session, announce, setVariable, redraw }) {
       if (key === "Escape") close(true);
       if (key !== "Enter") return;
       const { values, trouble: wrong } = parseNumbers(input.value, before.length);
-      if (values === null) return complain(t(wrong.key, wrong.values));
+      if (values === null) return showError(t(wrong.key, wrong.values));
       const { ok, message } = await setVariable(name, values);
-      if (!ok) return complain(message);
+      if (!ok) return showError(message);
       close(true);
       announce(`${name} = ${values.join(" ")}`);
     });
