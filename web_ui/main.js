@@ -1,24 +1,24 @@
-// The page's start: connects protocol, state, scene and panels, and lets each do its own work.
+// Entry point: connects protocol, state, scene and panels.
 
-import { Actions, isProgram } from "./actions.js";
-import { CreatorHost } from "./creator_host.js";
-import { watchDrops } from "./drop.js";
-import { EditorHost } from "./editor_host.js";
-import { Shelf } from "./gallery/shelf.js";
+import { Actions, isProgram } from "./input/actions.js";
+import { CreatorHost } from "./hosts/creator_host.js";
+import { watchDrops } from "./browser/file_drop.js";
+import { EditorHost } from "./hosts/editor_host.js";
+import { ThumbnailCache } from "./gallery/thumbnail_cache.js";
 import { chooseLanguage, translator } from "./i18n/index.js";
-import { watchKeyboard } from "./keyboard.js";
-import { memory, note, tabMemory } from "./memory.js";
+import { watchKeyboard } from "./input/keyboard.js";
+import { localStore, trySetItem, tabStore } from "./browser/local_storage.js";
 import { PANELS } from "./panels/index.js";
-import { Mover } from "./move/mover.js";
+import { DragController } from "./move/drag_controller.js";
 import { MUTED_KEY } from "./panels/sound.js";
 import { Client } from "./protocol/client.js";
 import { SceneView } from "./scene/index.js";
 import { Speaker } from "./sound/speaker.js";
 import { snapshot } from "./state/index.js";
-import { isWatched, PARAMETERS, watchedFor } from "./state/names.js";
+import { isWatched, PARAMETERS, subscriptionKey } from "./state/names.js";
 import { Store } from "./state/store.js";
-import { takeToken, tokenIn } from "./token.js";
-import { TourHost } from "./tour_host.js";
+import { resolveToken, tokenIn } from "./browser/access_token.js";
+import { TourHost } from "./hosts/tour_host.js";
 
 const DEFAULT_PORT = 8765;
 const LANGUAGE_KEY = "language";
@@ -30,7 +30,7 @@ function element(selector) {
   return /** @type {HTMLElement} */ (found);
 }
 
-/** Where the bridge listens: told by the server of this page, on the host the page came from. */
+/** The WebSocket address of the bridge: the port comes from the page's server, the host from the page's address. */
 async function bridgeAddress() {
   const answer = await fetch("config.json").catch(() => null);
   const config = answer?.ok ? await answer.json().catch(() => ({})) : {};
@@ -38,14 +38,14 @@ async function bridgeAddress() {
 }
 
 async function main() {
-  const token = takeToken(tabMemory, location.href, (shown) => history.replaceState(null, "", shown));
-  // An address that differs in its token only does not make the browser load the page again.
+  const token = resolveToken(tabStore, location.href, (shown) => history.replaceState(null, "", shown));
+  // Browsers do not reload a page if only the fragment with the token changes.
   window.addEventListener("hashchange", () => {
     if (tokenIn(location.href) !== null) location.reload();
   });
   const address = await bridgeAddress();
   const store = new Store();
-  let language = chooseLanguage([memory.getItem(LANGUAGE_KEY) ?? "", ...navigator.languages]);
+  let language = chooseLanguage([localStore.getItem(LANGUAGE_KEY) ?? "", ...navigator.languages]);
   let t = translator(language);
   /** @type {import("./panels/index.js").Panel[]} */ let panels = [];
 
@@ -81,23 +81,23 @@ async function main() {
 
   const speaker = new Speaker({
     createContext: "AudioContext" in window ? () => new AudioContext() : null,
-    muted: memory.getItem(MUTED_KEY) === "true",
+    muted: localStore.getItem(MUTED_KEY) === "true",
     changed: () => scene.invalidate(),
   });
   const canvas = /** @type {HTMLCanvasElement} */ (element("#view"));
   const trouble = element("#trouble");
-  /** @type {"lost" | "gone" | null} what is wrong with the 3D picture */ let graphics = null;
+  /** @type {"lost" | "gone" | null} state of the 3D view; null: working */ let graphics = null;
   const showTrouble = () => {
     trouble.hidden = graphics === null;
     trouble.dataset.kind = graphics ?? "";
     trouble.textContent = graphics === null ? "" : t(graphics === "lost" ? "app.contextLost" : "app.noWebgl");
   };
 
-  const mover = new Mover({
+  const dragController = new DragController({
     state: () => store.state,
     place: (name, pose) => actions.place(name, pose),
     changed: () => scene.invalidate(),
-    tell: (key, values) => announce(t(key, values)),
+    report: (key, values) => announce(t(key, values)),
   });
   const scene = new SceneView({
     canvas,
@@ -117,7 +117,7 @@ async function main() {
       store.dispatch({ type: "select", robot });
       actions.press(robot, button, pressed);
     },
-    mover,
+    dragController,
     robotTitle: (name) => name || t("app.robot"),
     contextLost: (found) => {
       graphics = found;
@@ -125,7 +125,7 @@ async function main() {
     },
   });
 
-  const shelf = new Shelf((world) => scene.photograph(world));
+  const thumbnails = new ThumbnailCache((world) => scene.photograph(world));
 
   const build = () => {
     t = translator(language);
@@ -139,18 +139,18 @@ async function main() {
     showTrouble();
     document.querySelectorAll(".banner, .hint").forEach((banner) => banner.remove());
     for (const panel of panels) panel.element.remove();
-    const context = { t, language, setLanguage, actions, store, scene, mover, speaker, editor, creator, tour, shelf, address, announce };
+    const context = { t, language, setLanguage, actions, store, scene, dragController, speaker, editor, creator, tour, thumbnails, address, announce };
     panels = PANELS.map((create) => create(context));
     for (const panel of panels) element(`[data-slot="${panel.slot}"]`).append(panel.element);
-    editor.dress(context);
-    creator.dress(context);
-    tour.dress(context);
+    editor.setContext(context);
+    creator.setContext(context);
+    tour.setContext(context);
     scene.invalidate();
   };
   /** @param {string} chosen */
   const setLanguage = (chosen) => {
     language = chosen;
-    note(memory, LANGUAGE_KEY, chosen);
+    trySetItem(localStore, LANGUAGE_KEY, chosen);
     build();
   };
 
@@ -159,14 +159,14 @@ async function main() {
   store.subscribe(() => editor.redraw());
   let watched = "";
   store.subscribe(() => {
-    const now = watchedFor(store.state);
+    const now = subscriptionKey(store.state);
     if (now === watched) return;
     watched = now;
     client.refresh();
   });
   store.subscribe(() => speaker.update(store.state));
   for (const gesture of ["pointerup", "keydown"]) window.addEventListener(gesture, () => speaker.unlock());
-  watchKeyboard(canvas, scene, mover, (button, pressed) => actions.press(store.state.selected, button, pressed));
+  watchKeyboard(canvas, scene, dragController, (button, pressed) => actions.press(store.state.selected, button, pressed));
   watchDrops(element("#drop"), (file) => {
     if (creator.isOpen && !isProgram(file)) creator.openFile(file);
     else if (editor.isOpen && isProgram(file)) editor.editor?.open(file);
@@ -176,16 +176,16 @@ async function main() {
     if (key === "Escape" && store.state.connection === "connected") actions.stop();
   });
   client.start();
-  tour.begin();
+  tour.start();
 
-  // Read-only, for tests: what the page knows, what it has drawn, and where a part is on the screen.
+  // Read-only access for tests: state, drawn frames, and screen positions of parts.
   Object.defineProperty(window, "thymio", {
     value: Object.freeze({
       state: () => snapshot(store.state),
       frames: () => scene.frames,
       screenPosition: (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ z) =>
         scene.screenPosition(x, y, z),
-      held: () => mover.held,
+      held: () => dragController.held,
       built: () => creator.snapshot(),
       /** @param {string} part @param {string} [robot] */
       partPosition: (part, robot) => scene.partPosition(part, robot),

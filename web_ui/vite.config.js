@@ -8,7 +8,7 @@ export default defineConfig({
     outDir: "dist",
     emptyOutDir: true,
     target: "es2022",
-    // three alone is about 0.6 MB (docs/performance.md, "The page"); warn only beyond the page's budget.
+    // three.js alone is about 0.6 MB (docs/performance.md, "The page"); warn only beyond the page's budget.
     chunkSizeWarningLimit: 800,
   },
 });

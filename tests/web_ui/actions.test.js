@@ -1,12 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { Actions, LARGEST_PLAYGROUND, LARGEST_PROGRAM } from "../../web_ui/actions.js";
+import { Actions, LARGEST_PLAYGROUND, LARGEST_PROGRAM } from "../../web_ui/input/actions.js";
 import { Store } from "../../web_ui/state/store.js";
 
 /** @typedef {import("../../web_ui/state/index.js").Message} Message */
 
-/** Actions over a client that notes what it is asked, and answers as told. */
+/** Actions over a client that notes what it is asked, and answers as reported. */
 function prepared({ ok = true, message = "", value = /** @type {any} */ (undefined) } = {}) {
   /** @type {any[]} */ const asked = [];
   const client = {
@@ -31,7 +31,7 @@ function connect(store, topics, names) {
   store.dispatch({ type: "services", names });
 }
 
-test("a finger on a button is published to its robot", () => {
+test("a button press is published to its robot", () => {
   const { actions, asked } = prepared();
   actions.press("", "left", true);
   actions.press("thymio_1", "left", false);
@@ -41,7 +41,7 @@ test("a finger on a button is published to its robot", () => {
   ]);
 });
 
-test("what an operator does is published to the selected robot", () => {
+test("a stimulus is published to the selected robot", () => {
   const { actions, asked, store } = prepared();
   connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], []);
   store.dispatch({ type: "select", robot: "b" });
@@ -49,7 +49,7 @@ test("what an operator does is published to the selected robot", () => {
   assert.deepEqual(asked, [["publish", "/b/_press/clap", "std_msgs/msg/Float32", { data: 1 }]]);
 });
 
-test("stop ends every program first, and then tells every wheel zero", async () => {
+test("stop ends every program first, and then sets every speed to zero", async () => {
   const { actions, asked, store } = prepared();
   connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], ["/a/aseba/stop", "/b/aseba/stop", "/a/aseba/run"]);
   await actions.stop();
@@ -59,7 +59,7 @@ test("stop ends every program first, and then tells every wheel zero", async () 
   );
 });
 
-test("a robot's own runtime is asked, else the one that all share", async () => {
+test("a robot's own runtime is called, else the shared one", async () => {
   const { actions, asked, store } = prepared();
   connect(store, ["/a/_ground_truth/odom"], ["/aseba/run", "/aseba/stop", "/a/aseba/run"]);
   await actions.program("run");
@@ -70,7 +70,7 @@ test("a robot's own runtime is asked, else the one that all share", async () => 
   );
 });
 
-test("a call that is refused is told", async () => {
+test("a rejected call is reported", async () => {
   const { actions, store } = prepared({ ok: false, message: "not paused" });
   await actions.step(10);
   assert.deepEqual(
@@ -79,7 +79,7 @@ test("a call that is refused is told", async () => {
   );
 });
 
-test("a program file goes to the runtime with its name", async () => {
+test("a program file is sent to the runtime with its name", async () => {
   const { actions, asked, store } = prepared();
   await actions.loadFile(new File(["onevent prox\n"], "line.aesl"));
   assert.deepEqual(asked, [
@@ -94,7 +94,7 @@ test("a program file goes to the runtime with its name", async () => {
   assert.equal(store.state.uploads.program?.phase, "accepted");
 });
 
-test("a playground file goes to the simulator whole and with its name", async () => {
+test("a playground file is sent to the simulator with its name", async () => {
   const { actions, asked, store } = prepared({ ok: false, message: "/simulator.playground: robots: found 0" });
   await actions.loadFile(new File(["{}"], "my own.JSON"));
   const value = "data:application/octet-stream;name=my%20own.JSON;base64,e30=";
@@ -102,7 +102,7 @@ test("a playground file goes to the simulator whole and with its name", async ()
   assert.equal(store.state.uploads.playground?.fault?.text, "robots: found 0");
 });
 
-test("archives and Aseba's playgrounds are files like any other, byte by byte", async () => {
+test("archives and Aseba's playgrounds are sent byte by byte", async () => {
   const { actions, asked } = prepared();
   const bytes = Uint8Array.from({ length: 100_000 }, (_, index) => index % 256);
   for (const name of ["maze.playground", "maze.zip", "world.xml"]) {
@@ -112,7 +112,7 @@ test("archives and Aseba's playgrounds are files like any other, byte by byte", 
   }
 });
 
-test("a playground of the list goes by its name", async () => {
+test("a shipped playground is sent by name", async () => {
   const { actions, asked } = prepared();
   await actions.loadPlayground("base");
   assert.deepEqual(asked, [["set", [{ name: "/simulator.playground", value: "base" }]]]);
@@ -130,7 +130,7 @@ test("files of other kinds, and too large ones, are not sent", async () => {
   );
 });
 
-test("a robot is put somewhere by a service, and its refusal is a notice", async () => {
+test("a robot is placed by a service, and a rejection becomes a notice", async () => {
   for (const successful of [true, false]) {
     const { actions, asked, store } = prepared({ value: { results: [{ successful, reason: "a wall" }] } });
     assert.equal(await actions.place("thymio", { x: 1, y: 2, yaw: 3 }), successful);
@@ -140,19 +140,19 @@ test("a robot is put somewhere by a service, and its refusal is a notice", async
   }
 });
 
-test("a simulator that cannot move things says so", async () => {
+test("a simulator that cannot move objects is reported", async () => {
   const { actions, store } = prepared({ ok: false, message: "not available" });
   assert.equal(await actions.place("thymio", { x: 0, y: 0, yaw: 0 }), false);
   assert.equal(store.state.notices.length, 1);
 });
 
-test("a behaviour is a parameter of the runtime", async () => {
+test("a behavior is a parameter of the runtime", async () => {
   const { actions, asked } = prepared();
-  await actions.setBehaviour("menu");
+  await actions.setBehavior("menu");
   assert.deepEqual(asked, [["set", [{ name: "/aseba_runtime.behaviour", value: "menu" }]]]);
 });
 
-test("what is loaded once more begins anew, since the same value changes nothing", async () => {
+test("loading the same again restarts programs, because setting the same value has no effect", async () => {
   const { actions, asked, store } = prepared();
   connect(store, ["/a/_ground_truth/odom", "/b/_ground_truth/odom"], []);
   store.dispatch({ type: "parameters", parameters: [{ name: "/simulator.playground", value: "base" }] });
@@ -172,12 +172,12 @@ test("what is loaded once more begins anew, since the same value changes nothing
       "/b/aseba/run",
     ],
   );
-  await actions.setBehaviour("menu");
-  await actions.setBehaviour("menu");
+  await actions.setBehavior("menu");
+  await actions.setBehavior("menu");
   assert.deepEqual(asked.slice(2).map(([, name]) => name), ["/a/aseba/reset", "/b/aseba/reset", "/a/aseba/run", "/b/aseba/run"]);
 });
 
-test("a program that is refused is explained in the language of the page", async () => {
+test("a rejected program is explained in the language of the page", async () => {
   const errors = [{ line: 1, column: 9, length: 5, message: "kein Ereignis heißt 'zzzzz'", kind: "unknown-event", node: "" }];
   const value = { result: { successful: false, reason: JSON.stringify({ errors }) } };
   const { actions, asked, store } = prepared({ value });
@@ -191,7 +191,7 @@ test("a program that is refused is explained in the language of the page", async
   assert.equal(store.state.uploads.program?.fault?.text, "no event is called 'zzzzz'");
 });
 
-test("a touch lasts long enough for the robot to see it", () => {
+test("a touch lasts long enough to be polled by the robot", () => {
   const { asked, store } = prepared();
   let now = 0;
   /** @type {[() => void, number][]} */ const waiting = [];
@@ -216,7 +216,7 @@ test("a touch lasts long enough for the robot to see it", () => {
   assert.deepEqual(asked, [true, false, true, true, false]);
 });
 
-test("a step lets as much time pass as was chosen", async () => {
+test("a step has the selected length", async () => {
   const { actions, asked } = prepared();
   await actions.step(100);
   assert.deepEqual(asked, [
@@ -225,7 +225,7 @@ test("a step lets as much time pass as was chosen", async () => {
   ]);
 });
 
-test("what was refused is not told any more when it is done", async () => {
+test("an error disappears when the action succeeds", async () => {
   const refused = prepared({ ok: false, message: "not paused" });
   await refused.actions.step(1);
   const done = new Actions({

@@ -1,7 +1,7 @@
 // Builds playgrounds by chance through the creator, and prints each as JSON with whether the page would open it:
 // `node build_random.js COUNT`. Both kinds come out: built ones, and ones with robots dropped anywhere.
 
-import { Builder } from "../../web_ui/creator/builder.js";
+import { CreatorModel } from "../../web_ui/creator/creator_model.js";
 import { newPlayground } from "../../web_ui/creator/commands.js";
 import { parse, write } from "../../web_ui/playground/document.js";
 import { SHAPES } from "../../web_ui/playground/kinds/index.js";
@@ -21,26 +21,26 @@ function chance() {
 const somewhere = (reach) => (chance() * 2 - 1) * reach;
 
 function built() {
-  const builder = new Builder({ playground: newPlayground("By chance"), tell: () => {}, changed: () => {} });
+  const model = new CreatorModel({ playground: newPlayground("By chance"), report: () => {}, changed: () => {} });
   for (let step = 0; step < 25; step++) {
     const kind = TOOLS[Math.floor(chance() * TOOLS.length)];
-    builder.choose(kind, kind === "picture" ? { image: PIXEL } : {});
+    model.choose(kind, kind === "picture" ? { image: PIXEL } : {});
     for (let point = 0; point < 4; point++) {
-      builder.placing?.turn(Math.round(somewhere(12)) * (Math.PI / 12));
-      builder.placing?.hover([somewhere(0.6), somewhere(0.6)], chance() < 0.5);
-      builder.placing?.put();
+      model.placing?.turn(Math.round(somewhere(12)) * (Math.PI / 12));
+      model.placing?.hover([somewhere(0.6), somewhere(0.6)], chance() < 0.5);
+      model.placing?.put();
     }
-    builder.placing?.finish(chance() < 0.5);
-    builder.choose(null);
-    builder.selectNext(1 + Math.floor(chance() * 5));
-    builder.nudge(Math.round(somewhere(3)), Math.round(somewhere(3)), { fine: chance() < 0.5 });
-    builder.turn(Math.round(somewhere(4)));
-    builder.edit({ height_m: chance() * 0.2, radius_m: chance() * 0.1, mass_kg: chance() });
-    if (chance() < 0.3) builder.duplicate();
-    if (chance() < 0.1) builder.remove();
-    if (chance() < 0.2) builder.undo();
+    model.placing?.finish(chance() < 0.5);
+    model.choose(null);
+    model.selectNext(1 + Math.floor(chance() * 5));
+    model.nudge(Math.round(somewhere(3)), Math.round(somewhere(3)), { fine: chance() < 0.5 });
+    model.turn(Math.round(somewhere(4)));
+    model.edit({ height_m: chance() * 0.2, radius_m: chance() * 0.1, mass_kg: chance() });
+    if (chance() < 0.3) model.duplicate();
+    if (chance() < 0.1) model.remove();
+    if (chance() < 0.2) model.undo();
   }
-  return write(builder.playground);
+  return write(model.playground);
 }
 
 /** With one more robot anywhere, perhaps in the way of something. @param {string} text */

@@ -1,4 +1,4 @@
-"""Capture messages as rclpy serialises them, for the page's own tests: writes tests/data/web/messages.json.
+"""Capture messages as rclpy serializes them, for the tests of the page: writes tests/data/web/messages.json.
 
 Run it where rclpy is installed (`python tests/web_ui/capture.py`) when the page starts to use another type.
 """
@@ -26,7 +26,7 @@ TARGET = Path(__file__).parents[1] / "data" / "web" / "messages.json"
 
 
 def messages() -> Iterator[Any]:
-    """One message of every type the page reads or writes, with odd lengths so that alignment shows."""
+    """Return one message of every type the page reads or writes, with odd lengths so that padding occurs."""
     yield String(data='{"title": "Bögen"}')
     yield Bool(data=True)
     yield Twist(linear=Vector3(x=0.125), angular=Vector3(z=-2.5))
@@ -55,7 +55,7 @@ def messages() -> Iterator[Any]:
 
 
 def schema(message_type: type) -> tuple[str, str]:
-    """Name and complete definition text of a type, as a bridge advertises them."""
+    """Return name and complete definition text of a type, as a bridge advertises them."""
     package, kind, name = (
         message_type.__module__.split(".")[0],
         message_type.__module__.split(".")[1],
@@ -89,7 +89,7 @@ def schema(message_type: type) -> tuple[str, str]:
 
 
 def value(message: Any) -> Any:
-    """The message as plain data."""
+    """Convert a message to plain data."""
     if hasattr(message, "get_fields_and_field_types"):
         return {name: value(getattr(message, name)) for name in message.get_fields_and_field_types()}
     if isinstance(message, bytes):
@@ -102,7 +102,7 @@ def value(message: Any) -> Any:
 
 
 def _share(package: str) -> Path:
-    """Where a package's definitions are: in a sourced ROS, else beside the Python of the ROS wheels."""
+    """Return the folder of a package's definitions: in a sourced ROS, else beside the Python of the ROS wheels."""
     prefixes = [*os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep), sys.prefix]
     return next(path for prefix in prefixes if prefix and (path := Path(prefix) / "share" / package).is_dir())
 

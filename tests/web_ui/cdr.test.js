@@ -42,7 +42,7 @@ test("numbers of 64 bits are exact", () => {
   assert.deepEqual(decode(definition, view(encode(definition, value))), value);
 });
 
-test("missing fields are written as nothing", () => {
+test("missing fields are written as zero or empty", () => {
   const definition = parseSchema("a/B", "string text\nint16[] list\nfloat64 x");
   assert.deepEqual(decode(definition, view(encode(definition, {}))), { text: "", list: [], x: 0 });
 });
@@ -53,7 +53,7 @@ test("a text longer than the first buffer is written whole", () => {
   assert.deepEqual(decode(definition, view(encode(definition, value))), value);
 });
 
-test("a message cut anywhere is refused", () => {
+test("a message truncated anywhere is rejected", () => {
   const { schemaName, schema, hex } = captured("nav_msgs/msg/Odometry");
   const definition = parseSchema(schemaName, schema);
   const whole = bytes(hex);
@@ -63,12 +63,12 @@ test("a message cut anywhere is refused", () => {
   }
 });
 
-test("a length beyond the message is refused before it is believed", () => {
+test("a length beyond the message is rejected before allocation", () => {
   const definition = parseSchema("a/B", "float64[] list");
   assert.throws(() => decode(definition, view(bytes("00010000" + "ffffffff"))), CdrError);
 });
 
-test("another representation is refused", () => {
+test("another representation is rejected", () => {
   const definition = parseSchema("a/B", "bool x");
   assert.throws(() => decode(definition, view(bytes("0007000001"))), /representation/);
 });

@@ -1,4 +1,4 @@
-"""A real Chromium, the running suite, and pages that must not fail: fixtures of all tests in a browser."""
+"""Fixtures of all browser tests: a real Chromium, the running suite, and pages that must not fail."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def browser() -> Iterator[Any]:
 
 
 class Suites:
-    """Suites of one test. Called with arguments it starts one and gives its page's address."""
+    """The suites of one test. A call with arguments starts one and returns the address of its page."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -55,14 +55,14 @@ class Suites:
         return f"http://127.0.0.1:{port}/"
 
     def end(self) -> None:
-        """End all that run."""
+        """End all running suites."""
         while self._running:
             self._running.pop().end()
 
 
 @pytest.fixture
 def suite(ros_domain, tmp_path) -> Iterator[Suites]:
-    """Start the suite with these arguments; gives the page's address."""
+    """Start a suite with arguments; returns the address of its page."""
     suites = Suites(tmp_path)
     yield suites
     suites.end()
@@ -70,18 +70,18 @@ def suite(ros_domain, tmp_path) -> Iterator[Suites]:
 
 @pytest.fixture
 def page(browser) -> Iterator[Any]:
-    """A page that fails the test when a script on it fails or it asks another host."""
+    """A page that fails the test if a script on it fails or if it requests another host."""
     yield from checked_page(browser)
 
 
 @pytest.fixture
 def other_page(browser) -> Iterator[Any]:
-    """One more such page, of another person."""
+    """A second such page, for another user."""
     yield from checked_page(browser)
 
 
 def checked_page(browser: Any, **options: Any) -> Iterator[Any]:
-    """A page of its own browser profile, whose problems are an assertion at its end."""
+    """A page with its own browser profile; asserts at the end that there were no problems."""
     options = {"viewport": {"width": 800, "height": 600}, "bypass_csp": True} | options  # waiting evaluates
     page = browser.new_page(**options)
     page.set_default_timeout(DEADLINE_MS)

@@ -5,10 +5,10 @@ import { test } from "node:test";
 import { AeslError, allEvents, newAesl, readAesl, withCode, withEntry } from "../../web_ui/editor/aesl.js";
 import { codeOf, opened } from "../../web_ui/editor/documents.js";
 
-const BEHAVIOURS = new URL("../../thymio_sim_ros/device/firmware/behaviors/", import.meta.url);
-const FILES = readdirSync(BEHAVIOURS)
+const BEHAVIORS = new URL("../../thymio_sim_ros/device/firmware/behaviors/", import.meta.url);
+const FILES = readdirSync(BEHAVIORS)
   .filter((name) => name.endsWith(".aesl"))
-  .map((name) => /** @type {const} */ ([name, readFileSync(new URL(name, BEHAVIOURS), "utf8")]));
+  .map((name) => /** @type {const} */ ([name, readFileSync(new URL(name, BEHAVIORS), "utf8")]));
 
 const ODD = [
   "<!DOCTYPE aesl-source>",
@@ -53,7 +53,7 @@ test("only what differs is replaced", () => {
   assert.equal(withCode(ODD, 0, anna.code.replace("😀", "")), ODD.replace("&#x1F600;", ""));
 });
 
-test("any code comes back as it was put in, and the rest of the file stays", () => {
+test("any code is read back unchanged, and the rest of the file stays", () => {
   const codes = ["", "a = 1", "a < b & c > d ]]>\n\t# ä😀\n", "end😁", "x".repeat(40)];
   for (const [, text] of [...FILES, ["odd", ODD]]) {
     readAesl(text).nodes.forEach((_node, index) => {
@@ -73,13 +73,13 @@ test("any code comes back as it was put in, and the rest of the file stays", () 
   }
 });
 
-test("the data of plug-ins and what stands behind the network outlive an edit", () => {
+test("plug-in data and text after the network are kept by an edit", () => {
   const changed = withCode(ODD, 0, "");
   assert.match(changed, /<toolsPlugins><X>code\?<\/X><\/toolsPlugins>/);
   assert.match(changed, /<!-- mine -->[\s\S]*<!-- end -->$/);
 });
 
-test("events and constants are added behind the others, changed in place, and removed with their line", () => {
+test("events and constants are appended, changed in place, and removed with their line", () => {
   const added = withEntry(ODD, "event", "pong", 2);
   assert.deepEqual(
     readAesl(added).events.map(({ name, value }) => [name, value]),
@@ -93,7 +93,7 @@ test("events and constants are added behind the others, changed in place, and re
   assert.equal(withEntry(ODD, "constant", "missing", null), ODD);
 });
 
-test("code that would end CDATA together with what stands there is written anew", () => {
+test("code that would form the end of CDATA is rewritten", () => {
   const node = '<node nodeId="1" name="a"><![CDATA[if a[b[1]] > 3 then\nend]]></node>';
   const changed = withCode(`<network>${node}<!-- after --></network>`, 0, "if a[b[1]]>3 then\nend");
   assert.equal(readAesl(changed).nodes[0].code, "if a[b[1]]>3 then\nend");
@@ -143,7 +143,7 @@ for (const [what, text, line, column, words] of /** @type {[string, string, numb
   ["an event without size", '<network><event name="a"/></network>', 1, 10, /has no size/],
   ["nothing", "", 1, 1, /expected <network>/],
 ])) {
-  test(`a file with ${what} is refused at its place`, () => {
+  test(`a file with ${what} is rejected with its position`, () => {
     assert.throws(
       () => readAesl(text),
       (error) =>
@@ -152,7 +152,7 @@ for (const [what, text, line, column, words] of /** @type {[string, string, numb
   });
 }
 
-test("a file of VPL has the events that VPL declares by itself", () => {
+test("a VPL file has the implicit events of VPL", () => {
   const vpl = "<toolsPlugins><ThymioVisualProgramming><vplroot/></ThymioVisualProgramming></toolsPlugins>";
   const added = ["pair_run 1", "debug_log 14"];
   /** @param {string} inside */

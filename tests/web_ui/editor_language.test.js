@@ -42,7 +42,7 @@ function stateOf(doc) {
   return syntaxTree(state).length === doc.length ? state : stateOf(doc);
 }
 
-test("parser.js is what the grammar says", () => {
+test("parser.js is generated from the grammar", () => {
   const grammar = readFileSync(new URL("web_ui/editor/aseba.grammar", ROOT), "utf8");
   const { parser: generated } = buildParserFile(grammar);
   assert.equal(readFileSync(new URL("web_ui/editor/parser.js", ROOT), "utf8").trim(), generated.trim());
@@ -63,11 +63,11 @@ for (const [name, text] of [
   });
 }
 
-test("an event without values is told from the statement behind it", () => {
+test("an event without values is distinguished from the following statement", () => {
   assert.deepEqual(stumbles("emit ping\na = 1\nemit ping a\nb[1] = 2\nemit ping [1, 2]\nemit ping -a"), []);
 });
 
-test("a name may begin like a keyword", () => assert.deepEqual(stumbles("if.x = 1 ende = 2 _emit_ = 3"), []));
+test("a name may start with a keyword", () => assert.deepEqual(stumbles("if.x = 1 ende = 2 _emit_ = 3"), []));
 
 test("blocks are indented, and their ends are not", () => {
   const doc = [
@@ -100,7 +100,7 @@ test("handlers and blocks can be folded", () => {
   assert.deepEqual(foldable(state, from, to), { from: to, to: state.doc.line(3).to });
 });
 
-test("the outline names what a program defines, also of one that is not finished", () => {
+test("the outline lists the names that a program defines, even if it is incomplete", () => {
   const text = "const A = 1\nvar b[3]\nonevent prox\n\tif b[ then\nsub turn\n";
   const found = outline(parser.parse(text), (from, to) => text.slice(from, to)).map(
     ({ kind, name }) => `${kind} ${name}`,

@@ -22,7 +22,7 @@ function answering(reason) {
   return { asked, link: new Link(/** @type {any} */ ({ call })) };
 }
 
-test("help is asked for once, in the language of the page, and stands in for the target's", async () => {
+test("help is requested once, in the language of the page, and replaces the target's", async () => {
   const lexicon = new Lexicon("de");
   const { asked, link } = answering({ target: GERMAN });
   assert.equal(lexicon.translate(null), null);
@@ -38,13 +38,13 @@ test("help is asked for once, in the language of the page, and stands in for the
   assert.equal(lexicon.translate(TARGET), translated);
 });
 
-test("a runtime that cannot help leaves the help as it came", async () => {
+test("without translated help the target's help is kept", async () => {
   const lexicon = new Lexicon("de");
   await lexicon.ask(new Link(/** @type {any} */ ({ call: async () => ({ ok: false, message: "gone" }) })), () => {});
   assert.equal(lexicon.translate(TARGET).variables[0].help, "accelerometer");
 });
 
-test("the first fault is told, but not that nobody could look", () => {
+test("the first error is reported, but not a failed check", () => {
   /** @param {string} kind */
   const answer = (kind) => ({
     result: { reason: JSON.stringify({ errors: [{ line: 2, column: 3, length: 1, message: "falsch", kind, node: "" }] }) },

@@ -2,21 +2,21 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { firstFault, marks, notesOf, readVerdict } from "../../web_ui/editor/checking.js";
-import { Desk, eventKey } from "../../web_ui/editor/desk.js";
+import { EditorSession, eventKey } from "../../web_ui/editor/editor_session.js";
 import { blank, isUnsaved } from "../../web_ui/editor/documents.js";
 import { explain, signature, suggestions } from "../../web_ui/editor/help.js";
-import { repairWords } from "../../web_ui/editor/hint.js";
+import { repairLabel } from "../../web_ui/editor/hint.js";
 import { History } from "../../web_ui/editor/history.js";
 import { Link } from "../../web_ui/editor/link.js";
 import { csv, parseNumbers } from "../../web_ui/editor/numbers.js";
 import { roundStep } from "../../web_ui/editor/plot.js";
 import { INITIAL, KEPT_EVENTS, reduce, splitEditorTopic } from "../../web_ui/editor/state.js";
-import { Keeper, KEPT_FILES } from "../../web_ui/editor/storage.js";
+import { FileStore, KEPT_FILES } from "../../web_ui/editor/file_store.js";
 import { PHRASES, WORDS } from "../../web_ui/editor/words/index.js";
 import { ALL, Workspace } from "../../web_ui/editor/workspace.js";
 
 /** A browser's storage in memory. */
-function shelf() {
+function newStorage() {
   /** @type {Map<string, string>} */ const kept = new Map();
   return /** @type {Storage} */ ({
     getItem: (/** @type {string} */ key) => kept.get(key) ?? null,
@@ -25,10 +25,10 @@ function shelf() {
   });
 }
 
-function workspace(storage = shelf()) {
+function workspace(storage = newStorage()) {
   let shown = 0;
-  const desk = new Workspace({ keeper: new Keeper(storage), now: () => 7, changed: () => (shown += 1) });
-  return { desk, storage, shown: () => shown };
+  const session = new Workspace({ fileStore: new FileStore(storage), now: () => 7, changed: () => (shown += 1) });
+  return { session, storage, shown: () => shown };
 }
 
 /** @param {string} file @returns {any} */
@@ -38,7 +38,7 @@ const program = (file) => ({ name: "robot.aesl", file, node: "", source: file })
 const message = (topic, value, timeNs = 5n) => ({ type: "message", topic, value, timeNs });
 
 /** @param {[string, number[]][]} named */
-const labelled = (named) => ({
+const labeled = (named) => ({
   layout: { dim: named.map(([label, values]) => ({ label, size: values.length, stride: values.length })) },
   data: named.flatMap(([, values]) => values),
 });
@@ -49,12 +49,12 @@ test("the editor's topics are those of robots with and without a name", () => {
   assert.equal(splitEditorTopic("/aseba/events/ping"), null);
 });
 
-test("variables are cut by their labels", () => {
+test("variables are split by their labels", () => {
   const state = reduce(
     INITIAL,
     message(
       "/_aseba/variables",
-      labelled([
+      labeled([
         ["a", [1]],
         ["b", [2, -3]],
       ]),
@@ -72,7 +72,7 @@ test("variables are cut by their labels", () => {
 test("the log keeps the newest events, each with its robot, and can be emptied", () => {
   let state = INITIAL;
   for (let index = 0; index < KEPT_EVENTS + 3; index++) {
-    state = reduce(state, message("/anna/_aseba/events", labelled([["ping", [index]]])));
+    state = reduce(state, message("/anna/_aseba/events", labeled([["ping", [index]]])));
   }
   assert.equal(state.log.length, KEPT_EVENTS);
   const last = state.log.at(-1);
@@ -80,26 +80,26 @@ test("the log keeps the newest events, each with its robot, and can be emptied",
   assert.deepEqual(reduce(state, { type: "forgetLog" }).log, []);
 });
 
-test("what is watched is plotted, of the selected robot only", () => {
-  const desk = new Desk(shelf(), () => 0);
-  desk.toggleWatch("b");
-  desk.toggleWatch(eventKey("ping"));
-  desk.receive(
+test("watched variables of the selected robot are plotted", () => {
+  const session = new EditorSession(newStorage(), () => 0);
+  session.toggleWatch("b");
+  session.toggleWatch(eventKey("ping"));
+  session.receive(
     message(
       "/anna/_aseba/variables",
-      labelled([
+      labeled([
         ["a", [1]],
         ["b", [2, 3]],
       ]),
     ),
     "anna",
   );
-  desk.receive(message("/anna/_aseba/events", labelled([["ping", [9]]])), "anna");
-  desk.receive(message("/paul/_aseba/events", labelled([["ping", [8]]])), "anna");
-  assert.deepEqual([...desk.history.series.keys()], ["b[0]", "b[1]", "ping(0)"]);
-  assert.deepEqual(desk.history.series.get("ping(0)")?.values, [9]);
-  desk.toggleWatch("b");
-  assert.deepEqual([...desk.history.series.keys()], ["ping(0)"]);
+  session.receive(message("/anna/_aseba/events", labeled([["ping", [9]]])), "anna");
+  session.receive(message("/paul/_aseba/events", labeled([["ping", [8]]])), "anna");
+  assert.deepEqual([...session.history.series.keys()], ["b[0]", "b[1]", "ping(0)"]);
+  assert.deepEqual(session.history.series.get("ping(0)")?.values, [9]);
+  session.toggleWatch("b");
+  assert.deepEqual([...session.history.series.keys()], ["ping(0)"]);
 });
 
 test("series become a table with one row per time", () => {
@@ -112,16 +112,16 @@ test("series become a table with one row per time", () => {
   assert.deepEqual(history.series.get("a")?.values, [5]);
 });
 
-test("numbers are whole, in range, and as many as needed", () => {
+test("numbers must be whole, in range, and of the required count", () => {
   assert.deepEqual(parseNumbers(" 1, -32768 3 ", 3).values, [1, -32768, 3]);
   assert.equal(parseNumbers("1 2", 3).trouble?.key, "number.count");
   for (const bad of ["32768", "1.5", "a", "--1"]) assert.equal(parseNumbers(bad, 1).trouble?.key, "number.range", bad);
 });
 
-test("grid lines stand at round numbers", () =>
+test("grid lines are at round numbers", () =>
   assert.deepEqual([roundStep(100, 4), roundStep(7, 4), roundStep(60, 5)], [50, 2, 20]));
 
-test("a remark stands at its characters, whatever their width", () => {
+test("a diagnostic is at its characters, whatever their width", () => {
   const text = "a = 1\n# 😀😀 b\n😀 c";
   const remark = { line: 3, column: 3, length: 1, message: "no" };
   assert.deepEqual(marks(text, { errors: [remark], warnings: [] }), [
@@ -131,7 +131,7 @@ test("a remark stands at its characters, whatever their width", () => {
   assert.equal(placeless.from, 0);
 });
 
-test("remarks below the text or beside a line stay in the text", () => {
+test("diagnostics outside the text are moved into it", () => {
   for (const [line, column] of [
     [99, 1],
     [1, 99],
@@ -142,7 +142,7 @@ test("remarks below the text or beside a line stay in the text", () => {
   }
 });
 
-test("a verdict is read from the reason of the answer", () => {
+test("a verdict is parsed from the reason of the answer", () => {
   const use = { variables: [1, 2], bytecode: [3, 4], stack: [5, 6] };
   const reason = JSON.stringify({ errors: [], warnings: [], nodes: [{ use, variables: [{ name: "a" }] }] });
   assert.deepEqual(readVerdict({ result: { successful: true, reason } }).use, use);
@@ -189,7 +189,7 @@ for (const [before, names] of /** @type {[string, string[]][]} */ ([
   ["a = 12", []],
   ["a = pro", ["count", "SPEED", "prox.horizontal", "if", "while"]],
 ])) {
-  test(`'${before}' is completed with what fits there`, () => {
+  test(`'${before}' is completed`, () => {
     assert.deepEqual(
       suggestions(before, VOCABULARY).items.map(({ name }) => name),
       names,
@@ -205,167 +205,167 @@ test("a name is explained where it stands", () => {
   assert.equal(explain("nothing", 2, VOCABULARY), null);
 });
 
-test("a signature says what the parameters hold", () => {
+test("a signature shows the sizes of the parameters", () => {
   assert.equal(signature(/** @type {any} */ (VOCABULARY.target?.natives[0])), "math.max(dest[], a, b[2])");
 });
 
-test("what a robot runs is shown until a person has changed something", () => {
-  const { desk } = workspace();
-  desk.tell(ALL, program("a = 1"));
-  assert.equal(desk.code, "a = 1");
-  desk.edit("a = 2");
-  desk.tell(ALL, program("a = 3"));
-  assert.equal(desk.code, "a = 2");
-  desk.follow();
-  desk.tell(ALL, program("a = 4"));
-  assert.equal(desk.code, "a = 4");
+test("the running program is shown until the user has changed something", () => {
+  const { session } = workspace();
+  session.setRobotProgram(ALL, program("a = 1"));
+  assert.equal(session.code, "a = 1");
+  session.edit("a = 2");
+  session.setRobotProgram(ALL, program("a = 3"));
+  assert.equal(session.code, "a = 2");
+  session.follow();
+  session.setRobotProgram(ALL, program("a = 4"));
+  assert.equal(session.code, "a = 4");
 });
 
-test("a new program and an opened file stay when a robot tells of its own", () => {
-  const { desk } = workspace();
-  desk.tell(ALL, program("a = 1"));
-  desk.newFile();
-  desk.tell(ALL, program("a = 1"));
-  assert.equal(desk.code, "");
-  desk.open("mine.aesl", "b = 1");
-  desk.tell(ALL, program("a = 1"));
-  assert.equal(desk.code, "b = 1");
+test("a new program and an opened file stay when a robot reports its program", () => {
+  const { session } = workspace();
+  session.setRobotProgram(ALL, program("a = 1"));
+  session.newFile();
+  session.setRobotProgram(ALL, program("a = 1"));
+  assert.equal(session.code, "");
+  session.open("mine.aesl", "b = 1");
+  session.setRobotProgram(ALL, program("a = 1"));
+  assert.equal(session.code, "b = 1");
 });
 
-test("what a robot tells back after loading changes nothing", () => {
-  const { desk, shown } = workspace();
-  desk.edit("a = 1");
-  desk.loaded(ALL, desk.current.text);
+test("the robot's report after loading changes nothing", () => {
+  const { session, shown } = workspace();
+  session.edit("a = 1");
+  session.loaded(ALL, session.current.text);
   const before = shown();
-  desk.tell(ALL, program(desk.current.text));
+  session.setRobotProgram(ALL, program(session.current.text));
   assert.equal(shown(), before);
 });
 
-test("a file that is no program is refused at its place, and what was there stays", () => {
-  const { desk } = workspace();
-  desk.edit("a = 1");
-  assert.deepEqual(desk.open("bad.aesl", "<network>\n<node></network>"), {
+test("X", () => {
+  const { session } = workspace();
+  session.edit("a = 1");
+  assert.deepEqual(session.open("bad.aesl", "<network>\n<node></network>"), {
     name: "bad.aesl",
     line: 2,
     column: 7,
     what: "found </network>, expected </node>",
   });
-  assert.equal(desk.code, "a = 1");
+  assert.equal(session.code, "a = 1");
 });
 
-test("what another file replaces unsaved is among the recent ones", () => {
-  const { desk } = workspace();
-  desk.edit("a = 1");
-  desk.rename("mine");
-  desk.open("other.txt", "b = 2");
-  assert.equal(desk.current.name, "other.aesl");
+test("unsaved text replaced by another file is added to the recent files", () => {
+  const { session } = workspace();
+  session.edit("a = 1");
+  session.rename("mine");
+  session.open("other.txt", "b = 2");
+  assert.equal(session.current.name, "other.aesl");
   assert.deepEqual(
-    desk.keeper.recent().map(({ name }) => name),
+    session.fileStore.recent().map(({ name }) => name),
     ["other.aesl", "mine.aesl"],
   );
 });
 
-test("unsaved texts of one name stay apart, and a saved one does not take their place", () => {
-  const { desk } = workspace();
+test("unsaved texts of the same name are kept separately, and a saved one does not replace them", () => {
+  const { session } = workspace();
   for (const code of ["a = 1", "a = 2"]) {
-    desk.edit(code);
-    desk.newFile();
+    session.edit(code);
+    session.newFile();
   }
-  desk.open("program.aesl", "a = 3");
-  desk.open("program.aesl", "a = 4");
-  const codes = desk.keeper.recent().map(({ text }) => /a = \d/.exec(text)?.[0]);
+  session.open("program.aesl", "a = 3");
+  session.open("program.aesl", "a = 4");
+  const codes = session.fileStore.recent().map(({ text }) => /a = \d/.exec(text)?.[0]);
   assert.deepEqual(codes, ["a = 4", "a = 2", "a = 1"]);
 });
 
-test("a draft that is written over is among the recent files", () => {
+test("a draft that is overwritten is added to the recent files", () => {
   for (const over of [
-    (/** @type {Workspace} */ desk) => desk.edit("b = 1"),
-    (/** @type {Workspace} */ desk) => desk.define("constant", "B", 1),
-    (/** @type {Workspace} */ desk) => desk.rename("b"),
-    (/** @type {Workspace} */ desk) => desk.saved(),
+    (/** @type {Workspace} */ session) => session.edit("b = 1"),
+    (/** @type {Workspace} */ session) => session.define("constant", "B", 1),
+    (/** @type {Workspace} */ session) => session.rename("b"),
+    (/** @type {Workspace} */ session) => session.saved(),
   ]) {
-    const { desk, storage } = workspace();
-    desk.edit("a = 1");
-    const next = workspace(storage).desk;
+    const { session, storage } = workspace();
+    session.edit("a = 1");
+    const next = workspace(storage).session;
     assert.notEqual(next.current && next.draft, null);
     over(next);
     assert.equal(next.draft, null);
-    assert.ok(next.keeper.recent().some(({ text }) => text === desk.current.text), String(over));
+    assert.ok(next.fileStore.recent().some(({ text }) => text === session.current.text), String(over));
   }
 });
 
-test("an unsaved text of the recent files is unsaved again when one goes on with it", () => {
-  const { desk } = workspace();
-  desk.edit("a = 1");
-  desk.newFile();
-  const [kept] = desk.keeper.recent();
-  desk.restore(kept);
-  assert.equal(desk.code, "a = 1");
-  assert.ok(isUnsaved(desk.current));
+test("an unsaved text restored from the recent files is unsaved again", () => {
+  const { session } = workspace();
+  session.edit("a = 1");
+  session.newFile();
+  const [kept] = session.fileStore.recent();
+  session.restore(kept);
+  assert.equal(session.code, "a = 1");
+  assert.ok(isUnsaved(session.current));
 });
 
-test("a draft that was restored is one text, not two", () => {
-  const { desk, storage } = workspace();
-  desk.edit("a = 1");
-  const next = workspace(storage).desk;
+test("a restored draft exists only once", () => {
+  const { session, storage } = workspace();
+  session.edit("a = 1");
+  const next = workspace(storage).session;
   assert.equal(next.code, "");
   next.restoreDraft();
   next.edit("a = 2");
-  assert.deepEqual(next.keeper.recent(), []);
+  assert.deepEqual(next.fileStore.recent(), []);
 });
 
-test("an unsaved text waits for the next visit, a saved one does not", () => {
-  const { desk, storage } = workspace();
-  desk.edit("a = 1");
-  const next = workspace(storage).desk;
+test("an unsaved text is offered at the next visit, a saved one is not", () => {
+  const { session, storage } = workspace();
+  session.edit("a = 1");
+  const next = workspace(storage).session;
   assert.equal(next.code, "");
   assert.equal(next.draft?.name, "program.aesl");
   next.restoreDraft();
   assert.equal(next.code, "a = 1");
   next.saved();
-  assert.equal(workspace(storage).desk.current.text, blank().text);
-  const last = workspace(storage).desk;
+  assert.equal(workspace(storage).session.current.text, blank().text);
+  const last = workspace(storage).session;
   assert.equal(last.at(ALL) && last.draft, null);
 });
 
-test("recent files are few, and something broken in the storage is nothing", () => {
-  const storage = shelf();
-  const keeper = new Keeper(storage);
-  for (let index = 0; index < KEPT_FILES + 5; index++) keeper.remember({ name: `${index}`, text: "", time: index });
-  assert.equal(keeper.recent().length, KEPT_FILES);
+test("the number of recent files is limited, and invalid storage content is ignored", () => {
+  const storage = newStorage();
+  const fileStore = new FileStore(storage);
+  for (let index = 0; index < KEPT_FILES + 5; index++) fileStore.remember({ name: `${index}`, text: "", time: index });
+  assert.equal(fileStore.recent().length, KEPT_FILES);
   storage.setItem("editor.recent", "{");
-  assert.deepEqual(keeper.recent(), []);
+  assert.deepEqual(fileStore.recent(), []);
 });
 
-test("of recent files the newest are kept for which the browser has room", () => {
-  const storage = shelf();
+test("the newest recent files that fit into the storage are kept", () => {
+  const storage = newStorage();
   const { setItem } = storage;
   storage.setItem = (key, value) => {
     if (value.length > 250) throw new Error("full");
     setItem(key, value);
   };
-  const keeper = new Keeper(storage);
-  for (const name of ["a", "b", "c"]) keeper.remember({ name, text: name.repeat(60), time: 1 });
+  const fileStore = new FileStore(storage);
+  for (const name of ["a", "b", "c"]) fileStore.remember({ name, text: name.repeat(60), time: 1 });
   assert.deepEqual(
-    keeper.recent().map(({ name }) => name),
+    fileStore.recent().map(({ name }) => name),
     ["c", "b"],
   );
 });
 
-test("a choice that cannot be kept holds all the same", () => {
-  const storage = shelf();
+test("a setting that cannot be stored still takes effect", () => {
+  const storage = newStorage();
   storage.setItem("editor.fontSize", "20");
   storage.setItem = () => {
     throw new Error("full");
   };
-  const desk = new Desk(storage, () => 0);
-  desk.resize(1);
-  desk.toggleWatch("a");
-  assert.deepEqual([desk.fontSize, [...desk.watched]], [24, ["a"]]);
+  const session = new EditorSession(storage, () => 0);
+  session.resize(1);
+  session.toggleWatch("a");
+  assert.deepEqual([session.fontSize, [...session.watched]], [24, ["a"]]);
   assert.equal(storage.getItem("editor.fontSize"), null);
 });
 
-test("a program for all takes the place of those that single robots had", async () => {
+test("a program for all replaces the programs of single robots", async () => {
   /** @type {any[]} */ const asked = [];
   const client = { setParameters: async (/** @type {any} */ given) => (asked.push(given), { ok: true, message: "" }) };
   const link = new Link(/** @type {any} */ (client));
@@ -385,7 +385,7 @@ test("a program for all takes the place of those that single robots had", async 
   );
 });
 
-test("a variable's refusal is told with its reason", async () => {
+test("a rejected variable is reported with its reason", async () => {
   const value = { results: [{ successful: false, reason: "too large" }] };
   const link = new Link(/** @type {any} */ ({ call: async () => ({ ok: true, message: "", value }) }));
   assert.deepEqual(await link.setVariable("", "a", [1]), { ok: false, message: "too large" });
@@ -408,7 +408,7 @@ const REFUSED = {
   hint: { kind: "hint-block-word", message: "'do' belongs here", edit: { line: 1, column: 4, end_line: 1, end_column: 4, text: " do" } },
 };
 
-test("a hint becomes a sentence and a change of the text", () => {
+test("a hint is converted to a sentence and a change of the text", () => {
   const [mark] = marks("😀ab\n123456", { errors: [REFUSED], warnings: [] });
   assert.equal(mark.hint, "'do' belongs here");
   assert.deepEqual(mark.repair, { from: 4, to: 4, insert: " do" });
@@ -417,13 +417,13 @@ test("a hint becomes a sentence and a change of the text", () => {
   assert.deepEqual(notesOf(answer), ["guessed"]);
 });
 
-test("the button of a repair says what it does", () => {
+test("the button of a repair describes it", () => {
   /** @param {string} key @param {Record<string, any>} [values] */
   const t = (key, values = {}) => [key, ...Object.values(values)].join(" ");
-  assert.equal(repairWords(t, "a = 1", { from: 2, to: 3, insert: "==" }), "hint.change ==");
-  assert.equal(repairWords(t, "a b", { from: 1, to: 1, insert: " then" }), "hint.insert then");
-  assert.equal(repairWords(t, "a;", { from: 1, to: 2, insert: "" }), "hint.remove ;");
-  assert.equal(repairWords(t, "a", { from: 0, to: 1, insert: "b\nc" }), "hint.correct");
-  assert.equal(repairWords(t, "a\u00a0b", { from: 1, to: 2, insert: " " }), "hint.correct");
-  assert.equal(repairWords(t, "a", { from: 0, to: 0, insert: "x".repeat(30) }), "hint.correct");
+  assert.equal(repairLabel(t, "a = 1", { from: 2, to: 3, insert: "==" }), "hint.change ==");
+  assert.equal(repairLabel(t, "a b", { from: 1, to: 1, insert: " then" }), "hint.insert then");
+  assert.equal(repairLabel(t, "a;", { from: 1, to: 2, insert: "" }), "hint.remove ;");
+  assert.equal(repairLabel(t, "a", { from: 0, to: 1, insert: "b\nc" }), "hint.correct");
+  assert.equal(repairLabel(t, "a\u00a0b", { from: 1, to: 2, insert: " " }), "hint.correct");
+  assert.equal(repairLabel(t, "a", { from: 0, to: 0, insert: "x".repeat(30) }), "hint.correct");
 });

@@ -18,7 +18,7 @@ const FOREIGN = [
 ];
 
 for (const message of FOREIGN) {
-  test(`'${message}' is said without the reader's words, in every language`, () => {
+  test(`'${message}' is shown in plain words, in every language`, () => {
     const fault = locate(`/simulator.playground: ${message}`, "a.json");
     for (const language of Object.keys(LANGUAGES)) {
       const said = faultText(translator(language), fault);
@@ -28,7 +28,7 @@ for (const message of FOREIGN) {
   });
 }
 
-test("a mistake in a playground is told as it is", () => {
+test("an error in a playground is reported with its details", () => {
   for (const text of [
     "shapes[0].x_m: found 'far', expected a number of m",
     "shapes[0]: found 3, expected an object",

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { FrameError, messageFrame, parseFrame, serviceRequestFrame } from "../../web_ui/protocol/frames.js";
 import { bytes, serverFrame } from "./support.js";
 
-test("message data has its subscription, time and payload", () => {
+test("message data contains subscription, time and payload", () => {
   const frame = parseFrame(
     serverFrame(
       1,
@@ -45,7 +45,7 @@ test("a service response names its encoding", () => {
   );
 });
 
-test("frames of kinds we do not use are passed over", () => {
+test("frames with unused opcodes are ignored", () => {
   assert.deepEqual(parseFrame(serverFrame(9, [])), { op: "other", code: 9 });
 });
 
@@ -61,12 +61,12 @@ for (const [name, data] of /** @type {[string, ArrayBuffer][]} */ ([
     ]),
   ],
 ])) {
-  test(`a frame that is too short is refused: ${name}`, () => {
+  test(`a frame that is too short is rejected: ${name}`, () => {
     assert.throws(() => parseFrame(data), FrameError);
   });
 }
 
-test("our frames have the layout of the specification", () => {
+test("sent frames have the layout of the specification", () => {
   assert.equal(Buffer.from(messageFrame(258, bytes("aabb"))).toString("hex"), "0102010000aabb");
   assert.equal(
     Buffer.from(serviceRequestFrame(1, 2, "cdr", bytes("cc"))).toString("hex"),

@@ -7,7 +7,7 @@ import { chooseLanguage, LANGUAGES, translator } from "../../web_ui/i18n/index.j
 const ROOT = new URL("../../web_ui/", import.meta.url);
 
 for (const [language, table] of Object.entries(LANGUAGES)) {
-  test(`${language} has every text, and none that nobody knows`, () => {
+  test(`${language} has exactly the texts of the English table`, () => {
     assert.deepEqual(Object.keys(table), Object.keys(LANGUAGES.en));
   });
 
@@ -18,15 +18,15 @@ for (const [language, table] of Object.entries(LANGUAGES)) {
   });
 }
 
-test("every text that the page asks for by name is there", () => {
-  const files = ["main.js", "actions.js", ...readdirSync(new URL("panels/", ROOT)).map((name) => `panels/${name}`)];
+test("every text key used by the page exists", () => {
+  const files = ["main.js", "input/actions.js", ...readdirSync(new URL("panels/", ROOT)).map((name) => `panels/${name}`)];
   for (const file of files) {
     const source = readFileSync(new URL(file, ROOT), "utf8");
     for (const [, key] of source.matchAll(/\bt\("([^"]+)"/g)) assert.ok(key in LANGUAGES.en, `${file}: ${key}`);
   }
 });
 
-test("the first language that there is is chosen", () => {
+test("the first available language is chosen", () => {
   assert.equal(chooseLanguage(["", "pt-BR", "fr-CH", "de"]), "fr");
   assert.equal(chooseLanguage(["pt"]), "en");
 });

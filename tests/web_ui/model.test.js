@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { Fleet } from "../../web_ui/scene/fleet.js";
+import { RobotInstances } from "../../web_ui/scene/robot_instances.js";
 import { PlaygroundModel } from "../../web_ui/scene/playground.js";
 import { RobotModel } from "../../web_ui/scene/robot.js";
 import { applyMarkers } from "../../web_ui/state/markers.js";
@@ -28,113 +28,113 @@ function frameAt(x) {
   return group.matrix;
 }
 
-/** @param {Fleet} fleet */
-function drawn(fleet) {
-  return /** @type {import("three").InstancedMesh[]} */ (fleet.group.children.filter(({ visible }) => visible));
+/** @param {RobotInstances} instances */
+function drawn(instances) {
+  return /** @type {import("three").InstancedMesh[]} */ (instances.group.children.filter(({ visible }) => visible));
 }
 
-/** @param {Fleet} fleet */
-function triangles(fleet) {
-  const sizes = drawn(fleet).map(({ geometry: { index, attributes }, count }) => {
+/** @param {RobotInstances} instances */
+function triangles(instances) {
+  const sizes = drawn(instances).map(({ geometry: { index, attributes }, count }) => {
     return ((index?.count ?? attributes.position.count) / 3) * count;
   });
   return sizes.reduce((sum, size) => sum + size, 0);
 }
 
 test(`a robot has fewer than ${TRIANGLES} triangles`, () => {
-  const fleet = new Fleet({ fine: true });
-  fleet.update(standing(1));
-  assert.ok(triangles(fleet) < TRIANGLES, `${triangles(fleet)}`);
+  const instances = new RobotInstances({ fine: true });
+  instances.update(standing(1));
+  assert.ok(triangles(instances) < TRIANGLES, `${triangles(instances)}`);
 });
 
 test("twenty robots take as many draw calls as one", () => {
-  const fleet = new Fleet({ fine: true });
+  const instances = new RobotInstances({ fine: true });
   for (const count of [1, 20, 3]) {
-    fleet.update(standing(count));
-    assert.ok(drawn(fleet).length > 7);
-    assert.ok(drawn(fleet).length <= MOST_DRAW_CALLS);
-    assert.ok(triangles(fleet) < count * TRIANGLES);
+    instances.update(standing(count));
+    assert.ok(drawn(instances).length > 7);
+    assert.ok(drawn(instances).length <= MOST_DRAW_CALLS);
+    assert.ok(triangles(instances) < count * TRIANGLES);
   }
 });
 
-test("a robot seen from far is a fifth of one that is near", () => {
+test("a distant robot has a fifth of the triangles of a near one", () => {
   const [fine, coarse] = [true, false].map((detail) => {
-    const fleet = new Fleet({ fine: detail });
-    fleet.update(standing(1));
-    return triangles(fleet);
+    const instances = new RobotInstances({ fine: detail });
+    instances.update(standing(1));
+    return triangles(instances);
   });
   assert.ok(coarse < fine / 5, `${coarse} of ${fine}`);
 });
 
-test("what cannot be seen is not drawn: from far, a robot is its body and the lights that shine", () => {
-  const fleet = new Fleet({ fine: false });
+test("invisible parts are not drawn: a distant robot is its body and the lit lights", () => {
+  const instances = new RobotInstances({ fine: false });
   const look = { sensing: false, hovered: null };
   /** @param {Partial<import("../../web_ui/state/robot.js").Robot>} state */
   const crowd = (state) => standing(20, state).map(({ frame }) => ({ frame, look: { ...look, robot: { ...NEW_ROBOT, ...state } } }));
-  fleet.update(crowd({}));
-  assert.equal(sum(copies(fleet)), 20 * 2);
-  fleet.update(crowd({ leds: { circle: [0, 0, 1], bottom_left: [0, 0.5, 0] } }));
-  assert.equal(sum(copies(fleet)), 20 * 4);
-  fleet.update(crowd({}));
-  assert.equal(sum(copies(fleet)), 20 * 2);
+  instances.update(crowd({}));
+  assert.equal(sum(copies(instances)), 20 * 2);
+  instances.update(crowd({ leds: { circle: [0, 0, 1], bottom_left: [0, 0.5, 0] } }));
+  assert.equal(sum(copies(instances)), 20 * 4);
+  instances.update(crowd({}));
+  assert.equal(sum(copies(instances)), 20 * 2);
 });
 
-test("what is drawn of several robots is where they are, whatever is left out before it", () => {
-  const fleet = new Fleet({ fine: false });
+test("parts of several robots are at the right positions, whatever is left out before them", () => {
+  const instances = new RobotInstances({ fine: false });
   const [dark, lit] = standing(2);
-  fleet.update([dark, { ...lit, look: { ...lit.look, robot: { ...NEW_ROBOT, leds: { circle: [0, 1] } } } }]);
-  const [, , discs] = /** @type {import("three").InstancedMesh[]} */ (fleet.group.children);
+  instances.update([dark, { ...lit, look: { ...lit.look, robot: { ...NEW_ROBOT, leds: { circle: [0, 1] } } } }]);
+  const [, , discs] = /** @type {import("three").InstancedMesh[]} */ (instances.group.children);
   assert.equal(discs.count, 1);
   assert.ok(Math.abs(placeOf(discs, 0)[12] - 1.066) < 1e-6);
   const [red, , blue] = discs.instanceColor?.array ?? [];
   assert.ok(red > blue, "yellow, as all of the circle");
 });
 
-test("a robot that did not change costs nothing, one that moved is drawn where it is", () => {
-  const fleet = new Fleet({ fine: true });
+test("an unchanged robot is not updated, a moved one is drawn at its pose", () => {
+  const instances = new RobotInstances({ fine: true });
   const robots = standing(2);
-  fleet.update(robots);
-  const versions = () => drawn(fleet).map(({ instanceMatrix }) => instanceMatrix.version);
+  instances.update(robots);
+  const versions = () => drawn(instances).map(({ instanceMatrix }) => instanceMatrix.version);
   const before = versions();
-  fleet.update(robots);
+  instances.update(robots);
   assert.deepEqual(versions(), before);
-  fleet.update([robots[0], { ...robots[1], frame: frameAt(7) }]);
-  const [, body] = drawn(fleet);
+  instances.update([robots[0], { ...robots[1], frame: frameAt(7) }]);
+  const [, body] = drawn(instances);
   assert.equal(placeOf(body, 1)[12], 7);
   assert.ok(versions().every((version, index) => version > before[index]));
 });
 
-test("a robot that comes after others have gone has nothing of theirs", () => {
-  const fleet = new Fleet({ fine: true });
+test("a robot that reuses a slot has nothing of the previous robot", () => {
+  const instances = new RobotInstances({ fine: true });
   const lit = { circle: [1, 0, 0, 0, 0, 0, 0, 0] };
-  fleet.update(standing(2, { leds: lit, proximity: { center: 0.05 } }));
-  fleet.update(standing(1));
-  fleet.update(standing(2));
-  const fresh = new Fleet({ fine: true });
+  instances.update(standing(2, { leds: lit, proximity: { center: 0.05 } }));
+  instances.update(standing(1));
+  instances.update(standing(2));
+  const fresh = new RobotInstances({ fine: true });
   fresh.update(standing(2));
-  /** @param {Fleet} one */
+  /** @param {RobotInstances} one */
   const all = (one) =>
     drawn(one).map(({ instanceMatrix, instanceColor, count }) => [
       ...instanceMatrix.array.slice(0, count * 16),
       ...(instanceColor?.array.slice(0, count * 3) ?? []),
     ]);
-  assert.deepEqual(all(fleet), all(fresh));
+  assert.deepEqual(all(instances), all(fresh));
 });
 
 test("beams and patches are shown only where they are wanted", () => {
-  const fleet = new Fleet({ fine: true });
+  const instances = new RobotInstances({ fine: true });
   const seeing = { proximity: { center: 0.05, left: Infinity }, raw: { ground: [0, 0, 0, 0, 500, 500] } };
   const [robot] = standing(1, seeing);
-  const sensed = () => copies(fleet).slice(-7, -2);
-  fleet.update([robot]);
+  const sensed = () => copies(instances).slice(-7, -2);
+  instances.update([robot]);
   assert.deepEqual(sensed(), [1, 1, 1, 2, 2]);
-  fleet.update([{ ...robot, look: { ...robot.look, sensing: false } }]);
+  instances.update([{ ...robot, look: { ...robot.look, sensing: false } }]);
   assert.deepEqual(sensed(), [0, 0, 0, 0, 0]);
 });
 
-/** How many copies of each shape are drawn. @param {Fleet} fleet */
-function copies(fleet) {
-  const meshes = /** @type {import("three").InstancedMesh[]} */ (fleet.group.children);
+/** How many copies of each shape are drawn. @param {RobotInstances} instances */
+function copies(instances) {
+  const meshes = /** @type {import("three").InstancedMesh[]} */ (instances.group.children);
   return meshes.map(({ visible, count }) => (visible ? count : 0));
 }
 
@@ -148,7 +148,7 @@ function placeOf(mesh, index) {
   return mesh.instanceMatrix.array.slice(16 * index, 16 * index + 16);
 }
 
-test("a robot stands where it is said to, and its parts with it", () => {
+test("a robot and its parts are drawn at the reported pose", () => {
   const model = new RobotModel("");
   const pose = { x: 1, y: 2, z: 0, yaw: Math.PI / 2, roll: 0, pitch: 0 };
   const latest = { pose, stampNs: 0, arrivedMs: 0 };
@@ -167,13 +167,13 @@ test("a robot that leans on its nose has its front below", () => {
   assert.ok(front !== null && back !== null && front.z < back.z && front.y > back.y);
 });
 
-test("a robot nobody has placed is not drawn", () => {
+test("a robot without a pose is not drawn", () => {
   const model = new RobotModel("");
   model.update(NEW_ROBOT, 0);
   assert.equal(model.group.visible, false);
 });
 
-test("a trail grows without its finished strokes being made anew", () => {
+test("a trail grows without rebuilding its finished strokes", () => {
   const strip = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   /** @param {number} id @param {number} points */
   const stroke = (id, points) => ({
@@ -193,7 +193,7 @@ test("a trail grows without its finished strokes being made anew", () => {
   assert.notEqual(model.meshes.get("pen/1")?.mesh, growing);
 });
 
-test("only markers that changed are made anew", () => {
+test("only changed markers are rebuilt", () => {
   const wall = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const first = applyMarkers(new Map(), [wall, { ...wall, id: 8, type: 3 }]);
   const model = new PlaygroundModel();
@@ -220,7 +220,7 @@ test("a solid that has only moved keeps its mesh", () => {
   assert.notEqual(model.meshes.get("solid/wall/7")?.mesh, kept);
 });
 
-test("every kind of marker is drawn in metres", () => {
+test("every kind of marker is drawn in meters", () => {
   const wall = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const points = [
     { x: 0, y: 0, z: 0 },
@@ -236,7 +236,7 @@ test("every kind of marker is drawn in metres", () => {
   assert.deepEqual(sizes, ["0.200", "0.200", "0.200", "0.000", "0.000"]);
 });
 
-test("a picture is a flat sheet of the marker's size, shown as soon as it has arrived", async () => {
+test("an image is a flat sheet of the marker's size, shown as soon as it is decoded", async () => {
   const wall = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const bitmap = /** @type {any} */ ({ width: 2, height: 1 });
   /** @type {Blob[]} */ const decoded = [];

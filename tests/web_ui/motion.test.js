@@ -9,23 +9,23 @@ function sample(x, yaw, arrivedMs, stampNs = arrivedMs * 1e6) {
   return { pose: { x, y: 0, z: 0, yaw, roll: 0, pitch: 0 }, stampNs, arrivedMs };
 }
 
-test("between two messages the robot is on its way", () => {
+test("between two messages the pose is interpolated", () => {
   const { pose, arrived } = poseAt(sample(0, 0, 0), sample(0.01, 0.2, 50), 75);
   assert.deepEqual([pose.x, pose.yaw, arrived], [0.005, 0.1, false]);
 });
 
-test("after as long again it has arrived", () => {
+test("after one more interval the last pose is reached", () => {
   assert.deepEqual(poseAt(sample(0, 0, 0), sample(0.01, 0.2, 50), 100), {
     pose: sample(0.01, 0.2, 50).pose,
     arrived: true,
   });
 });
 
-test("the first pose is taken as it is", () => {
+test("the first pose is used as it is", () => {
   assert.equal(poseAt(null, sample(1, 0, 0), 0).pose.x, 1);
 });
 
-test("a leap is not driven", () => {
+test("a leap is not interpolated", () => {
   assert.equal(poseAt(sample(0, 0, 0), sample(0.5, 0, 50), 51).pose.x, 0.5);
 });
 
@@ -33,7 +33,7 @@ test("time that went back is a reset", () => {
   assert.equal(poseAt(sample(0, 0, 0, 9e9), sample(0.01, 0, 50, 0), 51).pose.x, 0.01);
 });
 
-test("a heading turns the short way over the back", () => {
+test("a heading turns the short way across ±π", () => {
   assert.ok(Math.abs(shortestTurn(3, -3) - (2 * Math.PI - 6)) < 1e-12);
   assert.ok(Math.abs(shortestTurn(-3, 3) - (6 - 2 * Math.PI)) < 1e-12);
   assert.equal(shortestTurn(0.5, 1), 0.5);
@@ -51,7 +51,7 @@ test("fast frames and pauses leave the quality alone", () => {
   assert.equal(quality.level, 0);
 });
 
-test("a saved picture is large however coarsely the view is drawn, and never too large for a graphics card", () => {
+test("a saved image is large whatever the quality, and never too large for a graphics card", () => {
   for (const [width, height, devicePixelRatio] of [
     [800, 600, 1],
     [390, 480, 3],

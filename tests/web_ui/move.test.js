@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { Mover } from "../../web_ui/move/mover.js";
+import { DragController } from "../../web_ui/move/drag_controller.js";
 import { startOf } from "../../web_ui/move/start.js";
-import { blocker, hit, movables, obstacles, overlap, reach } from "../../web_ui/move/things.js";
+import { blocker, hit, movables, obstacles, overlap, reach } from "../../web_ui/move/placed_bodies.js";
 import { INITIAL } from "../../web_ui/state/index.js";
 import { NEW_ROBOT } from "../../web_ui/state/robot.js";
 
@@ -36,24 +36,24 @@ function world() {
 /** Straight down. @param {number} x @param {number} y */
 const down = (x, y) => ({ origin: { x, y, z: 1 }, direction: { x: 0, y: 0, z: -1 } });
 
-/** A mover over this world, with what it asked and told. */
+/** A dragController over this world, with what it asked and reported. */
 function prepared({ accepted = true } = {}) {
   /** @type {any[]} */ const asked = [];
-  /** @type {any[]} */ const told = [];
+  /** @type {any[]} */ const reported = [];
   const state = world();
-  const mover = new Mover({
+  const dragController = new DragController({
     state: () => state,
     place: async (...given) => {
       asked.push(given);
       return accepted;
     },
     changed: () => {},
-    tell: (...given) => told.push(given),
+    report: (...given) => reported.push(given),
   });
-  return { mover, asked, told };
+  return { dragController, asked, reported };
 }
 
-test("robots and movable things can be taken, walls and doors cannot", () => {
+test("robots and movable objects can be moved, walls and doors cannot", () => {
   assert.deepEqual(movables(world()).map(({ name }) => name), ["thymio", "can"]);
   assert.deepEqual(obstacles(world(), "can").map(({ name }) => name), ["thymio", "wall", "door"]);
 });
@@ -64,7 +64,7 @@ test("squares that only touch do not overlap", () => {
   assert.equal(overlap(square(0), square(1)), false);
 });
 
-test("a robot has a place beside a wall, but not in it", () => {
+test("a robot fits beside a wall, but not in it", () => {
   const [robot] = movables(world());
   const others = obstacles(world(), robot.name);
   assert.equal(blocker(robot, { x: 0.6, y: 0, yaw: 0 }, others), null);
@@ -79,74 +79,74 @@ test("a prism's footprint is its top", () => {
     [0, 1],
   ].map(([x, y]) => ({ x, y, z: 0.1 }));
   const prism = { ...solid("prism", 0, 11, 0.2), points: [...corners, { x: 9, y: 9, z: -0.1 }, ...corners.slice(1)] };
-  const [thing] = obstacles({ ...world(), robots: {}, objects: new Map(), markers: new Map([["p", prism]]) }, "");
-  assert.equal(thing.outline.length, 1);
-  assert.equal(reach(thing), 1);
+  const [body] = obstacles({ ...world(), robots: {}, objects: new Map(), markers: new Map([["p", prism]]) }, "");
+  assert.equal(body.outline.length, 1);
+  assert.equal(reach(body), 1);
 });
 
-test("a pointer takes the thing that its line of sight meets first", () => {
-  const things = movables(world());
-  assert.equal(hit(down(0.02, 0), things)?.thing.name, "thymio");
-  assert.equal(hit(down(0.3, 0.01), things)?.thing.name, "can");
-  assert.equal(hit(down(0.6, 0), things), null);
+test("a pointer grabs the first body on its line of sight", () => {
+  const bodies = movables(world());
+  assert.equal(hit(down(0.02, 0), bodies)?.body.name, "thymio");
+  assert.equal(hit(down(0.3, 0.01), bodies)?.body.name, "can");
+  assert.equal(hit(down(0.6, 0), bodies), null);
   const slanting = { origin: { x: 0.3 - 1, y: 0, z: 1.05 }, direction: { x: 1, y: 0, z: -1 } };
-  assert.equal(hit(slanting, things)?.thing.name, "can"); // through its top edge, not where it stands
-  assert.equal(hit({ ...slanting, direction: { x: 1, y: 0, z: 0 } }, things), null);
+  assert.equal(hit(slanting, bodies)?.body.name, "can"); // through its top edge, not where it stands
+  assert.equal(hit({ ...slanting, direction: { x: 1, y: 0, z: 0 } }, bodies), null);
 });
 
-test("what is dragged keeps the place of the finger on it, and is asked for when put down", async () => {
-  const { mover, asked } = prepared();
-  assert.equal(mover.grab(down(0.05, 0.01), false), false);
-  assert.equal(mover.grab(down(0.05, 0.01), true), true);
-  mover.drag(down(0.55, -0.19));
-  const pose = mover.held?.pose;
+test("a dragged body keeps its offset to the pointer, and the simulator is asked when it is dropped", async () => {
+  const { dragController, asked } = prepared();
+  assert.equal(dragController.grab(down(0.05, 0.01), false), false);
+  assert.equal(dragController.grab(down(0.05, 0.01), true), true);
+  dragController.drag(down(0.55, -0.19));
+  const pose = dragController.held?.pose;
   assert.ok(pose && Math.abs(pose.x - 0.5) < 1e-9 && Math.abs(pose.y + 0.2) < 1e-9);
-  await mover.drop();
+  await dragController.drop();
   assert.equal(asked[0][0], "thymio");
-  assert.equal(mover.held, null);
+  assert.equal(dragController.held, null);
 });
 
-test("a ghost knows what stands in its place", () => {
-  const { mover } = prepared();
-  mover.grab(down(0.3, 0), true);
-  mover.drag(down(1, 0));
-  assert.equal(mover.held?.blocker, "wall");
-  mover.drag(down(0.6, 0));
-  assert.equal(mover.held?.blocker, null);
+test("a ghost reports the obstacle at its position", () => {
+  const { dragController } = prepared();
+  dragController.grab(down(0.3, 0), true);
+  dragController.drag(down(1, 0));
+  assert.equal(dragController.held?.blocker, "wall");
+  dragController.drag(down(0.6, 0));
+  assert.equal(dragController.held?.blocker, null);
 });
 
-test("the ring turns what is held in move mode", () => {
-  const { mover } = prepared();
-  mover.setMode(true);
-  assert.equal(mover.held?.thing.name, "thymio");
-  const radius = reach(/** @type {any} */ (mover.held).thing) + 0.025;
-  assert.equal(mover.grab(down(radius, 0), true), true);
-  mover.drag(down(0, radius));
-  assert.ok(mover.held !== null && Math.abs(mover.held.pose.yaw - Math.PI / 2) < 1e-9 && mover.held.pose.x === 0);
+test("the ring turns the selected body in move mode", () => {
+  const { dragController } = prepared();
+  dragController.setMode(true);
+  assert.equal(dragController.held?.body.name, "thymio");
+  const radius = reach(/** @type {any} */ (dragController.held).body) + 0.025;
+  assert.equal(dragController.grab(down(radius, 0), true), true);
+  dragController.drag(down(0, radius));
+  assert.ok(dragController.held !== null && Math.abs(dragController.held.pose.yaw - Math.PI / 2) < 1e-9 && dragController.held.pose.x === 0);
 });
 
-test("keys move, turn, take the next thing and put it down", async () => {
-  const { mover, asked, told } = prepared();
-  mover.setMode(true);
-  mover.next();
-  mover.nudge(1, 2, 1);
-  assert.deepEqual(told.at(-1), ["move.at", { x: "31", y: "2", yaw: 15 }]);
-  mover.nudge(70, -2);
-  assert.deepEqual(told.at(-1), ["move.taken", { x: "101", y: "0", yaw: 15, by: "wall" }]);
-  await mover.drop();
+test("keys move, turn, select the next body and drop it", async () => {
+  const { dragController, asked, reported } = prepared();
+  dragController.setMode(true);
+  dragController.next();
+  dragController.nudge(1, 2, 1);
+  assert.deepEqual(reported.at(-1), ["move.at", { x: "31", y: "2", yaw: 15 }]);
+  dragController.nudge(70, -2);
+  assert.deepEqual(reported.at(-1), ["move.taken", { x: "101", y: "0", yaw: 15, by: "wall" }]);
+  await dragController.drop();
   assert.equal(asked[0][0], "can");
-  assert.equal(mover.held?.pose.x, 0.3); // still in hand, where it stands
-  mover.setMode(false);
-  assert.equal(mover.held, null);
+  assert.equal(dragController.held?.pose.x, 0.3); // still in hand, where it stands
+  dragController.setMode(false);
+  assert.equal(dragController.held, null);
 });
 
-test("an empty world leaves the hand empty", async () => {
-  const mover = new Mover({ state: () => INITIAL, place: async () => true, changed: () => {}, tell: () => {} });
-  mover.setMode(true);
-  mover.next();
-  mover.nudge(1, 0);
-  await mover.drop();
-  assert.equal(mover.held, null);
+test("nothing is selected in an empty world", async () => {
+  const dragController = new DragController({ state: () => INITIAL, place: async () => true, changed: () => {}, report: () => {} });
+  dragController.setMode(true);
+  dragController.next();
+  dragController.nudge(1, 0);
+  await dragController.drop();
+  assert.equal(dragController.held, null);
 });
 
 /** A playground of ours with a floor, and one robot. @param {number} size @param {Record<string, any>} robot */
@@ -155,19 +155,19 @@ function floor(size, robot) {
   return JSON.stringify({ format: 1, title: "Floor", shapes, robots: [{ name: "thymio", ...robot }] });
 }
 
-test("a robot that fell is put where it started", () => {
+test("a fallen robot is returned to its start", () => {
   const found = startOf(world(), floor(2, { x_m: -0.5, y_m: 0.5, yaw_rad: 1 }), "thymio");
   assert.deepEqual(found, { x: -0.5, y: 0.5, yaw: 1 });
 });
 
-test("where something stands at the start it is put beside it, on the ground", () => {
+test("if the start is occupied, a fallen robot is placed next to it, on the ground", () => {
   const start = { x_m: 0.25, y_m: 0 }; // its front would be in the can
   assert.deepEqual(startOf(world(), floor(2, start), "thymio"), { x: 0.4, y: 0, yaw: 0 });
   const onSmallFloor = startOf(world(), floor(0.6, start), "thymio");
   assert.deepEqual([onSmallFloor.x.toFixed(3), onSmallFloor.y.toFixed(3)], ["0.250", "0.150"]);
 });
 
-test("a robot that came later is put at the start of another, or beside it", () => {
+test("a robot without a start is placed at the start of another, or next to it", () => {
   const found = startOf(world(), floor(2, { x_m: 0, y_m: 0 }), "anna");
   assert.ok(Math.hypot(found.x, found.y) > 0.1);
 });

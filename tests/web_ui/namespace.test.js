@@ -21,7 +21,7 @@ test("without a namespace all names are as they are", () => {
   }
 });
 
-test("in a namespace names lose it and get it back, but for those of all namespaces", () => {
+test("in a namespace, names are shortened and restored, except names of all namespaces", () => {
   const names = namespace("/lab1", ["/lab1/simulator/_state"]);
   for (const [whole, name] of [
     ["/lab1/odom", "/odom"],
@@ -35,7 +35,7 @@ test("in a namespace names lose it and get it back, but for those of all namespa
   }
 });
 
-test("what belongs to another suite has no name", () => {
+test("names of another suite are ignored", () => {
   const names = namespace("/lab1", ["/lab1/simulator/_state", "/lab2/simulator/_state"]);
   for (const name of ["/lab2/odom", "/lab10/odom", "/odom"]) assert.equal(names.inner(name), null);
 });
@@ -98,7 +98,7 @@ function opened(bridge) {
   return { session, sent, events, receive };
 }
 
-test("a session in a namespace asks for whole names and gives short ones", async () => {
+test("a session in a namespace sends full names and reports short ones", async () => {
   const { session, sent, events, receive } = opened("/lab1");
   assert.deepEqual(
     sent.map(({ op, parameterNames }) => [op, parameterNames]),

@@ -1,4 +1,4 @@
-"""What tests in a browser do on the page, again and again."""
+"""Helpers for browser tests."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ MARKS = [pytest.mark.browser, pytest.mark.process]
 
 
 class Fingers:
-    """Several fingers at once, by the developer protocol: a finger is a number, a place is in CSS pixels."""
+    """Several touch points, through the DevTools protocol: names are fingers, positions are in CSS pixels."""
 
     def __init__(self, page: Any) -> None:
         self._developer = page.context.new_cdp_session(page)
         self._down: dict[int, tuple[float, float]] = {}
 
     def put(self, **places: tuple[float, float]) -> None:
-        """Put fingers down: a=(x, y), b=(x, y)."""
+        """Start touches: a=(x, y), b=(x, y)."""
         for name, place in places.items():
             self._down[ord(name)] = place
             self._send("touchStart")
 
     def move(self, steps: int = 6, **places: tuple[float, float]) -> None:
-        """Move fingers that are down, all together."""
+        """Move all touches at once."""
         begin = {name: self._down[ord(name)] for name in places}
         for step in range(1, steps + 1):
             for name, (x, y) in places.items():
@@ -37,7 +37,7 @@ class Fingers:
             self._send("touchMove")
 
     def lift(self) -> None:
-        """Take all fingers up."""
+        """End all touches."""
         self._down.clear()
         self._send("touchEnd")
 
@@ -47,7 +47,7 @@ class Fingers:
 
 
 def drop_file(page: Any, path: Path, selector: str) -> None:
-    """Drag a file from the desktop and let go of it over the middle of this."""
+    """Drop a file on the center of an element."""
     box = page.locator(selector).bounding_box()
     place = {"x": box["x"] + box["width"] / 2, "y": box["y"] + box["height"] / 2}
     developer = page.context.new_cdp_session(page)
@@ -57,12 +57,12 @@ def drop_file(page: Any, path: Path, selector: str) -> None:
 
 
 def without_tour(address: str) -> str:
-    """The page's address for somebody who has seen the tour, as a teacher or a kiosk opens it."""
+    """The address with the tour disabled, as for a kiosk."""
     return f"{address}{'&' if '?' in address else '?'}tour=off"
 
 
 def open_page(page: Any, address: str) -> None:
-    """Load the page, as soon as the suite answers, and wait for the robot and for what the simulator says of itself."""
+    """Load the page as soon as the suite answers, and wait for the robot and the state of the simulator."""
     wait_for_port(urlsplit(address).port or 80)
     page.goto(without_tour(address))
     page.wait_for_function("window.thymio && window.thymio.connected && window.thymio.partPosition('robot')")
@@ -70,7 +70,7 @@ def open_page(page: Any, address: str) -> None:
 
 
 def wait_for_program(page: Any, name: str) -> None:
-    """Wait until the robot runs the program of that name, whatever its folder."""
+    """Wait until the robot runs the program of that name, in any folder."""
     page.wait_for_function(
         "(name) => { const {program} = window.thymio.state();"
         " return program?.state === 'running' && program.name.endsWith(name); }",
@@ -79,20 +79,20 @@ def wait_for_program(page: Any, name: str) -> None:
 
 
 def wait_for_service(page: Any, *names: str) -> None:
-    """Wait until the page knows that it can call these."""
+    """Wait until these services are available."""
     page.wait_for_function(
         "(names) => names.every((name) => window.thymio.state().services.includes(name))", arg=list(names)
     )
 
 
 def wait_for_frame(page: Any) -> None:
-    """Wait until one more frame is drawn: panels and view show what the page knows now."""
+    """Wait for one more frame: then panels and view show the current state."""
     frames = page.evaluate("() => window.thymio.frames()")
     page.wait_for_function("(frames) => window.thymio.frames() > frames", arg=frames)
 
 
 def wait_until_still(page: Any, place: str) -> None:
-    """Wait until an expression of the page gives the same place in several frames; without a frame nothing moves."""
+    """Wait until an expression on the page gives the same position in several frames."""
     page.evaluate("() => { window.stood = null; }")
     page.wait_for_function(
         f"() => {{ const now = {place}; const frames = window.thymio.frames(); const {{stood}} = window;"
@@ -103,8 +103,8 @@ def wait_until_still(page: Any, place: str) -> None:
     )
 
 
-def wait_until_settled(page: Any, part: str) -> dict[str, float]:
-    """Where a part of the robot is on the screen, once the view stands still."""
+def wait_for_position(page: Any, part: str) -> dict[str, float]:
+    """The screen position of a part of the robot, once the view is still."""
     page.wait_for_function("() => window.thymio.state().markers > 0")
     wait_until_still(page, f"window.thymio.partPosition({json.dumps(part)})")
     place: dict[str, float] = page.evaluate("(part) => window.thymio.partPosition(part)", part)

@@ -3,8 +3,8 @@ import { readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { parse, write } from "../../web_ui/playground/document.js";
-import { holds, overlap, placed, rectangle } from "../../web_ui/playground/geometry.js";
-import { blockerOf, isOnGround, objection } from "../../web_ui/playground/judge.js";
+import { containsPoint, overlap, placed, rectangle } from "../../web_ui/playground/geometry.js";
+import { blockerOf, isOnGround, findProblem } from "../../web_ui/playground/validation.js";
 import { ROBOT, SHAPES } from "../../web_ui/playground/kinds/index.js";
 import { Markers } from "../../web_ui/playground/markers.js";
 import { partsOf } from "../../web_ui/playground/parts.js";
@@ -32,9 +32,9 @@ function schemaOf({ type, low, high, pattern, longest, fewest, fields }) {
 /** @param {Fields} fields @param {Record<string, any>} extra */
 function objectOf(fields, extra) {
   const properties = Object.fromEntries(
-    Object.entries(fields).map(([key, { rule, otherwise }]) => {
-      const hasDefault = otherwise !== undefined && otherwise !== null;
-      return [key, { ...schemaOf(rule), ...(hasDefault ? { default: otherwise } : {}) }];
+    Object.entries(fields).map(([key, { rule, defaultValue }]) => {
+      const hasDefault = defaultValue !== undefined && defaultValue !== null;
+      return [key, { ...schemaOf(rule), ...(hasDefault ? { default: defaultValue } : {}) }];
     }),
   );
   const required = Object.entries(fields)
@@ -115,7 +115,7 @@ const BOX = {
   color: "#112233",
 };
 
-test("titles are of any characters, counted as people count them; halves of them are refused", () => {
+test("titles may contain any characters, counted as code points; lone surrogates are rejected", () => {
   const titled = (/** @type {string} */ title) => parse(JSON.stringify({ format: 1, title })).title;
   for (const title of ["Labyrinth 🤖", "متاهة", "🤖".repeat(2000)]) assert.equal(titled(title), title);
   for (const title of ["🤖".repeat(2001), "\ud83e", "two\nlines"]) {
@@ -138,7 +138,7 @@ for (const [what, given, key, word] of /** @type {[string, string, string, strin
   ["a track of one place", text([{ kind: "track", points_m: [[0, 0], [0, 0]], width_m: 0.1, color: "#000000" }]), "shapes[0].points_m", "fault.places"], // prettier-ignore
   ["a plate without its door", text([{ kind: "activation", x_m: 0, y_m: 0, size_x_m: 0.1, size_y_m: 0.1, area_m: [[0, 0], [1, 0], [0, 1]], door: "gate" }]), "shapes[0].door", "fault.door"], // prettier-ignore
 ])) {
-  test(`${what} is refused with its place`, () => {
+  test(`${what} is rejected with its location`, () => {
     assert.throws(
       () => parse(given),
       (error) => error instanceof Fault && error.key === key && error.expected.word === word,
@@ -151,32 +151,32 @@ test("a shape of another package is kept as it is", () => {
   assert.deepEqual(JSON.parse(write(parse(text([spiral])))).shapes, [spiral]);
 });
 
-test("what has no name is called as the simulator calls it", () => {
+test("unnamed shapes get the same names as in the simulator", () => {
   const { name: _name, ...unnamed } = BOX;
   assert.equal(parse(text([unnamed])).items[0].name, "box_0");
 });
 
-test("an item may not stand on a robot, though things may stand in each other", () => {
+test("an item may not overlap a robot, but objects may overlap each other", () => {
   const [robot] = parse(text([], [{ name: "thymio", x_m: 0, y_m: 0 }])).items;
   const crate = { ...BOX, x_m: 0.05 };
   assert.equal(blockerOf([robot], crate), "thymio");
-  assert.deepEqual(objection([robot], crate), { word: "problem.taken", values: { name: "thymio" } });
-  assert.equal(objection([robot, { ...BOX, name: "other", x_m: 0.2 }], { ...BOX, x_m: 0.21 }), null);
-  assert.equal(objection([robot], { ...BOX, x_m: 0.13 + 1e-9 }), null);
+  assert.deepEqual(findProblem([robot], crate), { word: "problem.taken", values: { name: "thymio" } });
+  assert.equal(findProblem([robot, { ...BOX, name: "other", x_m: 0.2 }], { ...BOX, x_m: 0.21 }), null);
+  assert.equal(findProblem([robot], { ...BOX, x_m: 0.13 + 1e-9 }), null);
 });
 
-test("a limit that is passed is an objection with its key", () => {
-  assert.equal(objection([], { ...BOX, height_m: 0 })?.values?.key, "height_m");
+test("a value out of range is a problem with its key", () => {
+  assert.equal(findProblem([], { ...BOX, height_m: 0 })?.values?.key, "height_m");
 });
 
-test("ground holds what is on it and on its edge", () => {
+test("an item on a ground or on its edge is on the ground", () => {
   const ground = { kind: "rectangle", name: "g", size_x_m: 1, size_y_m: 1, color: "#ffffff" };
   assert.equal(isOnGround([ground], { ...BOX, x_m: 0.5 }), true);
   assert.equal(isOnGround([ground], { ...BOX, x_m: 0.51 }), false);
   assert.equal(isOnGround([], { ...BOX, x_m: 9 }), true);
 });
 
-test("markers of what stays the same stay the same", () => {
+test("unchanged items keep their markers", () => {
   const markers = new Markers(() => null);
   const items = [{ kind: "rectangle", name: "g", size_x_m: 1, size_y_m: 1, color: "#ffffff", walls: {} }, BOX];
   const before = markers.of(items);
@@ -191,7 +191,7 @@ test("a disc beside a corner does not overlap it", () => {
   assert.equal(overlap(square, { middle: [1.8, 1.8], radius: 1 }), false);
   assert.equal(overlap(square, { middle: [1.7, 1.7], radius: 1 }), true);
   assert.equal(overlap({ middle: [0, 0], radius: 0.1 }, square), true);
-  assert.equal(holds(placed({ x: 1, y: 0, yaw: Math.PI / 4 }, rectangle(1, 1)), [1.6, 0]), true);
+  assert.equal(containsPoint(placed({ x: 1, y: 0, yaw: Math.PI / 4 }, rectangle(1, 1)), [1.6, 0]), true);
 });
 
 test("a robot's kind needs a name", () => {

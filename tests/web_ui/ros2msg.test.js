@@ -4,11 +4,11 @@ import { test } from "node:test";
 import { parseSchema, SchemaError } from "../../web_ui/protocol/ros2msg.js";
 import { CAPTURED } from "./support.js";
 
-test("every captured schema is understood", () => {
+test("every captured schema is parsed", () => {
   for (const { schemaName, schema } of CAPTURED) assert.doesNotThrow(() => parseSchema(schemaName, schema), schemaName);
 });
 
-test("constants and comments take no room", () => {
+test("constants and comments take no space", () => {
   const { fields } = parseSchema("a/msg/B", "uint8 ULTRASOUND=0\nuint8 kind # of radiation\nstring NAME = 'x # y'\n");
   assert.deepEqual(
     fields.map(({ name }) => name),
@@ -16,7 +16,7 @@ test("constants and comments take no room", () => {
   );
 });
 
-test("arrays tell a fixed length from a bound", () => {
+test("arrays distinguish a fixed length from a bound", () => {
   const { fields } = parseSchema(
     "a/B",
     "float64[36] covariance\nint16[<=8] data\nstring<=10 name\nstring<=4[] names\nuint8[] rest\n",
@@ -48,13 +48,13 @@ test("a name without package belongs to the package that uses it", () => {
   assert.equal(types.get("a/Inner")?.[0].type, "a/Leaf");
 });
 
-test("a type that is not defined is named", () => {
+test("an undefined type is named in the error", () => {
   assert.throws(
     () => parseSchema("a/B", "c/D field"),
     (error) => error instanceof SchemaError && /a\/B\.field.*c\/D/.test(error.message),
   );
 });
 
-test("a line that is no field is shown", () => {
+test("an invalid line is shown in the error", () => {
   assert.throws(() => parseSchema("a/B", "what"), /not a field: "what"/);
 });

@@ -2,9 +2,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { asText, groupsOf } from "../../web_ui/panels/sensor_rows.js";
-import { numbersOf } from "../../web_ui/scene/numbers.js";
+import { valueLabelsOf } from "../../web_ui/scene/value_labels.js";
 import { Quality } from "../../web_ui/scene/quality.js";
-import { robotColour } from "../../web_ui/state/colours.js";
+import { robotColor } from "../../web_ui/state/robot_colors.js";
 import { NEW_ROBOT } from "../../web_ui/state/robot.js";
 
 const ROBOT = {
@@ -23,7 +23,7 @@ const ROBOT = {
   },
 };
 
-test("every value stands in SI units beside Thymio's integer, ready for a spreadsheet", () => {
+test("every value is shown in SI units beside Thymio's integer, ready for a spreadsheet", () => {
   const lines = asText(groupsOf((key) => key), ROBOT).split("\n").map((line) => line.split("\t")); // prettier-ignore
   const find = (/** @type {string} */ label, group = "sensors.others") =>
     lines.find(([title, name]) => title === group && name === label)?.slice(2);
@@ -37,22 +37,22 @@ test("every value stands in SI units beside Thymio's integer, ready for a spread
   assert.deepEqual(find("proximity.center", "sensors.proximity"), ["5.0 cm", "3000"]);
 });
 
-test("a robot that has said nothing yet has empty values", () => {
+test("a robot without messages has empty values", () => {
   const text = asText(groupsOf((key) => key), NEW_ROBOT); // prettier-ignore
   assert.ok(!text.includes("NaN") && !text.includes("undefined"));
 });
 
-test("numbers stand at the ends of the beams and beside the ground patches", () => {
-  const numbers = numbersOf(ROBOT);
+test("value labels are at the ends of the beams and beside the ground patches", () => {
+  const numbers = valueLabelsOf(ROBOT);
   assert.deepEqual(
     numbers.map(({ text }) => text),
     ["0", "0", "3000", "0", "0", "0", "0", "300", "900"],
   );
   assert.ok(Math.abs(numbers[2].place.x - 0.0795 - 0.05) < 1e-9);
-  assert.deepEqual(numbersOf(NEW_ROBOT), []);
+  assert.deepEqual(valueLabelsOf(NEW_ROBOT), []);
 });
 
-test("a quality chosen by hand stays, and automatic begins anew", () => {
+test("a fixed quality stays, and automatic starts over", () => {
   const quality = new Quality(1);
   quality.choose("fine");
   for (let frame = 0; frame < 200; frame++) assert.equal(quality.note(frame * 200, true), false);
@@ -63,7 +63,7 @@ test("a quality chosen by hand stays, and automatic begins anew", () => {
   assert.equal(quality.choice, "auto");
 });
 
-test("robots have colours of their own, in order", () => {
-  assert.notEqual(robotColour(["a", "b"], "a"), robotColour(["a", "b"], "b"));
-  assert.equal(robotColour([], "x"), robotColour(["x"], "x"));
+test("robots have colors of their own, in order", () => {
+  assert.notEqual(robotColor(["a", "b"], "a"), robotColor(["a", "b"], "b"));
+  assert.equal(robotColor([], "x"), robotColor(["x"], "x"));
 });

@@ -41,7 +41,7 @@ const TRIGGER = {
   },
 };
 
-test("topics that are wanted are subscribed to, and their messages arrive decoded", () => {
+test("wanted topics are subscribed to, and their messages arrive decoded", () => {
   const { receive, session, json, events } = opened();
   receive({
     op: "advertise",
@@ -66,7 +66,7 @@ test("topics that are wanted are subscribed to, and their messages arrive decode
   assert.deepEqual(events.at(-1), { type: "message", topic: "/buttons/left", value: { data: true }, timeNs: 5n });
 });
 
-test("a channel that is gone leaves the list, and its late messages are dropped", () => {
+test("a removed channel leaves the list, and its late messages are dropped", () => {
   const { receive, session, json, events } = opened();
   receive({ op: "advertise", channels: [channel(2, "/buttons/left", "std_msgs/msg/Bool")] });
   receive({ op: "unadvertise", channelIds: [2] });
@@ -83,7 +83,7 @@ test("a channel that is gone leaves the list, and its late messages are dropped"
   assert.deepEqual(events.at(-1), { type: "channels", topics: [] });
 });
 
-test("parameters are asked for once the server says that it has them", () => {
+test("parameters are requested once the server announces the capability", () => {
   const { receive, json } = opened();
   receive({ op: "serverInfo", name: "bridge", capabilities: ["parameters"], sessionId: "1" });
   assert.deepEqual(
@@ -113,7 +113,7 @@ test("a zero twist is written as rclpy writes it", () => {
   assert.equal(Buffer.from(sent[1]).toString("hex").slice(10), captured("geometry_msgs/msg/Twist").hex);
 });
 
-test("a service call is answered with what the service says", async () => {
+test("a service call returns the answer of the service", async () => {
   const { session, receive, sent } = opened();
   receive({ op: "advertiseServices", services: [TRIGGER] });
   const answer = session.call("/simulator/reset");
@@ -134,7 +134,7 @@ test("a service call is answered with what the service says", async () => {
   assert.deepEqual(await answer, { ok: true, message: "done", value: { success: true, message: "done" } });
 });
 
-test("a service call that fails says why", async () => {
+test("a failed service call returns the reason", async () => {
   const { session, receive, sent } = opened();
   receive({ op: "advertiseServices", services: [TRIGGER] });
   const answer = session.call("/simulator/reset");
@@ -142,19 +142,19 @@ test("a service call that fails says why", async () => {
   assert.deepEqual(await answer, { ok: false, message: "gone" });
 });
 
-test("a service that is not there is told at once", async () => {
+test("a missing service is reported immediately", async () => {
   const { session } = opened();
   assert.deepEqual(await session.call("/nowhere"), { ok: false, message: "/nowhere is not available" });
 });
 
-test("a parameter that is taken over is answered with its value", async () => {
+test("an accepted parameter is answered with its value", async () => {
   const { session, receive, json } = opened();
   const answer = session.setParameters([{ name: "/a.x", value: 2 }]);
   receive({ op: "parameterValues", parameters: [{ name: "/a.x", value: 2 }], id: json()[0].id });
   assert.deepEqual(await answer, { ok: true, value: 2, message: "" });
 });
 
-test("a parameter is refused by the status that comes before its answer", async () => {
+test("a parameter is rejected by the status before its answer", async () => {
   const { session, receive, json } = opened();
   const answer = session.setParameters([
     { name: "/a.name", value: "n" },
@@ -172,7 +172,7 @@ test("a parameter is refused by the status that comes before its answer", async 
   assert.deepEqual(await answer, { ok: false, value: 1, message: "/a.x: line 3, column 5: no" });
 });
 
-test("a refusal of before is not taken for one of now", async () => {
+test("an earlier rejection does not affect a later request", async () => {
   const { session, receive, json } = opened();
   receive({ op: "status", level: 2, message: "old", id: "parameter:/a.x" });
   const answer = session.setParameters([{ name: "/a.x", value: 2 }]);
@@ -194,7 +194,7 @@ test("nothing stays pending when the connection is lost", async () => {
   );
 });
 
-test("nonsense from the server is one fault, and the next message is read", () => {
+test("an invalid message is one fault, and the next message is processed", () => {
   const { session, receive, events } = opened();
   session.receive("{");
   session.receive(new ArrayBuffer(0));
@@ -206,7 +206,7 @@ test("nonsense from the server is one fault, and the next message is read", () =
   );
 });
 
-test("a channel with a schema nobody understands leaves the others alone", () => {
+test("a channel with an invalid schema does not affect the others", () => {
   const { receive, json, events } = opened();
   const broken = { ...channel(1, "/broken", "std_msgs/msg/Bool"), schema: "nonsense" };
   receive({ op: "advertise", channels: [broken, channel(2, "/buttons/left", "std_msgs/msg/Bool")] });

@@ -25,7 +25,7 @@ function prepared({ muted = false } = {}) {
   return { audio, speaker };
 }
 
-test("the triangle is the robot's own wave", () => {
+test("the default wave is a triangle", () => {
   assert.equal(TRIANGLE.length, 142);
   assert.ok(Math.max(...TRIANGLE) >= 125 && Math.min(...TRIANGLE) <= -125 && TRIANGLE[0] === 0);
 });
@@ -37,7 +37,7 @@ test("zeros are silence, a frequency is a tone of the robot's wave", () => {
   assert.deepEqual(voice, { kind: "tone", frequency: 440, data: wave, volume: 0.25 });
 });
 
-test("samples are played once those that are meant have come", () => {
+test("samples are played once the matching ones have arrived", () => {
   const samples = Array.from({ length: 7813 }, () => 200);
   assert.equal(voiceOf({ ...NEW_ROBOT, sound: [0, 1, 1] }), null);
   assert.equal(voiceOf({ ...NEW_ROBOT, sound: [0, 1, 1], samples: samples.slice(100) }), null);
@@ -50,7 +50,7 @@ test("waves rest at 0, samples at 128", () => {
   assert.deepEqual([...waveform({ ...tone, kind: "samples", data: [128, 192, 0] })], [0, 0.5, -1]);
 });
 
-test("a sound goes on when only its loudness changes, and begins anew when it is played again", () => {
+test("a sound continues when only its volume changes, and restarts when it is played again", () => {
   const samples = { kind: /** @type {const} */ ("samples"), frequency: 0, data: [1, 2], volume: 1 };
   assert.equal(goesOn(samples, { ...samples, data: [1, 2], volume: 0.5 }), true);
   assert.equal(goesOn(samples, { ...samples, data: [1, 2] }), false);
@@ -58,7 +58,7 @@ test("a sound goes on when only its loudness changes, and begins anew when it is
   assert.equal(goesOn(null, samples), false);
 });
 
-test("a tone sounds until the simulator says that it ends", () => {
+test("a tone sounds until the simulator reports its end", () => {
   const { audio, speaker } = prepared();
   const tone = heard(START, "/_sound/state", [880, 0.2, 0.5]);
   speaker.update(tone);
@@ -70,7 +70,7 @@ test("a tone sounds until the simulator says that it ends", () => {
   assert.equal(audio.sounding.length, 0);
 });
 
-test("another loudness does not begin the tone anew", () => {
+test("another volume does not restart the tone", () => {
   const { audio, speaker } = prepared();
   const tone = heard(START, "/_sound/state", [880, 0.2, 1]);
   speaker.update(tone);
@@ -79,15 +79,15 @@ test("another loudness does not begin the tone anew", () => {
   assert.equal(audio.sources[0].gain.value, 0.125);
 });
 
-test("samples sound at their own rate, faster when time is faster", () => {
+test("samples are played at their rate times the real-time factor", () => {
   for (const [factor, speed] of [
     [1, 1],
     [2, 2],
     [10, 4],
   ]) {
     const { audio, speaker } = prepared();
-    const told = JSON.stringify({ real_time_factor: factor });
-    let state = reduce(START, { type: "message", topic: "/simulator/_state", value: { data: told }, timeNs: 0n });
+    const reported = JSON.stringify({ real_time_factor: factor });
+    let state = reduce(START, { type: "message", topic: "/simulator/_state", value: { data: reported }, timeNs: 0n });
     const samples = Array.from({ length: 78 }, (_, at) => at);
     state = heard(heard(state, "/_sound/state/samples", samples), "/_sound/state", [0, 0.01, 1]);
     speaker.update(state);
@@ -97,7 +97,7 @@ test("samples sound at their own rate, faster when time is faster", () => {
   }
 });
 
-test("two robots are heard together; one that is gone falls silent", () => {
+test("two robots are heard together; a removed one falls silent", () => {
   const { audio, speaker } = prepared();
   const robots = { a: { ...NEW_ROBOT, sound: [440, 1, 1] }, b: { ...NEW_ROBOT, sound: [550, 1, 1] } };
   speaker.update({ ...START, robots });
@@ -114,7 +114,7 @@ test("nothing sounds after the connection is lost", () => {
   assert.equal(audio.sounding.length, 0);
 });
 
-test("a pause holds sounds where they are", () => {
+test("a pause suspends sounds", () => {
   const { audio, speaker } = prepared();
   const tone = heard(START, "/_sound/state", [440, 1, 1]);
   /** @param {boolean} paused */
@@ -133,7 +133,7 @@ test("a pause holds sounds where they are", () => {
   assert.equal(audio.sources.length, 1);
 });
 
-test("before a person's first touch no loudspeaker is opened; muted, none at all", () => {
+test("no audio context is created before the first user action, nor while muted", () => {
   let opened = 0;
   const createContext = () => {
     opened += 1;
@@ -150,7 +150,7 @@ test("before a person's first touch no loudspeaker is opened; muted, none at all
   assert.equal(new Speaker({ createContext: null, muted: false, changed: () => {} }).phase, "unavailable");
 });
 
-test("muting ends what sounds, and unmuting lets it sound again", () => {
+test("muting stops sounds, and unmuting restarts them", () => {
   const { audio, speaker } = prepared();
   speaker.update(heard(START, "/_sound/state", [440, Infinity, 1]));
   speaker.setMuted(true);

@@ -34,7 +34,7 @@ test("topics are split into robot and name", () => {
   assert.equal(splitTopic("/a/b/_led/state"), null);
 });
 
-test("robots are those whose true pose is told", () => {
+test("robots are found by their ground truth topics", () => {
   const state = after([
     { type: "channels", topics: ["/thymio_0/_ground_truth/odom", "/thymio_1/_ground_truth/odom", "/clock"] },
   ]);
@@ -42,7 +42,7 @@ test("robots are those whose true pose is told", () => {
   assert.equal(state.selected, "thymio_0");
 });
 
-test("a robot that stays keeps what is known, and stays selected", () => {
+test("a robot that stays keeps its state, and stays selected", () => {
   const state = after([
     { type: "channels", topics: ["/a/_ground_truth/odom", "/b/_ground_truth/odom"] },
     { type: "select", robot: "b" },
@@ -63,7 +63,7 @@ test("the last two poses are kept, with their heading", () => {
   assert.ok(Math.abs((latest?.pose.yaw ?? 0) - 2 * Math.atan2(0.6, 0.8)) < 1e-12);
 });
 
-test("lights are cut into their groups", () => {
+test("LED levels are split into groups", () => {
   const { leds } = after([message("/_led/state", captured("std_msgs/msg/Float32MultiArray").value)]).robots[""];
   assert.deepEqual(leds, { top: [0, 0.5, 1], remote: [0.25] });
 });
@@ -92,7 +92,7 @@ test("sensors are kept by name", () => {
   );
 });
 
-test("a runtime of its own goes before the one that all share", () => {
+test("a robot's own runtime has priority over the shared one", () => {
   const status = captured("diagnostic_msgs/msg/DiagnosticStatus").value;
   const shared = after([{ type: "channels", topics: ["/a/_ground_truth/odom"] }, message("/_aseba/status", status)]);
   const { values, ...program } = programOf(shared) ?? { values: {} };
@@ -103,18 +103,18 @@ test("a runtime of its own goes before the one that all share", () => {
   assert.equal(programOf(own)?.state, "fault");
 });
 
-test("robots have names in the world, and things that can be moved are told", () => {
+test("robots have names in the world, and movable objects are listed", () => {
   const robots = [{ name: "", frame: "base_link", robot: "thymio" }];
   const { simulator } = after([message("/simulator/_state", json({ robots, movables: ["can"] }))]);
   assert.deepEqual([simulator?.worldNames, simulator?.movables], [{ "": "thymio" }, ["can"]]);
 });
 
-test("built-in behaviours are told as JSON", () => {
-  const { behaviours } = after([message("/aseba_runtime/_behaviours", json([{ name: "menu", description: "d" }]))]);
-  assert.deepEqual(behaviours, [{ name: "menu", description: "d" }]);
+test("built-in behaviors are reported as JSON", () => {
+  const { behaviors } = after([message("/aseba_runtime/_behaviours", json([{ name: "menu", description: "d" }]))]);
+  assert.deepEqual(behaviors, [{ name: "menu", description: "d" }]);
 });
 
-test("the simulator and its playgrounds are told as JSON", () => {
+test("the simulator and its playgrounds are reported as JSON", () => {
   const { simulator, playgrounds } = after([
     message(
       "/simulator/_state",
@@ -126,7 +126,7 @@ test("the simulator and its playgrounds are told as JSON", () => {
   assert.deepEqual(playgrounds[1], { name: "base", title: "base", description: "", translations: {} });
 });
 
-test("things that move are kept apart from what stays", () => {
+test("moving markers are separate from static ones", () => {
   const marker = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const can = { ...marker, ns: "solid/can" };
   let state = after([
@@ -139,7 +139,7 @@ test("things that move are kept apart from what stays", () => {
   assert.deepEqual([state.markers.size, state.objects.size], [1, 0]);
 });
 
-test("what a pen drew belongs to its robot", () => {
+test("a pen trail belongs to its robot", () => {
   const marker = captured("visualization_msgs/msg/MarkerArray").value.markers[1];
   const state = after([
     { type: "channels", topics: ["/a/_ground_truth/odom", "/b/_ground_truth/odom"] },
@@ -165,7 +165,7 @@ test("markers are replaced by namespace and id, and all deleted", () => {
   assert.equal(first.size, 2);
 });
 
-test("a program is on its way, then loaded", () => {
+test("a program is being sent, then loaded", () => {
   const sending = after([{ type: "upload", what: "program", name: "a.aesl", text: "x" }]);
   assert.deepEqual(sending.uploads.program, { name: "a.aesl", text: "x", phase: "sending", fault: null });
   assert.equal(
@@ -174,7 +174,7 @@ test("a program is on its way, then loaded", () => {
   );
 });
 
-test("a refused program keeps its text and the place of the fault", () => {
+test("a rejected program keeps its text and the position of the error", () => {
   const { program } = after([
     { type: "upload", what: "program", name: "a.aesl", text: "x" },
     {
@@ -191,7 +191,7 @@ test("a refused program keeps its text and the place of the fault", () => {
   });
 });
 
-test("a refusal without a place keeps its words", () => {
+test("a rejection without position keeps its message", () => {
   assert.deepEqual(locate("/simulator.playground: robots: found 0"), {
     text: "robots: found 0",
     line: null,
@@ -200,7 +200,7 @@ test("a refusal without a place keeps its words", () => {
   assert.deepEqual(locate("x.json: line 2, column 1: no"), { text: "x.json: no", line: 2, column: 1 });
 });
 
-test("refused parameters are told where they were asked, other statuses as notices", () => {
+test("rejected parameters are reported at their request, other statuses as notices", () => {
   const state = after([
     { type: "status", status: { level: 2, message: "refused", id: "parameter:/a.x" } },
     { type: "status", status: { level: 1, message: "slow" } },
@@ -225,7 +225,7 @@ test("only the last notices are kept", () => {
   );
 });
 
-test("a lost connection is told until there is a new one, and the picture stays", () => {
+test("a lost connection is shown until there is a new one, and the view stays", () => {
   const lost = after([
     { type: "connected" },
     message("/buttons/left", { data: true }),
@@ -242,7 +242,7 @@ function greeting(sessionId) {
   return { type: "serverInfo", name: "bridge", sessionId, capabilities: [] };
 }
 
-test("the same simulation goes on after a connection was lost, another one starts from nothing", () => {
+test("after a reconnection the same simulation continues, another one starts with empty state", () => {
   const lost = after([
     { type: "connected" },
     greeting("1"),
@@ -254,7 +254,7 @@ test("the same simulation goes on after a connection was lost, another one start
   assert.deepEqual(reduce(lost, greeting("2")).robots, {});
 });
 
-test("a simulation that begins anew keeps its topics, and its time starts at zero", () => {
+test("a simulation that restarts keeps its topics, and its time starts at zero", () => {
   const state = after([
     { type: "connected" },
     greeting("1"),
@@ -279,17 +279,17 @@ test("a snapshot is plain data with the selected robot at hand", () => {
   assert.deepEqual([robot.buttons.center, program, markers], [false, null, 0]);
 });
 
-test("a robot that has gone with its playground is gone, even while its topics live on", () => {
-  const told = (/** @type {string[]} */ ...names) =>
+test("a removed robot disappears even if its topics still exist", () => {
+  const reported = (/** @type {string[]} */ ...names) =>
     message("/simulator/_state", json({ playground: "p", robots: names.map((name) => ({ name })) }));
   const channels = { type: "channels", topics: ["/a/_ground_truth/odom", "/_ground_truth/odom"] };
   const odometry = message("/a/_raw/ground", { data: [] });
-  const { robots, selected } = after(/** @type {any} */ ([channels, told("a"), told(""), odometry, channels]));
+  const { robots, selected } = after(/** @type {any} */ ([channels, reported("a"), reported(""), odometry, channels]));
   assert.deepEqual([Object.keys(robots), selected], [[""], ""]);
-  assert.deepEqual(Object.keys(after(/** @type {any} */ ([told(""), channels, told("a")])).robots), ["a"]);
+  assert.deepEqual(Object.keys(after(/** @type {any} */ ([reported(""), channels, reported("a")])).robots), ["a"]);
 });
 
-test("of a crowd, beams and values are asked of the selected robot only", () => {
+test("with many robots, beams and values are subscribed to for the selected robot only", () => {
   /** @param {number} count */
   const state = (count) => ({
     selected: "r1",
@@ -304,7 +304,7 @@ test("of a crowd, beams and values are asked of the selected robot only", () => 
   assert.equal(isWatched(state(20), "/r1/no/such"), false);
 });
 
-test("of a crowd, what a robot measured is forgotten when another is selected", () => {
+test("with many robots, readings are discarded when another robot is selected", () => {
   const names = ["a", "b", "c", "d", "e"];
   const topics = (/** @type {number} */ count) => names.slice(0, count).map((name) => `/${name}/_ground_truth/odom`);
   const story = (/** @type {number} */ count) =>
@@ -318,28 +318,28 @@ test("of a crowd, what a robot measured is forgotten when another is selected", 
   assert.deepEqual(story(5), {});
 });
 
-test("robots stand in the order of their numbers", () => {
+test("robots are in the order of their numbers", () => {
   const topics = ["/thymio_10/_ground_truth/odom", "/thymio_2/_ground_truth/odom", "/anna/_ground_truth/odom"];
   assert.deepEqual(Object.keys(after([{ type: "channels", topics }]).robots), ["anna", "thymio_2", "thymio_10"]);
 });
 
-test("a notice goes with its cause, and one of the bridge when the bridge takes it back", () => {
+test("a notice disappears with its cause, and one of the bridge when the bridge removes it", () => {
   const store = new Store();
   /** @param {import("../../web_ui/state/index.js").Message[]} messages */
-  const told = (...messages) => {
+  const reported = (...messages) => {
     for (const message of messages) store.dispatch(message);
     return store.state.notices.map(({ text }) => text);
   };
-  told({ type: "notice", level: "error", text: "refused", cause: "/simulator/step" });
-  told({ type: "notice", level: "error", text: "for good" });
-  told({ type: "status", status: { level: 2, message: "too many", id: "channels" } });
-  assert.deepEqual(told({ type: "solved", cause: "/simulator/step" }), ["for good", "too many"]);
-  assert.deepEqual(told({ type: "removeStatus", ids: ["channels"] }), ["for good"]);
-  told({ type: "notice", level: "error", text: "nobody there", cause: "connection" });
-  assert.deepEqual(told({ type: "connected" }), ["for good"]);
+  reported({ type: "notice", level: "error", text: "refused", cause: "/simulator/step" });
+  reported({ type: "notice", level: "error", text: "for good" });
+  reported({ type: "status", status: { level: 2, message: "too many", id: "channels" } });
+  assert.deepEqual(reported({ type: "solved", cause: "/simulator/step" }), ["for good", "too many"]);
+  assert.deepEqual(reported({ type: "removeStatus", ids: ["channels"] }), ["for good"]);
+  reported({ type: "notice", level: "error", text: "nobody there", cause: "connection" });
+  assert.deepEqual(reported({ type: "connected" }), ["for good"]);
 });
 
-test("what was told of a file goes with the next attempt", () => {
+test("a notice about a file disappears with the next attempt", () => {
   const store = new Store();
   store.dispatch({ type: "notice", level: "error", text: "no playground", cause: "file" });
   store.dispatch({ type: "notice", level: "error", text: "bad.json", cause: "upload playground" });
@@ -351,7 +351,7 @@ test("what was told of a file goes with the next attempt", () => {
   );
 });
 
-test("the id of a notice is never given again", () => {
+test("the id of a notice is never reused", () => {
   const store = new Store();
   store.dispatch({ type: "notice", level: "info", text: "one" });
   const [{ id }] = store.state.notices;
@@ -360,7 +360,7 @@ test("the id of a notice is never given again", () => {
   assert.notEqual(store.state.notices[0].id, id);
 });
 
-test("robots that fell are known by their names in topics", () => {
+test("fallen robots are listed by their names in topics", () => {
   const robots = [
     { name: "", robot: "thymio", fallen: true },
     { name: "b", robot: "blue", fallen: false },

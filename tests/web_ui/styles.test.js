@@ -7,9 +7,9 @@ import { test } from "node:test";
 const ROOT = new URL("../../web_ui/", import.meta.url);
 /** Lazily loaded parts: their sheet, and the files and folders that belong to them. */
 const PARTS = [
-  { sheet: "editor/editor.css", own: ["editor/", "editor_host.js"] },
-  { sheet: "creator/creator.css", own: ["creator/", "creator_host.js"] },
-  { sheet: "tour/tour.css", own: ["tour/", "tour_host.js"] },
+  { sheet: "editor/editor.css", own: ["editor/", "hosts/editor_host.js"] },
+  { sheet: "creator/creator.css", own: ["creator/", "hosts/creator_host.js"] },
+  { sheet: "tour/tour.css", own: ["tour/", "hosts/tour_host.js"] },
 ];
 
 /** Every script of the page. */
@@ -42,7 +42,7 @@ function selectorsOf(sheet) {
 }
 
 for (const { sheet, own } of PARTS) {
-  test(`every rule of ${sheet} begins with a class of its own part`, () => {
+  test(`every rule of ${sheet} starts with a class of its own part`, () => {
     const foreign = new Set(
       SCRIPTS.filter((name) => !own.some((each) => name.startsWith(each))).flatMap((name) => classesOf(name)),
     );

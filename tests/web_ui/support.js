@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 
 /** @typedef {{ schemaName: string, schema: string, hex: string, value: any }} Captured */
 
-/** Messages as rclpy serialised them (capture.py). @type {Captured[]} */
+/** Messages as rclpy serialized them (capture.py). @type {Captured[]} */
 export const CAPTURED = JSON.parse(readFileSync(new URL("../data/web/messages.json", import.meta.url), "utf8"));
 
 /** The captured message of a type. @param {string} schemaName */

@@ -1,4 +1,4 @@
-"""The playground creator in a real browser: built by pointer, by keys and by touch, kept, saved, opened, tried."""
+"""The playground creator in a real browser: pointer, keys and touch; draft, save, open, try."""
 
 from __future__ import annotations
 
@@ -57,11 +57,11 @@ def open_creator(page, suite, *arguments):
     open_page(page, suite("--playground", "base", "--program", "none", *arguments))
     page.click("#creator-switch")
     page.locator(".palette").wait_for()
-    settle(page)
+    wait_for_camera(page)
 
 
-def settle(page):
-    """Wait until the camera stands still."""
+def wait_for_camera(page):
+    """Wait until the camera is still."""
     wait_until_still(page, "window.thymio.screenPosition(0.1, 0.1, 0)")
 
 
@@ -86,7 +86,7 @@ def wait_for_items(page, count):
     page.wait_for_function("(count) => window.thymio.built().playground.items.length === count", arg=count)
 
 
-def test_a_playground_is_built_with_undo_saved_found_again_opened_and_tried(suite, page, tmp_path):
+def test_a_playground_is_built_with_undo_saved_restored_opened_and_tried(suite, page, tmp_path):
     open_creator(page, suite)
     page.click("[data-tool=box]")
     click(page, 0.3, 0.3)
@@ -131,7 +131,7 @@ def test_a_playground_is_built_with_undo_saved_found_again_opened_and_tried(suit
     page.locator("#view").focus()
     page.keyboard.press("t")
     start = page.evaluate("window.thymio.state().robot.latest.pose")
-    page.select_option(".behaviour select", "thesis_basic")
+    page.select_option(".behavior select", "thesis_basic")
     page.wait_for_function(
         "window.thymio.state().program?.state === 'running' && window.thymio.state().program.name.includes('basic')"
     )
@@ -185,7 +185,7 @@ def test_everything_is_built_by_keys_alone(suite, page):
     page.wait_for_function("window.thymio.state().simulator.playground === 'My_playground.json'")
 
 
-def test_the_ghost_is_red_where_nothing_can_be_put_and_says_why(suite, page):
+def test_the_ghost_is_red_at_invalid_positions_and_the_reason_is_shown(suite, page):
     open_creator(page, suite)
     page.click("[data-tool=cylinder]")
     page.mouse.move(*spot(page, 0.0, 0.0))
@@ -197,7 +197,7 @@ def test_the_ghost_is_red_where_nothing_can_be_put_and_says_why(suite, page):
     assert len(items(page)) == 2
 
 
-def test_things_are_carried_turned_and_changed_by_numbers(suite, page):
+def test_items_are_dragged_turned_and_edited_as_numbers(suite, page):
     open_creator(page, suite)
     page.click("[data-tool=box]")
     click(page, 0.3, 0.2)
@@ -231,7 +231,7 @@ def test_things_are_carried_turned_and_changed_by_numbers(suite, page):
     assert len(items(page)) == 3, "keys in a field act on the field only"
 
 
-def test_tab_goes_on_in_the_form_after_a_name_or_a_point_was_changed(suite, page):
+def test_tab_moves_on_in_the_form_after_a_name_or_a_point_was_changed(suite, page):
     open_creator(page, suite)
     page.click("[data-tool=track]")
     for key in ("Space", "ArrowUp", "ArrowUp", "Space", "Enter", "Escape"):
@@ -252,7 +252,7 @@ def test_tab_goes_on_in_the_form_after_a_name_or_a_point_was_changed(suite, page
     playwright.expect(y).to_be_focused()
 
 
-def test_a_file_that_is_no_picture_is_refused_where_it_was_chosen(suite, page, tmp_path):
+def test_a_file_that_is_not_an_image_is_rejected_at_its_field(suite, page, tmp_path):
     open_creator(page, suite)
     good, bad = tmp_path / "good.svg", tmp_path / "bad.png"
     good.write_text('<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"/>')
@@ -265,7 +265,7 @@ def test_a_file_that_is_no_picture_is_refused_where_it_was_chosen(suite, page, t
     )
 
 
-def test_keys_of_a_mac_undo_redo_and_copy(suite, page):
+def test_mac_shortcuts_undo_redo_and_copy(suite, page):
     open_creator(page, suite)
     page.click("[data-tool=box]")
     click(page, 0.3, 0.2)
@@ -281,7 +281,7 @@ def test_keys_of_a_mac_undo_redo_and_copy(suite, page):
     wait_for_items(page, 4)
 
 
-def test_places_keep_to_the_grid_unless_alt_is_held_and_the_wheel_turns_what_is_in_hand(suite, page):
+def test_positions_snap_to_the_grid_unless_alt_is_held_and_the_wheel_turns_the_ghost(suite, page):
     open_creator(page, suite)
     page.click("[data-tool=box]")
     click(page, 0.313, 0.207)
@@ -302,7 +302,7 @@ def test_places_keep_to_the_grid_unless_alt_is_held_and_the_wheel_turns_what_is_
     assert placed["box_2"]["yaw_rad"] == pytest.approx(-math.radians(15), abs=1e-3)
 
 
-def test_shift_switches_the_camera_off_and_on_and_clicks_place_either_way(suite, page):
+def test_shift_toggles_the_camera_and_clicks_place_items_either_way(suite, page):
     open_creator(page, suite)
     page.click("[data-tool=cylinder]")
     page.keyboard.press("Shift")
@@ -339,7 +339,7 @@ def test_ten_thousand_moves_leave_one_animation_loop(suite, page):
     assert frames < 2_000, "moves do not draw, frames do"
 
 
-def test_a_broken_file_is_refused_with_its_place_and_what_was_built_stays(suite, page, tmp_path):
+def test_a_broken_file_is_rejected_with_its_location_and_the_playground_is_unchanged(suite, page, tmp_path):
     broken = tmp_path / "broken.json"
     broken.write_text(json.dumps({"format": 1, "title": "x", "shapes": [{"kind": "box", "x_m": "far"}]}))
     open_creator(page, suite)
@@ -350,7 +350,7 @@ def test_a_broken_file_is_refused_with_its_place_and_what_was_built_stays(suite,
     assert sorted(items(page)) == ["ground", "thymio"]
 
 
-def test_a_copy_of_a_shipped_playground_is_changed(suite, page):
+def test_a_copy_of_a_shipped_playground_is_edited(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.wait_for_function("window.thymio.state().playgrounds.length > 3")
     page.click("#gallery-open")
@@ -360,7 +360,7 @@ def test_a_copy_of_a_shipped_playground_is_changed(suite, page):
     page.wait_for_function("window.thymio.built().playground.title === 'My playground'")
 
 
-def test_a_playground_of_aseba_that_runs_is_changed(suite, page, tmp_path):
+def test_a_running_aseba_playground_is_edited(suite, page, tmp_path):
     foreign = tmp_path / "arena.playground"
     wall = '<wall x="20" y="80" l1="20" l2="4" h="10" color="grey"/>'
     foreign.write_text(
@@ -374,7 +374,7 @@ def test_a_playground_of_aseba_that_runs_is_changed(suite, page, tmp_path):
     assert "box" in {item["kind"] for item in items(page).values()}
 
 
-def test_it_is_in_sight_in_every_language_at_800_by_600_and_without_a_finding_of_axe(suite, page):
+def test_it_fits_800_by_600_in_every_language_without_a_finding_of_axe(suite, page):
     open_creator(page, suite)
     for language in ("de", "fr", "it", "en"):
         page.select_option("select.language", language)
@@ -394,7 +394,7 @@ def test_it_is_in_sight_in_every_language_at_800_by_600_and_without_a_finding_of
     assert page.evaluate(FINDINGS) == []
 
 
-def test_fingers_place_and_carry(suite, browser):
+def test_items_are_placed_and_dragged_by_touch(suite, browser):
     page = browser.new_page(viewport={"width": 800, "height": 600}, bypass_csp=True, has_touch=True)
     page.set_default_timeout(DEADLINE_MS)
     page.on("request", lambda request: None if request.url.startswith(LOCAL) else pytest.fail(request.url))
@@ -411,7 +411,7 @@ def test_fingers_place_and_carry(suite, browser):
     fingers.move(a=(320, 220), b=(480, 380))
     fingers.lift()
     page.wait_for_function("(camera) => window.thymio.built().camera[0] !== camera[0]", arg=camera)
-    settle(page)
+    wait_for_camera(page)
     assert math.dist(*(spot(page, *corner) for corner in corners)) > 1.2 * before
     assert len(items(page)) == 3, "two fingers move the camera and place nothing"
     page.locator(".cancel").tap()
@@ -419,7 +419,7 @@ def test_fingers_place_and_carry(suite, browser):
     page.close()
 
 
-def test_editor_and_creator_give_way_to_each_other(suite, page):
+def test_opening_editor_or_creator_closes_the_other(suite, page):
     open_creator(page, suite)
     page.click("#editor-switch")
     page.locator(".editor-slot").wait_for()
@@ -429,7 +429,7 @@ def test_editor_and_creator_give_way_to_each_other(suite, page):
     playwright.expect(page.locator(".editor-slot")).to_be_hidden()
 
 
-def test_a_picture_lies_on_the_ground(suite, page, tmp_path):
+def test_an_image_is_placed_on_the_ground(suite, page, tmp_path):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 10"><circle r="5" cx="8" cy="5"/></svg>'
@@ -443,7 +443,7 @@ def test_a_picture_lies_on_the_ground(suite, page, tmp_path):
     page.wait_for_function("window.thymio.state().simulator.playground === 'My_playground.json'")
 
 
-def test_the_mark_of_what_is_not_saved_is_that_of_the_creator_and_goes_for_good_when_it_is_saved(suite, page):
+def test_the_unsaved_mark_belongs_to_the_creator_and_disappears_after_saving(suite, page):
     open_creator(page, suite)
     mark = page.locator(".creator .unsaved")
     playwright.expect(mark).to_be_hidden()
@@ -472,7 +472,7 @@ def test_the_mark_of_what_is_not_saved_is_that_of_the_creator_and_goes_for_good_
     playwright.expect(mark).to_be_hidden()
 
 
-def test_without_any_ground_the_creator_warns_and_adds_one_at_a_click(suite, page):
+def test_without_ground_the_creator_warns_and_offers_to_add_one(suite, page):
     open_creator(page, suite)
     add = page.get_by_role("button", name="Add a ground")
     playwright.expect(add).to_be_hidden()
@@ -482,7 +482,7 @@ def test_without_any_ground_the_creator_warns_and_adds_one_at_a_click(suite, pag
     page.wait_for_function("window.thymio.built().playground.items[0].kind === 'rectangle'")
 
 
-def test_a_file_that_is_no_playground_is_refused_in_plain_words(suite, page, tmp_path):
+def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(suite, page, tmp_path):
     letter = tmp_path / "letter.json"
     letter.write_text("hello")
     open_creator(page, suite)

@@ -1,4 +1,4 @@
-"""What the creator writes is what the simulator reads: by the published schema, by its loader, and by its checks."""
+"""Files of the creator are valid for the simulator: by the published schema, its loader, and its checks."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SCHEMA = Path(__file__).parents[2] / "playgrounds" / "playground.schema.json"
 
 @cache
 def cases() -> list[dict[str, Any]]:
-    """Playgrounds built by chance with the creator's own modules, and what the page says of each."""
+    """Random playgrounds built with the creator's modules, and the page's verdict on each."""
     node = webbuild.find_node()
     if node is None:
         pytest.skip("no Node on this machine")
@@ -40,7 +40,7 @@ def read(text: str) -> playgrounds.Playground | None:
         return None
 
 
-def test_what_is_built_is_taken_and_stays_the_same_when_it_is_written_again():
+def test_playgrounds_are_accepted_and_rewritten_unchanged():
     for case in cases()[::4]:
         built = playgrounds.loads(case["text"], "built.json")
         again = playgrounds.loads(writer.dumps(built), "built.json")
@@ -50,13 +50,13 @@ def test_what_is_built_is_taken_and_stays_the_same_when_it_is_written_again():
         assert not built.notes, "a robot was put beside the ground"
 
 
-def test_what_is_built_fits_the_published_schema():
+def test_playgrounds_match_the_published_schema():
     validator = jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text()))
     for case in cases()[::4]:
         validator.validate(json.loads(case["text"]))
 
 
-def test_page_and_simulator_judge_alike_who_stands_in_whom():
+def test_page_and_simulator_agree_on_overlaps():
     verdicts = [(case["opens"], read(case["text"]) is not None) for case in cases()]
     assert [page for page, _ in verdicts] == [simulator for _, simulator in verdicts]
     assert {page for page, _ in verdicts} == {True, False}, "both must come up"

@@ -23,7 +23,7 @@ end
 
 @pytest.fixture
 def editor(suite, page):
-    """The editor, open and empty, of a robot that stands still."""
+    """The editor, open and empty, of a robot at rest."""
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.click("#editor-switch")
     page.wait_for_selector(".cm-content")
@@ -46,14 +46,14 @@ def expect(page, selector, **options):
 
 
 def click_beside(page, line):
-    """Where breakpoints are set, beside a line."""
+    """Click the gutter beside a line, which sets a breakpoint."""
     gutter = page.locator(".code .breakpoints").bounding_box()
     number = page.locator(".cm-lineNumbers .cm-gutterElement:visible", has_text=str(line)).first.bounding_box()
     page.mouse.click(gutter["x"] + gutter["width"] / 2, number["y"] + number["height"] / 2)
 
 
 def edit_variable(page, name, text):
-    """Type another value; the place where it is shown."""
+    """Type a new value; returns the element that shows it."""
     value = page.locator(f"[data-variable='{name}']")
     value.click()
     page.locator(".variables td input").fill(text)
@@ -75,7 +75,7 @@ def test_a_broken_program_is_marked_while_it_is_typed_and_a_good_one_runs(editor
     editor.wait_for_function("() => Number(document.querySelector('[data-variable=count]')?.textContent) > 2")
 
 
-def test_a_breakpoint_stops_the_program_and_it_goes_on_by_lines(editor):
+def test_a_breakpoint_stops_the_program_and_it_is_stepped_by_lines(editor):
     write(editor, PROGRAM)
     editor.keyboard.press("Control+Enter")
     editor.wait_for_function("() => window.thymio.state().program?.name === 'program.aesl'")
@@ -105,7 +105,7 @@ def test_a_variable_is_edited_within_its_range(editor):
     playwright.expect(value).to_have_text("120")
 
 
-def test_a_long_array_takes_three_lines_and_no_more(editor):
+def test_a_long_array_takes_at_most_three_lines(editor):
     value = editor.locator("[data-variable='event.args']")
     playwright.expect(value).to_contain_text("0 0 0 0")
     height, line = value.evaluate("(cell) => [cell.clientHeight, parseFloat(getComputedStyle(cell).lineHeight)]")
@@ -128,7 +128,7 @@ def test_an_event_is_defined_sent_and_logged(editor):
     expect(editor, ".log p").to_contain_text("pong 42")
 
 
-def test_tab_goes_on_from_a_constant_and_values_of_events_stay_when_others_come(editor):
+def test_tab_moves_on_from_a_constant_and_event_values_stay_when_events_are_added(editor):
     editor.click("#tool-tab-constants")
     for name in ("FAR", "NEAR"):
         editor.fill("[data-new=constant]", name)
@@ -148,7 +148,7 @@ def test_tab_goes_on_from_a_constant_and_values_of_events_stay_when_others_come(
     playwright.expect(editor.get_by_label("Values of ping: 1")).to_have_value("41")
 
 
-def test_a_file_is_opened_changed_and_saved_without_loss_and_a_draft_outlives_the_page(editor, tmp_path):
+def test_a_file_is_opened_edited_and_saved_without_loss_and_a_draft_outlives_the_page(editor, tmp_path):
     head = '<!DOCTYPE aesl-source>\n<network>\n<constant value="4" name="SIZE"/>\n<!-- mine -->\n'
     plugins = '<toolsPlugins><X y="1"/></toolsPlugins>'
     text = f'{head}<node nodeId="1" name="thymio-II">var a = SIZE{plugins}</node>\n</network>\n'
@@ -176,7 +176,7 @@ def test_a_file_is_opened_changed_and_saved_without_loss_and_a_draft_outlives_th
     expect(editor, ".cm-content").to_have_text("var a = SIZE_")
 
 
-def test_a_file_is_read_in_its_encoding_and_saved_in_utf_8(editor, tmp_path):
+def test_a_file_is_decoded_as_declared_and_saved_in_utf_8(editor, tmp_path):
     declared = '<?xml version="1.0" encoding="{}"?>\n'
     text = declared + '<network><node nodeId="1" name="thymio-II">var a # größer</node></network>'
     old, broken = tmp_path / "old.aesl", tmp_path / "broken.aesl"
@@ -192,7 +192,7 @@ def test_a_file_is_read_in_its_encoding_and_saved_in_utf_8(editor, tmp_path):
     expect(editor, ".cm-content").to_have_text("var a # größer")
 
 
-def test_a_file_dropped_on_the_text_is_opened_and_not_written_into_it(editor, tmp_path):
+def test_a_file_dropped_on_the_text_is_opened_and_not_inserted(editor, tmp_path):
     write(editor, "var mine = 1")
     playground = tmp_path / "mine.json"
     playground.write_text('{"format": 1}')
@@ -207,7 +207,7 @@ def test_a_file_dropped_on_the_text_is_opened_and_not_written_into_it(editor, tm
     expect(editor, ".cm-content").to_have_text("var mine = 1")
 
 
-def test_a_draft_that_is_written_over_is_found_among_the_recent_files(editor):
+def test_an_overwritten_draft_is_added_to_the_recent_files(editor):
     write(editor, "var first = 1")
     editor.reload()
     editor.wait_for_function("window.thymio && window.thymio.connected")
@@ -221,7 +221,7 @@ def test_a_draft_that_is_written_over_is_found_among_the_recent_files(editor):
     playwright.expect(editor.get_by_label("not saved as a file")).to_be_visible()
 
 
-def test_a_text_is_as_it_was_left_after_a_look_at_the_robot_and_in_another_language(editor):
+def test_a_text_keeps_its_state_when_the_editor_is_closed_or_the_language_changes(editor):
     write(editor, PROGRAM)
     editor.locator(".cm-line", has_text="count = count + 1").click()
     editor.keyboard.press("End")
@@ -240,7 +240,7 @@ def test_a_text_is_as_it_was_left_after_a_look_at_the_robot_and_in_another_langu
     expect(editor, ".cm-activeLine").to_have_text("count = count + 1")
 
 
-def test_what_pupils_need_most_is_offered_first_and_stands_first_in_the_help(editor):
+def test_common_names_come_first_in_completion_and_help(editor):
     write(editor, "")
     for typed, first in (("motor.", "motor.left.target"), ("call l", "leds.top"), ("onevent b", "button.center")):
         write(editor, "")
@@ -286,7 +286,7 @@ MISTAKES = [
 
 
 def text_of(page):
-    """The program in the editor."""
+    """The text in the editor."""
     return page.locator(".cm-content .cm-line").all_inner_texts()
 
 
@@ -302,7 +302,7 @@ def test_a_mistake_is_explained_and_corrected_by_its_button(editor):
         assert [line.strip("\n") for line in text_of(editor)] == repaired.split("\n")
 
 
-def test_a_mistake_is_corrected_from_the_keyboard_and_that_can_be_undone(editor):
+def test_a_mistake_is_corrected_by_keyboard_and_the_correction_can_be_undone(editor):
     write(editor, "var a\na == 3\n")
     expect(editor, ".editor-hint .meant").to_contain_text("a variable gets a new value with '='")
     editor.focus(".editor-hint .correct")

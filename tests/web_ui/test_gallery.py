@@ -1,4 +1,4 @@
-"""The gallery of playgrounds in a real browser: pictures, a choice, and a broken file that changes nothing."""
+"""The gallery of playgrounds in a real browser: thumbnails, a choice, and a rejected file that changes nothing."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def open_gallery(page, suite, *arguments):
     page.click("#gallery-open")
 
 
-def test_every_shipped_playground_has_a_picture_its_name_and_its_robots(suite, page):
+def test_every_shipped_playground_has_a_thumbnail_its_name_and_its_robots(suite, page):
     open_gallery(page, suite)
     names = list(resources.playgrounds())
     page.wait_for_function(
@@ -69,7 +69,7 @@ def test_escape_closes_the_gallery_and_stops_no_robot(suite, page):
     assert page.evaluate("window.thymio.state().program.state") == "running"
 
 
-def test_a_broken_file_is_told_with_place_found_and_expected_and_the_world_stays(suite, page, tmp_path):
+def test_a_broken_file_is_rejected_with_location_found_and_expected_and_the_world_stays(suite, page, tmp_path):
     broken = tmp_path / "broken.json"
     broken.write_text(json.dumps({"format": 1, "title": "Broken", "shapes": [{"kind": "box", "x_m": "far"}]}))
     open_gallery(page, suite)
@@ -80,7 +80,7 @@ def test_a_broken_file_is_told_with_place_found_and_expected_and_the_world_stays
     assert page.evaluate("window.thymio.state().simulator.playground") == "base"
 
 
-def test_a_file_that_is_no_playground_is_refused_in_plain_words(suite, page, tmp_path):
+def test_a_file_that_is_not_a_playground_is_rejected_in_plain_words(suite, page, tmp_path):
     letter = tmp_path / "letter.json"
     letter.write_text("hello")
     open_gallery(page, suite)
@@ -92,7 +92,7 @@ def test_a_file_that_is_no_playground_is_refused_in_plain_words(suite, page, tmp
     playwright.expect(fault.locator(".technical")).to_contain_text("line 1, column 1")
 
 
-def test_a_playground_of_the_thesis_is_taken_and_shows_its_things(suite, page, tmp_path):
+def test_a_playground_of_the_thesis_is_accepted_and_shows_its_objects(suite, page, tmp_path):
     foreign = tmp_path / "mine.json"
     pillar = {"topRadius": 2, "botRadius": 2, "height": 6, "color": "#9fa3bd", "positionX": 20, "positionZ": 0}
     floor = {"name": "ground", "props": {"width": 50, "height": 50, "color": "#bdbbbb"}, "hasWalls": True}

@@ -1,4 +1,4 @@
-"""The page in a real Chromium against the running suite: it draws, the robot moves, a click reaches the program."""
+"""The page in a real Chromium with a running suite: drawing, driving, buttons, programs, playgrounds."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.sim.images import BLACK, WHITE, png
-from tests.web_ui.page_support import MARKS, drop_file, open_page, wait_for_frame, wait_for_program, wait_until_settled
+from tests.web_ui.page_support import MARKS, drop_file, open_page, wait_for_frame, wait_for_position, wait_for_program
 
 pytestmark = MARKS
 
@@ -37,7 +37,7 @@ def robot(page):
 
 
 def colors(page) -> int:
-    """Number of different colors in a picture of the canvas."""
+    """Number of different colors in a screenshot of the canvas."""
     image = page.locator("canvas").first.screenshot()
     return page.evaluate(
         """async (bytes) => {
@@ -75,12 +75,12 @@ def test_little_is_loaded_before_the_editor_is_opened(suite, page):
     assert [url for url in loaded if "editor" in url] == []
 
 
-def test_a_click_on_the_centre_button_reaches_the_program(suite, page, tmp_path):
+def test_a_click_on_the_center_button_reaches_the_program(suite, page, tmp_path):
     program = tmp_path / "switch.aesl"
     program.write_text(PROGRAM)
     open_page(page, suite("--playground", "base", "--program", str(program)))
     wait_for_program(page, "switch.aesl")
-    wait_until_settled(page, "robot")
+    wait_for_position(page, "robot")
     begin = robot(page)
     press(page, "button.center")
     page.wait_for_function(
@@ -90,11 +90,11 @@ def test_a_click_on_the_centre_button_reaches_the_program(suite, page, tmp_path)
     )
 
 
-def test_with_shift_a_mouse_holds_several_buttons(suite, page):
+def test_with_shift_a_mouse_keeps_several_buttons_pressed(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.locator("#view").focus()
     page.keyboard.press("f")
-    place = wait_until_settled(page, "button.forward")
+    place = wait_for_position(page, "button.forward")
     start = page.evaluate(POSE)
     pressed = "() => Object.entries(window.thymio.state().robot.buttons).filter(([, is]) => is).map(([name]) => name)"
     page.keyboard.down("Shift")
@@ -125,7 +125,7 @@ if acc[0] < -10 then call leds.bottom.right(0, 0, 32) end
 """
 
 
-def test_what_an_operator_does_reaches_the_program(suite, page, tmp_path):
+def test_stimuli_reach_the_program(suite, page, tmp_path):
     program = tmp_path / "senses.aesl"
     program.write_text(SENSES)
     open_page(page, suite("--playground", "base", "--program", str(program)))
@@ -154,8 +154,8 @@ def test_the_pen_leaves_a_trail(suite, page):
 
 
 def press(page, part):
-    """A real pointer on a part of the model, once the view has settled; held until the page has heard of it."""
-    position = wait_until_settled(page, part)
+    """Press a part of the model by pointer, once the view is still, until the page has received the change."""
+    position = wait_for_position(page, part)
     page.mouse.move(position["x"], position["y"])
     page.mouse.down()
     page.wait_for_function("() => window.thymio.state().robot.buttons.center === true")
@@ -163,7 +163,7 @@ def press(page, part):
     page.wait_for_function("() => window.thymio.state().robot.buttons.center === false")
 
 
-def test_a_broken_program_is_shown_at_its_place_and_the_old_one_goes_on(suite, page, tmp_path):
+def test_an_error_is_shown_at_its_position_and_the_previous_program_keeps_running(suite, page, tmp_path):
     open_page(page, suite())
     broken = tmp_path / "broken.aesl"
     broken.write_text("var a\nonevent prox\n  motor.left.targt = 5\n")
@@ -174,7 +174,7 @@ def test_a_broken_program_is_shown_at_its_place_and_the_old_one_goes_on(suite, p
     assert Path(page.evaluate("window.thymio.state().program.name")).name == "line_follower.aesl"
 
 
-def test_what_is_refused_is_told_also_when_editor_or_creator_have_the_place_of_its_card(suite, page, tmp_path):
+def test_a_rejection_is_shown_also_when_editor_or_creator_covers_its_card(suite, page, tmp_path):
     playground, program, unknown = tmp_path / "bad.json", tmp_path / "bad.aesl", tmp_path / "bad.dat"
     playground.write_text('{"format": 1}')
     program.write_text('<network>\n<node nodeId="1" name="thymio-II">var a = = 1</node></network>')
@@ -203,7 +203,7 @@ def test_another_playground_can_be_chosen(suite, page):
     page.wait_for_function("window.thymio.state().simulator.playground === 'obstacle'")
 
 
-def test_a_playground_of_aseba_is_opened_with_remarks_and_a_broken_one_is_refused(suite, page, tmp_path):
+def test_an_aseba_playground_is_opened_with_warnings_and_a_broken_one_is_rejected(suite, page, tmp_path):
     colors = '<color name="white" r="1" g="1" b="1"/>'
     world = '<world w="100" h="100" color="white" groundTexture="ground.png"/><robot x="50" y="50"/><feeder/>'
     archive = tmp_path / "my maze.playground"
@@ -222,7 +222,7 @@ def test_a_playground_of_aseba_is_opened_with_remarks_and_a_broken_one_is_refuse
     assert page.evaluate("window.thymio.state().simulator.playground") == "my maze.playground"
 
 
-def test_a_thing_that_is_pushed_moves_on_the_page(suite, page, tmp_path):
+def test_a_pushed_object_moves_on_the_page(suite, page, tmp_path):
     can = {"kind": "cylinder", "name": "can", "x_m": 0.2, "y_m": 0, "radius_m": 0.03, "height_m": 0.1, "mass_kg": 0.05}
     ground = {"kind": "rectangle", "size_x_m": 3, "size_y_m": 1, "color": "#ffffff"}
     shapes = [ground, can | {"color": "#cc3333"}]

@@ -1,4 +1,4 @@
-"""The page for everyone: no serious finding of axe, in every language and on small screens; values can be kept."""
+"""Accessibility: no serious finding of axe, in every language and on small screens; values can be copied."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_axe_finds_nothing_serious(suite, page):
     assert page.evaluate(FINDINGS) == []
 
 
-def test_at_800_by_600_every_control_is_in_sight_in_every_language(suite, page):
+def test_at_800_by_600_every_control_is_visible_in_every_language(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     for language in ("de", "fr", "it", "en"):
         page.select_option("select.language", language)
@@ -50,7 +50,7 @@ def test_at_800_by_600_every_control_is_in_sight_in_every_language(suite, page):
 
 
 @pytest.mark.parametrize("size", [(683, 384), (360, 640)])
-def test_in_a_low_window_views_and_some_lines_of_the_program_are_in_sight(suite, page, size):
+def test_in_a_low_window_views_and_some_lines_of_the_program_are_visible(suite, page, size):
     page.set_viewport_size({"width": size[0], "height": size[1]})  # 1366 × 768 at 200 %; a small phone
     open_page(page, suite("--playground", "base", "--program", "none"))
     wait_for_frame(page)

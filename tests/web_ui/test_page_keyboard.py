@@ -24,7 +24,7 @@ STATE = "() => window.thymio.state()"
 
 
 def go_to(page: Any, selector: str, key: str = "Tab") -> None:
-    """Press a key until something has the focus, as a person would."""
+    """Press a key until an element has the focus, as a user would."""
     for _ in range(MOST_TABS):
         if page.evaluate("(selector) => document.activeElement?.matches(selector) ?? false", selector):
             return
@@ -103,7 +103,7 @@ def test_a_whole_lesson_by_keyboard(suite, page, tmp_path):
         ("it", "nessuna variabile si chiama 'motor.left.targt'", "velocità voluta"),
     ],
 )
-def test_the_editor_and_the_program_panel_explain_in_the_language_of_the_page(
+def test_editor_and_program_panel_show_errors_in_the_language_of_the_page(
     suite, page, tmp_path, language, error, help_text
 ):
     broken = tmp_path / "broken.aesl"
@@ -121,7 +121,7 @@ def test_the_editor_and_the_program_panel_explain_in_the_language_of_the_page(
     expect(page, ".reference .entry-help:visible p").to_contain_text(help_text)
 
 
-def test_letters_act_with_caps_lock_too(suite, page):
+def test_letter_keys_work_with_caps_lock(suite, page):
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.focus("#view")
     page.keyboard.press("T")  # without Shift, as with Caps Lock

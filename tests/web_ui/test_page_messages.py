@@ -1,4 +1,4 @@
-"""Messages of the page: above an open dialog, gone when their cause is, and success goes by itself."""
+"""Notices: above an open dialog, removed with their cause; success notices disappear."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_a_message_is_above_the_open_gallery_and_can_be_closed_there(suite, page
     playwright.expect(notice).to_have_count(0)
 
 
-def test_the_gallery_never_shows_the_error_of_another_attempt(suite, page, tmp_path):
+def test_the_gallery_does_not_show_the_error_of_another_attempt(suite, page, tmp_path):
     broken, unknown = tmp_path / "broken.json", tmp_path / "song.mp3"
     broken.write_text('{"format": 1, "title": 3}')
     unknown.write_bytes(b"")
@@ -53,7 +53,7 @@ def test_the_gallery_never_shows_the_error_of_another_attempt(suite, page, tmp_p
     playwright.expect(refusal).to_be_hidden()
 
 
-def test_success_goes_by_itself_and_a_failure_stays_until_it_is_closed(suite, page, tmp_path):
+def test_success_notices_disappear_and_errors_stay_until_closed(suite, page, tmp_path):
     program, unknown = tmp_path / "good.aesl", tmp_path / "song.mp3"
     program.write_text("var a = 1\n")
     unknown.write_bytes(b"")

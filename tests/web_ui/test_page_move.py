@@ -1,4 +1,4 @@
-"""Robots and things are moved by hand on the page: by pointer, by ring, by keys; a place that is taken is refused."""
+"""Moving robots and objects: by pointer, by ring, by keys; occupied positions are rejected."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page, wait_for_program, wait_for_service, wait_until_settled
+from tests.web_ui.page_support import MARKS, open_page, wait_for_position, wait_for_program, wait_for_service
 
 pytestmark = MARKS
 
@@ -20,7 +20,7 @@ POSE = "() => window.thymio.state().robot.latest.pose"
 
 @pytest.fixture
 def still_world(tmp_path) -> str:
-    """A playground with a robot that rests, a can that can be moved, and a box that cannot."""
+    """A playground with a robot at rest, a movable can, and a fixed box."""
     shapes = [GROUND, CAN | {"color": "#cc3333"}, BOX | {"color": "#3333cc"}]
     robots = [{"name": "thymio", "x_m": 0, "y_m": 0}]
     path = tmp_path / "still.json"
@@ -32,18 +32,18 @@ def open_still(page, suite, playground):
     open_page(page, suite("--playground", playground, "--program", "none"))
     wait_for_service(page, "/simulator/set_poses")
     page.wait_for_function("() => window.thymio.state().objects.some(({name}) => name === 'can')")
-    wait_until_settled(page, "robot")
+    wait_for_position(page, "robot")
 
 
 def drag(page, begin, end):
-    """Carry what is at one place of the ground (x, y, z) to another."""
+    """Drag from one point of the world (x, y, z) to another."""
     places = [page.evaluate("([x, y, z]) => window.thymio.screenPosition(x, y, z)", place) for place in (begin, end)]
     page.mouse.move(places[0]["x"], places[0]["y"])
     page.mouse.down()
     page.mouse.move(places[1]["x"], places[1]["y"], steps=4)
 
 
-def test_a_robot_and_a_can_are_dragged_and_a_taken_place_is_refused(suite, page, still_world):
+def test_a_robot_and_a_can_are_dragged_and_an_occupied_position_is_rejected(suite, page, still_world):
     open_still(page, suite, still_world)
     page.keyboard.down("Shift")
     drag(page, (0.02, 0, 0.05), (0.02, -0.25, 0.05))
@@ -77,7 +77,7 @@ def test_the_move_mode_turns_by_the_ring_and_moves_by_keys(suite, page, still_wo
     assert page.evaluate("() => window.thymio.state().robot.buttons.center") is False
 
 
-def test_a_robot_that_fell_says_so_and_is_put_back(suite, page, tmp_path):
+def test_a_fallen_robot_is_reported_and_put_back(suite, page, tmp_path):
     ground = {"kind": "rectangle", "size_x_m": 0.8, "size_y_m": 0.8, "color": "#ffffff"}
     playground, program = tmp_path / "table.json", tmp_path / "off.aesl"
     robots = [{"name": "thymio", "x_m": 0.25, "y_m": 0}]

@@ -1,4 +1,4 @@
-"""The page of a suite in a namespace, beside another suite in the same domain: it shows and drives its own robot."""
+"""The page of a suite in a namespace, with another suite in the same domain: it controls its own robot."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page, wait_for_program, wait_for_service, wait_until_settled
+from tests.web_ui.page_support import MARKS, open_page, wait_for_position, wait_for_program, wait_for_service
 
 pytestmark = MARKS
 
@@ -37,7 +37,7 @@ def test_the_page_drives_the_robot_of_its_namespace(suite, page, other_page, tmp
 
     wait_for_program(page, "switch.aesl")
     stood, start = other_page.evaluate(X), page.evaluate(X)
-    place = wait_until_settled(page, "button.center")
+    place = wait_for_position(page, "button.center")
     page.mouse.move(place["x"], place["y"])
     page.mouse.down()
     page.wait_for_function("() => window.thymio.state().robot.buttons.center === true")

@@ -1,4 +1,4 @@
-"""The page finds back by itself after a lost connection or a restart, and shows the same to everybody."""
+"""Recovery after a lost connection or a restart, and several browsers at once."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ pytestmark = MARKS
 PAUSED = "() => window.thymio.state().simulator?.paused === true"
 
 
-def test_a_restarted_simulator_is_found_again_and_what_was_known_of_the_old_one_is_gone(suite, page):
+def test_the_page_reconnects_to_a_restarted_simulator_and_discards_old_state(suite, page):
     ports = (free_port(), free_port())
     open_page(page, suite("--playground", "two_robots", "--program", "none", ports=ports))
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
@@ -39,7 +39,7 @@ STATES = """(controls) => [...document.querySelectorAll(controls)]
     .map((one) => [one.matches(":disabled"), one.title || one.closest("fieldset")?.title || ""])"""
 
 
-def test_what_needs_the_simulator_is_off_while_it_is_gone_and_says_why(suite, page):
+def test_controls_are_disabled_with_a_reason_while_the_simulator_is_gone(suite, page):
     ports = (free_port(), free_port())
     arguments = ("--playground", "base", "--behaviour", "menu")
     open_page(page, suite(*arguments, ports=ports))
@@ -78,7 +78,7 @@ NO_STORAGE = """Object.defineProperty(window, "localStorage", {
 })"""
 
 
-def test_it_works_where_the_browser_keeps_nothing(suite, page):
+def test_the_page_works_without_browser_storage(suite, page):
     page.add_init_script(NO_STORAGE)
     open_page(page, suite("--playground", "base", "--program", "none"))
     page.select_option("header .language", "fr")
@@ -93,7 +93,7 @@ def test_it_works_where_the_browser_keeps_nothing(suite, page):
     playwright.expect(page.locator(".cm-content")).to_contain_text("var a")
 
 
-def test_the_editor_is_told_of_errors_after_a_restart_and_what_cannot_be_loaded_is_said(suite, page):
+def test_the_editor_shows_errors_after_a_restart_and_a_failed_load_is_reported(suite, page):
     ports = (free_port(), free_port())
     open_page(page, suite("--playground", "base", "--program", "none", ports=ports))
     wait_for_service(page, "/aseba_runtime/check")
@@ -111,7 +111,7 @@ def test_the_editor_is_told_of_errors_after_a_restart_and_what_cannot_be_loaded_
     playwright.expect(verdict).to_contain_text("no variable is called 'b'")
 
 
-def test_what_one_person_does_is_seen_by_another_who_came_late(suite, page, other_page):
+def test_actions_in_one_browser_are_visible_in_one_that_connects_late(suite, page, other_page):
     address = suite("--playground", "base", "--program", "none")
     open_page(page, address)
     page.locator("#view").focus()

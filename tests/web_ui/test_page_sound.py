@@ -1,4 +1,4 @@
-"""What robots say is heard in the browser after a first touch, and their built-in behaviours can be chosen."""
+"""Sound in the browser after the first user action, and the choice of built-in behaviors."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ SINGING = "call sound.freq(440, 0)\nonevent button.center\n  call sound.freq(550
 SOUNDING = "() => (window.heard[0]?.sounding ?? []).length"
 
 
-def test_a_tone_is_heard_after_the_first_touch_and_until_it_is_muted(suite, page, tmp_path):
+def test_a_tone_is_played_after_the_first_user_action_and_until_it_is_muted(suite, page, tmp_path):
     program = tmp_path / "singing.aesl"
     program.write_text(SINGING)
     page.add_init_script(LISTEN)
@@ -65,7 +65,7 @@ def test_a_tone_is_heard_after_the_first_touch_and_until_it_is_muted(suite, page
     page.mouse.up()
 
 
-def test_the_browser_makes_a_tone_of_that_pitch(suite, page, tmp_path):
+def test_the_browser_plays_a_tone_of_that_pitch(suite, page, tmp_path):
     program = tmp_path / "singing.aesl"
     program.write_text(SINGING)
     page.add_init_script(OFFLINE)
@@ -78,7 +78,7 @@ def test_the_browser_makes_a_tone_of_that_pitch(suite, page, tmp_path):
     assert 0.05 < heard["loudest"] < 1
 
 
-def test_a_pause_holds_the_sound(suite, page, tmp_path):
+def test_a_pause_suspends_the_sound(suite, page, tmp_path):
     program = tmp_path / "singing.aesl"
     program.write_text(SINGING)
     page.add_init_script(LISTEN)
@@ -91,11 +91,11 @@ def test_a_pause_holds_the_sound(suite, page, tmp_path):
     page.wait_for_function("() => window.heard[0].state === 'running'")
 
 
-def test_a_built_in_behaviour_is_chosen_and_shows_its_colour(suite, page):
+def test_a_built_in_behavior_is_chosen_and_shows_its_color(suite, page):
     open_page(page, suite("--playground", "base"))
-    page.select_option("#behaviour-choice", "friendly")
+    page.select_option("#behavior-choice", "friendly")
     page.wait_for_function("() => window.thymio.state().program?.name.startsWith('friendly')")
-    page.wait_for_function("() => document.querySelector('#behaviour-choice').value === 'friendly'")
+    page.wait_for_function("() => document.querySelector('#behavior-choice').value === 'friendly'")
     playwright.expect(page.locator(".swatch")).to_have_attribute("style", re.compile("#12c22f"))
     # Green, as on the robot.
     page.wait_for_function(

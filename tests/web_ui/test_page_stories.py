@@ -1,4 +1,4 @@
-"""What the earlier thesis wanted its page for, done by somebody who reads nothing but the page: names, no selectors."""
+"""The use cases of the earlier thesis, using only names shown on the page, no selectors."""
 
 from __future__ import annotations
 
@@ -20,59 +20,61 @@ MOVED = """([x, y, far]) => {
 
 @pytest.fixture
 def class_page(suite, page) -> Any:
-    """The page as a class finds it: the robot is switched on and nothing was chosen."""
+    """The page at the start of a lesson: the robot is switched on and nothing has been chosen."""
     open_page(page, suite("--playground", "base"))
     return page
 
 
 def choose(page: Any, label: str, option: str) -> None:
-    """Choose by what is written there, once it is."""
+    """Choose an option by its text, once it is there."""
     box = page.get_by_role("combobox", name=label)
     playwright.expect(box.get_by_text(option, exact=True)).to_have_count(1)
     box.select_option(label=option)
 
 
-def choose_behaviour(page: Any, option: str, about: str) -> None:
-    """Choose one of the robot's own, and wait until the page says what it does: then the robot runs it."""
-    choose(page, "Built-in behaviour", option)
+def choose_behavior(page: Any, option: str, about: str) -> None:
+    """Choose a built-in behavior, and wait until the page describes it: then the robot runs it."""
+    choose(page, "Built-in behavior", option)
     playwright.expect(page.get_by_text(about, exact=True)).to_be_visible()
 
 
 def robot_button(page: Any, name: str) -> Any:
-    """One of the robot's five, not a key of the remote control."""
-    return page.get_by_role("group", name="Buttons of the robot").get_by_role("button", name=name)
+    """One of the robot's five buttons, not a key of the remote control."""
+    return page.get_by_role("group", name="Robot buttons").get_by_role("button", name=name)
 
 
 def wait_until_moved(page: Any, far_m: float, act: Any) -> None:
-    """Do something, and wait until the robot has gone so far from where it was."""
+    """Run an action, and wait until the robot has moved by a distance."""
     pose = page.evaluate("() => window.thymio.state().robot.latest.pose")
     act()
     page.wait_for_function(MOVED, arg=[pose["x"], pose["y"], far_m])
 
 
-def test_the_basic_mode_drives_by_the_arrows(class_page):
-    choose_behaviour(class_page, "Thesis: basic (white)", "Arrows drive until something is in the way.")
+def test_the_basic_mode_drives_by_the_arrow_buttons(class_page):
+    choose_behavior(
+        class_page, "Thesis: basic (white)", "The arrow buttons drive the robot until it meets an obstacle."
+    )
     wait_until_moved(class_page, 0.05, robot_button(class_page, "Forward").click)
     wait_for_service(class_page, "/aseba/stop")
     class_page.get_by_role("banner").get_by_role("button", name="Stop").click()
     class_page.wait_for_function("() => Math.abs(window.thymio.state().robot.wheelSpeeds.left) < 0.1")
 
 
-def test_the_explorer_finds_its_way_among_obstacles(class_page):
+def test_the_explorer_avoids_obstacles(class_page):
     class_page.get_by_role("button", name="Gallery").click()
     class_page.get_by_role("dialog").get_by_role("button", name="Obstacle").first.click()
     class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'obstacle'")
-    about = "Forward starts, obstacles are avoided, backward stops."
-    choose_behaviour(class_page, "Thesis: explorer (orange)", about)
+    about = "Forward starts, backward stops. Avoids obstacles."
+    choose_behavior(class_page, "Thesis: explorer (orange)", about)
     wait_until_moved(class_page, 0.2, robot_button(class_page, "Forward").click)
     playwright.expect(class_page.get_by_text("running", exact=True).first).to_be_visible()
 
 
-def test_the_track_follower_goes_along_the_track(class_page):
+def test_the_track_follower_follows_the_track(class_page):
     class_page.get_by_role("combobox", name="Choose a playground").select_option(label="Borderless")
     class_page.wait_for_function("() => window.thymio.state().simulator.playground === 'borderless'")
-    about = "Forward starts along the track, backward stops."
-    choose_behaviour(class_page, "Thesis: track follower (pink)", about)
+    about = "Forward starts, backward stops. Follows the track."
+    choose_behavior(class_page, "Thesis: track follower (pink)", about)
     wait_until_moved(class_page, 0.3, robot_button(class_page, "Forward").click)
 
 
@@ -89,6 +91,6 @@ def test_an_aseba_program_is_written_and_runs_on_the_robot(class_page):
     class_page.get_by_role("region", name="Aseba editor").get_by_role("button", name="Run").click()
     playwright.expect(class_page.get_by_role("region", name="Aseba editor")).to_contain_text("is loaded")
     class_page.get_by_role("button", name="Aseba editor").click()
-    robot_button(class_page, "Centre").click()
+    robot_button(class_page, "Center").click()
     class_page.wait_for_function("() => window.thymio.state().robot.leds.top?.[0] === 1")
     class_page.wait_for_function("() => window.thymio.state().robot.wheelSpeeds.left > 0.5")

@@ -1,4 +1,4 @@
-"""Time on the page: a step is visible, and a program that waits for time says so."""
+"""Time control: steps, and the state of a program while the simulation is paused."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ def seconds(page) -> float:
     return 60 * int(minutes) + float(rest)
 
 
-def test_a_step_moves_the_clock_as_far_as_was_chosen_and_a_program_says_that_time_is_paused(suite, page):
+def test_a_step_has_the_selected_length_and_the_program_state_says_paused(suite, page):
     open_page(page, suite("--playground", "base", "--behaviour", "explorer"))
     state = page.locator(".card.program .state")
     playwright.expect(state).to_have_text("running")
     page.locator(".time button.primary").click()
-    playwright.expect(state).to_have_text("running, time is paused")
+    playwright.expect(state).to_have_text("running, simulation paused")
     step = page.locator(".steps button")
     playwright.expect(step).to_be_enabled()
     page.wait_for_function("() => window.thymio.state().timeNs > 0")

@@ -1,4 +1,4 @@
-"""The page in a network: with the token, without it, with a wrong one, with the read-only one; and its policy."""
+"""Access: valid, missing, wrong and read-only tokens; and the content security policy."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ TOKENS = ("--address", "0.0.0.0", "--token", "fulltoken", "--read-only-token", "
 
 
 def connection(page, address, state):
-    """Open the page at an address and wait for what it says of its connection."""
+    """Open the page at an address and wait for a connection state."""
     page.goto(address)
     page.wait_for_function("(state) => window.thymio?.state().connection === state", arg=state)
 
 
-def test_the_token_of_the_address_lets_the_page_drive_and_survives_a_reload(suite, page):
+def test_the_token_in_the_address_gives_control_and_survives_a_reload(suite, page):
     address = suite(*TOKENS)
     wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
     page.goto(f"{address}#token=fulltoken")
@@ -33,7 +33,7 @@ def test_the_token_of_the_address_lets_the_page_drive_and_survives_a_reload(suit
 
 
 @pytest.mark.parametrize(("rest", "state"), [("", "noToken"), ("#token=wrongtoken", "wrongToken")])
-def test_without_a_valid_token_the_page_says_what_to_do(suite, page, rest, state):
+def test_without_a_valid_token_the_page_explains_what_to_do(suite, page, rest, state):
     address = suite(*TOKENS)
     wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
     connection(page, address + rest, state)
@@ -43,7 +43,7 @@ def test_without_a_valid_token_the_page_says_what_to_do(suite, page, rest, state
     page.wait_for_function("window.thymio?.connected")
 
 
-def test_with_the_read_only_token_the_page_watches(suite, page):
+def test_with_the_read_only_token_the_page_only_watches(suite, page):
     address = suite(*TOKENS)
     wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
     page.goto(f"{address}?tour=off#token=looktoken")
@@ -59,7 +59,7 @@ def test_with_the_read_only_token_the_page_watches(suite, page):
 
 @pytest.fixture
 def page_server():
-    """The built page's server alone, without a simulator."""
+    """The server of the built page, without a simulator."""
     folder = resources.page()
     server = PageThread(Content(folder, b'{"foxglove_port": 1}'), Settings(1), address="localhost", port=0, warn=print)
     yield server
@@ -67,7 +67,7 @@ def page_server():
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "[::1]"])
-def test_nothing_on_the_page_breaks_its_policy(browser, page_server, host):
+def test_nothing_violates_the_content_security_policy(browser, page_server, host):
     page = browser.new_page()
     page.add_init_script(
         "window.broken = []; addEventListener('securitypolicyviolation', (e) => broken.push(e.blockedURI))"
@@ -82,7 +82,7 @@ def test_nothing_on_the_page_breaks_its_policy(browser, page_server, host):
     page.close()
 
 
-def test_the_page_is_not_shown_in_a_page_of_others(browser, page_server):
+def test_the_page_cannot_be_embedded(browser, page_server):
     page = browser.new_page()
     page.goto(f"data:text/html,<iframe src='http://127.0.0.1:{page_server.port}/'></iframe>")
     (frame,) = page.main_frame.child_frames

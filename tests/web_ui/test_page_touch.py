@@ -1,4 +1,4 @@
-"""Fingers on a tablet: turn and zoom the view, press buttons on the robot and on the cross, carry the robot."""
+"""Touch on a tablet: turn and zoom the view, press buttons on the robot and on the cross, drag the robot."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from tests.web_ui.conftest import checked_page
-from tests.web_ui.page_support import MARKS, Fingers, open_page, wait_until_settled
+from tests.web_ui.page_support import MARKS, Fingers, open_page, wait_for_position
 
 pytestmark = MARKS
 
@@ -33,7 +33,7 @@ STOP_IN_SIGHT = """() => {
 
 @pytest.fixture
 def tablet(browser) -> Iterator[Any]:
-    """A page on a touch screen, which must not fail either."""
+    """A checked page on a touch screen."""
     yield from checked_page(browser, has_touch=True)
 
 
@@ -48,20 +48,20 @@ def middle_of(page: Any, selector: str) -> tuple[float, float]:
 
 
 def corners(page: Any) -> list[tuple[float, float]]:
-    """Where two corners of the playground are on the screen."""
+    """The screen positions of two corners of the playground."""
     return [(place["x"], place["y"]) for place in page.evaluate(CORNERS)]
 
 
 def test_one_finger_turns_the_view_and_two_zoom_it(suite, tablet):
     open_page(tablet, suite(*RESTING))
-    wait_until_settled(tablet, "robot")
+    wait_for_position(tablet, "robot")
     fingers = Fingers(tablet)
     before = corners(tablet)
     fingers.put(a=(60, 120))
     fingers.move(a=(180, 120))
     fingers.lift()
     tablet.wait_for_function(TURNED, arg=before[0])
-    wait_until_settled(tablet, "robot")
+    wait_for_position(tablet, "robot")
     turned = corners(tablet)
     fingers.put(a=(60, 120), b=(100, 160))
     fingers.move(a=(20, 80), b=(200, 260))
@@ -73,7 +73,7 @@ def test_two_fingers_press_two_buttons_on_the_robot_and_one_on_the_cross(suite, 
     open_page(tablet, suite(*RESTING))
     tablet.locator("#view").focus()
     tablet.keyboard.press("f")
-    wait_until_settled(tablet, "button.center")
+    wait_for_position(tablet, "button.center")
     fingers = Fingers(tablet)
     fingers.put(a=place_of(tablet, "button.forward"), b=place_of(tablet, "button.backward"))
     tablet.wait_for_function(
@@ -89,12 +89,12 @@ def test_two_fingers_press_two_buttons_on_the_robot_and_one_on_the_cross(suite, 
     tablet.wait_for_function("() => !Object.values(window.thymio.state().robot.buttons).includes(true)")
 
 
-def test_a_finger_carries_the_robot(suite, tablet):
+def test_a_robot_is_dragged_by_touch(suite, tablet):
     open_page(tablet, suite(*RESTING))
-    wait_until_settled(tablet, "robot")
+    wait_for_position(tablet, "robot")
     tablet.wait_for_function("() => window.thymio.state().services.includes('/simulator/set_poses')")
     before = tablet.evaluate(POSE)
-    tablet.get_by_role("button", name="Move things").tap()
+    tablet.get_by_role("button", name="Move objects").tap()
     tablet.wait_for_function("() => window.thymio.held() !== null")  # a tap becomes a click only later
     fingers = Fingers(tablet)
     x, y = place_of(tablet, "robot")
@@ -109,7 +109,7 @@ def test_a_finger_carries_the_robot(suite, tablet):
     )
 
 
-def test_on_a_phone_nothing_lies_beyond_the_edge_and_stop_is_in_sight(suite, tablet):
+def test_on_a_phone_nothing_overflows_and_stop_is_visible(suite, tablet):
     tablet.set_viewport_size({"width": 412, "height": 860})
     open_page(tablet, suite(*RESTING))
     for switch in ("", "#editor-switch", "#creator-switch"):
@@ -130,7 +130,7 @@ FREE = """() => {
 
 
 @pytest.mark.parametrize("size", [(390, 844), (360, 640)])
-def test_on_a_phone_the_scene_keeps_more_than_half_of_the_page_and_the_pad_can_be_hidden(suite, tablet, size):
+def test_on_a_phone_the_view_keeps_more_than_half_of_the_page_and_the_pad_can_be_hidden(suite, tablet, size):
     tablet.set_viewport_size({"width": size[0], "height": size[1]})
     open_page(tablet, suite(*RESTING))
     for language in ("de", "fr", "it", "en"):

@@ -1,4 +1,4 @@
-"""The first tour: shown once, closed for good, opened again by a button, usable by keys, and no obstacle."""
+"""The tour: shown once, closed permanently, reopened by a button, usable by keys, not blocking."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STEPS = 5
 
 @pytest.fixture
 def first_visit(suite, page):
-    """The page as somebody opens it for the first time, and its address."""
+    """The page at a first visit, and its address."""
     address = suite("--playground", "base", "--behaviour", "explorer")
     wait_for_port(int(address.rsplit(":", 1)[1].strip("/")))
     return page, address
@@ -34,10 +34,10 @@ def visit(page, address):
     page.wait_for_function(READY)
 
 
-def test_it_is_shown_once_goes_by_keys_stops_no_robot_and_comes_back_by_its_button(first_visit):
+def test_it_is_shown_once_works_by_keys_stops_no_robot_and_is_reopened_by_its_button(first_visit):
     page, address = first_visit
     visit(page, address)
-    tour = page.get_by_role("dialog", name="The world of your robot")
+    tour = page.get_by_role("dialog", name="Your robot's world")
     playwright.expect(tour).to_contain_text("1 of 5")
     playwright.expect(page.locator(".tour .primary")).to_be_focused()
     page.wait_for_function("() => window.thymio.state().program?.state === 'running'")
@@ -63,7 +63,7 @@ def test_it_is_shown_once_goes_by_keys_stops_no_robot_and_comes_back_by_its_butt
     playwright.expect(page.locator(".tour")).to_contain_text("Die Welt deines Roboters")
 
 
-def test_what_it_stands_beside_goes_on_working(first_visit):
+def test_it_does_not_block_the_page(first_visit):
     page, address = first_visit
     visit(page, address)
     page.locator(".tour").wait_for()
@@ -75,7 +75,7 @@ def test_what_it_stands_beside_goes_on_working(first_visit):
     page.wait_for_function("window.thymio.state().simulator.paused")
 
 
-def test_an_address_keeps_it_away_or_brings_it_back(first_visit):
+def test_the_address_disables_or_forces_it(first_visit):
     page, address = first_visit
     visit(page, f"{address}?tour=off")
     page.wait_for_function("() => window.thymio.frames() > 2")
@@ -86,7 +86,7 @@ def test_an_address_keeps_it_away_or_brings_it_back(first_visit):
     page.locator(".tour").wait_for()
 
 
-def test_it_can_be_closed_where_the_browser_keeps_nothing(first_visit):
+def test_it_can_be_closed_without_browser_storage(first_visit):
     page, address = first_visit
     page.add_init_script(NO_STORAGE)
     visit(page, address)
@@ -98,7 +98,7 @@ def test_it_can_be_closed_where_the_browser_keeps_nothing(first_visit):
 
 
 @pytest.mark.parametrize("size", [(1280, 650), (820, 1180), (360, 640)])
-def test_it_is_in_sight_and_accessible_on_every_screen_in_every_language(first_visit, size):
+def test_it_is_visible_and_accessible_on_every_screen_in_every_language(first_visit, size):
     page, address = first_visit
     page.set_viewport_size({"width": size[0], "height": size[1]})
     page.emulate_media(reduced_motion="reduce")

@@ -1,4 +1,4 @@
-"""Pictures as files, the view from above without WebGL, numbers at the beams, the robot's eye, two robots."""
+"""The view: saved images, 2D without WebGL, values at the beams, the robot's view, two robots."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api")
 
-from tests.web_ui.page_support import MARKS, open_page, wait_until_settled
+from tests.web_ui.page_support import MARKS, open_page, wait_for_position
 
 pytestmark = MARKS
 
@@ -30,14 +30,14 @@ PNG = b"\x89PNG\r\n\x1a\n"
 RESTING = ("--playground", "base", "--program", "none")
 
 
-def test_without_webgl_the_world_is_drawn_from_above_and_its_buttons_work(suite, page):
+def test_without_webgl_the_world_is_drawn_in_2d_and_its_buttons_work(suite, page):
     page.add_init_script(NO_WEBGL)
     open_page(page, suite(*RESTING))
     page.wait_for_function(f"({FLAT_COLORS})() > 4")
     playwright.expect(page.locator("#trouble")).to_contain_text("2D")
     page.locator("#view").focus()
     page.keyboard.press("f")
-    place = wait_until_settled(page, "button.center")
+    place = wait_for_position(page, "button.center")
     page.mouse.move(place["x"], place["y"])
     page.mouse.down()
     page.wait_for_function("() => window.thymio.state().robot.buttons.center")
@@ -49,17 +49,17 @@ def test_without_webgl_the_world_is_drawn_from_above_and_its_buttons_work(suite,
     assert int.from_bytes(content[16:20]) >= 1920
 
 
-def test_a_picture_that_is_lost_for_good_is_drawn_from_above(suite, page):
+def test_a_context_that_is_not_restored_switches_to_2d(suite, page):
     open_page(page, suite(*RESTING))
-    wait_until_settled(page, "robot")
+    wait_for_position(page, "robot")
     page.evaluate(LOSE)
     page.locator("#trouble").wait_for()
     page.wait_for_function(f"({FLAT_COLORS})() > 4")
 
 
-def test_the_view_is_saved_as_a_picture_and_the_robot_sees_with_its_own_eye(suite, page):
+def test_the_view_is_saved_as_an_image_and_the_robot_view_works(suite, page):
     open_page(page, suite(*RESTING))
-    wait_until_settled(page, "robot")
+    wait_for_position(page, "robot")
     page.select_option("#quality", "simple")
     page.wait_for_function(f"({CANVAS})() < 500")
     coarse = page.evaluate(CANVAS)
@@ -79,7 +79,7 @@ def test_the_view_is_saved_as_a_picture_and_the_robot_sees_with_its_own_eye(suit
     assert page.evaluate(CANVAS) == coarse
 
 
-def test_two_robots_have_colours_and_numbers_are_at_the_beams_of_the_selected_one(suite, page):
+def test_two_robots_have_colors_and_the_selected_one_has_values_at_its_beams(suite, page):
     open_page(page, suite("--playground", "two_robots", "--program", "none"))
     page.wait_for_function("() => Object.keys(window.thymio.state().robots).length === 2")
     page.wait_for_function("() => document.querySelectorAll('.robot-label').length === 2")

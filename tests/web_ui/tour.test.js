@@ -5,24 +5,24 @@ import { LANGUAGES } from "../../web_ui/i18n/index.js";
 import { placed } from "../../web_ui/tour/place.js";
 import { STEPS } from "../../web_ui/tour/steps.js";
 import { WORDS } from "../../web_ui/tour/words.js";
-import { begins } from "../../web_ui/tour_host.js";
+import { shouldStart } from "../../web_ui/hosts/tour_host.js";
 
 /** @param {string | null} kept */
-const shelf = (kept) => ({ getItem: () => kept });
+const storage = (kept) => ({ getItem: () => kept });
 
-test("the tour begins at a first visit, and never again once it was closed", () => {
-  assert.equal(begins({ search: "", shelf: shelf(null), entry: null }), true);
-  assert.equal(begins({ search: "?token=abc", shelf: shelf("closed"), entry: null }), false);
-  assert.equal(begins({ search: "", shelf: shelf(null), entry: { tour: "closed" } }), false); // nothing can be stored
+test("the tour starts at a first visit, and never again once it was closed", () => {
+  assert.equal(shouldStart({ search: "", storage: storage(null), entry: null }), true);
+  assert.equal(shouldStart({ search: "?token=abc", storage: storage("closed"), entry: null }), false);
+  assert.equal(shouldStart({ search: "", storage: storage(null), entry: { tour: "closed" } }), false); // nothing can be stored
 });
 
-test("the address decides for a kiosk or a class", () => {
-  assert.equal(begins({ search: "?token=abc&tour=off", shelf: shelf(null), entry: null }), false);
-  assert.equal(begins({ search: "?tour=on", shelf: shelf("closed"), entry: { tour: "closed" } }), true);
+test("the address overrides the stored choice", () => {
+  assert.equal(shouldStart({ search: "?token=abc&tour=off", storage: storage(null), entry: null }), false);
+  assert.equal(shouldStart({ search: "?tour=on", storage: storage("closed"), entry: { tour: "closed" } }), true);
 });
 
 for (const language of Object.keys(LANGUAGES)) {
-  test(`the tour has every word in ${language}, with the same values`, () => {
+  test(`the tour has every text in ${language}, with the same values`, () => {
     /** @param {string} text */
     const values = (text) => [...text.matchAll(/\{\w+\}/g)].map(([name]) => name).sort();
     assert.deepEqual(Object.keys(WORDS[language]), Object.keys(WORDS.en));
@@ -31,7 +31,7 @@ for (const language of Object.keys(LANGUAGES)) {
   });
 }
 
-test("the card stands beside what it speaks of, and always in the window", () => {
+test("the card is beside its target, and always inside the window", () => {
   const card = { width: 320, height: 170 };
   const targets = [
     { left: 14, top: 600, width: 160, height: 160 },
@@ -56,7 +56,7 @@ test("the card stands beside what it speaks of, and always in the window", () =>
   }
 });
 
-test("a large target has the card in its upper part, and nothing to see has it in the middle of the window", () => {
+test("on a large target the card is in its upper part, without a target in the center of the window", () => {
   const card = { width: 300, height: 200 };
   const window = { width: 1000, height: 800 };
   const view = { left: 0, top: 60, width: 1000, height: 740 };

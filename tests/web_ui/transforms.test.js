@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { INITIAL, reduce } from "../../web_ui/state/index.js";
-import { isWatched, watchedFor } from "../../web_ui/state/names.js";
+import { isWatched, subscriptionKey } from "../../web_ui/state/names.js";
 
 /** @typedef {import("../../web_ui/state/index.js").State} State */
 
@@ -27,7 +27,7 @@ function transform(frame, child, [x, y, z], rotation, sec) {
   return { header, child_frame_id: child, transform: { translation: { x, y, z }, rotation } };
 }
 
-/** A robot one metre ahead of an odometry that began 2 m along x, looking along y. @param {string} name */
+/** A robot one meter ahead of an odometry that began 2 m along x, looking along y. @param {string} name */
 function frames(name, { sec = 1, odometry = "odom" } = {}) {
   const spun = { x: 0, y: Math.sin(0.25), z: 0, w: Math.cos(0.25) };
   return [
@@ -38,7 +38,7 @@ function frames(name, { sec = 1, odometry = "odom" } = {}) {
 }
 
 /** @param {State} state @param {any[]} transforms @param {number} [nowMs] */
-function told(state, transforms, nowMs = 0) {
+function reported(state, transforms, nowMs = 0) {
   return reduce(state, { type: "message", topic: "/tf", value: { transforms }, timeNs: 0n, nowMs });
 }
 
@@ -48,8 +48,8 @@ function paused(state, paused) {
   return reduce(state, { type: "message", topic: "/simulator/_state", value, timeNs: 0n });
 }
 
-test("a robot of a crowd stands where its two transforms put it", () => {
-  const { robots } = told(standing(NAMES), frames("b"), 70);
+test("with many robots, a pose is computed from two transforms", () => {
+  const { robots } = reported(standing(NAMES), frames("b"), 70);
   const { pose, stampNs, arrivedMs } = /** @type {any} */ (robots.b.latest);
   const expected = { x: 2, y: 1, z: 0.1, yaw: Math.PI / 2 + 0.5, roll: 0, pitch: 0 };
   for (const [key, value] of Object.entries(expected)) assert.ok(Math.abs(pose[key] - value) < 1e-12, key);
@@ -59,45 +59,45 @@ test("a robot of a crowd stands where its two transforms put it", () => {
   assert.equal(robots.c.latest, null);
 });
 
-test("a robot that leans does so in its own direction", () => {
+test("a robot leans in its own direction", () => {
   const lean = { x: 0, y: Math.sin(0.1), z: 0, w: Math.cos(0.1) };
   const [odometry] = frames("b");
   const leaning = transform("b/odom", "b/base_link", [0, 0, 0], lean, 1);
-  const { yaw, pitch, roll } = /** @type {any} */ (told(standing(NAMES), [odometry, leaning]).robots.b.latest).pose;
+  const { yaw, pitch, roll } = /** @type {any} */ (reported(standing(NAMES), [odometry, leaning]).robots.b.latest).pose;
   for (const [found, value] of [[yaw, Math.PI / 2], [pitch, 0.2], [roll, 0]]) assert.ok(Math.abs(found - value) < 1e-12);
 });
 
-test("what comes twice is one place, and the next one follows it", () => {
-  const once = told(standing(NAMES), frames("b"), 10);
-  assert.equal(told(once, frames("b"), 20).robots.b.latest?.arrivedMs, 10);
-  const { previous, latest } = told(once, frames("b", { sec: 2 }), 60).robots.b;
+test("a repeated transform is one sample, and the next one follows it", () => {
+  const once = reported(standing(NAMES), frames("b"), 10);
+  assert.equal(reported(once, frames("b"), 20).robots.b.latest?.arrivedMs, 10);
+  const { previous, latest } = reported(once, frames("b", { sec: 2 }), 60).robots.b;
   assert.deepEqual([previous?.stampNs, latest?.stampNs, latest?.arrivedMs], [1e9, 2e9, 60]);
 });
 
-test("the selected robot, and few of them, are told where they are by their own topics", () => {
+test("the selected robot, and a few robots, get their poses from their own topics", () => {
   const crowd = standing(NAMES);
   assert.equal(crowd.selected, "a");
-  assert.equal(told(crowd, frames("a")), crowd);
+  assert.equal(reported(crowd, frames("a")), crowd);
   const few = standing(["a", "b"]);
-  assert.equal(told(few, frames("b")), few);
+  assert.equal(reported(few, frames("b")), few);
 });
 
-test("frames of other names place nobody", () => {
+test("unknown frames place no robot", () => {
   const crowd = standing(NAMES);
-  assert.equal(told(crowd, frames("b", { odometry: "wheels" })), crowd);
-  assert.equal(told(crowd, frames("b").slice(1)), crowd);
+  assert.equal(reported(crowd, frames("b", { odometry: "wheels" })), crowd);
+  assert.equal(reported(crowd, frames("b").slice(1)), crowd);
 });
 
-test("own topics are asked for until the transforms have told, and again while time stands still", () => {
+test("robot topics are subscribed to until the transforms have arrived, and again while paused", () => {
   const topics = ["/tf", "/a/joint_states", "/b/_ground_truth/odom", "/b/joint_states", "/b/_led/state"];
   const watched = (/** @type {State} */ state) => topics.filter((topic) => isWatched(state, topic));
   const crowd = standing(NAMES);
-  const placed = told(crowd, frames("b"));
+  const placed = reported(crowd, frames("b"));
   assert.deepEqual(watched(crowd), topics);
   assert.deepEqual(watched(placed), ["/tf", "/a/joint_states", "/b/_led/state"]);
   assert.deepEqual(watched(paused(placed, true)), topics);
   assert.deepEqual(watched(paused(placed, false)), watched(placed));
   assert.deepEqual(watched(standing(["a", "b"])), topics.slice(1));
   const states = [crowd, placed, paused(placed, true), reduce(placed, { type: "select", robot: "b" }), standing(["a"])];
-  assert.equal(new Set(states.map(watchedFor)).size, states.length);
+  assert.equal(new Set(states.map(subscriptionKey)).size, states.length);
 });

@@ -1,11 +1,11 @@
-// Below the view: undo and redo, camera, grid; and what is going on.
+// The bar below the view: undo and redo, camera, grid, and the latest status message.
 
 import { h, icon, setAttribute, setText } from "../panels/dom.js";
 import { CREATOR_ICONS } from "./icons.js";
 import { GRID_SIZES } from "./snap.js";
 
-/** @param {import("../i18n/index.js").Translate} t @param {import("./builder.js").Builder} builder */
-export function bar(t, builder) {
+/** @param {import("../i18n/index.js").Translate} t @param {import("./creator_model.js").CreatorModel} model */
+export function bar(t, model) {
   /** @param {string} name @param {() => void} act */
   const button = (name, act) =>
     h(
@@ -13,17 +13,17 @@ export function bar(t, builder) {
       { type: "button", "data-verb": name, title: t(`bar.${name}`), "aria-label": t(`bar.${name}`), onclick: act },
       icon(CREATOR_ICONS[name]),
     );
-  const undo = button("undo", () => builder.undo());
-  const redo = button("redo", () => builder.redo());
-  const camera = button("camera", () => builder.toggleCamera());
+  const undo = button("undo", () => model.undo());
+  const redo = button("redo", () => model.redo());
+  const camera = button("camera", () => model.toggleCamera());
   camera.append(t("bar.cameraWord"));
   const size = h("select", { "aria-label": t("bar.grid"), "data-verb": "grid" });
-  size.append(...GRID_SIZES.map((metres) => h("option", { value: metres }, `${metres * 100} cm`)));
-  size.addEventListener("change", () => builder.setGrid({ size: Number(size.value) }));
+  size.append(...GRID_SIZES.map((meters) => h("option", { value: meters }, `${meters * 100} cm`)));
+  size.addEventListener("change", () => model.setGrid({ size: Number(size.value) }));
   const on = h("select", { "aria-label": t("bar.snap"), "data-verb": "snap" });
-  on.append(...["lines", "centres"].map((choice) => h("option", { value: choice }, t(`bar.${choice}`))));
-  on.addEventListener("change", () => builder.setGrid({ on: /** @type {"lines" | "centres"} */ (on.value) }));
-  const told = h("output", { class: "told" });
+  on.append(...["lines", "centers"].map((choice) => h("option", { value: choice }, t(`bar.${choice}`))));
+  on.addEventListener("change", () => model.setGrid({ on: /** @type {"lines" | "centers"} */ (on.value) }));
+  const output = h("output", { class: "told" });
   const element = h(
     "div",
     { class: "creator-bar", role: "toolbar", "aria-label": t("bar") },
@@ -33,14 +33,14 @@ export function bar(t, builder) {
     h("span", { class: "grid-word" }, t("bar.gridWord")),
     size,
     on,
-    told,
+    output,
   );
   return {
     element,
     /** @param {string} text */
-    tell: (text) => setText(told, text),
+    report: (text) => setText(output, text),
     render() {
-      const { history, placing, grid, cameraOn } = builder;
+      const { history, placing, grid, cameraOn } = model;
       undo.disabled = history.past.length === 0 && (placing?.points.length ?? 0) === 0;
       redo.disabled = history.future.length === 0 && (placing?.takenBack.length ?? 0) === 0;
       setAttribute(camera, "aria-pressed", String(cameraOn));

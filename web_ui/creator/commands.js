@@ -1,4 +1,4 @@
-// What can be done to a playground: functions from one to the next. Pure.
+// Edit commands of the creator: pure functions from one playground to the next.
 
 import { kindNamed } from "../playground/kinds/index.js";
 import { outlinesOf } from "../playground/parts.js";
@@ -9,7 +9,7 @@ import { changed, moved } from "./place.js";
 
 const COPY_AWAY_M = 0.1;
 const LEAST_GROUND_M = 1;
-/** Ground beyond what stands on it. */
+/** Margin of ground around the items on it, in meters. */
 const MARGIN_M = 0.1;
 
 /** @param {string} title @returns {Playground} */
@@ -26,7 +26,7 @@ export function newPlayground(title) {
   };
 }
 
-/** A name of its own for another item. @param {Playground} playground @param {string} wanted */
+/** An unused name for a new item. @param {Playground} playground @param {string} wanted */
 export function freeName({ items }, wanted) {
   const taken = new Set(items.map(({ name }) => name));
   const stem = wanted
@@ -42,13 +42,13 @@ export function itemNamed({ items }, name) {
   return items.find((item) => item.name === name) ?? null;
 }
 
-/** All items but one. @param {Playground} playground @param {string} name */
+/** All items except the named one. @param {Playground} playground @param {string} name */
 export function othersOf({ items }, name) {
   return items.filter((item) => item.name !== name);
 }
 
 /**
- * With another item: over all other shapes; robots come last, as in the file.
+ * Add an item: above all other shapes. Robots stay last, as in the file.
  *
  * @param {Playground} playground
  * @param {Item} item
@@ -61,7 +61,7 @@ export function added(playground, item) {
 }
 
 /**
- * An item in the place of the one of that name; what opened a door of the old name opens the new one.
+ * Replace the named item. Plates of a renamed door refer to its new name.
  *
  * @param {Playground} playground
  * @param {string} name
@@ -79,7 +79,7 @@ export function replaced(playground, name, item) {
 }
 
 /**
- * Without an item; plates of a door that is no more go too.
+ * Remove an item. Plates of a removed door are removed too.
  *
  * @param {Playground} playground
  * @param {string} name
@@ -92,13 +92,13 @@ export function removed(playground, name) {
   return { ...playground, items };
 }
 
-/** A copy beside an item, with a name of its own. @param {Playground} playground @param {Item} item */
+/** A copy of an item, next to it, with an unused name. @param {Playground} playground @param {Item} item */
 export function copyOf(playground, item) {
   return changed(moved(item, COPY_AWAY_M, -COPY_AWAY_M), { name: freeName(playground, item.name) });
 }
 
 /**
- * An item over (1) or under (-1) its neighbour: later paint covers earlier.
+ * Move an item above (1) or below (-1) its neighbor: later paint covers earlier paint.
  *
  * @param {Playground} playground
  * @param {string} name
@@ -120,7 +120,7 @@ export function titled(playground, titles) {
 }
 
 /**
- * Another main ground, of this kind or none; it keeps place, color, walls and about its size.
+ * Replace the main ground by one of another kind, or by none; position, color, walls and approximate size are kept.
  *
  * @param {Playground} playground
  * @param {string} kind
@@ -148,7 +148,7 @@ export function grounded(playground, kind) {
 }
 
 /**
- * With a rectangle of ground under all there is.
+ * Add a rectangular ground below all items.
  *
  * @param {Playground} playground
  * @returns {Playground}
@@ -169,12 +169,12 @@ export function withGround(playground) {
   return replaced(next, ground.name, changed(ground, place));
 }
 
-/** The first ground: the one that the playground stands on. @param {Playground} playground */
+/** The main ground: the first one. @param {Playground} playground */
 export function groundOf({ items }) {
   return items.find(({ kind }) => kindNamed(kind)?.group === "ground") ?? null;
 }
 
-/** @param {number} metres */
-function round(metres) {
-  return Math.round(metres * 1000) / 1000;
+/** @param {number} meters */
+function round(meters) {
+  return Math.round(meters * 1000) / 1000;
 }

@@ -1,31 +1,31 @@
-// One control for each kind of field. Each has an element, and takes over values that changed elsewhere.
+// Form controls, one per kind of field. Each has an element and updates it when values change elsewhere.
 
 import { h, renew, setText } from "../panels/dom.js";
 import { shown, taken, unitOf } from "./units.js";
 
 /** @typedef {import("../playground/rules.js").Field} Field */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
-/** @typedef {(values: Record<string, any>) => Phrase | null} Commit  why not, or null */
+/** @typedef {(values: Record<string, any>) => Phrase | null} Commit  returns the problem, or null */
 /** @typedef {{ element: HTMLElement, update: (values: Record<string, any>) => void }} Control */
 /**
  * @typedef {object} Setting
  * @property {import("../i18n/index.js").Translate} t
  * @property {(phrase: Phrase) => string} say
  * @property {Commit} commit
- * @property {() => readonly string[]} doors   names that a plate can have
+ * @property {() => readonly string[]} doors   names of the doors that a plate can open
  * @property {(file: File) => Promise<string | null>} readPicture
  */
 
 let serial = 0;
 
 /**
- * A labelled control with room for what is wrong with it.
+ * A labeled control with space for an error message.
  *
  * @param {string} label
  * @param {HTMLElement} input
  * @param {string} [unit]
  */
-function labelled(label, input, unit = "") {
+function labeled(label, input, unit = "") {
   const id = `field-${++serial}`;
   input.id = id;
   const problem = h("small", { class: "problem", id: `${id}-problem`, role: "alert", hidden: true });
@@ -35,7 +35,7 @@ function labelled(label, input, unit = "") {
   return {
     element,
     /** @param {string | null} text */
-    tell(text) {
+    report(text) {
       problem.hidden = text === null;
       setText(problem, text ?? "");
       input.setAttribute("aria-invalid", String(text !== null));
@@ -47,21 +47,21 @@ function labelled(label, input, unit = "") {
 function numberControl({ t, say, commit }, key, { rule }) {
   const { unit, step } = unitOf(rule.unit);
   const input = h("input", { type: "number", step: "any", inputmode: "decimal", "data-field": key });
-  const { element, tell } = labelled(t(`field.${key}`), input, unit);
+  const { element, report } = labeled(t(`field.${key}`), input, unit);
   let value = NaN;
   const take = () => {
     const wanted = taken(input.valueAsNumber, rule.unit);
     const [low, high] = [rule.low ?? -Infinity, rule.high ?? Infinity];
     if (!(wanted >= low && wanted <= high)) {
-      return tell(t("problem.range", { low: shown(low, rule.unit), high: shown(high, rule.unit), unit }));
+      return report(t("problem.range", { low: shown(low, rule.unit), high: shown(high, rule.unit), unit }));
     }
     const problem = commit({ [key]: wanted });
-    tell(problem === null ? null : say(problem));
+    report(problem === null ? null : say(problem));
   };
   input.addEventListener("change", take);
   input.addEventListener("keydown", (event) => {
     if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
-    event.preventDefault(); // the browser's own step would be 1 of anything
+    event.preventDefault(); // the browser's default step is 1 in any unit
     input.value = String(Math.round((input.valueAsNumber + (event.key === "ArrowUp" ? step : -step)) * 1e4) / 1e4);
     take();
   });
@@ -71,19 +71,19 @@ function numberControl({ t, say, commit }, key, { rule }) {
       if (values[key] === value) return;
       value = values[key];
       input.value = value === null || value === undefined ? "" : String(shown(value, rule.unit));
-      tell(null);
+      report(null);
     },
   };
 }
 
-/** @param {Setting} setting @param {string} key @param {string} type  of the browser's input @returns {Control} */
+/** @param {Setting} setting @param {string} key @param {string} type  of the input element @returns {Control} */
 function textControl({ t, say, commit }, key, type) {
   const input = h("input", { type, "data-field": key, autocomplete: "off", spellcheck: "false" });
-  const { element, tell } = labelled(t(`field.${key}`), input);
+  const { element, report } = labeled(t(`field.${key}`), input);
   let value = "";
   input.addEventListener("change", () => {
     const problem = commit({ [key]: input.value });
-    tell(problem === null ? null : say(problem));
+    report(problem === null ? null : say(problem));
   });
   return {
     element,
@@ -91,7 +91,7 @@ function textControl({ t, say, commit }, key, type) {
       if ((values[key] ?? "") === value) return;
       value = values[key] ?? "";
       input.value = value;
-      tell(null);
+      report(null);
     },
   };
 }
@@ -106,13 +106,13 @@ function flagControl({ t, commit }, key) {
   };
 }
 
-/** The door that a plate opens. @param {Setting} setting @param {string} key @returns {Control} */
+/** Selects the door that a plate opens. @param {Setting} setting @param {string} key @returns {Control} */
 function doorControl({ t, say, commit, doors }, key) {
   const select = h("select", { "data-field": key });
-  const { element, tell } = labelled(t(`field.${key}`), select);
+  const { element, report } = labeled(t(`field.${key}`), select);
   select.addEventListener("change", () => {
     const problem = commit({ [key]: select.value });
-    tell(problem === null ? null : say(problem));
+    report(problem === null ? null : say(problem));
   });
   let listed = "";
   return {
@@ -129,7 +129,7 @@ function doorControl({ t, say, commit, doors }, key) {
 }
 
 /**
- * A list of points as pairs of numbers; the view has handles for them.
+ * Edits a list of points as pairs of numbers; the view has handles for them.
  *
  * @param {Setting} setting
  * @param {string} key
@@ -194,23 +194,23 @@ function pointsControl({ t, say, commit }, key, { rule }) {
   };
 }
 
-/** Another picture. @param {Setting} setting @param {string} key @returns {Control} */
+/** Replaces the image. @param {Setting} setting @param {string} key @returns {Control} */
 function imageControl({ t, say, commit, readPicture }, key) {
   const input = h("input", { type: "file", accept: "image/png,image/jpeg,image/svg+xml", "data-field": key });
-  const { element, tell } = labelled(t(`field.${key}`), input);
+  const { element, report } = labeled(t(`field.${key}`), input);
   input.addEventListener("change", async () => {
     const file = input.files?.[0];
     if (file === undefined) return;
     const uri = await readPicture(file);
-    if (uri === null) return tell(t("problem.picture", { name: file.name }));
+    if (uri === null) return report(t("problem.picture", { name: file.name }));
     const problem = commit({ [key]: uri });
-    tell(problem === null ? null : say(problem));
+    report(problem === null ? null : say(problem));
   });
   return { element, update: () => {} };
 }
 
 /**
- * Something that may be left out as a whole: walls, a pen.
+ * Edits an optional group: walls, a pen.
  *
  * @param {Setting} setting
  * @param {string} key
@@ -239,7 +239,7 @@ function groupControl(setting, key, { rule }) {
 }
 
 /**
- * Movable, and how heavy.
+ * Edits whether an object is movable, and its mass.
  *
  * @param {Setting} setting
  * @param {import("../playground/rules.js").Fields} fields
@@ -250,7 +250,7 @@ export function loadControl(setting, fields) {
   const inner = ["mass_kg", "friction", "restitution"].map((key) => numberControl(setting, key, fields[key]));
   const box = h("div", { class: "fields inner" }, ...inner.map(({ element }) => element));
   input.addEventListener("change", () => {
-    const fixed = { mass_kg: null, friction: fields.friction.otherwise, restitution: fields.restitution.otherwise };
+    const fixed = { mass_kg: null, friction: fields.friction.defaultValue, restitution: fields.restitution.defaultValue };
     setting.commit(input.checked ? { mass_kg: 0.1 } : fixed);
   });
   return {
@@ -264,7 +264,7 @@ export function loadControl(setting, fields) {
 }
 
 /**
- * The control of a field.
+ * The control for a field.
  *
  * @param {Setting} setting
  * @param {string} key

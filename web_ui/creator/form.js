@@ -1,4 +1,4 @@
-// The form of what is in hand or selected: all of its values, by numbers.
+// The form with all values of the item being placed or selected.
 
 import { h, icon, renew, setText } from "../panels/dom.js";
 import { kindNamed } from "../playground/kinds/index.js";
@@ -11,22 +11,22 @@ import { CREATOR_ICONS } from "./icons.js";
 /** @typedef {import("./fields.js").Setting} Setting */
 /** @typedef {import("./fields.js").Control} Control */
 
-/** Before all others: what it is called, and where it is. */
+/** These fields come first: name and position. */
 const FIRST = ["name", "x_m", "y_m"];
 const LOAD_KEYS = ["mass_kg", "friction", "restitution"];
 
-/** @param {Omit<Setting, "commit">} setting @param {import("./builder.js").Builder} builder */
-export function itemForm(setting, builder) {
+/** @param {Omit<Setting, "commit">} setting @param {import("./creator_model.js").CreatorModel} model */
+export function itemForm(setting, model) {
   const { t } = setting;
   const title = h("h3");
   const fields = h("div", { class: "fields" });
   const verbs = [
-    { icon: "turnLeft", word: "verb.turnLeft", act: () => builder.turn(1) },
-    { icon: "turnRight", word: "verb.turnRight", act: () => builder.turn(-1) },
-    { icon: "copy", word: "verb.copy", act: () => builder.duplicate() },
-    { icon: "over", word: "verb.over", act: () => builder.raise(1) },
-    { icon: "under", word: "verb.under", act: () => builder.raise(-1) },
-    { icon: "remove", word: "verb.remove", act: () => builder.remove() },
+    { icon: "turnLeft", word: "verb.turnLeft", act: () => model.turn(1) },
+    { icon: "turnRight", word: "verb.turnRight", act: () => model.turn(-1) },
+    { icon: "copy", word: "verb.copy", act: () => model.duplicate() },
+    { icon: "over", word: "verb.over", act: () => model.raise(1) },
+    { icon: "under", word: "verb.under", act: () => model.raise(-1) },
+    { icon: "remove", word: "verb.remove", act: () => model.remove() },
   ].map((verb) => ({
     ...verb,
     button: h(
@@ -56,7 +56,7 @@ export function itemForm(setting, builder) {
   const build = (kind, placing) => {
     const own = kindNamed(kind)?.fields ?? {};
     const all = { ...(placing ? {} : { name: needed(RULES.name) }), ...own };
-    const full = { ...setting, commit: builder.edit.bind(builder) };
+    const full = { ...setting, commit: model.edit.bind(model) };
     /** @param {[string, any]} entry */
     const rank = ([key]) => (FIRST.includes(key) ? FIRST.indexOf(key) : FIRST.length);
     const ordered = Object.entries(all).sort((one, other) => rank(one) - rank(other));
@@ -71,7 +71,7 @@ export function itemForm(setting, builder) {
     element,
     focus: () => /** @type {HTMLElement | null} */ (fields.querySelector("input, select"))?.focus(),
     render() {
-      const { placing, item } = builder;
+      const { placing, item } = model;
       const shown =
         placing === null ? item : placing.isPath ? placing.pattern : (placing.ghost?.item ?? placing.pattern);
       element.hidden = shown === null;
@@ -89,7 +89,7 @@ export function itemForm(setting, builder) {
       const values = valuesOf(shown);
       for (const one of controls) one.update(values);
       const elements = controls.map((one) => one.element);
-      if (isOther) renew(fields, elements); // also after another name, of what is the same
+      if (isOther) renew(fields, elements); // also when the same item was renamed
       for (const { icon: verb, button } of verbs) {
         const turns = verb === "turnLeft" || verb === "turnRight";
         button.hidden = turns ? !canTurn(shown) || placing?.isPath === true : placing !== null;
@@ -98,7 +98,7 @@ export function itemForm(setting, builder) {
   };
 }
 
-/** Places of a wall or door come from the pointer while it is placed. @param {string} key */
+/** While a wall or door is placed, its end points come from the pointer. @param {string} key */
 function isEnd(key) {
   return /^(start|end|opened|closed)_/.test(key);
 }

@@ -1,4 +1,4 @@
-// One history for everything: the playgrounds that were, and those that were undone. Pure, unlimited.
+// Undo history of playgrounds. Pure, without limit.
 
 /** @typedef {import("../playground/document.js").Playground} Playground */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
@@ -13,10 +13,10 @@ export class History {
   }
 
   /**
-   * Go on to another playground. Steps of one series that follow each other are one step.
+   * Record a new playground. Consecutive steps of one series count as one step.
    *
    * @param {Playground} next
-   * @param {Phrase} did      what was done, to be said when it is undone
+   * @param {Phrase} did      description of the step, announced on undo
    * @param {string} [series]
    */
   do(next, did, series = "") {
@@ -30,7 +30,7 @@ export class History {
     this.present = next;
   }
 
-  /** What was undone; null when there is nothing. @returns {Phrase | null} */
+  /** Undo; returns the description of the step, or null if there is none. @returns {Phrase | null} */
   undo() {
     const step = this.past.pop();
     if (step === undefined) return null;
@@ -39,7 +39,7 @@ export class History {
     return step.did;
   }
 
-  /** What was done again; null when there is nothing. @returns {Phrase | null} */
+  /** Redo; returns the description of the step, or null if there is none. @returns {Phrase | null} */
   redo() {
     const step = this.future.pop();
     if (step === undefined) return null;

@@ -1,4 +1,4 @@
-// Pictures of tools, each one path of a 24×24 grid.
+// Tool icons, each a single path on a 24×24 grid.
 
 /** @type {Record<string, string>} */
 export const CREATOR_ICONS = {

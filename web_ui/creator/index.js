@@ -1,5 +1,5 @@
-// The playground creator's panels: tools on the view, the form beside it, the bar below. All of it acts on the
-// workshop.
+// Panels of the playground creator: tools over the view, the form beside it, the bar below it. All of them act on the
+// session.
 
 import "./creator.css";
 
@@ -8,42 +8,42 @@ import { download } from "../editor/download.js";
 import { faultView, foreignView } from "../panels/fault.js";
 import { fileButton, h, icon, lock, setText } from "../panels/dom.js";
 import { parse } from "../playground/document.js";
-import { lacksGround, offGround } from "../playground/judge.js";
+import { lacksGround, itemsOffGround } from "../playground/validation.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { Fault } from "../playground/rules.js";
-import { textOf } from "../textfile.js";
+import { textOf } from "../browser/text_file.js";
 import { bar } from "./bar.js";
 import { newPlayground, withGround } from "./commands.js";
 import { itemForm } from "./form.js";
 import { CREATOR_ICONS } from "./icons.js";
-import { watchBuildingKeys } from "./keys.js";
+import { watchCreatorKeys } from "./keys.js";
 import { palette } from "./palette.js";
-import { watchBuilding } from "./pointer.js";
+import { watchCreatorPointer } from "./pointer.js";
 import { readPicture } from "./read_picture.js";
 import { sheetForm } from "./sheet.js";
-import { thingsList } from "./things.js";
+import { itemList } from "./item_list.js";
 import { WORDS } from "./words/index.js";
-import { Workshop } from "./workshop.js";
+import { CreatorSession } from "./creator_session.js";
 
-export { Workshop, WORDS };
+export { CreatorSession, WORDS };
 
-/** What only a file of another kind misses. */
+/** Expectations that only a file of another kind violates. */
 const OF_ANOTHER_KIND = ["fault.json", "fault.object", "fault.format"];
 
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 /**
  * @typedef {object} Creator
  * @property {{ stage: HTMLElement, side: HTMLElement, footer: HTMLElement }} elements
- * @property {(offline: string) => void} render   once a frame: takes over what pointers did, and shows it; why the
- *   simulator cannot be asked, if so
- * @property {(phrase: Phrase) => void} tell
- * @property {(fault: HTMLElement[] | null) => void} refuse   what is wrong with a file; null: nothing
- * @property {(file: File) => void} open   another playground from a file of ours
+ * @property {(offline: string) => void} render   once per frame: applies pointer moves and updates the panels; `offline` says
+ * why the simulator cannot be reached, else it is empty
+ * @property {(phrase: Phrase) => void} report
+ * @property {(fault: HTMLElement[] | null) => void} refuse   shows the errors of a file; null clears them
+ * @property {(file: File) => void} open   opens a playground file
  * @property {() => void} destroy
  */
 
 /**
- * A phrase in words: kinds by their names, and what was done inside it.
+ * Translate a phrase, including kinds and nested descriptions of steps.
  *
  * @param {import("../i18n/index.js").Translate} t
  * @param {Phrase} phrase
@@ -57,7 +57,7 @@ export function inWords(t, { word, values = {} }) {
 
 /**
  * @param {object} options
- * @param {Workshop} options.workshop
+ * @param {CreatorSession} options.session
  * @param {string} options.language
  * @param {import("../i18n/index.js").Translate} options.pageText
  * @param {import("../scene/index.js").SceneView} options.scene
@@ -66,9 +66,9 @@ export function inWords(t, { word, values = {} }) {
  * @param {() => void} options.close
  * @returns {Creator}
  */
-export function createCreator({ workshop, language, pageText, scene, announce, tryIt, close }) {
+export function createCreator({ session, language, pageText, scene, announce, tryIt, close }) {
   const t = translator(language, WORDS);
-  const { builder } = workshop;
+  const { model } = session;
   const { canvas } = scene;
   const stage = /** @type {HTMLElement} */ (canvas.parentElement);
   /** @param {Phrase} phrase */
@@ -76,14 +76,14 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
   const setting = {
     t,
     say,
-    doors: () => builder.playground.items.filter(({ kind }) => kind === "door").map(({ name }) => name),
+    doors: () => model.playground.items.filter(({ kind }) => kind === "door").map(({ name }) => name),
     readPicture,
   };
-  const tools = palette({ t, builder, canvas });
-  const below = bar(t, builder);
-  const form = itemForm(setting, builder);
-  const sheet = sheetForm(setting, builder);
-  const list = thingsList(t, builder);
+  const tools = palette({ t, model, canvas });
+  const below = bar(t, model);
+  const form = itemForm(setting, model);
+  const sheet = sheetForm(setting, model);
+  const list = itemList(t, model);
   const fault = h("div", { class: "fault", role: "alert", hidden: true });
   const warning = h("p", { class: "warning", hidden: true });
   const groundless = h(
@@ -95,7 +95,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
       {
         type: "button",
         "data-verb": "ground",
-        onclick: () => builder.become(withGround(builder.playground), { word: "did.ground" }),
+        onclick: () => model.replacePlayground(withGround(model.playground), { word: "did.ground" }),
       },
       t("warn.addGround"),
     ),
@@ -103,29 +103,29 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
   const unsaved = h("span", { class: "unsaved", title: t("file.unsaved") });
   const name = h("strong", { class: "name" });
   const hint = h("p", { class: "hint building-hint" });
-  /** Then keys go on in the view. @param {() => void} act */
-  const andBack = (act) => () => {
+  /** Run an action, then return the keyboard focus to the view. @param {() => void} act */
+  const thenFocusView = (act) => () => {
     act();
     canvas.focus();
   };
   const finish = h(
     "button",
-    { type: "button", class: "finish", onclick: andBack(() => builder.placing?.finish()) },
+    { type: "button", class: "finish", onclick: thenFocusView(() => model.placing?.finish()) },
     icon(CREATOR_ICONS.done),
     t("hint.finish"),
   );
   const cancel = h(
     "button",
-    { type: "button", class: "cancel", onclick: andBack(() => builder.cancel()) },
+    { type: "button", class: "cancel", onclick: thenFocusView(() => model.cancel()) },
     t("hint.cancel"),
   );
   const hints = h("div", { class: "building-hints" }, hint, finish, cancel);
 
-  /** @param {HTMLElement[] | null} told */
-  const refuse = (told) => {
-    fault.hidden = told === null;
-    fault.replaceChildren(...(told ?? []));
-    if (told !== null) announce(fault.textContent ?? "");
+  /** @param {HTMLElement[] | null} reported */
+  const refuse = (reported) => {
+    fault.hidden = reported === null;
+    fault.replaceChildren(...(reported ?? []));
+    if (reported !== null) announce(fault.textContent ?? "");
   };
   /** @param {File} file */
   const open = async (file) => {
@@ -133,11 +133,11 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     const content = await textOf(file);
     if (content === null) return refuse(faultView(pageText, pageText("file.notText", { name: file.name }), null));
     try {
-      workshop.take(parse(content), { word: "did.opened", values: { name: file.name } });
+      session.replacePlayground(parse(content), { word: "did.opened", values: { name: file.name } });
       refuse(null);
       scene.reframe();
-      scene.look("home");
-      tell({ word: "did.opened", values: { name: file.name } });
+      scene.setView("home");
+      report({ word: "did.opened", values: { name: file.name } });
     } catch (error) {
       if (!(error instanceof Fault)) throw error;
       const text = `${error.key === "" ? "" : `${error.key}: `}found ${error.found}, expected ${say(error.expected)}`;
@@ -148,16 +148,16 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     }
   };
   const save = () => {
-    download(workshop.fileName, workshop.text, "application/json");
-    workshop.noteSaved();
-    tell({ word: "tell.saved", values: { name: workshop.fileName } });
+    download(session.fileName, session.text, "application/json");
+    session.noteSaved();
+    report({ word: "tell.saved", values: { name: session.fileName } });
   };
   const fresh = () => {
-    workshop.take(newPlayground(t("new.title")), { word: "did.new" });
+    session.replacePlayground(newPlayground(t("new.title")), { word: "did.new" });
     refuse(null);
     scene.reframe();
-    scene.look("home");
-    tell({ word: "did.new" });
+    scene.setView("home");
+    report({ word: "did.new" });
   };
   const trying = h(
     "button",
@@ -208,19 +208,19 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
   );
 
   /** @param {Phrase} phrase */
-  function tell(phrase) {
+  function report(phrase) {
     const text = say(phrase);
-    below.tell(text);
+    below.report(text);
     announce(text);
   }
 
-  /** @type {import("../playground/document.js").Playground | null} */ let judged = null;
-  const pointers = watchBuilding({ stage, canvas, builder, scene });
-  const endKeys = watchBuildingKeys({
+  /** @type {import("../playground/document.js").Playground | null} */ let checked = null;
+  const pointers = watchCreatorPointer({ stage, canvas, model, scene });
+  const removeKeys = watchCreatorKeys({
     stage,
     canvas,
     around: [side, tools.element, below.element],
-    builder,
+    model,
     editFields: () => {
       form.render();
       form.focus();
@@ -232,24 +232,24 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
 
   return {
     elements: { stage: onStage, side, footer: below.element },
-    tell,
+    report,
     refuse,
     open: (file) => void open(file),
     render(offline) {
       lock(trying, offline);
       pointers.flush();
-      scene.camera.controls.enabled = builder.cameraOn;
-      setText(name, builder.playground.title || t("new.title"));
-      unsaved.hidden = !workshop.isUnsaved;
-      if (builder.playground !== judged) {
-        judged = builder.playground;
-        const outside = offGround(judged.items).map((item) => item.name);
+      scene.camera.controls.enabled = model.cameraOn;
+      setText(name, model.playground.title || t("new.title"));
+      unsaved.hidden = !session.isUnsaved;
+      if (model.playground !== checked) {
+        checked = model.playground;
+        const outside = itemsOffGround(checked.items).map((item) => item.name);
         warning.hidden = outside.length === 0;
-        groundless.hidden = !lacksGround(judged.items);
+        groundless.hidden = !lacksGround(checked.items);
         setText(warning, outside.length === 0 ? "" : t("warn.outside", { names: outside.join(", ") }));
       }
-      const { placing } = builder;
-      const problem = builder.ghost?.problem ?? null;
+      const { placing } = model;
+      const problem = model.ghost?.problem ?? null;
       const word = placing === null ? "" : placing.isPath ? `hint.${placing.kind}` : "hint.placing";
       setText(
         hint,
@@ -263,7 +263,7 @@ export function createCreator({ workshop, language, pageText, scene, announce, t
     },
     destroy() {
       pointers.destroy();
-      endKeys();
+      removeKeys();
       scene.camera.controls.enabled = true;
       canvas.setAttribute("aria-label", label);
       onStage.remove();

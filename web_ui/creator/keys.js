@@ -1,9 +1,9 @@
-// Keys while one builds. They work on the view only, so that writing in fields acts on nothing else; undo and redo
-// also from the buttons around it.
+// Keyboard control of the creator. Keys act only while the view has the focus, so that typing in fields is safe;
+// undo and redo also work from the surrounding buttons.
 
-import { plainKey } from "../keyboard.js";
+import { plainKey } from "../input/keyboard.js";
 
-/** @typedef {import("./builder.js").Builder} Builder */
+/** @typedef {import("./creator_model.js").CreatorModel} CreatorModel */
 
 const STEPS = /** @type {Record<string, [number, number]>} */ ({
   ArrowUp: [0, 1],
@@ -11,21 +11,21 @@ const STEPS = /** @type {Record<string, [number, number]>} */ ({
   ArrowLeft: [-1, 0],
   ArrowRight: [1, 0],
 });
-/** Counter-clockwise, clockwise: as where things are moved while the world runs. */
+/** Counter-clockwise and clockwise: the same keys as for moving objects in the running world. */
 const TURNS = /** @type {Record<string, number>} */ ({ ",": 1, "<": 1, ".": -1, ">": -1, r: 1 });
-/** What the camera keeps. */
+/** Keys that the camera keeps. */
 const CAMERA_KEYS = ["+", "=", "-", "Home", "t"];
 
 /**
  * @param {object} options
  * @param {HTMLElement} options.stage
  * @param {HTMLElement} options.canvas
- * @param {readonly HTMLElement[]} options.around   where undo and redo work too
- * @param {Builder} options.builder
- * @param {() => void} options.editFields   go on in the form
- * @returns {() => void}  ends it
+ * @param {readonly HTMLElement[]} options.around   elements where undo and redo work too
+ * @param {CreatorModel} options.model
+ * @param {() => void} options.editFields   moves the focus to the form
+ * @returns {() => void}  removes the listeners
  */
-export function watchBuildingKeys({ stage, canvas, around, builder, editFields }) {
+export function watchCreatorKeys({ stage, canvas, around, model, editFields }) {
   const ending = new AbortController();
   const { signal } = ending;
   let shiftAlone = false;
@@ -35,17 +35,17 @@ export function watchBuildingKeys({ stage, canvas, around, builder, editFields }
     (event) => {
       if (event.target !== canvas) return;
       shiftAlone = event.key === "Shift" && !event.repeat;
-      const isTheirs = CAMERA_KEYS.includes(plainKey(event)) || event.key === "Tab" || isCameraTurn(builder, event);
+      const isTheirs = CAMERA_KEYS.includes(plainKey(event)) || event.key === "Tab" || isCameraTurn(model, event);
       if (isTheirs && !event.ctrlKey && !event.metaKey) return;
-      event.stopPropagation(); // no robot's button is pressed, and Escape stops none
-      if (act(builder, event, editFields)) event.preventDefault();
+      event.stopPropagation(); // do not press robot buttons, and do not stop robots by Escape
+      if (act(model, event, editFields)) event.preventDefault();
     },
     { capture: true, signal },
   );
   stage.addEventListener(
     "keyup",
     (event) => {
-      if (event.target === canvas && event.key === "Shift" && shiftAlone) builder.toggleCamera();
+      if (event.target === canvas && event.key === "Shift" && shiftAlone) model.toggleCamera();
       shiftAlone = false;
     },
     { capture: true, signal },
@@ -58,8 +58,8 @@ export function watchBuildingKeys({ stage, canvas, around, builder, editFields }
       (event) => {
         const isText = event.target instanceof HTMLInputElement && !["checkbox", "color"].includes(event.target.type);
         if (event.target === canvas || isText || event.target instanceof HTMLTextAreaElement) return;
-        if (travel(builder, event)) event.preventDefault();
-        else if (event.key === "Escape" && builder.cancel()) event.stopPropagation(); // and no robot is stopped
+        if (travel(model, event)) event.preventDefault();
+        else if (event.key === "Escape" && model.cancel()) event.stopPropagation(); // do not stop the robots
       },
       { signal },
     );
@@ -68,55 +68,60 @@ export function watchBuildingKeys({ stage, canvas, around, builder, editFields }
 }
 
 /**
- * Shift and arrows turn the camera while nothing is in hand or selected.
+ * Shift and arrows turn the camera while no item is placed or selected.
  *
- * @param {Builder} builder
+ * @param {CreatorModel} model
  * @param {KeyboardEvent} event
  */
 function isCameraTurn({ placing, selected }, { key, shiftKey }) {
   return shiftKey && key in STEPS && placing === null && selected === null;
 }
 
-/** Undo and redo; whether it was one. @param {Builder} builder @param {KeyboardEvent} event */
-function travel(builder, { key, ctrlKey, metaKey, shiftKey }) {
+/**
+ * Handle undo and redo; returns whether the key was one of them.
+ *
+ * @param {CreatorModel} model
+ * @param {KeyboardEvent} event
+ */
+function travel(model, { key, ctrlKey, metaKey, shiftKey }) {
   if (!ctrlKey && !metaKey) return false;
   const letter = key.toLowerCase();
-  if (letter === "z" && !shiftKey) builder.undo();
-  else if (letter === "y" || letter === "z") builder.redo();
+  if (letter === "z" && !shiftKey) model.undo();
+  else if (letter === "y" || letter === "z") model.redo();
   else return false;
   return true;
 }
 
 /**
- * Whether the key did something.
+ * Returns whether the key had an effect.
  *
- * @param {Builder} builder
+ * @param {CreatorModel} model
  * @param {KeyboardEvent} event
  * @param {() => void} editFields
  */
-function act(builder, event, editFields) {
+function act(model, event, editFields) {
   const { shiftKey, altKey, ctrlKey, metaKey } = event;
   const key = plainKey(event);
-  const { placing } = builder;
-  if (travel(builder, event)) return true;
+  const { placing } = model;
+  if (travel(model, event)) return true;
   if (ctrlKey || metaKey) {
     if (key !== "d") return false;
-    builder.duplicate();
+    model.duplicate();
     return true;
   }
-  if (key in STEPS) builder.nudge(...STEPS[key], { far: shiftKey, fine: altKey });
-  else if (key in TURNS) builder.turn(key === "r" && shiftKey ? -1 : TURNS[key], altKey);
-  else if (key === "Escape") builder.cancel();
+  if (key in STEPS) model.nudge(...STEPS[key], { far: shiftKey, fine: altKey });
+  else if (key in TURNS) model.turn(key === "r" && shiftKey ? -1 : TURNS[key], altKey);
+  else if (key === "Escape") model.cancel();
   else if (key === " " && placing !== null) placing.put();
   else if (key === "Enter") {
     if (placing === null) editFields();
     else if (placing.kind === "track" && placing.points.length > 1) placing.finish();
     else placing.put();
   } else if (key === "Backspace" && placing !== null) placing.undoPoint();
-  else if (key === "Delete" || key === "Backspace") builder.remove();
-  else if (key === "n") builder.selectNext(shiftKey ? -1 : 1);
-  else if (key === "PageUp") builder.raise(1);
-  else if (key === "PageDown") builder.raise(-1);
+  else if (key === "Delete" || key === "Backspace") model.remove();
+  else if (key === "n") model.selectNext(shiftKey ? -1 : 1);
+  else if (key === "PageUp") model.raise(1);
+  else if (key === "PageDown") model.raise(-1);
   else return false;
   return true;
 }

@@ -1,10 +1,10 @@
-// The tools: select, or put something down.
+// The tool palette: select, or place an item.
 
 import { h, icon, setAttribute } from "../panels/dom.js";
 import { CREATOR_ICONS } from "./icons.js";
 import { readPicture } from "./read_picture.js";
 
-/** In their order on the page. */
+/** In display order. */
 const TOOLS = [
   "select",
   "rectangle",
@@ -23,10 +23,10 @@ const TOOLS = [
 /**
  * @param {object} options
  * @param {import("../i18n/index.js").Translate} options.t
- * @param {import("./builder.js").Builder} options.builder
- * @param {HTMLElement} options.canvas   which gets the focus, so that keys go on there
+ * @param {import("./creator_model.js").CreatorModel} options.model
+ * @param {HTMLElement} options.canvas   gets the focus so that keys act on the view
  */
-export function palette({ t, builder, canvas }) {
+export function palette({ t, model, canvas }) {
   const file = h("input", {
     type: "file",
     accept: "image/png,image/jpeg,image/svg+xml",
@@ -39,8 +39,8 @@ export function palette({ t, builder, canvas }) {
     file.value = "";
     if (chosen === undefined) return;
     const image = await readPicture(chosen);
-    if (image === null) return builder.tell({ word: "problem.picture", values: { name: chosen.name } });
-    builder.choose("picture", { image });
+    if (image === null) return model.report({ word: "problem.picture", values: { name: chosen.name } });
+    model.choose("picture", { image });
     canvas.focus();
   });
   const buttons = TOOLS.map((tool) => ({
@@ -60,7 +60,7 @@ export function palette({ t, builder, canvas }) {
   /** @param {string} tool */
   function choose(tool) {
     if (tool === "picture") return file.click();
-    builder.choose(tool === "select" ? null : tool);
+    model.choose(tool === "select" ? null : tool);
     canvas.focus();
   }
   const element = h(
@@ -72,7 +72,7 @@ export function palette({ t, builder, canvas }) {
   return {
     element,
     render() {
-      const now = builder.placing?.kind ?? "select";
+      const now = model.placing?.kind ?? "select";
       for (const { tool, button } of buttons) setAttribute(button, "aria-pressed", String(tool === now));
     },
   };

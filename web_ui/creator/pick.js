@@ -1,7 +1,7 @@
-// What a pointer is on: handles of what is selected, and items. Pure.
+// Hit tests of the pointer: handles of the selected item, and items. Pure.
 
-import { atHeight, hit } from "../move/things.js";
-import { distance, holds } from "../playground/geometry.js";
+import { atHeight, hit } from "../move/placed_bodies.js";
+import { distance, containsPoint } from "../playground/geometry.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { outlinesOf } from "../playground/parts.js";
 import { canTurn, middleOf, pointsOf, reachOf } from "./place.js";
@@ -11,32 +11,32 @@ import { canTurn, middleOf, pointsOf, reachOf } from "./place.js";
 /** @typedef {import("../playground/geometry.js").Point} Point */
 /** @typedef {{ type: "point", index: number } | { type: "ring" } | { type: "middle" }} Handle */
 
-/** The ring by which things are turned: so far beyond their outline. */
+/** Distance of the turning ring from the outline. */
 export const RING_BEYOND_M = 0.03;
 const HANDLE_PX = 14;
 const TINY_M = 0.006;
 
-/** The item under a pointer: what stands, else what lies on top. @param {readonly Item[]} items @param {Ray} ray */
+/** The item under the pointer: solids first, then the topmost paint. @param {readonly Item[]} items @param {Ray} ray */
 export function itemAt(items, ray) {
   const standing = items.flatMap((item) => solidsOf(item));
   const found = hit(ray, standing);
-  if (found !== null) return items.find(({ name }) => name === found.thing.name) ?? null;
+  if (found !== null) return items.find(({ name }) => name === found.body.name) ?? null;
   const place = atHeight(ray, 0);
   if (place === null) return null;
   const point = /** @type {Point} */ ([place.x, place.y]);
   return (
     [...items]
       .reverse()
-      .find((item) => outlinesOf(item).some(({ outline, height }) => height === 0 && holds(outline, point))) ?? null
+      .find((item) => outlinesOf(item).some(({ outline, height }) => height === 0 && containsPoint(outline, point))) ?? null
   );
 }
 
 /**
- * The handle of an item under a pointer.
+ * The handle of an item under the pointer, or null.
  *
  * @param {Item} item
  * @param {Ray} ray
- * @param {number} pixel  metres on the ground
+ * @param {number} pixel  pixel size on the ground in meters
  * @returns {Handle | null}
  */
 export function handleAt(item, ray, pixel) {
@@ -52,18 +52,26 @@ export function handleAt(item, ray, pixel) {
   return null;
 }
 
-/** Whether it is moved by a knob in its middle, as a pointer on the ground means the camera. @param {Item} item */
+/**
+ * Whether an item is moved by a knob in its center, because a drag on the ground moves the camera.
+ *
+ * @param {Item} item
+ */
 export function hasKnob(item) {
   const group = kindNamed(item.kind)?.group;
   return group === "ground" || item.kind === "picture";
 }
 
-/** Grounds are too large for one; keys and numbers turn them. @param {Item} item */
+/**
+ * Whether an item has a turning ring. Grounds are too large for one; they are turned by keys and numbers.
+ *
+ * @param {Item} item
+ */
 export function hasRing(item) {
   return canTurn(item) && kindNamed(item.kind)?.group !== "ground";
 }
 
-/** What of an item stands, each as a thing for a pointer to hit. @param {Item} item */
+/** The solid parts of an item as bodies for the hit test. @param {Item} item */
 function solidsOf(item) {
   return outlinesOf(item)
     .filter(({ height }) => height > 0)

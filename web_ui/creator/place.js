@@ -1,4 +1,4 @@
-// Where items are: moving, turning, and the points by which they are taken. Pure; everything gives a new item.
+// Position, rotation and control points of items. Pure: every function returns a new item.
 
 import { placed, wrapped } from "../playground/geometry.js";
 import { kindNamed } from "../playground/kinds/index.js";
@@ -9,12 +9,12 @@ import { rounded } from "./snap.js";
 /** @typedef {import("../playground/parts.js").Item} Item */
 /** @typedef {import("../playground/geometry.js").Point} Point */
 
-/** An item with other values. @param {Item} item @param {Record<string, any>} values @returns {Item} */
+/** A copy of an item with changed values. @param {Item} item @param {Record<string, any>} values @returns {Item} */
 export function changed(item, values) {
   return Object.freeze(tidy({ ...item, ...values }));
 }
 
-/** What an item is placed and turned by. @param {Item} item @returns {Point} */
+/** The reference point of an item, about which it turns. @param {Item} item @returns {Point} */
 export function middleOf(item) {
   const kind = kindNamed(item.kind);
   const values = valuesOf(item);
@@ -39,19 +39,19 @@ export function moved(item, dx, dy) {
   return changed(item, next);
 }
 
-/** An item with its middle somewhere else. @param {Item} item @param {Point} place */
+/** Move an item so that its center is at a point. @param {Item} item @param {Point} place */
 export function movedTo(item, [x, y]) {
   const [nowX, nowY] = middleOf(item);
   return moved(item, x - nowX, y - nowY);
 }
 
-/** Whether turning changes it. @param {Item} item */
+/** Whether turning has an effect on an item. @param {Item} item */
 export function canTurn(item) {
   const kind = kindNamed(item.kind);
   return kind !== undefined && ("yaw_rad" in kind.fields || item.kind === "wall" || kind.points.length === 0);
 }
 
-/** Turned about its middle, counter-clockwise. @param {Item} item @param {number} angle */
+/** Turn an item about its center, counter-clockwise. @param {Item} item @param {number} angle */
 export function turned(item, angle) {
   const kind = kindNamed(item.kind);
   if (kind === undefined || !canTurn(item)) return item;
@@ -63,13 +63,13 @@ export function turned(item, angle) {
     return [rounded(nextX), rounded(nextY)];
   };
   /** @type {Record<string, any>} */ const next = {};
-  if ("yaw_rad" in kind.fields) next.yaw_rad = tidyAngle(values.yaw_rad + angle);
+  if ("yaw_rad" in kind.fields) next.yaw_rad = roundAngle(values.yaw_rad + angle);
   for (const [keyX, keyY] of kind.points) [next[keyX], next[keyY]] = about([values[keyX], values[keyY]]);
   if (kind.path !== undefined && !kind.relative) next[kind.path] = values[kind.path].map(about);
   return changed(item, next);
 }
 
-/** The points by which an item is changed one by one, in the world. @param {Item} item @returns {Point[]} */
+/** The control points of an item in world coordinates. @param {Item} item @returns {Point[]} */
 export function pointsOf(item) {
   const kind = kindNamed(item.kind);
   if (kind === undefined) return [];
@@ -80,7 +80,7 @@ export function pointsOf(item) {
   return kind.relative ? placed(poseOf(values), values[kind.path]) : values[kind.path];
 }
 
-/** An item with one of these points somewhere else. @param {Item} item @param {number} index @param {Point} place */
+/** Move one control point of an item. @param {Item} item @param {number} index @param {Point} place */
 export function withPoint(item, index, place) {
   const kind = kindNamed(item.kind);
   if (kind === undefined) return item;
@@ -98,20 +98,20 @@ export function withPoint(item, index, place) {
   });
 }
 
-/** How far an item reaches from its middle. @param {Item} item */
+/** The radius of an item about its center. @param {Item} item */
 export function reachOf(item) {
   const [x, y] = middleOf(item);
   const corners = outlinesOf(item).flatMap(({ outline }) => outline);
   return Math.max(0.03, ...corners.map(([px, py]) => Math.hypot(px - x, py - y)));
 }
 
-/** Which way it looks. @param {Item} item @returns {number} radians */
+/** The heading of an item. @param {Item} item @returns {number} radians */
 export function yawOf(item) {
   return valuesOf(item).yaw_rad ?? 0;
 }
 
-/** An angle as files hold it: whole thousandths of a degree where it is one. @param {number} angle */
-export function tidyAngle(angle) {
+/** Normalize an angle and round it to thousandths of a degree, as in files. @param {number} angle */
+export function roundAngle(angle) {
   const degrees = (wrapped(angle) * 180) / Math.PI;
   return (Math.round(degrees * 1000) / 1000) * (Math.PI / 180) + 0;
 }
@@ -127,7 +127,7 @@ function inFrame({ x, y, yaw }, [px, py]) {
   return [rounded(u), rounded(v)];
 }
 
-/** The middle of the box about points. @param {readonly Point[]} points @returns {Point} */
+/** The center of the bounding box of points. @param {readonly Point[]} points @returns {Point} */
 function middle(points) {
   const [xs, ys] = [points.map(([x]) => x), points.map(([, y]) => y)];
   return [rounded((Math.min(...xs) + Math.max(...xs)) / 2), rounded((Math.min(...ys) + Math.max(...ys)) / 2)];

@@ -1,4 +1,4 @@
-// Something new in hand: it follows the pointer or the keys, is put down again and again, and goes with Escape.
+// Placing new items: the item follows pointer or keys, is placed repeatedly, and Escape ends it.
 
 import { kindNamed } from "../playground/kinds/index.js";
 import { distance } from "../playground/geometry.js";
@@ -10,25 +10,25 @@ import { rounded, snapped } from "./snap.js";
 /** @typedef {import("../playground/geometry.js").Point} Point */
 /** @typedef {import("../playground/rules.js").Phrase} Phrase */
 
-/** Nearer than this, a point is the same; without a grid a hand is not that steady. */
+/** Points nearer than this count as the same; without a grid the tolerance is in pixels. */
 const SAME_M = 0.0005;
 const SAME_PX = 8;
 const ASIDE_M = 0.15;
 
 export class Placing {
-  /** @param {import("./builder.js").Builder} builder @param {string} kind @param {Record<string, any>} values */
-  constructor(builder, kind, values) {
-    this.builder = builder;
+  /** @param {import("./creator_model.js").CreatorModel} model @param {string} kind @param {Record<string, any>} values */
+  constructor(model, kind, values) {
+    this.model = model;
     this.kind = kind;
-    const { playground } = builder;
+    const { playground } = model;
     const ground = groundOf(playground);
-    /** @type {Point} where it would be put */
-    this.place = snapped(ground === null ? [0, 0] : middleOf(ground), builder.grid);
-    /** Metres within which a point is the same. */
+    /** @type {Point} current position */
+    this.place = snapped(ground === null ? [0, 0] : middleOf(ground), model.grid);
+    /** Tolerance for the same point, in meters. */
     this.same = SAME_M;
-    /** @type {Point[]} of a path, so far */ this.points = [];
-    /** @type {Point[]} taken back */ this.takenBack = [];
-    /** @type {Item} how the next one looks; its place does not matter */
+    /** @type {Point[]} points of the path so far */ this.points = [];
+    /** @type {Point[]} removed points, for redo */ this.takenBack = [];
+    /** @type {Item} values of the next item; its position is ignored */
     this.pattern = Object.freeze({
       kind,
       ...kindNamed(kind)?.fresh,
@@ -39,11 +39,11 @@ export class Placing {
     if (!this.isPath) this.#makeRoom();
   }
 
-  /** Not on top of a robot to begin with. */
+  /** Avoid starting on top of a robot. */
   #makeRoom() {
     const [x, y] = this.place;
     const places = [0, 1, 2, 3].flatMap((far) =>
-      [1, -1].map((side) => snapped([x + side * far * ASIDE_M, y], this.builder.grid)),
+      [1, -1].map((side) => snapped([x + side * far * ASIDE_M, y], this.model.grid)),
     );
     const free = places.find((place) => {
       this.place = place;
@@ -52,51 +52,55 @@ export class Placing {
     this.place = free ?? places[0];
   }
 
-  /** Whether several places are asked for. */
+  /** Whether the item needs several points. */
   get isPath() {
     return (kindNamed(this.kind)?.clicks ?? 1) > 1;
   }
 
-  /** Where it would stand; null for a path without its first point. @returns {import("./builder.js").Ghost | null} */
+  /**
+   * The item at its current position; null for a path without a first point.
+   *
+   * @returns {import("./creator_model.js").Ghost | null}
+   */
   get ghost() {
     const item = this.isPath ? this.#pathTo(this.place) : movedTo(this.#whole(), this.place);
-    return item === null ? null : { item, problem: this.builder.problemOf(item, item.name) };
+    return item === null ? null : { item, problem: this.model.problemOf(item, item.name) };
   }
 
-  /** The pointer is there. @param {Point} place @param {boolean} free  of the grid */
+  /** Move to a pointer position. @param {Point} place @param {boolean} free  of the grid */
   hover(place, free) {
-    this.place = snapped(place, this.builder.gridFor(free));
-    this.same = free ? SAME_PX * this.builder.pixel : SAME_M;
+    this.place = snapped(place, this.model.gridFor(free));
+    this.same = free ? SAME_PX * this.model.pixel : SAME_M;
   }
 
-  /** Put it down, or one point of it. */
+  /** Place the item, or one point of it. */
   put() {
-    const { builder } = this;
+    const { model } = this;
     if (this.isPath) return this.#putPoint();
     const { ghost } = this;
     if (ghost === null) return;
-    if (ghost.problem !== null) return builder.tell(ghost.problem);
+    if (ghost.problem !== null) return model.report(ghost.problem);
     this.#add(ghost.item);
   }
 
-  /** The path is complete. @param {boolean} [closed] */
+  /** Complete the path. @param {boolean} [closed] */
   finish(closed = false) {
     if (this.kind !== "track") return;
-    if (this.points.length < 2) return this.builder.tell({ word: "problem.twoPoints" });
+    if (this.points.length < 2) return this.model.report({ word: "problem.twoPoints" });
     const item = changed(this.pattern, { points_m: this.points, ...(closed ? { closed: true } : {}) });
-    const problem = this.builder.problemOf(item, item.name);
-    if (problem !== null) return this.builder.tell(problem);
+    const problem = this.model.problemOf(item, item.name);
+    if (problem !== null) return this.model.report(problem);
     this.points = [];
     this.#add(item);
   }
 
-  /** Take back the last point; whether there was one. */
+  /** Remove the last point; returns whether there was one. */
   undoPoint() {
     const point = this.points.pop();
     if (point === undefined) return false;
     this.takenBack.push(point);
-    this.builder.tell({ word: "tell.pointBack", values: { count: this.points.length } });
-    this.builder.changed();
+    this.model.report({ word: "tell.pointBack", values: { count: this.points.length } });
+    this.model.changed();
     return true;
   }
 
@@ -105,7 +109,7 @@ export class Placing {
     const point = this.takenBack.pop();
     if (point === undefined) return false;
     this.points.push(point);
-    this.builder.changed();
+    this.model.changed();
     return true;
   }
 
@@ -116,21 +120,26 @@ export class Placing {
     const { ghost } = this;
     const at =
       ghost === null || this.isPath ? { kind: "robot", name: "", x_m: this.place[0], y_m: this.place[1] } : ghost.item;
-    this.builder.tellPlace(at, ghost?.problem);
-    this.builder.changed();
+    this.model.tellPlace(at, ghost?.problem);
+    this.model.changed();
   }
 
   /** @param {number} angle */
   turn(angle) {
     if (this.isPath || !canTurn(this.pattern)) return;
     this.pattern = turned(this.#whole(), angle);
-    this.builder.tellPlace(movedTo(this.pattern, this.place), this.ghost?.problem);
-    this.builder.changed();
+    this.model.tellPlace(movedTo(this.pattern, this.place), this.ghost?.problem);
+    this.model.changed();
   }
 
-  /** Other values for those to come. @param {Record<string, any>} values @returns {Phrase | null} */
+  /**
+   * Change values of the items to come; returns the problem, or null.
+   *
+   * @param {Record<string, any>} values
+   * @returns {Phrase | null}
+   */
   edit(values) {
-    const { builder } = this;
+    const { model } = this;
     const next = changed(this.pattern, values);
     if (this.isPath) this.pattern = next;
     else {
@@ -138,40 +147,40 @@ export class Placing {
         "x_m" in values || "y_m" in values
           ? movedTo({ ...this.#whole(), ...next }, middleOf({ ...this.#whole(), ...values }))
           : movedTo({ ...this.#whole(), ...next }, this.place);
-      const problem = builder.problemOf(item, item.name);
+      const problem = model.problemOf(item, item.name);
       if (problem?.word === "problem.value") return problem;
       this.pattern = next;
       this.place = middleOf(item);
     }
-    builder.changed();
+    model.changed();
     return null;
   }
 
-  /** The playground has changed under it. */
+  /** Update the name after the playground has changed. */
   refresh() {
     this.pattern = changed(this.pattern, { name: this.#name() });
   }
 
   #putPoint() {
-    const { builder, points, place } = this;
+    const { model, points, place } = this;
     const last = points.at(-1);
     if (last !== undefined && distance(last, place) < this.same) return this.finish();
     if (this.kind === "track" && points.length > 2 && distance(points[0], place) < this.same) return this.finish(true);
     const item = this.#pathTo(place);
-    const problem = item === null ? null : builder.problemOf(item, item.name);
-    if (problem !== null) return builder.tell(problem);
+    const problem = item === null ? null : model.problemOf(item, item.name);
+    if (problem !== null) return model.report(problem);
     if (this.kind === "wall" && item !== null) {
-      this.points = [place]; // the next wall begins where this one ends
+      this.points = [place]; // the next wall starts where this one ends
       return this.#add(item);
     }
     points.push(place);
     this.takenBack = [];
-    builder.tell({ word: "tell.point", values: { count: points.length } });
-    builder.changed();
+    model.report({ word: "tell.point", values: { count: points.length } });
+    model.changed();
   }
 
   /**
-   * What it would be if the pointer were its last point; null when there is not enough of it.
+   * The path with an additional last point; null while there are too few points.
    *
    * @param {Point} place
    * @returns {Item | null}
@@ -187,15 +196,15 @@ export class Placing {
 
   /** @param {Item} item */
   #add(item) {
-    const { builder } = this;
+    const { model } = this;
     const did = { word: "did.added", values: { name: item.name } };
-    builder.do(added(builder.playground, item), did);
+    model.do(added(model.playground, item), did);
     this.takenBack = [];
     this.refresh();
-    builder.tell(did);
+    model.report(did);
   }
 
-  /** The pattern with a place, as places are needed. */
+  /** The pattern with coordinates, which some functions need. */
   #whole() {
     const points = kindNamed(this.kind)?.points ?? [];
     const [first] = points;
@@ -204,17 +213,17 @@ export class Placing {
   }
 
   #name() {
-    return freeName(this.builder.playground, this.kind === "robot" ? "thymio" : this.kind);
+    return freeName(this.model.playground, this.kind === "robot" ? "thymio" : this.kind);
   }
 
   /**
-   * What a new one takes from the playground: a picture its width, a plate its last door.
+   * Defaults from the playground: the width of an image, the last door for a plate.
    *
    * @param {string} kind
    * @returns {Record<string, any>}
    */
   #own(kind) {
-    const { playground } = this.builder;
+    const { playground } = this.model;
     const ground = groundOf(playground);
     if (kind === "picture" && ground !== null) {
       return { size_x_m: ground.size_x_m ?? rounded(ground.side_m * (1 + Math.SQRT2)) };

@@ -1,41 +1,41 @@
-// Pointer and wheel while one builds. Handlers only note what happened and ask for a frame; places are taken over once
-// a frame (`flush`), however many moves there were. They come before the camera's, which gets what is not ours.
+// Pointer and wheel control of the creator. Handlers only record events and request a frame; `flush` applies them once
+// per frame, however many moves arrived. They run before the camera's handlers, which get everything that is left.
 
-import { atHeight } from "../move/things.js";
+import { atHeight } from "../move/placed_bodies.js";
 import { WheelSteps } from "./wheel.js";
 
-/** @typedef {import("./builder.js").Builder} Builder */
+/** @typedef {import("./creator_model.js").CreatorModel} CreatorModel */
 /** @typedef {{ clientX: number, clientY: number, altKey: boolean }} Spot */
 
-/** A pointer that went up nearer than this has clicked. */
+/** A pointer released within this distance has clicked. */
 const CLICK_PX = 6;
 
 /**
  * @param {object} options
- * @param {HTMLElement} options.stage    that holds the canvas
+ * @param {HTMLElement} options.stage    element that contains the canvas
  * @param {HTMLElement} options.canvas
- * @param {Builder} options.builder
+ * @param {CreatorModel} options.model
  * @param {import("../scene/index.js").SceneView} options.scene
  * @returns {{ flush: () => void, destroy: () => void }}
  */
-export function watchBuilding({ stage, canvas, builder, scene }) {
+export function watchCreatorPointer({ stage, canvas, model, scene }) {
   const ending = new AbortController();
   /** @type {Spot | null} */ let latest = null;
-  /** @type {{ id: number, x: number, y: number, ours: boolean, click: boolean } | null} */ let down = null;
+  /** @type {{ id: number, x: number, y: number, isDrag: boolean, click: boolean } | null} */ let down = null;
   const wheel = new WheelSteps();
 
   const flush = () => {
-    builder.pixel = scene.pixelSize;
+    model.pixel = scene.pixelSize;
     if (latest === null) return;
     const spot = latest;
     latest = null;
     const ray = scene.rayOf(spot);
     const place = atHeight(ray, 0);
-    builder.pointer = place === null ? null : [place.x, place.y];
-    if (down?.ours) builder.selecting.drag(ray, spot.altKey);
-    else if (builder.placing !== null && place !== null) {
-      builder.placing.hover([place.x, place.y], spot.altKey);
-      builder.changed();
+    model.pointer = place === null ? null : [place.x, place.y];
+    if (down?.isDrag) model.selecting.drag(ray, spot.altKey);
+    else if (model.placing !== null && place !== null) {
+      model.placing.hover([place.x, place.y], spot.altKey);
+      model.changed();
     }
   };
   /** @param {Event} event */
@@ -51,50 +51,50 @@ export function watchBuilding({ stage, canvas, builder, scene }) {
   on("pointerdown", (/** @type {PointerEvent} */ event) => {
     canvas.focus();
     if (down !== null) {
-      down.click = false; // a second finger is the camera's
+      down.click = false; // a second finger moves the camera
       return;
     }
     if (event.button !== 0) return;
-    const ours = builder.placing === null && builder.selecting.grab(scene.rayOf(event));
-    down = { id: event.pointerId, x: event.clientX, y: event.clientY, ours, click: true };
+    const isDrag = model.placing === null && model.selecting.grab(scene.rayOf(event));
+    down = { id: event.pointerId, x: event.clientX, y: event.clientY, isDrag, click: true };
     latest = event;
-    if (ours) canvas.setPointerCapture(event.pointerId);
-    if (ours || !builder.cameraOn) event.stopPropagation();
+    if (isDrag) canvas.setPointerCapture(event.pointerId);
+    if (isDrag || !model.cameraOn) event.stopPropagation();
     scene.invalidate();
   });
   on("pointermove", (/** @type {PointerEvent} */ event) => {
-    if (down?.ours) event.stopPropagation();
+    if (down?.isDrag) event.stopPropagation();
     if (down !== null && Math.hypot(event.clientX - down.x, event.clientY - down.y) > CLICK_PX) down.click = false;
-    if (down !== null && !down.ours && !down.click) return; // the camera turns
+    if (down !== null && !down.isDrag && !down.click) return; // the camera turns
     latest = event;
     scene.invalidate();
   });
   on("pointerup", (/** @type {PointerEvent} */ event) => {
     if (event.pointerId !== down?.id) return;
-    const { ours, click } = down;
-    if (ours) event.stopPropagation();
-    if (!ours && !click) {
+    const { isDrag, click } = down;
+    if (isDrag) event.stopPropagation();
+    if (!isDrag && !click) {
       down = null;
       return;
     }
     latest = event;
     flush();
     down = null;
-    if (ours) builder.selecting.drop();
-    else if (builder.placing !== null) builder.placing.put();
-    else builder.selecting.click(scene.rayOf(event));
+    if (isDrag) model.selecting.drop();
+    else if (model.placing !== null) model.placing.put();
+    else model.selecting.click(scene.rayOf(event));
   });
   on("pointercancel", () => {
     down = null;
-    builder.selecting.cancel();
+    model.selecting.cancel();
   });
   on("wheel", (/** @type {WheelEvent} */ event) => {
-    const turns = builder.placing !== null && !builder.placing.isPath;
-    if (!turns && builder.cameraOn) return;
+    const turns = model.placing !== null && !model.placing.isPath;
+    if (!turns && model.cameraOn) return;
     event.stopPropagation();
     event.preventDefault();
     const steps = wheel.take(event);
-    if (steps !== 0) builder.turn(-steps, event.altKey);
+    if (steps !== 0) model.turn(-steps, event.altKey);
   });
   return { flush, destroy: () => ending.abort() };
 }

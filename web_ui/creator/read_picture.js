@@ -1,13 +1,13 @@
-// A picture file as a data URI that a playground can hold: not too large, and of a form that the simulator reads.
+// Reads an image file as a data URI that a playground can contain: small enough, in a format that the simulator reads.
 
-/** A file up to this size is taken as it is; as text it grows by a third. */
+/** Files up to this size are kept unchanged; as text they grow by a third. */
 const KEPT_BYTES = 1_000_000;
 const MOST_PIXELS = 2048;
-/** An SVG has no size in pixels of its own. */
+/** An SVG has no size in pixels, so one is chosen. */
 const DRAWN_PIXELS = 1600;
 const QUALITY = 0.88;
 
-/** Null for what is no picture. @param {File} file @returns {Promise<string | null>} */
+/** Returns null if the file is not an image. @param {File} file @returns {Promise<string | null>} */
 export async function readPicture(file) {
   const image = new Image();
   const address = URL.createObjectURL(file);
@@ -34,9 +34,9 @@ export async function readPicture(file) {
 
 /** @param {File} file @returns {Promise<string>} */
 function uriOf(file) {
-  return new Promise((settle, fail) => {
+  return new Promise((resolve, fail) => {
     const reader = new FileReader();
-    reader.onload = () => settle(String(reader.result));
+    reader.onload = () => resolve(String(reader.result));
     reader.onerror = () => fail(reader.error);
     reader.readAsDataURL(file);
   });

@@ -1,7 +1,7 @@
-// Taking what stands there: select it, carry it, turn it by its ring, move its points. Until it is let go, it is a
-// ghost.
+// Selecting existing items: drag them, turn them by the ring, move their points. A dragged item is shown as a ghost
+// until it is released.
 
-import { atHeight } from "../move/things.js";
+import { atHeight } from "../move/placed_bodies.js";
 import { kindNamed } from "../playground/kinds/index.js";
 import { valuesOf } from "../playground/parts.js";
 import { replaced } from "./commands.js";
@@ -17,69 +17,69 @@ import { snapped } from "./snap.js";
 const TURN_STEP = Math.PI / 12;
 
 export class Selecting {
-  /** @param {import("./builder.js").Builder} builder */
-  constructor(builder) {
-    this.builder = builder;
+  /** @param {import("./creator_model.js").CreatorModel} model */
+  constructor(model) {
+    this.model = model;
     /** @type {{ item: Item, handle: Handle, from: Point, z: number } | null} */ this.grip = null;
-    /** @type {import("./builder.js").Ghost | null} */ this.ghost = null;
+    /** @type {import("./creator_model.js").Ghost | null} */ this.ghost = null;
   }
 
-  /** A pointer goes down; whether it took something. @param {Ray} ray */
+  /** Pointer down; returns whether something was grabbed. @param {Ray} ray */
   grab(ray) {
-    const { builder } = this;
+    const { model } = this;
     const ground = pointOn(ray, 0);
     if (ground === null) return false;
-    const { item } = builder;
-    const handle = item === null ? null : handleAt(item, ray, builder.pixel);
+    const { item } = model;
+    const handle = item === null ? null : handleAt(item, ray, model.pixel);
     if (item !== null && handle !== null) {
       this.grip = { item, handle, from: ground, z: 0 };
       return true;
     }
-    const found = itemAt(builder.playground.items, ray);
-    if (found === null || hasKnob(found)) return false; // the ground is the camera's, and a click selects it
-    builder.select(found.name);
+    const found = itemAt(model.playground.items, ray);
+    if (found === null || hasKnob(found)) return false; // drags on the ground move the camera; a click selects it
+    model.select(found.name);
     const z = heightOf(found) / 2;
     this.grip = { item: found, handle: { type: "middle" }, from: pointOn(ray, z) ?? ground, z };
     return true;
   }
 
-  /** A pointer went down and up on nothing that can be taken. @param {Ray} ray */
+  /** Click on something that cannot be dragged: select what is there, or nothing. @param {Ray} ray */
   click(ray) {
-    this.builder.select(itemAt(this.builder.playground.items, ray)?.name ?? null);
+    this.model.select(itemAt(this.model.playground.items, ray)?.name ?? null);
   }
 
-  /** @param {Ray} ray @param {boolean} free  of the grid */
+  /** @param {Ray} ray @param {boolean} free  whether the grid is ignored */
   drag(ray, free) {
-    const { builder, grip } = this;
+    const { model, grip } = this;
     if (grip === null) return;
     const place = pointOn(ray, grip.z);
     if (place === null) return;
-    const item = carried(grip, place, builder.gridFor(free));
-    this.ghost = item === grip.item ? null : { item, problem: builder.problemOf(item, item.name) };
-    builder.changed();
+    const item = dragged(grip, place, model.gridFor(free));
+    this.ghost = item === grip.item ? null : { item, problem: model.problemOf(item, item.name) };
+    model.changed();
   }
 
-  /** Let go: it is there now, or where it was. */
+  /** Pointer up: apply the change, or restore the item if the position is invalid. */
   drop() {
-    const { builder, ghost, grip } = this;
+    const { model, ghost, grip } = this;
     this.cancel();
     if (ghost === null || grip === null) return;
-    if (ghost.problem !== null) return builder.tell(ghost.problem);
+    if (ghost.problem !== null) return model.report(ghost.problem);
     const word =
       grip.handle.type === "ring" ? "did.turned" : grip.handle.type === "point" ? "did.changed" : "did.moved";
-    builder.do(replaced(builder.playground, ghost.item.name, ghost.item), { word, values: { name: ghost.item.name } });
-    builder.tellPlace(ghost.item);
+    model.do(replaced(model.playground, ghost.item.name, ghost.item), { word, values: { name: ghost.item.name } });
+    model.tellPlace(ghost.item);
   }
 
   cancel() {
     this.grip = null;
     this.ghost = null;
-    this.builder.changed();
+    this.model.changed();
   }
 }
 
 /** @param {NonNullable<Selecting["grip"]>} grip @param {Point} place @param {import("./snap.js").Grid | null} grid */
-function carried({ item, handle, from }, place, grid) {
+function dragged({ item, handle, from }, place, grid) {
   const [x, y] = middleOf(item);
   if (handle.type === "ring") {
     const turn = Math.atan2(place[1] - y, place[0] - x) - Math.atan2(from[1] - y, from[0] - x);
@@ -93,7 +93,7 @@ function carried({ item, handle, from }, place, grid) {
   if (Math.hypot(dx, dy) < 1e-4) return item;
   const isPath = kindNamed(item.kind)?.points.length === 0 || item.kind === "wall";
   if (!isPath) return movedTo(item, snapped([x + dx, y + dy], grid));
-  const [[firstX, firstY]] = pointsOf(item); // a path keeps its first point on the grid, not its middle
+  const [[firstX, firstY]] = pointsOf(item); // a path keeps its first point on the grid, not its center
   const [toX, toY] = snapped([firstX + dx, firstY + dy], grid);
   return movedTo(item, [x + toX - firstX, y + toY - firstY]);
 }

@@ -1,4 +1,4 @@
-// The playground as a whole: title, description, what it stands on.
+// The form of the playground as a whole: title, description, main ground.
 
 import { h } from "../panels/dom.js";
 import { grounded, groundOf, titled } from "./commands.js";
@@ -10,22 +10,22 @@ import { valuesOf } from "../playground/parts.js";
 /** @typedef {import("./fields.js").Control} Control */
 
 const GROUNDS = ["rectangle", "octagon", "none"];
-/** What is asked about the ground here; the rest when it is selected. */
+/** Fields of the ground that are shown here; the others appear when it is selected. */
 const GROUND_KEYS = ["size_x_m", "size_y_m", "side_m", "color", "walls"];
 
-/** @param {Omit<import("./fields.js").Setting, "commit">} setting @param {import("./builder.js").Builder} builder */
-export function sheetForm(setting, builder) {
+/** @param {Omit<import("./fields.js").Setting, "commit">} setting @param {import("./creator_model.js").CreatorModel} model */
+export function sheetForm(setting, model) {
   const { t } = setting;
   /** @param {Record<string, any>} values */
   const title = (values) => {
     if (!RULES.line.pattern?.test(values.title ?? values.description ?? "")) return { word: "problem.line" };
-    return builder.become(titled(builder.playground, values), { word: "did.titled" });
+    return model.replacePlayground(titled(model.playground, values), { word: "did.titled" });
   };
   const titles = ["title", "description"].map((key) => control({ ...setting, commit: title }, key, needed(RULES.line)));
   const select = h("select", { id: "creator-ground", "data-field": "ground" });
   select.append(...GROUNDS.map((kind) => h("option", { value: kind }, t(`ground.${kind}`))));
   select.addEventListener("change", () =>
-    builder.become(grounded(builder.playground, select.value), { word: "did.ground" }),
+    model.replacePlayground(grounded(model.playground, select.value), { word: "did.ground" }),
   );
   const fields = h("div", { class: "fields" });
   const element = h(
@@ -40,23 +40,23 @@ export function sheetForm(setting, builder) {
 
   /** @param {Record<string, any>} values */
   const change = (values) => {
-    const ground = groundOf(builder.playground);
+    const ground = groundOf(model.playground);
     if (ground === null) return null;
-    const before = builder.selected;
-    builder.selected = ground.name;
-    const problem = builder.edit(values);
-    builder.selected = before;
-    builder.changed();
+    const before = model.selected;
+    model.selected = ground.name;
+    const problem = model.edit(values);
+    model.selected = before;
+    model.changed();
     return problem;
   };
 
   return {
     element,
     render() {
-      element.hidden = builder.placing !== null || builder.item !== null;
+      element.hidden = model.placing !== null || model.item !== null;
       if (element.hidden) return;
-      for (const one of titles) one?.update(builder.playground);
-      const ground = groundOf(builder.playground);
+      for (const one of titles) one?.update(model.playground);
+      const ground = groundOf(model.playground);
       select.value = ground?.kind ?? "none";
       const kind = `${ground?.name} ${ground?.kind}`;
       if (kind !== shownKind) {

@@ -1,5 +1,5 @@
-// What is drawn over the playground while one builds: grid, ghost, selection, handles. Pure: lines and areas in
-// metres.
+// Everything that is drawn over the playground in the creator: grid, ghost, selection, handles. Pure: lines and areas
+// in meters.
 
 import { placed } from "../playground/geometry.js";
 import { kindNamed } from "../playground/kinds/index.js";
@@ -10,7 +10,7 @@ import { middleOf, pointsOf, reachOf, yawOf } from "./place.js";
 /** @typedef {import("../playground/geometry.js").Point} Point */
 /** @typedef {import("../playground/parts.js").Item} Item */
 /** @typedef {"free" | "taken" | "chosen" | "grid" | "soft"} Tone */
-/** @typedef {{ outline: Point[], height: number, tone: Tone }} Area   a convex polygon, standing */
+/** @typedef {{ outline: Point[], height: number, tone: Tone }} Area   a convex polygon, upright to its height */
 /** @typedef {{ points: Point[], tone: Tone }} Line */
 /** @typedef {{ x: number, y: number, tone: Tone }} Knob */
 /** @typedef {{ areas: Area[], lines: Line[], knobs: Knob[], knobSize: number }} Sketch */
@@ -20,14 +20,14 @@ const KNOB_PX = 8;
 const RING_SIDES = 64;
 const ARROW = { from: 0.09, to: 0.17, head: 0.025 };
 
-/** @param {import("./builder.js").Builder} builder @returns {Sketch} */
-export function sketchOf(builder) {
-  const { playground, ghost, item, placing } = builder;
+/** @param {import("./creator_model.js").CreatorModel} model @returns {Sketch} */
+export function sketchOf(model) {
+  const { playground, ghost, item, placing } = model;
   /** @type {Sketch} */ const sketch = {
     areas: [],
-    lines: gridOf(builder),
+    lines: gridOf(model),
     knobs: [],
-    knobSize: KNOB_PX * builder.pixel,
+    knobSize: KNOB_PX * model.pixel,
   };
   for (const one of playground.items) {
     if (one.kind === "robot" && one.name !== ghost?.item.name) sketch.lines.push(...arrowOf(one, "soft"));
@@ -78,7 +78,7 @@ function handlesOf(sketch, item, tone) {
   sketch.knobs.push({ x: x + radius * Math.cos(yaw), y: y + radius * Math.sin(yaw), tone });
 }
 
-/** Which way a robot looks. @param {Item} item @param {Tone} tone @returns {Line[]} */
+/** The heading arrow of a robot. @param {Item} item @param {Tone} tone @returns {Line[]} */
 function arrowOf(item, tone) {
   const [x, y] = middleOf(item);
   const { from, to, head } = ARROW;
@@ -97,7 +97,7 @@ function arrowOf(item, tone) {
 }
 
 /**
- * What cannot be seen: where a door goes, and the area of a plate.
+ * Invisible parts: the open position of a door and the trigger area of a plate.
  *
  * @param {Item} item
  * @param {Tone} tone
@@ -119,9 +119,9 @@ function hintsOf(item, tone) {
 }
 
 /**
- * The grid over all grounds; coarser where it would be too fine to see.
+ * The grid over all grounds; coarser where lines would be too dense.
  *
- * @param {import("./builder.js").Builder} builder
+ * @param {import("./creator_model.js").CreatorModel} model
  * @returns {Line[]}
  */
 function gridOf({ playground, grid, pixel }) {

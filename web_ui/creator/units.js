@@ -1,6 +1,6 @@
-// Numbers as people write them: centimetres, degrees, grams. Pure.
+// Display units of numbers: centimeters, degrees, grams. Pure.
 
-/** One row per unit of the file: the one that is shown, how many of it make one, and the step of its arrows. */
+/** One row per unit of the file: display unit, factor, and step of the input. */
 export const UNITS = /** @type {Record<string, { unit: string, factor: number, step: number }>} */ ({
   m: { unit: "cm", factor: 100, step: 1 },
   rad: { unit: "°", factor: 180 / Math.PI, step: 15 },
@@ -8,21 +8,21 @@ export const UNITS = /** @type {Record<string, { unit: string, factor: number, s
   s: { unit: "s", factor: 1, step: 0.5 },
 });
 const PLAIN = { unit: "", factor: 1, step: 0.05 };
-/** So fine are numbers shown, and taken. */
+/** Resolution of displayed and entered numbers. */
 const SHOWN = 1e4;
 const EXACT = 1e9;
 
-/** @param {string | undefined} unit  of the file */
+/** @param {string | undefined} unit  unit in the file */
 export function unitOf(unit = "") {
   return UNITS[unit] ?? PLAIN;
 }
 
-/** A number of the file as it is shown. @param {number} value @param {string} [unit] */
+/** Convert a number of the file to its display unit. @param {number} value @param {string} [unit] */
 export function shown(value, unit) {
   return Math.round(value * unitOf(unit).factor * SHOWN) / SHOWN + 0;
 }
 
-/** A number that was written as the file has it. @param {number} value @param {string} [unit] */
+/** Convert an entered number to the unit of the file. @param {number} value @param {string} [unit] */
 export function taken(value, unit) {
   const { factor } = unitOf(unit);
   return unit === "rad" ? value / factor : Math.round((value / factor) * EXACT) / EXACT + 0;

@@ -1,24 +1,24 @@
-// How far a wheel turns what is in hand: one step for each notch of a mouse, whatever a browser reports for one; the
-// small distances of a touchpad add up. Pure.
+// Converts wheel events to turning steps: one per notch of a mouse, whatever the browser reports for it; the small
+// distances of a touchpad are accumulated. Pure.
 
-/** Browsers report 100 to 120 pixels for a notch, fewer on a page that is zoomed; touchpads send much less at a time. */
+/** Browsers report 100 to 120 pixels per notch, fewer on a zoomed page; touchpads send many smaller events. */
 const NOTCH_PX = 120;
 const LEAST_NOTCH_PX = 50;
-const PIXELS = 0; // WheelEvent.deltaMode; the others are lines and pages, which only wheels with notches send
+const PIXELS = 0; // WheelEvent.deltaMode; lines and pages are sent only by wheels with notches
 const LINES_PER_NOTCH = 3;
 
 export class WheelSteps {
   constructor() {
-    /** Pixels of a touchpad that are no step yet. */
+    /** Accumulated touchpad pixels, less than a step. */
     this.rest = 0;
   }
 
-  /** Whole steps that an event makes; positive: towards a person. @param {{ deltaY: number, deltaMode: number }} event */
+  /** Whole steps of an event; positive: toward the user. @param {{ deltaY: number, deltaMode: number }} event */
   take({ deltaY, deltaMode }) {
     const far = Math.abs(deltaY);
     if (deltaMode !== PIXELS) return Math.sign(deltaY) * Math.max(1, Math.round(far / LINES_PER_NOTCH));
     if (far >= LEAST_NOTCH_PX) return Math.sign(deltaY) * Math.max(1, Math.round(far / NOTCH_PX));
-    if (this.rest * deltaY < 0) this.rest = 0; // the other way
+    if (this.rest * deltaY < 0) this.rest = 0; // direction reversed
     this.rest += deltaY;
     const steps = Math.trunc(this.rest / NOTCH_PX);
     this.rest -= steps * NOTCH_PX;

@@ -1,4 +1,4 @@
-// An .aesl file as text with places: what is edited is cut out and put in, the rest stays byte for byte
+// Reads .aesl files with source positions, so that an edit replaces only what changed and the rest stays byte for byte
 // (docs/spec/aseba-language.md section 13).
 
 import { AeslError, attributesOf, decoded, encoded, scan } from "./xml.js";
@@ -12,10 +12,10 @@ export { AeslError } from "./xml.js";
  * @typedef {object} Node
  * @property {string} name
  * @property {string} id
- * @property {Span} tag         of its opening tag
- * @property {boolean} empty    written as <node …/>
- * @property {number} end       where its closing tag begins
- * @property {Unit[]} units     of the code, with where each stands in the file
+ * @property {Span} tag         span of its opening tag
+ * @property {boolean} empty    whether it is written as <node …/>
+ * @property {number} end       start of its closing tag
+ * @property {Unit[]} units     characters of the code with their positions in the file
  * @property {string} code
  */
 /**
@@ -25,14 +25,14 @@ export { AeslError } from "./xml.js";
  * @property {Entry[]} events
  * @property {Entry[]} constants
  * @property {Node[]} nodes
- * @property {boolean} vpl      whether a node has the data of a VPL program
+ * @property {boolean} vpl      whether a node contains VPL data
  */
 
 export const LEAST = -32768;
 export const GREATEST = 32767;
-/** Words of an event at most (docs/aseba_ros.md, `limits.event_values`). */
+/** Maximum number of words of an event (docs/aseba_ros.md, `limits.event_values`). */
 export const LARGEST_EVENT = 258;
-/** Elements in which editors keep a VPL program. */
+/** Elements in which editors store a VPL program. */
 const VPL = ["ThymioVisualProgramming", "ThymioVPL", "vplroot"];
 const VPL_EVENTS = [
   { name: "pair_run", value: 1 },
@@ -60,7 +60,7 @@ export function newAesl(code = "") {
 }
 
 /**
- * The events that a program can use: those of the file, and in a file of VPL those that VPL declares by itself.
+ * Events that a program can use: those of the file, plus the implicit events of VPL in a VPL file.
  *
  * @param {Aesl} aesl
  * @returns {{ name: string, value: number }[]}
@@ -70,13 +70,13 @@ export function allEvents({ events, vpl }) {
   return [...events, ...added];
 }
 
-/** Whether a text is meant as .aesl rather than as bare Aseba. @param {string} text */
+/** Whether a text looks like .aesl rather than bare Aseba code. @param {string} text */
 export function looksLikeAesl(text) {
   return /^\uFEFF?\s*</.test(text);
 }
 
 /**
- * Read a file; AeslError tells the place of what is wrong.
+ * Parse a file. Throws AeslError with the position of the error.
  *
  * @param {string} text
  * @returns {Aesl}
@@ -121,7 +121,7 @@ export function readAesl(text) {
       if (depth === 1 && part.name === "node" && node !== null) node.end = part.from;
       if (depth === 1 && listed !== null) listed.to = part.to;
     } else if ((part.kind === "text" || part.kind === "cdata") && node !== null && depth === 2) {
-      for (const unit of decoded(text, part)) node.units.push(unit); // too many for arguments of one call
+      for (const unit of decoded(text, part)) node.units.push(unit); // too many for the arguments of one call
     }
     if (depth < 2) listed = null;
     if (depth < 2 && !(part.kind === "open" && part.name === "node")) node = null;
@@ -132,10 +132,10 @@ export function readAesl(text) {
 }
 
 /**
- * The file with other code in one of its nodes: only what differs is replaced.
+ * The file with new code in one of its nodes; only the difference is replaced.
  *
  * @param {string} text
- * @param {number} index  of the node
+ * @param {number} index  index of the node
  * @param {string} code
  */
 export function withCode(text, index, code) {
@@ -172,12 +172,18 @@ export function withCode(text, index, code) {
   }
   gone.forEach(({ from, to }, position) => replace(from, to, position === 0 ? put : ""));
   result += text.slice(at);
-  // What stays of CDATA and what is put in may end it together: then all of the code is written anew.
+  // If the kept CDATA and the insertion would form "]]>" together, the whole code is rewritten.
   if (!units.some(({ cdata }) => cdata) || isCode(result, index, code)) return result;
   return text.slice(0, tag.to) + encoded(code, false, newline) + text.slice(nodes[index].end);
 }
 
-/** Whether a node of a file has this code. @param {string} text @param {number} index @param {string} code */
+/**
+ * Whether a node of a file contains exactly this code.
+ *
+ * @param {string} text
+ * @param {number} index
+ * @param {string} code
+ */
 function isCode(text, index, code) {
   try {
     return readAesl(text).nodes[index]?.code === code;
@@ -187,7 +193,7 @@ function isCode(text, index, code) {
 }
 
 /**
- * The file with something at the end of its root, which may be written as <network/>.
+ * Insert text at the end of the root element, which may be written as <network/>.
  *
  * @param {string} text
  * @param {string} added
@@ -200,12 +206,12 @@ export function withLast(text, added) {
 }
 
 /**
- * The file with an event or constant added (behind the others), changed, or with null removed.
+ * Set an event or constant; new ones are appended, null removes one.
  *
  * @param {string} text
  * @param {"event" | "constant"} kind
  * @param {string} name
- * @param {number | null} value  size of an event, value of a constant
+ * @param {number | null} value  size of an event, or value of a constant
  */
 export function withEntry(text, kind, name, value) {
   const aesl = readAesl(text);

@@ -1,10 +1,10 @@
-// Breakpoints in the gutter, and the line in which the program stands. They move with the text.
+// The breakpoint gutter and the marker of the current line. Both move with edits.
 
 import { RangeSet, StateEffect, StateField } from "@codemirror/state";
 import { Decoration, EditorView, gutter, GutterMarker } from "@codemirror/view";
 
 /** @typedef {import("@codemirror/state").EditorState} EditorState */
-/** @typedef {{ line: number, fault: boolean } | null} Place  line from 1 */
+/** @typedef {{ line: number, fault: boolean } | null} Place  line counted from 1 */
 
 /** @type {import("@codemirror/state").StateEffectType<number[]>} */
 const setLines = StateEffect.define();
@@ -36,7 +36,7 @@ export const breakpointField = StateField.define({
   },
 });
 
-/** @param {import("@codemirror/state").Text} doc @param {readonly number[]} wanted  lines from 1 */
+/** @param {import("@codemirror/state").Text} doc @param {readonly number[]} wanted  line numbers from 1 */
 function markersAt(doc, wanted) {
   const lines = [...new Set(wanted)].filter((line) => line >= 1 && line <= doc.lines);
   lines.sort((one, other) => one - other);
@@ -82,7 +82,7 @@ export function breakpointGutter(toggle) {
   ];
 }
 
-/** Lines with a breakpoint, from 1. @param {EditorState} state @returns {number[]} */
+/** Lines with a breakpoint, counted from 1. @param {EditorState} state @returns {number[]} */
 export function breakpointLines(state) {
   /** @type {number[]} */ const lines = [];
   state.field(breakpointField).between(0, state.doc.length, (from) => void lines.push(state.doc.lineAt(from).number));
@@ -94,7 +94,12 @@ export function showBreakpoints(view, lines) {
   view.dispatch({ effects: setLines.of(lines) });
 }
 
-/** Show where the program stands, and bring it into view. @param {EditorView} view @param {Place} place */
+/**
+ * Mark the line at which the program is stopped, and scroll it into view.
+ *
+ * @param {EditorView} view
+ * @param {Place} place
+ */
 export function showPlace(view, place) {
   const effects = [/** @type {import("@codemirror/state").StateEffect<any>} */ (setPlace.of(place))];
   if (place !== null && place.line >= 1 && place.line <= view.state.doc.lines) {

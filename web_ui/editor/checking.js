@@ -1,7 +1,7 @@
-// The compiler's opinion of a text: what to ask the check service, and where its answer belongs in the text.
+// Requests to the check service, and the mapping of its answers to text ranges.
 
 /** @typedef {{ line: number, column: number, end_line: number, end_column: number, text: string }} Edit */
-/** @typedef {{ kind: string, message: string, edit: Edit | null }} Hint  what was probably meant */
+/** @typedef {{ kind: string, message: string, edit: Edit | null }} Hint  the probable intention */
 /** @typedef {{ line: number | null, column: number | null, length?: number, message: string, kind?: string, hint?: Hint | null }} Remark */
 /** @typedef {{ from: number, to: number, insert: string }} Repair  an edit as a change of the text */
 /** @typedef {{ variables: [number, number], bytecode: [number, number], stack: [number, number] }} Use */
@@ -21,11 +21,11 @@ export const CHECK_SERVICE = "/aseba_runtime/check";
 const STRING = 4; // rcl_interfaces/msg/ParameterType
 const BOOL = 1;
 const STRING_ARRAY = 9;
-/** Of an answer to a question that could not be answered. */
+/** Status of an answer to a request that failed. */
 const NO_ANSWER = "request";
 
 /**
- * A request of rcl_interfaces/srv/SetParametersAtomically.
+ * Build a request of rcl_interfaces/srv/SetParametersAtomically.
  *
  * @param {{ source: string, language: string, events: Entry[], constants: Entry[] }} what
  */
@@ -45,7 +45,7 @@ export function checkRequest({ source, language, events, constants }) {
   };
 }
 
-/** A request for what the robot has, with help in this language. @param {string} language */
+/** A request for the names that a robot offers, with help in this language. @param {string} language */
 export function targetRequest(language) {
   return {
     parameters: [
@@ -56,7 +56,7 @@ export function targetRequest(language) {
   };
 }
 
-/** The first error of a whole file in the words of a language; null without one. @param {any} answer @returns {Fault | null} */
+/** The first error of a whole file, translated; null if there is none. @param {any} answer @returns {Fault | null} */
 export function firstFault(answer) {
   const found = readVerdict(answer).errors.find(({ kind }) => kind !== NO_ANSWER);
   if (found === undefined) return null;
@@ -64,7 +64,7 @@ export function firstFault(answer) {
   return { text, line: found.line, column: found.column };
 }
 
-/** What was guessed about the nodes of a file, as sentences. @param {any} answer @returns {string[]} */
+/** Notes about how the nodes of a file were interpreted, as sentences. @param {any} answer @returns {string[]} */
 export function notesOf(answer) {
   const { notes = [] } = JSON.parse(answer.result.reason);
   return notes.map((/** @type {{ message: string }} */ { message }) => message);
@@ -77,7 +77,7 @@ export function readVerdict(answer) {
 }
 
 /**
- * Remarks as ranges of the text; one without a place stands at its beginning.
+ * Diagnostics as text ranges; one without position is placed at the start of the text.
  *
  * @param {string} text
  * @param {Pick<Verdict, "errors" | "warnings">} verdict
@@ -91,11 +91,11 @@ export function marks(text, { errors, warnings }) {
     starts.push(at);
     at += line.length + 1;
   }
-  /** The offset of a place, and of one some characters behind it in its line.
+  /** The offset of a position, and of a number of characters after it in its line.
    * @param {number | null} line @param {number | null} column @param {number} length */
   const range = (line, column, length) => {
     const index = Math.min(Math.max((line ?? 1) - 1, 0), lines.length - 1);
-    const points = [...lines[index]]; // a column counts characters, not halves of them
+    const points = [...lines[index]]; // columns count characters, not UTF-16 units
     const first = Math.max((column ?? 1) - 1, 0);
     const before = points.slice(0, first).join("").length;
     const under = points.slice(first, first + length).join("").length;

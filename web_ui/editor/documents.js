@@ -1,16 +1,16 @@
-// One program being edited: a whole .aesl file, of which one node's code is on the screen. Values, no screen.
+// One edited program: a whole .aesl file and the node whose code is shown. Immutable values, no DOM.
 
 import { looksLikeAesl, newAesl, readAesl, withCode, withEntry, withLast } from "./aesl.js";
 
 /**
  * @typedef {object} Document
  * @property {string} name
- * @property {string} text            of the .aesl file as it would be saved
- * @property {number} node            which of its nodes is shown
- * @property {string} saved           text as last opened, saved or taken from a robot
- * @property {string | null} loaded   text as last loaded into a robot or taken from it; null: never
- * @property {string | null} source   the robot's source that it was taken from or that was loaded
- * @property {boolean} own            whether a person began or opened it
+ * @property {string} text            content of the .aesl file as it would be saved
+ * @property {number} node            index of the node that is shown
+ * @property {string} saved           text when last opened, saved or read from a robot
+ * @property {string | null} loaded   text when last loaded into or read from a robot; null: never
+ * @property {string | null} source   the robot's source from which it was read or which was loaded
+ * @property {boolean} own            whether the user created or opened it
  */
 
 export const UNTITLED = "program.aesl";
@@ -22,7 +22,7 @@ export function blank(name = UNTITLED) {
 }
 
 /**
- * A file or a bare program from elsewhere; AeslError for what is no .aesl file.
+ * A document from a file or a bare program. Throws AeslError if it is not a valid .aesl file.
  *
  * @param {string} name
  * @param {string} text
@@ -39,7 +39,7 @@ export function opened(name, text) {
 }
 
 /**
- * What a robot has.
+ * A document from the program of a robot.
  *
  * @param {{ name: string, file: string, node?: string }} program
  * @returns {Document}
@@ -71,17 +71,17 @@ export function redefined(document, kind, name, value) {
   return { ...document, text: withEntry(document.text, kind, name, value) };
 }
 
-/** Whether it has changes that no file and no robot has. @param {Document} document */
+/** Whether there are changes that neither a file nor a robot has. @param {Document} document */
 export function isUnsaved({ text, saved }) {
   return text !== saved;
 }
 
-/** Whether the robot runs just this. @param {Document} document */
+/** Whether the robot runs exactly this text. @param {Document} document */
 export function isInRobot({ text, loaded }) {
   return text === loaded;
 }
 
-/** A name that a file can have. @param {string} name */
+/** Convert a name to a valid file name. @param {string} name */
 export function fileName(name) {
   const clean = name.replace(/^.*[/\\]/, "").replace(/[<>:"|?*\u0000-\u001f]/g, "_");
   return /\.aesl$/i.test(clean) ? clean : `${clean.replace(/\.(aseba|txt)$/i, "") || "program"}.aesl`;

@@ -1,6 +1,6 @@
-// A text as a file of the person's computer.
+// Saves a text as a file on the user's computer.
 
-/** @param {string} name @param {string} text @param {string} type  of the content */
+/** @param {string} name @param {string} text @param {string} type  MIME type */
 export function download(name, text, type) {
   const address = URL.createObjectURL(new Blob([text], { type }));
   const link = document.createElement("a");

@@ -1,10 +1,10 @@
-// Below the text: what the compiler says, where the robot stands, and how full its memories are.
+// The footer: compiler message, state of the robot, memory usage.
 
 import { h, setAttribute, setText } from "../panels/dom.js";
 
 /** @typedef {[used: number, size: number] | null} Share */
 
-/** @param {import("../i18n/index.js").Translate} t @param {() => void} go  to the place of the message */
+/** @param {import("../i18n/index.js").Translate} t @param {() => void} go  goes to the position of the message */
 export function footer(t, go) {
   const words = h("button", { type: "button", class: "plain verdict", onclick: go });
   const lamp = h("span", { class: "state" });
@@ -24,7 +24,7 @@ export function footer(t, go) {
   return {
     element,
     /** @param {{ kind: "good" | "warning" | "error" | "", text: string }} verdict */
-    tell({ kind, text }) {
+    report({ kind, text }) {
       setText(words, text);
       setAttribute(words, "data-kind", kind);
     },

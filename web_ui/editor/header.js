@@ -1,4 +1,4 @@
-// Above the text: whose program, its file and name, whether it is saved and loaded, and a draft that was left.
+// The header: robot tabs, node, file name, saved and loaded state, and a draft to restore.
 
 import { h, icon, ICONS, setAttribute } from "../panels/dom.js";
 import { isInRobot, isUnsaved } from "./documents.js";
@@ -7,14 +7,14 @@ import { ALL } from "./workspace.js";
 /**
  * @param {object} options
  * @param {import("../i18n/index.js").Translate} options.t
- * @param {(kept: import("./storage.js").Kept) => string} options.draftWords   says of a text that it is in no file
- * @param {import("./desk.js").Desk} options.desk
- * @param {(robot: string) => void} options.select   a robot's tab was chosen
+ * @param {(kept: import("./file_store.js").Kept) => string} options.draftLabel   text about an unsaved draft
+ * @param {import("./editor_session.js").EditorSession} options.session
+ * @param {(robot: string) => void} options.select   called when the tab of a robot is chosen
  * @param {() => void} options.redraw
  * @param {() => void} options.close
  */
-export function header({ t, draftWords, desk, select, redraw, close }) {
-  const { workspace } = desk;
+export function header({ t, draftLabel, session, select, redraw, close }) {
+  const { workspace } = session;
   const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": t("editor.robots") });
   const nodes = h("select", {
     "aria-label": t("editor.nodes"),
@@ -98,7 +98,7 @@ export function header({ t, draftWords, desk, select, redraw, close }) {
     notLoaded.hidden = isInRobot(document);
   };
 
-  /** @type {import("./storage.js").Kept | null} */ let draftShown = null;
+  /** @type {import("./file_store.js").Kept | null} */ let draftShown = null;
   const drawDraft = () => {
     const kept = workspace.draft;
     if (kept === draftShown) return;
@@ -109,7 +109,7 @@ export function header({ t, draftWords, desk, select, redraw, close }) {
     const button = (key, act) =>
       h("button", { type: "button", "data-draft": key, onclick: () => (act(), redraw()) }, t(`editor.${key}`));
     draft.replaceChildren(
-      h("span", {}, draftWords(kept)),
+      h("span", {}, draftLabel(kept)),
       button("restore", () => workspace.restoreDraft()),
       button("discard", () => workspace.forgetDraft()),
     );
@@ -118,7 +118,7 @@ export function header({ t, draftWords, desk, select, redraw, close }) {
   return {
     element,
     draft,
-    /** @param {string[]} wanted  tabs @param {import("./aesl.js").Aesl} file */
+    /** @param {string[]} wanted  the tabs to show @param {import("./aesl.js").Aesl} file */
     render(wanted, file) {
       drawTabs(wanted);
       drawFile(file);

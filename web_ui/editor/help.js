@@ -1,4 +1,4 @@
-// What can be written at a place, and what a name means: from the robot's target, the file and the text itself.
+// Completions and tooltips, from the robot's target description, the file and the text.
 
 /** @typedef {import("./state.js").Target} Target */
 /** @typedef {import("./state.js").Native} Native */
@@ -6,21 +6,21 @@
 /** @typedef {"variable" | "constant" | "event" | "native" | "subroutine" | "keyword"} Kind */
 /**
  * @typedef {{ name: string, kind: Kind, detail: string, help: string, native?: Native, rank: number }} Item
- *   rank: what is offered first among names that fit as well: 0 the text's own, 1 keywords, 2 the robot's
+ * rank: order among completions that match equally: 0 names of the text, 1 keywords, 2 names of the robot
  */
 /**
  * @typedef {object} Vocabulary
  * @property {Target | null} target
- * @property {readonly { name: string, value: number }[]} events      of the file, with sizes
- * @property {readonly { name: string, value: number }[]} constants   of the file
- * @property {readonly { name: string, size?: number }[]} variables   of the text as the compiler sees it
- * @property {readonly Definition[]} definitions                      of the text
+ * @property {readonly { name: string, value: number }[]} events      events of the file, with sizes
+ * @property {readonly { name: string, value: number }[]} constants   constants of the file
+ * @property {readonly { name: string, size?: number }[]} variables   variables of the text as reported by the compiler
+ * @property {readonly Definition[]} definitions                      definitions of the text
  */
 
 export const WORD = /[\p{L}\p{N}_][\p{L}\p{N}_.]*/u;
 const UNFINISHED = /(?:\b(onevent|emit|_emit|callsub|call|sub|var|const)\s+)?([\p{L}\p{N}_][\p{L}\p{N}_.]*)?$/u;
 
-/** What may follow each of these words; [] is a name of one's own. */
+/** What may follow each of these words; [] means a new name. */
 const FOLLOWERS = /** @type {Record<string, Kind[]>} */ ({
   onevent: ["event"],
   emit: ["event"],
@@ -32,7 +32,7 @@ const FOLLOWERS = /** @type {Record<string, Kind[]>} */ ({
   const: [],
 });
 
-/** @param {Native} native  with what its parameters hold: name, name[3], name[] */
+/** @param {Native} native  shows the sizes of its parameters: name, name[3], name[] */
 export function signature({ name, parameters }) {
   const listed = parameters.map((each) =>
     each.size === 1 ? each.name : `${each.name}[${each.size > 0 ? each.size : ""}]`,
@@ -41,7 +41,7 @@ export function signature({ name, parameters }) {
 }
 
 /**
- * All that has a name, what the text itself defines first.
+ * All names, those of the text first.
  *
  * @param {Vocabulary} vocabulary
  * @returns {Item[]}
@@ -80,7 +80,7 @@ export function items({ target, events, constants, variables, definitions }) {
 }
 
 /**
- * What fits behind the text of a line up to the cursor, and where the word being written begins.
+ * Completions for the text of a line up to the cursor, and the start of the current word.
  *
  * @param {string} before
  * @param {Vocabulary} vocabulary
@@ -100,10 +100,10 @@ export function suggestions(before, vocabulary) {
 }
 
 /**
- * What the word at a place means; null for a word that means nothing.
+ * The description of the word at a column; null for an unknown word.
  *
  * @param {string} line
- * @param {number} column  from 0
+ * @param {number} column  counted from 0
  * @param {Vocabulary} vocabulary
  * @returns {{ from: number, to: number, item: Item } | null}
  */

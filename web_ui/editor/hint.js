@@ -1,19 +1,19 @@
-// What was probably meant where the compiler refuses a text, and the button that corrects it.
+// The hint bar: what was probably meant where the compiler reports an error, with a button that corrects it.
 
 import { h, setText } from "../panels/dom.js";
 
 /** @typedef {import("./checking.js").Repair} Repair */
 
-const LONGEST = 14; // letters that a button shows
+const LONGEST = 14; // maximum number of letters on a button
 
 /**
- * What a repair does to a text, for its button.
+ * The button label of a repair.
  *
  * @param {import("../i18n/index.js").Translate} t
  * @param {string} text
  * @param {Repair} repair
  */
-export function repairWords(t, text, { from, to, insert }) {
+export function repairLabel(t, text, { from, to, insert }) {
   const old = text.slice(from, to).trim();
   const now = insert.trim();
   /** @param {string} word */
@@ -30,7 +30,7 @@ export function hintBar(t, correct) {
   const element = h("div", { class: "editor-hint", hidden: true }, words, button);
   return {
     element,
-    /** @param {{ text: string, button: string } | null} hint  without words on the button there is none */
+    /** @param {{ text: string, button: string } | null} hint  without button text there is no button */
     show(hint) {
       element.hidden = hint === null;
       setText(words, hint?.text ?? "");

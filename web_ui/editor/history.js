@@ -1,8 +1,8 @@
-// The last minutes of what is plotted: one series per value, as pairs of seconds and number.
+// Recent values for the plot: one series per value, as pairs of seconds and number.
 
 /** @typedef {{ name: string, times: number[], values: number[] }} Series */
 
-/** At ten looks a second, ten minutes. */
+/** Ten minutes at ten samples per second. */
 export const KEPT_POINTS = 6000;
 
 export class History {
@@ -14,7 +14,7 @@ export class History {
   add(name, seconds, value) {
     let series = this.series.get(name);
     if (series === undefined || seconds < (series.times.at(-1) ?? seconds)) {
-      series = { name, times: [], values: [] }; // time that went back begins anew
+      series = { name, times: [], values: [] }; // time went backward: start over
       this.series.set(name, series);
     }
     series.times.push(seconds);
@@ -29,7 +29,7 @@ export class History {
     this.series.clear();
   }
 
-  /** All of it as rows: time, then one column per series. @returns {(string | number)[][]} */
+  /** All series as rows: time, then one column per series. @returns {(string | number)[][]} */
   rows() {
     const all = [...this.series.values()];
     const times = [...new Set(all.flatMap((series) => series.times))].sort((one, other) => one - other);

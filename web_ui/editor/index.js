@@ -1,15 +1,15 @@
-// The editor on the page: tabs, toolbar, text, tools and footer around one desk. It draws what the desk, the page's
-// state and the text say, and hands on what a person does.
+// The editor: connects tabs, toolbar, text, tools and footer of one session. It draws the state of session, page and
+// text, and forwards user actions.
 
 import { openSearchPanel } from "@codemirror/search";
 
 import { translator } from "../i18n/index.js";
-import { LARGEST_PROGRAM } from "../actions.js";
+import { LARGEST_PROGRAM } from "../input/actions.js";
 import { h } from "../panels/dom.js";
 import { locate } from "../state/index.js";
 import { robotTopic } from "../state/names.js";
-import { faultWords, lineOf, placeWords, stateWord } from "../state/standing.js";
-import { textOf } from "../textfile.js";
+import { faultMessage, lineOf, lineLabel, stateLabel } from "../state/program_status.js";
+import { textOf } from "../browser/text_file.js";
 import { allEvents, readAesl } from "./aesl.js";
 import { breakpointLines, showBreakpoints, showPlace } from "./breakpoints.js";
 import { CHECK_SERVICE, marks } from "./checking.js";
@@ -17,7 +17,7 @@ import { isInRobot } from "./documents.js";
 import { download } from "./download.js";
 import { footer } from "./footer.js";
 import { header } from "./header.js";
-import { hintBar, repairWords } from "./hint.js";
+import { hintBar, repairLabel } from "./hint.js";
 import { Lexicon } from "./lexicon.js";
 import { Link } from "./link.js";
 import { createText } from "./text.js";
@@ -28,7 +28,7 @@ import { ALL } from "./workspace.js";
 
 import "./editor.css";
 
-export { Desk } from "./desk.js";
+export { EditorSession } from "./editor_session.js";
 export { splitEditorTopic } from "./state.js";
 
 const CHECK_DELAY_MS = 300;
@@ -40,7 +40,7 @@ const THYMIO = "thymio-II";
 
 /**
  * @param {object} options
- * @param {import("./desk.js").Desk} options.desk
+ * @param {import("./editor_session.js").EditorSession} options.session
  * @param {import("../protocol/client.js").Client} options.client
  * @param {import("../state/store.js").Store} options.store
  * @param {string} options.language
@@ -48,10 +48,10 @@ const THYMIO = "thymio-II";
  * @param {(text: string) => void} options.announce
  * @param {() => void} options.close
  */
-export function createEditor({ desk, client, store, language, pageText, announce, close }) {
+export function createEditor({ session, client, store, language, pageText, announce, close }) {
   const t = translator(language, WORDS);
   const link = new Link(client);
-  const { workspace } = desk;
+  const { workspace } = session;
   /** @type {Verdict | null} */ let verdict = null;
   /** @type {{ text: string, repair: import("./checking.js").Repair } | null} */ let correction = null;
   /** @type {import("./aesl.js").Aesl} */ let file = readAesl(workspace.current.text);
@@ -59,18 +59,18 @@ export function createEditor({ desk, client, store, language, pageText, announce
   /** @type {any} */ let statusShown = null;
   /** @type {ReturnType<typeof setTimeout> | undefined} */ let checkTimer;
   let checks = 0;
-  let isChecked = true; // or on the way; false: nobody was there to ask
+  let isChecked = true; // or in progress; false: the check service was not available
   let scheduled = false;
   let said = "";
 
   const robots = () => Object.keys(store.state.robots);
   /** The robot whose values are shown. */
   const robot = () => (workspace.tab === ALL ? store.state.selected : workspace.tab);
-  /** The robot the tab's program is for; null for all. */
+  /** The robot that the tab's program is for; null for all robots. */
   const owner = () => (workspace.tab === ALL ? null : workspace.tab);
   const status = () => store.state.programs[robot()] ?? null;
   const lexicon = new Lexicon(language);
-  const target = () => lexicon.translate(desk.state.targets[robot()] ?? null);
+  const target = () => lexicon.translate(session.state.targets[robot()] ?? null);
 
   const element = h("section", { class: "editor", "aria-label": t("editor") });
   const redraw = () => {
@@ -83,8 +83,8 @@ export function createEditor({ desk, client, store, language, pageText, announce
   };
 
   /** @param {string} text @param {"good" | "warning" | "error" | ""} kind */
-  const tell = (text, kind) => {
-    foot.tell({ text, kind });
+  const report = (text, kind) => {
+    foot.report({ text, kind });
     announce(text);
   };
 
@@ -105,16 +105,16 @@ export function createEditor({ desk, client, store, language, pageText, announce
   const code = h("div", { class: "code" });
   const text = createText({
     parent: code,
-    kept: desk.texts,
+    kept: session.texts,
     label: t("editor.code"),
     phrases: PHRASES[language] ?? {},
     vocabulary,
     changed: codeChanged,
     toggleBreakpoint: (line) => toggleBreakpoint(line),
-    repairWords: (content, repair) => repairWords(t, content, repair),
+    repairLabel: (content, repair) => repairLabel(t, content, repair),
     correct: () => correct(),
   });
-  /** Do what the hint proposes; the text is checked again. */
+  /** Apply the proposed repair; the text is checked again. */
   const correct = () => {
     if (correction === null || !text.repair(correction.text, correction.repair)) return;
     correction = null;
@@ -123,7 +123,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
   };
   const hints = hintBar(t, correct);
 
-  /** Ask the compiler, a moment after the last change. */
+  /** Check the text shortly after the last change. */
   const checkSoon = () => {
     clearTimeout(checkTimer);
     checkTimer = setTimeout(check, CHECK_DELAY_MS);
@@ -133,11 +133,11 @@ export function createEditor({ desk, client, store, language, pageText, announce
     const source = workspace.code;
     const known = readAesl(workspace.current.text);
     const answer = await link.check({ source, language, events: allEvents(known), constants: known.constants });
-    if (number !== checks || source !== workspace.code) return; // a later one is on its way
+    if (number !== checks || source !== workspace.code) return; // a newer check is in progress
     verdict = answer;
     if (answer === null) {
       isChecked = false;
-      foot.tell({ text: t("verdict.unknown"), kind: "" });
+      foot.report({ text: t("verdict.unknown"), kind: "" });
       return;
     }
     const found = marks(source, answer);
@@ -145,18 +145,18 @@ export function createEditor({ desk, client, store, language, pageText, announce
     const [first] = [...answer.errors, ...answer.warnings];
     const { hint = "", repair = null } = found.find((mark) => mark.hint !== undefined) ?? {};
     correction = repair && { text: source, repair };
-    hints.show(hint === "" ? null : { text: hint, button: repair === null ? "" : repairWords(t, source, repair) });
-    if (first === undefined) foot.tell({ text: `✓ ${t("verdict.good")}`, kind: "good" });
+    hints.show(hint === "" ? null : { text: hint, button: repair === null ? "" : repairLabel(t, source, repair) });
+    if (first === undefined) foot.report({ text: `✓ ${t("verdict.good")}`, kind: "good" });
     else {
       const kind = answer.errors.length > 0 ? "error" : "warning";
       const said = first.line === null ? first.message : t("verdict.at", { line: first.line, message: first.message });
-      foot.tell({ text: `${kind === "error" ? "✕" : "⚠"} ${said}`, kind });
+      foot.report({ text: `${kind === "error" ? "✕" : "⚠"} ${said}`, kind });
       if (kind === "error") announce(hint === "" ? said : `${said}. ${hint}`);
     }
     redraw();
   };
 
-  /** Another text is on the desk. */
+  /** Show another text. */
   const show = () => {
     text.show(`${workspace.tab} ${workspace.current.node} ${workspace.current.name}`, workspace.code);
     verdict = null;
@@ -166,10 +166,10 @@ export function createEditor({ desk, client, store, language, pageText, announce
     check();
     redraw();
   };
-  desk.onText = show;
+  session.onText = show;
 
   const firstLine = () => Number(status()?.values.first_line ?? 1) || 1;
-  /** Whether the robot stands in just the text on the screen. */
+  /** Whether the robot runs exactly the text that is shown. */
   const isShown = () => {
     const { source } = workspace.current;
     const program = target()?.program;
@@ -191,8 +191,8 @@ export function createEditor({ desk, client, store, language, pageText, announce
     const lines = breakpointLines(text.view.state).map((line) => line + first - 1);
     const { ok, message } = await link.setBreakpoints(owner(), lines);
     if (!ok) {
-      tell(message, "error");
-      statusShown = null; // what is in force comes back
+      report(message, "error");
+      statusShown = null; // restores the breakpoints in effect
       redraw();
     }
   };
@@ -203,24 +203,24 @@ export function createEditor({ desk, client, store, language, pageText, announce
     const { ok, message } = await link.load(owner(), name, source, robots());
     if (!ok) {
       const fault = (await link.fault(source, language)) ?? locate(message, name);
-      tell(
+      report(
         fault.line === null ? fault.text : t("verdict.at", { line: codeLine(fault.line), message: fault.text }),
         "error",
       );
       return false;
     }
     workspace.loaded(tab, source);
-    tell(t("editor.loaded", { name }), "good");
+    report(t("editor.loaded", { name }), "good");
     if (readAesl(source).nodes.some((node) => node.name !== THYMIO)) {
       const notes = await link.notes(source, language);
-      if (notes.length > 0) tell(`${t("editor.loaded", { name })}: ${notes.join("; ")}`, "warning");
+      if (notes.length > 0) report(`${t("editor.loaded", { name })}: ${notes.join("; ")}`, "warning");
     }
-    // Those that stand there now: one may have been set while the robot answered.
+    // Send the current breakpoints: one may have been set while the request was in progress.
     if (workspace.tab === tab && breakpointLines(text.view.state).length > 0) await sendBreakpoints();
     redraw();
     return true;
   };
-  /** A line of the file as one of the code on the screen. @param {number} line */
+  /** Convert a line of the file to a line of the code that is shown. @param {number} line */
   const codeLine = (line) => {
     const units = file.nodes[workspace.current.node]?.units ?? [];
     const before = units.length === 0 ? 1 : fileText.slice(0, units[0].from).split("\n").length;
@@ -234,11 +234,11 @@ export function createEditor({ desk, client, store, language, pageText, announce
   const control = async (verb) => {
     const answers = await Promise.all(affected().map((name) => link.control(name, verb)));
     const refused = answers.find(({ ok }) => !ok);
-    if (refused !== undefined) tell(refused.message, "error");
+    if (refused !== undefined) report(refused.message, "error");
   };
 
-  /** @type {import("./toolbar.js").Deeds} */
-  const deeds = {
+  /** @type {import("./toolbar.js").EditorCommands} */
+  const commands = {
     newFile: () => workspace.newFile(),
     open: (chosen) => open(chosen),
     choose(choice) {
@@ -249,7 +249,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
         return text.view.focus();
       }
       workspace.follow();
-      link.loadBuiltIn(owner(), choice.sample, robots()).then(({ ok, message }) => ok || tell(message, "error"));
+      link.loadBuiltIn(owner(), choice.sample, robots()).then(({ ok, message }) => ok || report(message, "error"));
     },
     save() {
       const { name, text: content } = workspace.current;
@@ -261,7 +261,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
     run: () => void (isInRobot(workspace.current) ? control("run") : load()),
     control: (verb) => void control(verb),
     resize(step) {
-      desk.resize(step);
+      session.resize(step);
       redraw();
     },
     find: () => openSearchPanel(text.view),
@@ -269,29 +269,29 @@ export function createEditor({ desk, client, store, language, pageText, announce
 
   /** @param {File} chosen */
   const open = async (chosen) => {
-    if (chosen.size > LARGEST_PROGRAM) return tell(t("editor.tooLarge", { name: chosen.name }), "error");
+    if (chosen.size > LARGEST_PROGRAM) return report(t("editor.tooLarge", { name: chosen.name }), "error");
     const content = await textOf(chosen);
-    if (content === null) return tell(pageText("file.notText", { name: chosen.name }), "error");
+    if (content === null) return report(pageText("file.notText", { name: chosen.name }), "error");
     openText(chosen.name, content);
   };
   /** @param {string} name @param {string} content */
   const openText = (name, content) => {
     const refusal = workspace.open(name, content);
-    if (refusal !== null) tell(t("editor.refused", { ...refusal }), "error");
+    if (refusal !== null) report(t("editor.refused", { ...refusal }), "error");
     text.view.focus();
   };
 
-  /** @param {import("./storage.js").Kept} kept */
-  const draftWords = ({ name, time }) => t("editor.draft", { name, time: new Date(time).toLocaleString(language) });
+  /** @param {import("./file_store.js").Kept} kept */
+  const draftLabel = ({ name, time }) => t("editor.draft", { name, time: new Date(time).toLocaleString(language) });
   const head = header({
     t,
-    draftWords,
-    desk,
+    draftLabel,
+    session,
     redraw,
     close,
     select: (name) => store.dispatch({ type: "select", robot: name }),
   });
-  const bar = toolbar(t, deeds, draftWords);
+  const bar = toolbar(t, commands, draftLabel);
   const foot = footer(t, () => {
     const [first] = [...(verdict?.errors ?? []), ...(verdict?.warnings ?? [])];
     if (first?.line) goTo(first.line, first.column ?? 1);
@@ -306,7 +306,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
   };
   const tools = toolbox({
     t,
-    desk,
+    session,
     announce,
     redraw,
     insert(words) {
@@ -328,7 +328,7 @@ export function createEditor({ desk, client, store, language, pageText, announce
     h("div", { class: "editor-body" }, code, tools.element),
     h("div", { class: "editor-end" }, hints.element, foot.element),
   );
-  const forgetKeys = watchKeys(element, deeds);
+  const removeKeys = watchKeys(element, commands);
 
   const drawStatus = () => {
     const now = status();
@@ -348,9 +348,9 @@ export function createEditor({ desk, client, store, language, pageText, announce
         }
       }
     }
-    const fault = faultWords(values, language);
+    const fault = faultMessage(values, language);
     const timePaused = store.state.simulator?.paused ?? false;
-    const words = values.state ? stateWord(values.state, pageText, timePaused) + placeWords(values, pageText) : "";
+    const words = values.state ? stateLabel(values.state, pageText, timePaused) + lineLabel(values, pageText) : "";
     const sentence = words + (fault ? `: ${fault}` : "");
     foot.robot(timePaused && values.state === "running" ? "paused" : (values.state ?? ""), sentence);
     if (sentence !== said) {
@@ -358,18 +358,18 @@ export function createEditor({ desk, client, store, language, pageText, announce
       announce(said);
     }
     /** @param {string} name @returns {import("./footer.js").Share} */
-    const told = (name) =>
+    const reported = (name) =>
       values[`${name}_size`] === undefined ? null : [Number(values[`${name}_used`]), Number(values[`${name}_size`])];
     const use = verdict?.use;
     foot.memories({
-      variables: use?.variables ?? told("variables"),
-      bytecode: use?.bytecode ?? told("bytecode"),
-      stack: use?.stack ?? told("stack"),
+      variables: use?.variables ?? reported("variables"),
+      bytecode: use?.bytecode ?? reported("bytecode"),
+      stack: use?.stack ?? reported("stack"),
     });
   };
 
   const render = () => {
-    if (!desk.tabs(robots()).includes(workspace.tab)) workspace.choose(ALL);
+    if (!session.tabs(robots()).includes(workspace.tab)) workspace.choose(ALL);
     if (store.state.services.includes(CHECK_SERVICE)) {
       void lexicon.ask(link, redraw);
       if (!isChecked) {
@@ -377,22 +377,22 @@ export function createEditor({ desk, client, store, language, pageText, announce
         void check();
       }
     }
-    workspace.tell(ALL, desk.state.targets[store.state.selected]?.program);
-    if (workspace.tab !== ALL) workspace.tell(workspace.tab, target()?.program);
+    workspace.setRobotProgram(ALL, session.state.targets[store.state.selected]?.program);
+    if (workspace.tab !== ALL) workspace.setRobotProgram(workspace.tab, target()?.program);
     if (workspace.current.text !== fileText) {
       fileText = workspace.current.text;
       file = readAesl(fileText);
     }
-    element.style.setProperty("--code-size", `${desk.fontSize}px`);
-    head.render(desk.tabs(robots()), file);
+    element.style.setProperty("--code-size", `${session.fontSize}px`);
+    head.render(session.tabs(robots()), file);
     drawStatus();
     const offline = store.state.connection === "connected" ? "" : pageText("connection.needed");
-    bar.render(can, workspace.keeper.recent(), desk.state.behaviours, offline);
+    bar.render(can, workspace.fileStore.recent(), session.state.behaviors, offline);
     tools.render({
       robot: robot(),
       target: target(),
-      variables: desk.state.variables[robot()] ?? null,
-      log: desk.state.log,
+      variables: session.state.variables[robot()] ?? null,
+      log: session.state.log,
       file,
       offline,
     });
@@ -403,15 +403,15 @@ export function createEditor({ desk, client, store, language, pageText, announce
     redraw,
     open,
     openText,
-    /** The editor is on the page now. */
-    begin() {
+    /** Call after the editor has been added to the page. */
+    start() {
       show();
       render();
       text.view.focus();
     },
     destroy() {
       clearTimeout(checkTimer);
-      forgetKeys();
+      removeKeys();
       text.destroy();
       element.remove();
     },

@@ -1,4 +1,4 @@
-// What CodeMirror knows of Aseba: colours, indentation, folding, comments.
+// The Aseba language for CodeMirror: colors, indentation, folding, comments.
 
 import {
   continuedIndent,
@@ -16,12 +16,17 @@ import { parser } from "./parser.js";
 /** @typedef {import("@lezer/common").SyntaxNode} SyntaxNode */
 /** @typedef {import("@codemirror/state").EditorState} EditorState */
 
-/** A level is one tab, as `aseba fmt` writes it. */
+/** One level is one tab, as written by `aseba fmt`. */
 export const INDENT = "\t";
 
 const WORDS = "if then elseif else end when do while for in step return call callsub emit _emit";
 
-/** Lines between the first of a node and its end, `end` itself left out. @param {SyntaxNode} node @param {EditorState} state */
+/**
+ * The foldable range of a node: from the end of its first line to its last line, without `end`.
+ *
+ * @param {SyntaxNode} node
+ * @param {EditorState} state
+ */
 function body(node, state) {
   const from = state.doc.lineAt(node.from).to;
   const last = node.lastChild;
@@ -70,8 +75,8 @@ export const asebaLanguage = LRLanguage.define({
   },
 });
 
-/** Each at least 4.5:1 on white, and on the colour of the current line. */
-const COLOURS = HighlightStyle.define([
+/** Each color has a contrast of at least 4.5:1 on white and on the current line. */
+const COLORS = HighlightStyle.define([
   { tag: [tags.controlKeyword, tags.definitionKeyword, tags.operatorKeyword], color: "#7a1fa2", fontWeight: "600" },
   { tag: tags.number, color: "#9a3800" },
   { tag: tags.variableName, color: "#17263a" },
@@ -83,5 +88,5 @@ const COLOURS = HighlightStyle.define([
 ]);
 
 export function aseba() {
-  return new LanguageSupport(asebaLanguage, [syntaxHighlighting(COLOURS)]);
+  return new LanguageSupport(asebaLanguage, [syntaxHighlighting(COLORS)]);
 }

@@ -1,4 +1,4 @@
-// The robots' help in the language of the page: asked for once, and put in place of what a target brings.
+// Help texts in the page's language: requested once, and merged into the target descriptions of robots.
 
 /** @typedef {import("./state.js").Target} Target */
 /** @typedef {import("./link.js").Link} Link */
@@ -14,7 +14,12 @@ export class Lexicon {
     /** @type {WeakMap<Target, Target>} */ this.known = new WeakMap();
   }
 
-  /** Ask, unless that was done. @param {Link} link @param {() => void} changed  there is more to say */
+  /**
+   * Request the help texts unless that was done.
+   *
+   * @param {Link} link
+   * @param {() => void} changed  there is more to say
+   */
   async ask(link, changed) {
     if (this.asked) return;
     this.asked = true;
@@ -25,7 +30,13 @@ export class Lexicon {
     changed();
   }
 
-  /** The target with help in the language, the same for the same. @template {Target | null} T @param {T} target @returns {T} */
+  /**
+   * The target with translated help; the same object for the same target.
+   *
+   * @template {Target | null} T
+   * @param {T} target
+   * @returns {T}
+   */
   translate(target) {
     if (target === null) return target;
     const found = this.known.get(target);

@@ -1,4 +1,4 @@
-// What the editor asks of the Aseba runtime, as calls, parameters and messages (docs/aseba_ros.md).
+// Requests of the editor to the Aseba runtime: service calls, parameters and messages (docs/aseba_ros.md).
 
 import { robotTopic } from "../state/names.js";
 import { CHECK_SERVICE, checkRequest, firstFault, notesOf, readVerdict, targetRequest } from "./checking.js";
@@ -15,18 +15,18 @@ export class Link {
   /** @param {Client} client */
   constructor(client) {
     this.client = client;
-    /** @type {Map<string | null, string>} What was loaded last, by robot. */
+    /** @type {Map<string | null, string>} The last loaded program, by robot. */
     this.last = new Map();
   }
 
   /**
-   * What is loaded once more begins anew: a parameter that is set to what it is changes nothing.
+   * Restart programs that are loaded again: setting a parameter to its current value has no effect.
    *
    * @param {string | null} robot
    * @param {string} loaded
-   * @param {readonly string[]} robots  all there are
+   * @param {readonly string[]} robots  names of all robots
    */
-  async #beginAnew(robot, loaded, robots) {
+  async #restartPrograms(robot, loaded, robots) {
     const isSame = this.last.get(robot) === loaded;
     this.last.clear();
     this.last.set(robot, loaded);
@@ -43,33 +43,38 @@ export class Link {
     return ok && value !== undefined ? readVerdict(value) : null;
   }
 
-  /** What is wrong with a file, in a language. @param {string} source @param {string} language */
+  /** The first error of a file, translated. @param {string} source @param {string} language */
   async fault(source, language) {
     const question = checkRequest({ source, language, events: [], constants: [] });
     const { ok, value } = await this.client.call(CHECK_SERVICE, question);
     return ok && value !== undefined ? firstFault(value) : null;
   }
 
-  /** What is guessed about the nodes of a file, in a language. @param {string} source @param {string} language */
+  /** Notes about the nodes of a file, translated. @param {string} source @param {string} language */
   async notes(source, language) {
     const question = checkRequest({ source, language, events: [], constants: [] });
     const { ok, value } = await this.client.call(CHECK_SERVICE, question);
     return ok && value !== undefined ? notesOf(value) : [];
   }
 
-  /** What every robot has, with help in a language. @param {string} language @returns {Promise<import("./state.js").Target | null>} */
+  /**
+   * The names that every robot offers, with translated help.
+   *
+   * @param {string} language
+   * @returns {Promise<import("./state.js").Target | null>}
+   */
   async target(language) {
     const { ok, value } = await this.client.call(CHECK_SERVICE, targetRequest(language));
     return ok && value !== undefined ? (JSON.parse(value.result.reason).target ?? null) : null;
   }
 
   /**
-   * Give a program to one robot, or with null to all; those that had one of their own lose it.
+   * Load a program into one robot, or into all for null; robots with their own program lose it.
    *
    * @param {string | null} robot
    * @param {string} name
    * @param {string} source
-   * @param {readonly string[]} robots  all there are
+   * @param {readonly string[]} robots  names of all robots
    * @returns {Promise<Answer>}
    */
   async load(robot, name, source, robots) {
@@ -78,17 +83,23 @@ export class Link {
       { name: `${prefix(robot)}script.name`, value: name },
       { name: `${prefix(robot)}script.source`, value: source },
     ]);
-    if (ok) await this.#beginAnew(robot, source, robots);
+    if (ok) await this.#restartPrograms(robot, source, robots);
     return { ok, message: message.replace(`${prefix(robot)}script.source: `, "") };
   }
 
-  /** A built-in behaviour as program. @param {string | null} robot @param {string} name @param {readonly string[]} robots */
+  /**
+   * Load a built-in behavior as the program.
+   *
+   * @param {string | null} robot
+   * @param {string} name
+   * @param {readonly string[]} robots
+   */
   async loadBuiltIn(robot, name, robots) {
     const answer = await this.client.setParameters([
       ...this.#released(robot, robots),
       { name: `${prefix(robot)}script.path`, value: name },
     ]);
-    if (answer.ok) await this.#beginAnew(robot, name, robots);
+    if (answer.ok) await this.#restartPrograms(robot, name, robots);
     return answer;
   }
 
@@ -127,7 +138,7 @@ export class Link {
   }
 }
 
-/** Parameters of one robot, or of all. @param {string | null} robot */
+/** Set parameters of one robot, or of all. @param {string | null} robot */
 function prefix(robot) {
   return robot === null ? RUNTIME : `${RUNTIME}robots.${robot}.`;
 }

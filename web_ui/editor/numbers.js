@@ -1,14 +1,14 @@
-// Numbers that a person typed, and tables for a spreadsheet.
+// Parsing of typed numbers, and CSV output.
 
 import { GREATEST, LEAST } from "./aesl.js";
 
 /** @typedef {{ values: number[], trouble: null } | { values: null, trouble: { key: string, values: Record<string, string | number> } }} Parsed */
 
 /**
- * Whole numbers between spaces or commas.
+ * Parse whole numbers separated by spaces or commas.
  *
  * @param {string} text
- * @param {number} count  how many there must be
+ * @param {number} count  the required count
  * @param {number} [least]
  * @param {number} [greatest]
  * @returns {Parsed}
@@ -23,7 +23,7 @@ export function parseNumbers(text, count, least = LEAST, greatest = GREATEST) {
   return { values: words.map(Number), trouble: null };
 }
 
-/** A table as RFC 4180 has it. @param {readonly (string | number)[][]} rows */
+/** A table as CSV (RFC 4180). @param {readonly (string | number)[][]} rows */
 export function csv(rows) {
   /** @param {string | number} cell */
   const quoted = (cell) => (/[",\r\n]/.test(String(cell)) ? `"${String(cell).replaceAll('"', '""')}"` : String(cell));

@@ -1,4 +1,4 @@
-// The names that a program defines, read from its syntax tree: there even while it does not compile.
+// The names that a program defines, read from its syntax tree, which exists even if the program does not compile.
 
 /** @typedef {import("@lezer/common").Tree} Tree */
 /** @typedef {{ name: string, from: number, kind: "variable" | "constant" | "subroutine" | "event" }} Definition */
@@ -10,7 +10,7 @@ const KINDS = /** @type {Record<string, Definition["kind"]>} */ ({
 
 /**
  * @param {Tree} tree
- * @param {(from: number, to: number) => string} slice  the program's text
+ * @param {(from: number, to: number) => string} slice  returns a range of the text
  * @returns {Definition[]} in the order of the text; an event is one that has a handler
  */
 export function outline(tree, slice) {

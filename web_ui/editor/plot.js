@@ -1,4 +1,4 @@
-// Draws series over time on a canvas. Lines differ by colour and by dashes.
+// Draws time series on a canvas. Lines differ by color and by dash pattern.
 
 /** @typedef {import("./history.js").Series} Series */
 
@@ -19,7 +19,7 @@ export function roundStep(range, count) {
   return [1, 2, 5, 10].map((factor) => factor * power).find((step) => step >= rough) ?? power;
 }
 
-/** @param {HTMLCanvasElement} canvas @param {Series[]} series @param {number} span  seconds up to the newest point */
+/** @param {HTMLCanvasElement} canvas @param {Series[]} series @param {number} span  seconds before the newest point */
 export function drawPlot(canvas, series, span) {
   const context = canvas.getContext("2d");
   if (context === null || canvas.clientWidth === 0) return;

@@ -1,4 +1,4 @@
-// What the editor knows from the robots: targets, variables, events, built-in behaviours (docs/aseba_ros.md).
+// Robot data of the editor: targets, variables, events, built-in behaviors (docs/aseba_ros.md).
 // Pure: `state = reduce(state, message)`.
 
 /** @typedef {{ name: string, help: string }} Named */
@@ -31,15 +31,15 @@
  * @property {Readonly<Record<string, Target>>} targets     by robot
  * @property {Readonly<Record<string, Variables>>} variables
  * @property {readonly LoggedEvent[]} log                   oldest first
- * @property {readonly { name: string, description: string }[]} behaviours
+ * @property {readonly { name: string, description: string }[]} behaviors
  */
 
 export const KEPT_EVENTS = 500;
 
 /** @type {EditorState} */
-export const INITIAL = { targets: {}, variables: {}, log: [], behaviours: [] };
+export const INITIAL = { targets: {}, variables: {}, log: [], behaviors: [] };
 
-const BEHAVIOURS = "/aseba_runtime/_behaviours";
+const BEHAVIORS = "/aseba_runtime/_behaviours";
 const ROBOT_TOPIC = /^\/(?:([^/]+)\/)?_aseba\/(target|variables|events)$/;
 
 /**
@@ -47,7 +47,7 @@ const ROBOT_TOPIC = /^\/(?:([^/]+)\/)?_aseba\/(target|variables|events)$/;
  * @returns {{ robot: string, name: string } | null} null for what the editor does not watch
  */
 export function splitEditorTopic(topic) {
-  if (topic === BEHAVIOURS) return { robot: "", name: "behaviours" };
+  if (topic === BEHAVIORS) return { robot: "", name: "behaviors" };
   const match = ROBOT_TOPIC.exec(topic);
   return match === null ? null : { robot: match[1] ?? "", name: match[2] };
 }
@@ -67,7 +67,7 @@ export function reduce(state, message) {
   const part = splitEditorTopic(topic);
   if (part === null) return state;
   const { robot, name } = part;
-  if (name === "behaviours") return { ...state, behaviours: JSON.parse(value.data) };
+  if (name === "behaviors") return { ...state, behaviors: JSON.parse(value.data) };
   if (name === "target") return { ...state, targets: { ...state.targets, [robot]: JSON.parse(value.data) } };
   if (name === "variables") {
     const variables = { timeNs, values: byLabel(value) };
@@ -79,7 +79,7 @@ export function reduce(state, message) {
   return { ...state, log: [...state.log, entry].slice(-KEPT_EVENTS) };
 }
 
-/** The values of a labelled array, one name per dimension. @param {any} message */
+/** The values of a labeled array, one name per dimension. @param {any} message */
 function byLabel({ layout, data }) {
   /** @type {Map<string, number[]>} */ const values = new Map();
   let from = 0;

@@ -1,4 +1,4 @@
-// The text field itself: CodeMirror with what Aseba needs, and nothing of robots.
+// The text field: CodeMirror configured for Aseba, independent of robots.
 
 import {
   autocompletion,
@@ -48,23 +48,23 @@ const TYPES = /** @type {Record<Item["kind"], string>} */ ({
   keyword: "keyword",
 });
 
-/** What of a text outlives its field, beside the text and the cursor. */
+/** State of a text that outlives its field, beside content and cursor. */
 const KEPT = { history: historyField, breakpoints: breakpointField, folds: foldState };
 
 /**
  * @param {object} options
  * @param {HTMLElement} options.parent
- * @param {Map<string, any>} options.kept            how texts were left, by key
+ * @param {Map<string, any>} options.kept            stored states of texts, by key
  * @param {string} options.label
- * @param {Record<string, string>} options.phrases   CodeMirror's own words in the page's language
+ * @param {Record<string, string>} options.phrases   CodeMirror's own texts, translated
  * @param {() => Omit<Vocabulary, "definitions">} options.vocabulary
- * @param {(code: string) => void} options.changed   a person changed the text
+ * @param {(code: string) => void} options.changed   called when the user changed the text
  * @param {(line: number) => void} options.toggleBreakpoint
- * @param {(text: string, repair: import("./checking.js").Repair) => string} options.repairWords  of its button
- * @param {() => void} options.correct               a person wants the first repair
+ * @param {(text: string, repair: import("./checking.js").Repair) => string} options.repairLabel  label of a repair button
+ * @param {() => void} options.correct               called when the user asks for the first repair
  */
 export function createText(options) {
-  const { parent, kept, label, phrases, vocabulary, changed, toggleBreakpoint, repairWords, correct } = options;
+  const { parent, kept, label, phrases, vocabulary, changed, toggleBreakpoint, repairLabel, correct } = options;
   /** @param {EditorState} state @returns {Vocabulary} */
   const words = (state) => ({
     ...vocabulary(),
@@ -114,7 +114,7 @@ export function createText(options) {
     aseba(),
     EditorState.phrases.of(phrases),
     EditorView.contentAttributes.of({ "aria-label": label, tabindex: "0", spellcheck: "false", autocapitalize: "off" }),
-    // A dropped file is opened by the page; CodeMirror would write it into the text.
+    // Leave dropped files to the page; CodeMirror would insert their content.
     EditorView.domEventHandlers({ drop: ({ dataTransfer }) => (dataTransfer?.files.length ?? 0) > 0 }),
     EditorView.updateListener.of((update) => {
       if (update.docChanged) changed(update.state.doc.toString());
@@ -148,7 +148,7 @@ export function createText(options) {
   return {
     view,
     /**
-     * Another text. Each key has a history of its own, to which one comes back as long as the text is the same.
+     * Show another text. Each key has its own undo history, which is kept as long as the text is the same.
      *
      * @param {string} next
      * @param {string} code
@@ -177,13 +177,13 @@ export function createText(options) {
         severity,
         message: hint === undefined ? message : `${message}\n${hint}`,
         actions: repair
-          ? [{ name: repairWords(doc.toString(), repair), apply: () => void this.repair(doc.toString(), repair) }]
+          ? [{ name: repairLabel(doc.toString(), repair), apply: () => void this.repair(doc.toString(), repair) }]
           : [],
       }));
       view.dispatch(setDiagnostics(view.state, fitting));
     },
     /**
-     * Correct the text if it is still the one that was checked; whether it is.
+     * Apply a repair if the text is still the checked one; returns whether it is.
      *
      * @param {string} checked
      * @param {import("./checking.js").Repair} repair
@@ -203,7 +203,7 @@ export function createText(options) {
   };
 }
 
-/** @param {Item} item @param {number} place  in the list @returns {import("@codemirror/autocomplete").Completion} */
+/** @param {Item} item @param {number} place  index in the list @returns {import("@codemirror/autocomplete").Completion} */
 function option(item, place) {
   const { name, kind, detail, help, native, rank } = item;
   const fields = native?.parameters.map((parameter) => `\${${parameter.name}}`).join(", ");

@@ -1,16 +1,16 @@
-// The editor's buttons: files on the left, the robot on the right, and the keys that do the same.
+// The toolbar: file buttons on the left, robot buttons on the right, and their keyboard shortcuts.
 
-import { plainKey } from "../keyboard.js";
+import { plainKey } from "../input/keyboard.js";
 import { fileButton, h, icon, ICONS, lock } from "../panels/dom.js";
 
 /** @typedef {import("./link.js").Verb} Verb */
-/** @typedef {import("./storage.js").Kept} Kept */
+/** @typedef {import("./file_store.js").Kept} Kept */
 /** @typedef {{ recent: Kept } | { sample: string }} Choice */
 /**
- * @typedef {object} Deeds   what the buttons do
+ * @typedef {object} EditorCommands   actions of the buttons
  * @property {() => void} newFile
  * @property {(file: File) => void} open
- * @property {(choice: Choice) => void} choose   of the list of recent files and samples
+ * @property {(choice: Choice) => void} choose   called for an entry of the list of recent files and examples
  * @property {() => void} save
  * @property {() => void} load
  * @property {() => void} run
@@ -20,7 +20,7 @@ import { fileButton, h, icon, ICONS, lock } from "../panels/dom.js";
  */
 
 const SAVE = "M5 3h11l5 5v13H3V3zm2 2v5h8V5zm5 8a3 3 0 1 0 0 6 3 3 0 0 0 0-6z";
-const LOAD = "M11 3h2v9h4l-5 6-5-6h4zM4 19h16v2H4z";
+const PUSHABLE = "M11 3h2v9h4l-5 6-5-6h4zM4 19h16v2H4z";
 const NEXT = "M4 5h12v2H4zM4 11h7v2H4zM4 17h12v2H4zM15 9l5 3.500-5 3.500z";
 const FIND =
   "M10 3a7 7 0 1 0 4.200 12.600L20 21.400 21.400 20l-5.800-5.800A7 7 0 0 0 10 3zm0 2a5 5 0 1 1 0 10 5 5 0 0 1 0-10z";
@@ -36,10 +36,10 @@ const VERBS = /** @type {const} */ ([
 
 /**
  * @param {import("../i18n/index.js").Translate} t
- * @param {Deeds} deeds
- * @param {(kept: Kept) => string} draftWords   says of a text that it is in no file
+ * @param {EditorCommands} commands
+ * @param {(kept: Kept) => string} draftLabel   text about an unsaved draft
  */
-export function toolbar(t, deeds, draftWords) {
+export function toolbar(t, commands, draftLabel) {
   /** @param {string} name @param {string} path @param {string} key @param {() => void} act @param {boolean} [worded] */
   const button = (name, path, key, act, worded = false) => {
     const title = key === "" ? t(`editor.${name}`) : `${t(`editor.${name}`)} (${key})`;
@@ -52,22 +52,22 @@ export function toolbar(t, deeds, draftWords) {
     );
   };
   const choice = h("select", { class: "recent", "aria-label": t("editor.choose") });
-  /** @type {Choice[]} what is listed, after the heading */ let choices = [];
+  /** @type {Choice[]} entries after the heading */ let choices = [];
   choice.addEventListener("change", () => {
     const chosen = choices[choice.selectedIndex - 1];
     choice.value = "";
-    if (chosen !== undefined) deeds.choose(chosen);
+    if (chosen !== undefined) commands.choose(chosen);
   });
-  const load = button("load", LOAD, "Ctrl+Enter", deeds.load, true);
-  const run = button("run", ICONS.play, "F9", deeds.run, true);
+  const load = button("load", PUSHABLE, "Ctrl+Enter", commands.load, true);
+  const run = button("run", ICONS.play, "F9", commands.run, true);
   const verbs = VERBS.map(([verb, path, key]) => ({
     verb: /** @type {Verb} */ (verb),
-    element: button(verb, path, key, () => deeds.control(verb)),
+    element: button(verb, path, key, () => commands.control(verb)),
   }));
   /** @param {string} name @param {string} sign @param {number} step */
   const sizer = (name, sign, step) => {
     const title = t(`editor.${name}`);
-    const attributes = { type: "button", title, "aria-label": `${sign} ${title}`, onclick: () => deeds.resize(step) };
+    const attributes = { type: "button", title, "aria-label": `${sign} ${title}`, onclick: () => commands.resize(step) };
     return h("button", attributes, sign);
   };
   const element = h(
@@ -76,17 +76,17 @@ export function toolbar(t, deeds, draftWords) {
     h(
       "div",
       { class: "group" },
-      button("new", NEW, "", deeds.newFile),
+      button("new", NEW, "", commands.newFile),
       fileButton({
         id: "editor-file",
         label: "",
         help: t("editor.open"),
         accept: ".aesl,.aseba,.txt",
-        open: deeds.open,
+        open: commands.open,
       }),
-      button("save", SAVE, "Ctrl+S", deeds.save),
+      button("save", SAVE, "Ctrl+S", commands.save),
       choice,
-      button("find", FIND, "Ctrl+F", deeds.find),
+      button("find", FIND, "Ctrl+F", commands.find),
       sizer("smaller", "A−", -1),
       sizer("larger", "A+", 1),
     ),
@@ -107,7 +107,7 @@ export function toolbar(t, deeds, draftWords) {
      * @param {(verb: Verb) => boolean} can
      * @param {readonly Kept[]} recent
      * @param {readonly { name: string, description: string }[]} samples
-     * @param {string} offline  why no robot can be reached; empty: it can
+     * @param {string} offline  why the robots cannot be reached; empty if they can
      */
     render(can, recent, samples, offline) {
       for (const button of [load, run]) lock(button, offline);
@@ -121,7 +121,7 @@ export function toolbar(t, deeds, draftWords) {
         h(
           "optgroup",
           { label: t("editor.recent") },
-          ...recent.map((kept) => h("option", {}, kept.unsaved ? draftWords(kept) : kept.name)),
+          ...recent.map((kept) => h("option", {}, kept.unsaved ? draftLabel(kept) : kept.name)),
         ),
         h(
           "optgroup",
@@ -134,21 +134,22 @@ export function toolbar(t, deeds, draftWords) {
 }
 
 /**
- * Keys: the function keys wherever the focus is, the others inside the editor. Returns what ends it.
+ * Keyboard shortcuts: function keys work everywhere, the others inside the editor. Returns a function that removes
+ * them.
  *
  * @param {HTMLElement} element
- * @param {Deeds} deeds
+ * @param {EditorCommands} commands
  * @returns {() => void}
  */
-export function watchKeys(element, deeds) {
+export function watchKeys(element, commands) {
   const keys = /** @type {Record<string, () => void>} */ ({
-    F7: () => deeds.control("step_line"),
-    "Shift+F7": () => deeds.control("step"),
-    F8: () => deeds.control("reset"),
-    F9: deeds.run,
-    F10: () => deeds.control("pause"),
-    "Ctrl+Enter": deeds.load,
-    "Ctrl+s": deeds.save,
+    F7: () => commands.control("step_line"),
+    "Shift+F7": () => commands.control("step"),
+    F8: () => commands.control("reset"),
+    F9: commands.run,
+    F10: () => commands.control("pause"),
+    "Ctrl+Enter": commands.load,
+    "Ctrl+s": commands.save,
   });
   /** @param {KeyboardEvent} event */
   const press = (event) => {
@@ -161,7 +162,7 @@ export function watchKeys(element, deeds) {
     if (!event.repeat) act();
   };
   window.addEventListener("keydown", press, true);
-  // Escape closes what is open in the editor; it does not stop the robots as elsewhere on the page.
+  // Escape closes lists and panels in the editor; unlike elsewhere on the page it does not stop the robots.
   element.addEventListener("keydown", (event) => event.key === "Escape" && event.stopPropagation());
   return () => window.removeEventListener("keydown", press, true);
 }

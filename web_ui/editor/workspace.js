@@ -1,4 +1,4 @@
-// The programs on the desk, one per tab: which robot has which, what is kept for a closed browser. No screen.
+// The open programs, one per tab: which robot runs which, and the drafts in browser storage. No DOM.
 
 import { AeslError } from "./aesl.js";
 import { blank, codeOf, edited, fileName, fromRobot, isInRobot, isUnsaved, opened, redefined } from "./documents.js";
@@ -7,23 +7,23 @@ import { blank, codeOf, edited, fileName, fromRobot, isInRobot, isUnsaved, opene
 /** @typedef {import("./state.js").ProgramInfo} ProgramInfo */
 /** @typedef {{ name: string, line: number, column: number, what: string }} Refusal */
 
-/** The tab of the program for all robots; the others have their robot's name. */
+/** The tab of the program for all robots; other tabs are named after their robot. */
 export const ALL = "*";
 
 export class Workspace {
   /**
    * @param {object} options
-   * @param {import("./storage.js").Keeper} options.keeper
+   * @param {import("./file_store.js").FileStore} options.fileStore
    * @param {() => number} options.now      milliseconds since 1970
-   * @param {() => void} options.changed    another text is to be shown
+   * @param {() => void} options.changed    called when another text must be shown
    */
-  constructor({ keeper, now, changed }) {
-    this.keeper = keeper;
+  constructor({ fileStore, now, changed }) {
+    this.fileStore = fileStore;
     this.now = now;
     this.changed = changed;
     this.tab = ALL;
     /** @type {Map<string, Document>} */ this.documents = new Map();
-    /** @type {Map<string, import("./storage.js").Kept>} */ this.drafts = new Map();
+    /** @type {Map<string, import("./file_store.js").Kept>} */ this.drafts = new Map();
     /** @type {Set<string>} */ this.following = new Set(); // tabs that take the robot's next program whatever they hold
   }
 
@@ -38,7 +38,7 @@ export class Workspace {
     if (known !== undefined) return known;
     const document = blank(tab === ALL ? undefined : fileName(tab));
     this.documents.set(tab, document);
-    const draft = this.keeper.draft(tab);
+    const draft = this.fileStore.draft(tab);
     if (draft !== null) this.drafts.set(tab, draft);
     return document;
   }
@@ -62,7 +62,7 @@ export class Workspace {
   }
 
   /**
-   * Put a file on the desk; nothing changes when it is refused.
+   * Open a file; nothing changes if it is rejected.
    *
    * @param {string} name
    * @param {string} text
@@ -71,7 +71,7 @@ export class Workspace {
   open(name, text) {
     try {
       this.#replace(this.tab, opened(fileName(name), text));
-      this.keeper.remember({ name: fileName(name), text, time: this.now() });
+      this.fileStore.remember({ name: fileName(name), text, time: this.now() });
       return null;
     } catch (error) {
       if (!(error instanceof AeslError)) throw error;
@@ -79,7 +79,7 @@ export class Workspace {
     }
   }
 
-  /** The text on the screen is now this. @param {string} code */
+  /** Set the code of the shown text. @param {string} code */
   edit(code) {
     this.#set(edited(this.current, code));
   }
@@ -96,27 +96,27 @@ export class Workspace {
 
   saved() {
     const document = this.current;
-    this.keeper.remember({ name: document.name, text: document.text, time: this.now() });
+    this.fileStore.remember({ name: document.name, text: document.text, time: this.now() });
     this.#set({ ...document, saved: document.text });
   }
 
-  /** The robot took this text. @param {string} tab @param {string} text */
+  /** The robot accepted this text. @param {string} tab @param {string} text */
   loaded(tab, text) {
     this.documents.set(tab, { ...this.at(tab), loaded: text, source: text });
   }
 
-  /** Whatever the robot gets next is to be shown here. */
+  /** Show the next program that the robot gets, whatever the tab contains. */
   follow() {
     this.following.add(this.tab);
   }
 
   /**
-   * What a robot runs: shown where nothing of one's own would be lost.
+   * Update the program that a robot runs. It is shown if no user changes would be lost.
    *
    * @param {string} tab
    * @param {ProgramInfo | null | undefined} program
    */
-  tell(tab, program) {
+  setRobotProgram(tab, program) {
     if (!program?.file) return;
     const document = this.at(tab);
     if (program.file === document.source) return;
@@ -126,11 +126,11 @@ export class Workspace {
     try {
       this.#replace(tab, fromRobot(program));
     } catch (error) {
-      if (!(error instanceof AeslError)) throw error; // the runtime reads more than we do; what is on the desk stays
+      if (!(error instanceof AeslError)) throw error; // the runtime accepts more than this parser; keep the open text
     }
   }
 
-  /** The draft that an earlier visit left of this tab. */
+  /** The draft of this tab from an earlier visit. */
   get draft() {
     const draft = this.drafts.get(this.tab);
     return draft === undefined || draft.text === this.current.text ? null : draft;
@@ -143,7 +143,7 @@ export class Workspace {
     this.restore(draft);
   }
 
-  /** Go on with a text that is in no file. @param {import("./storage.js").Kept} kept */
+  /** Continue with a text that is not in a file. @param {import("./file_store.js").Kept} kept */
   restore({ name, text }) {
     const { text: saved } = blank();
     this.#replace(this.tab, { ...opened(name, text), saved });
@@ -151,7 +151,7 @@ export class Workspace {
 
   forgetDraft() {
     this.drafts.delete(this.tab);
-    this.keeper.keepDraft(this.tab, null);
+    this.fileStore.keepDraft(this.tab, null);
   }
 
   /** @returns {string} */
@@ -164,16 +164,21 @@ export class Workspace {
     this.documents.set(this.tab, document);
     const { name, text } = document;
     const draft = this.drafts.get(this.tab);
-    if (draft !== undefined && draft.text !== text) this.keeper.remember({ ...draft, unsaved: true });
+    if (draft !== undefined && draft.text !== text) this.fileStore.remember({ ...draft, unsaved: true });
     this.drafts.delete(this.tab);
-    this.keeper.keepDraft(this.tab, isUnsaved(document) ? { name, text, time: this.now() } : null);
+    this.fileStore.keepDraft(this.tab, isUnsaved(document) ? { name, text, time: this.now() } : null);
   }
 
-  /** Another document; what would be lost is among the recent files. @param {string} tab @param {Document} document */
+  /**
+   * Replace the document of a tab; unsaved text is added to the recent files.
+   *
+   * @param {string} tab
+   * @param {Document} document
+   */
   #replace(tab, document) {
     const old = this.documents.get(tab);
     if (old !== undefined && isUnsaved(old)) {
-      this.keeper.remember({ name: old.name, text: old.text, time: this.now(), unsaved: true });
+      this.fileStore.remember({ name: old.name, text: old.text, time: this.now(), unsaved: true });
     }
     this.documents.set(tab, document);
     if (tab === this.tab) this.changed();

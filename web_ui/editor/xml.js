@@ -1,4 +1,4 @@
-// Just enough XML for .aesl files, with the place of everything: parts in order, attributes, characters.
+// A minimal XML parser for .aesl files with source positions: elements in order, attributes, characters.
 
 /** @typedef {{ kind: "open" | "close" | "text" | "cdata" | "other", name: string, from: number, to: number, closed: boolean }} Part */
 /** @typedef {{ character: string, from: number, to: number, cdata: boolean }} Unit  one UTF-16 unit and its source */
@@ -19,7 +19,7 @@ const PART =
   /<!--[\s\S]*?-->|<\?[\s\S]*?\?>|<!\[CDATA\[[\s\S]*?\]\]>|<!DOCTYPE(?:[^>[]|\[[^\]]*\])*>|<\/([^\s<>/]+)\s*>|<([^\s<>/!?="']+)((?:\s+[^\s=<>/"']+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(\/?)>|[^<]+/y;
 
 /**
- * The parts of a text, well nested; AeslError where it is no XML.
+ * The parts of a text, properly nested. Throws AeslError if it is not XML.
  *
  * @param {string} text
  * @returns {Generator<Part>}
@@ -82,7 +82,7 @@ const NAMED = /** @type {Record<string, string>} */ ({ lt: "<", gt: ">", amp: "&
 const PIECE = /&(?:#x([0-9a-fA-F]+)|#(\d+)|(\w+));|\r\n|[\s\S]/g;
 
 /**
- * The characters of a text or CDATA part; the second half of a pair from one entity has an empty source.
+ * The characters of a text or CDATA part. The second half of a surrogate pair from one entity has an empty source.
  *
  * @param {string} text
  * @param {Part} part
@@ -113,7 +113,7 @@ export function decoded(text, { kind, from, to }) {
 }
 
 /**
- * Characters as they stand in a text or CDATA part.
+ * Escape characters for a text or CDATA part.
  *
  * @param {string} characters
  * @param {boolean} cdata

@@ -1,4 +1,4 @@
-// The gallery: a window with a picture of every shipped playground, to choose one.
+// The gallery dialog: a thumbnail of every shipped playground, to choose one.
 
 import { faultView } from "../panels/fault.js";
 import { buttonOf, fileButton, h, icon, ICONS, lock, setAttribute, setText } from "../panels/dom.js";
@@ -9,7 +9,7 @@ import { FILE } from "../state/index.js";
 const PENCIL = "M3 17.500V21h3.500L17 10.500 13.500 7zM15 5.500 18.500 9l2-2L17 3.500z";
 
 /** @param {import("../panels/index.js").Context} context */
-export function galleryDialog({ t, language, actions, shelf, store, creator, scene }) {
+export function galleryDialog({ t, language, actions, thumbnails, store, creator, scene }) {
   const fault = h("div", { class: "fault", role: "alert", hidden: true });
   const list = h("ul", { class: "samples" });
   const close = h("button", { type: "button", class: "plain", "aria-label": t("gallery.close") }, icon(ICONS.close));
@@ -37,12 +37,12 @@ export function galleryDialog({ t, language, actions, shelf, store, creator, sce
     ),
   );
   close.addEventListener("click", () => dialog.close());
-  dialog.addEventListener("click", (event) => event.target === dialog && dialog.close()); // beside it
-  dialog.addEventListener("close", () => scene.invalidate()); // messages go back to the page
-  dialog.addEventListener("keydown", (event) => event.stopPropagation()); // Escape closes, and stops no robot
+  dialog.addEventListener("click", (event) => event.target === dialog && dialog.close()); // a click outside
+  dialog.addEventListener("close", () => scene.invalidate()); // notices move back to the page
+  dialog.addEventListener("keydown", (event) => event.stopPropagation()); // Escape must not stop robots
   /** @type {{ name: string, button: HTMLButtonElement }[]} */ let cards = [];
   let listed = "";
-  /** The upload before the choice that is on its way to the simulator; undefined: none is. */
+  /** The upload state before the choice that is in progress; undefined: none is in progress. */
   /** @type {import("../state/index.js").Upload | null | undefined} */ let before;
   const attempt = () => {
     before = store.state.uploads.playground;
@@ -81,7 +81,7 @@ export function galleryDialog({ t, language, actions, shelf, store, creator, sce
       },
       icon(PENCIL),
     );
-    void shelf.sample(info.name).then((sample) => {
+    void thumbnails.sample(info.name).then((sample) => {
       if (sample === null) return;
       const count = sample.playground.items.filter(({ kind }) => kind === "robot").length;
       setText(robots, t(count === 1 ? "gallery.robot" : "gallery.robots", { count }));
@@ -103,7 +103,7 @@ export function galleryDialog({ t, language, actions, shelf, store, creator, sce
       before = undefined;
       forget();
       dialog.showModal();
-      scene.invalidate(); // messages are shown in it from now on
+      scene.invalidate(); // notices are shown inside the dialog from now on
       render(store.state);
       (cards.find(({ button }) => button.ariaCurrent === "true")?.button ?? close).focus();
     },

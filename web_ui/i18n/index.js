@@ -1,4 +1,4 @@
-// All text of the page, one table per language. A value may contain {name}, which is filled in.
+// Texts of the page, one table per language. `{name}` in a text is replaced by a value.
 
 import { de } from "./de.js";
 import { en } from "./en.js";
@@ -9,7 +9,7 @@ import { it } from "./it.js";
 
 export const LANGUAGES = /** @type {Record<string, Record<string, string>>} */ ({ en, de, fr, it });
 
-/** The first of the wanted languages that there is, else English. @param {readonly string[]} wanted */
+/** The first wanted language that is available, else English. @param {readonly string[]} wanted */
 export function chooseLanguage(wanted) {
   return wanted.map((tag) => tag.slice(0, 2).toLowerCase()).find((tag) => tag in LANGUAGES) ?? "en";
 }

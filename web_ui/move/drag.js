@@ -1,16 +1,16 @@
-// Pointers that carry things: in move mode, or with Shift, which holds the robots' buttons. They come before the buttons
-// and the camera.
+// Pointer control for moving bodies: in move mode, or with Shift (which also makes button presses sticky). These
+// handlers run before those of buttons and camera.
 
-/** @typedef {import("./mover.js").Mover} Mover */
+/** @typedef {import("./drag_controller.js").DragController} DragController */
 
 /**
  * @param {object} options
  * @param {HTMLElement} options.element
- * @param {(event: PointerEvent) => import("./mover.js").Ray | null} options.rayOf
- * @param {Mover} options.mover
+ * @param {(event: PointerEvent) => import("./drag_controller.js").Ray | null} options.rayOf
+ * @param {DragController} options.dragController
  * @param {(event: PointerEvent) => boolean} options.isButton
  */
-export function watchDrags({ element, rayOf, mover, isButton }) {
+export function watchDrags({ element, rayOf, dragController, isButton }) {
   /** @type {number | null} */ let pointer = null;
   /** @param {PointerEvent} event */
   const isOurs = (event) => {
@@ -22,7 +22,7 @@ export function watchDrags({ element, rayOf, mover, isButton }) {
     "pointerdown",
     (event) => {
       const ray = pointer === null && event.button === 0 ? rayOf(event) : null;
-      if (ray === null || !mover.grab(ray, mover.mode || (event.shiftKey && !isButton(event)))) return;
+      if (ray === null || !dragController.grab(ray, dragController.mode || (event.shiftKey && !isButton(event)))) return;
       pointer = event.pointerId;
       element.setPointerCapture(pointer);
       event.stopImmediatePropagation();
@@ -33,7 +33,7 @@ export function watchDrags({ element, rayOf, mover, isButton }) {
     "pointermove",
     (event) => {
       const ray = isOurs(event) ? rayOf(event) : null;
-      if (ray !== null) mover.drag(ray);
+      if (ray !== null) dragController.drag(ray);
     },
     { capture: true },
   );
@@ -43,8 +43,8 @@ export function watchDrags({ element, rayOf, mover, isButton }) {
       (event) => {
         if (!isOurs(event)) return;
         pointer = null;
-        if (name === "pointerup") void mover.drop();
-        else mover.cancel();
+        if (name === "pointerup") void dragController.drop();
+        else dragController.cancel();
       },
       { capture: true },
     );

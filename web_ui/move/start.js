@@ -1,35 +1,35 @@
-// Where a robot that fell is put back: its start, or the nearest free place beside it. No document, no scene.
+// The pose for returning a fallen robot: its start, or the nearest free position. No DOM, no 3D scene.
 
-import { isOnGround } from "../playground/judge.js";
+import { isOnGround } from "../playground/validation.js";
 import { parse } from "../playground/document.js";
-import { blocker, obstacles, ROBOT_OUTLINE } from "./things.js";
+import { blocker, obstacles, ROBOT_OUTLINE } from "./placed_bodies.js";
 
-/** @typedef {import("./things.js").Pose} Pose */
+/** @typedef {import("./placed_bodies.js").Pose} Pose */
 
-/** Distances from the start and directions that are tried, one after the other. */
+/** Distances and number of directions that are tried around the start, in this order. */
 const DISTANCES_M = [0.15, 0.3, 0.45];
 const DIRECTIONS = 8;
 const HEIGHT_M = 0.053;
 
 /**
- * The place for a robot; its start where nothing else is free.
+ * The pose for a robot; its start if no other position is free.
  *
  * @param {import("../state/index.js").State} state
- * @param {string} text    the playground in our format
- * @param {string} name    of the robot in the world
+ * @param {string} text    the playground as JSON text
+ * @param {string} name    name of the robot in the world
  * @returns {Pose}
  */
 export function startOf(state, text, name) {
   const { items } = parse(text);
   const robots = items.filter(({ kind }) => kind === "robot");
-  const own = robots.find((robot) => robot.name === name) ?? robots[0]; // one that came later has no start of its own
+  const own = robots.find((robot) => robot.name === name) ?? robots[0]; // a robot that was added later has no start pose
   const start = { x: own?.x_m ?? 0, y: own?.y_m ?? 0, yaw: own?.yaw_rad ?? 0 };
-  const thing = { name, robot: name, pose: start, outline: ROBOT_OUTLINE, height: HEIGHT_M };
+  const body = { name, robot: name, pose: start, outline: ROBOT_OUTLINE, height: HEIGHT_M };
   const others = obstacles(state, name);
   const shapes = items.filter(({ kind }) => kind !== "robot");
   /** @param {Pose} pose */
   const isFree = (pose) =>
-    blocker(thing, pose, others) === null &&
+    blocker(body, pose, others) === null &&
     isOnGround(shapes, { kind: "robot", name, x_m: pose.x, y_m: pose.y, yaw_rad: pose.yaw });
   return [start, ...around(start)].find(isFree) ?? start;
 }

@@ -1,11 +1,11 @@
-// The frame of a side panel: a heading that folds it, remembered by the browser.
+// The frame of a side panel: its heading folds it, and the browser remembers that.
 
-import { memory, note } from "../memory.js";
+import { localStore, trySetItem } from "../browser/local_storage.js";
 import { uploadCause } from "../state/index.js";
 import { h } from "./dom.js";
 
 /**
- * @param {string} name      of the panel, also its class
+ * @param {string} name      name of the panel, also its CSS class
  * @param {string} title
  * @param {...(Node | string)} content
  */
@@ -13,28 +13,28 @@ export function card(name, title, ...content) {
   const key = `card.${name}`;
   const details = h(
     "details",
-    { class: `card ${name}`, open: memory.getItem(key) !== "closed" },
+    { class: `card ${name}`, open: localStore.getItem(key) !== "closed" },
     h("summary", {}, h("h2", {}, title)),
     h("div", { class: "content" }, ...content),
   );
-  details.addEventListener("toggle", () => note(memory, key, details.open ? "open" : "closed"));
+  details.addEventListener("toggle", () => trySetItem(localStore, key, details.open ? "open" : "closed"));
   return details;
 }
 
-/** A card whose content acts on the simulator: nothing in it works where the page may only watch. @type {typeof card} */
-export function drivingCard(name, title, ...content) {
+/** A card whose content controls the simulator: it is disabled while the page is read-only. @type {typeof card} */
+export function controlCard(name, title, ...content) {
   const details = card(name, title, ...content);
   details.querySelector(".content")?.setAttribute("data-drives", "");
   return details;
 }
 
 /**
- * Let a refusal be seen: its card opens, and where editor or creator have the card's place, a notice says it.
+ * Make an error visible: open its card, or show a notice if editor or creator covers the card.
  *
  * @param {HTMLDetailsElement} element  the card
  * @param {import("../state/store.js").Store} store
  * @param {string} text
- * @param {import("../state/index.js").What} what
+ * @param {import("../state/index.js").UploadKind} what
  */
 export function showRefusal(element, store, text, what) {
   element.open = true;

@@ -1,5 +1,4 @@
-// Whether the simulator is there, and whether it lets this page only watch: words in the header, and a sentence over the
-// view when it is not there.
+// The connection state: a word in the header, and an explanation over the view while there is no connection.
 
 import { h, setAttribute, setText } from "./dom.js";
 

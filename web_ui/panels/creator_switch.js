@@ -1,4 +1,4 @@
-// Opens and closes the playground creator.
+// The button that opens and closes the playground creator.
 
 import { h, icon, setAttribute } from "./dom.js";
 

@@ -1,4 +1,4 @@
-// How the view is drawn: fineness, numbers at the beams, from above in 2D.
+// Display options: quality, sensor values at the beams, 2D view from above.
 
 import { QUALITIES } from "../scene/quality.js";
 import { card } from "./card.js";

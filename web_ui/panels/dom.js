@@ -1,11 +1,11 @@
-// Small tools to build and change elements; a panel writes the document only where a value changed.
+// Helpers to create and update elements. Panels write to the DOM only where a value changed.
 
-import { whenShiftGoes } from "../shift.js";
+import { onShiftRelease } from "../input/sticky_press.js";
 
 /**
  * @template {keyof HTMLElementTagNameMap} Tag
  * @param {Tag} tag
- * @param {Record<string, any>} attributes  `class`, `onclick` and the like, `aria-…`; null or false: left out
+ * @param {Record<string, any>} attributes  such as `class`, `onclick`, `aria-…`; null or false: left out
  * @param {...(Node | string)} children
  * @returns {HTMLElementTagNameMap[Tag]}
  */
@@ -20,7 +20,7 @@ export function h(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** A picture from one path of a 24×24 grid; the button around it has the label. @param {string} path */
+/** An icon from a single path on a 24×24 grid; the surrounding button has the label. @param {string} path */
 export function icon(path) {
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   svg.setAttribute("viewBox", "0 0 24 24");
@@ -69,10 +69,10 @@ export function setAttribute(element, name, value) {
 const tooltips = new WeakMap();
 
 /**
- * Enable a control, or disable it and say why in its tooltip.
+ * Enable a control, or disable it and show the reason as tooltip.
  *
  * @param {HTMLButtonElement | HTMLSelectElement | HTMLInputElement | HTMLFieldSetElement} control
- * @param {string} reason  empty: it is enabled
+ * @param {string} reason  empty: enabled
  */
 export function lock(control, reason) {
   const own = tooltips.get(control) ?? control.title;
@@ -82,13 +82,13 @@ export function lock(control, reason) {
 }
 
 /**
- * A control that is held: down by pointer, Enter or Space, up again when let go or left. Clicked with Shift it stays down
- * as long as that.
+ * A momentary control: pressed by pointer, Enter or Space, and released when that ends. A click with Shift keeps it
+ * pressed until Shift is released.
  *
  * @param {HTMLElement} element
  * @param {(pressed: boolean) => void} hold
  */
-export function holdable(element, hold) {
+export function momentary(element, hold) {
   /** @type {Set<string | number>} */ const holders = new Set();
   /** @param {string | number} who */
   const down = (who) => {
@@ -107,7 +107,7 @@ export function holdable(element, hold) {
   element.addEventListener("pointerup", ({ shiftKey }) => {
     if (!shiftKey) return;
     down("Shift");
-    whenShiftGoes(() => up("Shift"));
+    onShiftRelease(() => up("Shift"));
   });
   for (const name of /** @type {const} */ (["pointerup", "pointercancel", "lostpointercapture"])) {
     element.addEventListener(name, (event) => up(event.pointerId));
@@ -125,7 +125,7 @@ export function holdable(element, hold) {
 const PLACES = "input, select, summary, button:enabled";
 
 /**
- * Other children of an element; a focus among them goes on at its place.
+ * Replace the children of an element; the keyboard focus stays at the same position.
  *
  * @param {HTMLElement} parent
  * @param {readonly Node[]} children
@@ -146,7 +146,7 @@ export function buttonOf(file) {
 }
 
 /**
- * A button that opens a file; the browser's own file field stays hidden behind it.
+ * A button that opens a file dialog; the native file input is hidden behind it.
  *
  * @param {{ id: string, label: string, help: string, accept: string, open: (file: File) => void }} options
  */

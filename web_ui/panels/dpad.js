@@ -1,11 +1,11 @@
-// The robot's five buttons as a cross; a button shows as pressed when the robot says so.
+// The robot's five buttons as a cross; a button is shown as pressed when the robot reports it.
 
-import { memory, note } from "../memory.js";
+import { localStore, trySetItem } from "../browser/local_storage.js";
 import { BUTTONS } from "../state/names.js";
-import { h, holdable, icon, ICONS, lock, setAttribute } from "./dom.js";
+import { h, momentary, icon, ICONS, lock, setAttribute } from "./dom.js";
 
 const CHEVRON = "M4 8.500 5.800 6.700 12 12.900l6.200-6.200L20 8.500l-8 8z";
-/** Where the browser remembers that the pad is hidden on a small screen. */
+/** Storage key: whether the pad is hidden on small screens. */
 const FOLDED_KEY = "padFolded";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
@@ -17,7 +17,7 @@ export function dpadPanel({ t, actions, store }) {
       { type: "button", class: `pad ${name}`, "data-button": name, "aria-label": label, title: label },
       icon(name === "center" ? ICONS.dot : ICONS.arrow),
     );
-    holdable(button, (pressed) => actions.press(store.state.selected, name, pressed));
+    momentary(button, (pressed) => actions.press(store.state.selected, name, pressed));
     return { name, button };
   });
   const pad = h(
@@ -25,7 +25,7 @@ export function dpadPanel({ t, actions, store }) {
     { class: "dpad", id: "dpad", role: "group", "aria-label": t("dpad"), "data-drives": "" },
     ...buttons.map(({ button }) => button),
   );
-  // On a phone the pad can be hidden, so that it covers nothing of the scene.
+  // On phones the pad can be hidden so that it does not cover the view.
   const fold = h(
     "button",
     { type: "button", class: "fold", "aria-controls": "dpad", onclick: () => setFolded(!element.hasAttribute("data-folded")) },
@@ -34,14 +34,14 @@ export function dpadPanel({ t, actions, store }) {
   const element = h("div", { class: "drive" }, pad, fold);
   /** @param {boolean} folded */
   const setFolded = (folded) => {
-    note(memory, FOLDED_KEY, String(folded));
+    trySetItem(localStore, FOLDED_KEY, String(folded));
     element.toggleAttribute("data-folded", folded);
     const label = t(folded ? "dpad.unfold" : "dpad.fold");
     setAttribute(fold, "aria-expanded", String(!folded));
     setAttribute(fold, "aria-label", label);
     setAttribute(fold, "title", label);
   };
-  setFolded(memory.getItem(FOLDED_KEY) === "true");
+  setFolded(localStore.getItem(FOLDED_KEY) === "true");
   return {
     slot: "stage",
     element,

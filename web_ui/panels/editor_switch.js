@@ -1,4 +1,4 @@
-// Opens and closes the Aseba editor.
+// The button that opens and closes the Aseba editor.
 
 import { h, icon, setAttribute } from "./dom.js";
 

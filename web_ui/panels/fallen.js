@@ -1,4 +1,4 @@
-// Robots that fell off an edge say so over the view, and can be put back where they started.
+// A message over the view for each fallen robot, with a button that returns it to its start.
 
 import { h } from "./dom.js";
 

@@ -1,33 +1,47 @@
-// Why something was refused, for people: a headline, then where, what was found, and what was expected.
+// Displays the reason of a rejection: headline, location, what was found, and what was expected.
 
 import { h } from "./dom.js";
 
 /** @typedef {{ place: string, found: string, expected: string }} Refusal */
 
-/** The parts of a refusal's text; null for one that is said otherwise. @param {string} text @returns {Refusal | null} */
+/**
+ * Split the text of a rejection into its parts; null if it has another form.
+ *
+ * @param {string} text
+ * @returns {Refusal | null}
+ */
 export function refusalOf(text) {
   const match = /^(?:([\s\S]*?): )?found ([\s\S]*?), expected ([\s\S]*)$/.exec(text);
   return match === null ? null : { place: match[1] ?? "", found: match[2], expected: match[3] };
 }
 
-/** Expectations of the readers that only a file of another kind misses. */
+/** Expectations that only a file of another kind violates. */
 const FOREIGN = /^(?:JSON\b.*|XML|UTF-8 text|an object|<aseba-playground>|a whole one|a plain zip archive)$/s;
 
-/** Whether a refused file is of another kind, rather than a playground with a mistake. @param {Refusal | null} refusal */
+/**
+ * Whether a rejected file is of another kind, rather than a playground with an error.
+ *
+ * @param {Refusal | null} refusal
+ */
 export function isForeign(refusal) {
   if (refusal === null) return false;
   const { place, expected } = refusal;
   return place === "format" || (FOREIGN.test(expected) && /^(?:line \d+(?:, column \d+)?)?$/.test(place));
 }
 
-/** A refused playground in one sentence. @param {import("../i18n/index.js").Translate} t @param {import("../state/index.js").Fault | null} fault */
+/**
+ * A rejected playground in one sentence.
+ *
+ * @param {import("../i18n/index.js").Translate} t
+ * @param {import("../state/index.js").Fault | null} fault
+ */
 export function faultText(t, fault) {
   if (fault === null) return "";
   return isForeign(refusalOf(fault.text)) ? t("fault.notPlayground") : fault.text;
 }
 
 /**
- * A file of another kind: pupils read a sentence, and who wants to know more opens the details.
+ * A file of another kind: one plain sentence; the details can be expanded.
  *
  * @param {import("../i18n/index.js").Translate} t
  * @param {string} headline

@@ -1,4 +1,4 @@
-// The panels, in the order in which they stand on the page. To add one: a file, and a line here.
+// All panels, in display order. To add one: a file, and a line here.
 
 import { connectionPanel } from "./connection.js";
 import { creatorSwitchPanel } from "./creator_switch.js";
@@ -14,7 +14,7 @@ import { robotsPanel } from "./robots.js";
 import { sensorsPanel } from "./sensors.js";
 import { soundPanel } from "./sound.js";
 import { stopPanel } from "./stop.js";
-import { surroundingsPanel } from "./surroundings.js";
+import { stimuliPanel } from "./stimuli.js";
 import { timePanel } from "./time.js";
 import { tourSwitchPanel } from "./tour_switch.js";
 import { viewsPanel } from "./views.js";
@@ -26,17 +26,17 @@ import { viewsPanel } from "./views.js";
  * @property {Translate} t
  * @property {string} language
  * @property {(language: string) => void} setLanguage
- * @property {import("../actions.js").Actions} actions
+ * @property {import("../input/actions.js").Actions} actions
  * @property {import("../state/store.js").Store} store
  * @property {import("../scene/index.js").SceneView} scene
- * @property {import("../move/mover.js").Mover} mover
+ * @property {import("../move/drag_controller.js").DragController} dragController
  * @property {import("../sound/speaker.js").Speaker} speaker
- * @property {import("../editor_host.js").EditorHost} editor
- * @property {import("../creator_host.js").CreatorHost} creator
- * @property {import("../tour_host.js").TourHost} tour
- * @property {import("../gallery/shelf.js").Shelf} shelf   shipped playgrounds with their pictures
- * @property {string} address   of the simulator, for people
- * @property {(text: string) => void} announce   to the live region
+ * @property {import("../hosts/editor_host.js").EditorHost} editor
+ * @property {import("../hosts/creator_host.js").CreatorHost} creator
+ * @property {import("../hosts/tour_host.js").TourHost} tour
+ * @property {import("../gallery/thumbnail_cache.js").ThumbnailCache} thumbnails   shipped playgrounds with their thumbnails
+ * @property {string} address   address of the simulator, for display
+ * @property {(text: string) => void} announce   writes to the live region for screen readers
  */
 /**
  * @typedef {object} Panel
@@ -62,7 +62,7 @@ export const PANELS = [
   programPanel,
   playgroundPanel,
   sensorsPanel,
-  surroundingsPanel,
+  stimuliPanel,
   displayPanel,
   timePanel,
 ];

@@ -1,4 +1,4 @@
-// The language of the page.
+// The choice of language.
 
 import { LANGUAGES } from "../i18n/index.js";
 import { h } from "./dom.js";

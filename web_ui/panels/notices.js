@@ -1,9 +1,9 @@
-// What a person is told about what they did: one area over the view, and in an open dialog, which covers all else.
-// Success goes by itself; what failed stays until it is closed or its cause is gone.
+// Notices about user actions: one area over the view, or inside an open dialog, which covers everything else.
+// Success messages disappear by themselves; errors stay until they are closed or their cause is resolved.
 
 import { h, icon, ICONS } from "./dom.js";
 
-/** How long success is shown. */
+/** How long success messages are shown. */
 export const SUCCESS_MS = 6000;
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
@@ -14,7 +14,7 @@ export function noticesPanel({ t, store }) {
 
   /** @param {number} id */
   const dismiss = (id) => store.dispatch({ type: "dismiss", id });
-  /** Not while it is read. @param {number} id */
+  /** Dismiss a notice, but not while pointer or focus is on the notices. @param {number} id */
   const end = (id) => {
     if (element.matches(":hover, :focus-within")) ends.set(id, setTimeout(end, SUCCESS_MS, id));
     else dismiss(id);
@@ -35,7 +35,7 @@ export function noticesPanel({ t, store }) {
     slot: "main",
     element,
     render({ notices }) {
-      // A modal dialog is above everything, and what is not in it can neither be seen nor clicked.
+      // A modal dialog covers the page, so notices must be inside it to be seen and clicked.
       const place = document.querySelector("dialog:modal") ?? document.querySelector('[data-slot="main"]');
       if (place !== null && element.parentElement !== place) place.append(element);
       if (notices === shown) return;

@@ -1,7 +1,7 @@
-// The playground: choose one of the shipped ones or open a file; a refused one leaves the old world.
+// The playground panel: choose a shipped playground or open a file; a rejected one changes nothing.
 
 import { galleryDialog } from "../gallery/index.js";
-import { drivingCard, showRefusal } from "./card.js";
+import { controlCard, showRefusal } from "./card.js";
 import { buttonOf, fileButton, h, icon, ICONS, lock, setText } from "./dom.js";
 import { faultText, faultView } from "./fault.js";
 
@@ -49,7 +49,7 @@ export function playgroundPanel(context) {
     open: (chosen) => actions.loadFile(chosen),
   });
   const controls = [select, pictures, copy, buttonOf(file)];
-  const element = drivingCard(
+  const element = controlCard(
     "playground",
     t("playground"),
     h("div", { class: "row" }, select),
@@ -92,9 +92,9 @@ export function playgroundPanel(context) {
       if (document.activeElement !== select || playground?.phase !== "sending") select.value = current;
       const chosen = playgrounds.find(({ name }) => name === current);
       setText(description, chosen === undefined ? "" : translated(chosen, language).description);
-      const told = JSON.stringify(simulator?.notes ?? []);
-      if (told !== noted) {
-        noted = told;
+      const notesJson = JSON.stringify(simulator?.notes ?? []);
+      if (notesJson !== noted) {
+        noted = notesJson;
         const texts = simulator?.notes ?? [];
         setText(summary, t("playground.remarks", { count: texts.length }));
         notes.replaceChildren(...texts.map((text) => h("li", {}, text)));
@@ -118,7 +118,7 @@ export function playgroundPanel(context) {
       fault.replaceChildren(close, ...faultView(t, headline, playground.fault));
       const words = `${headline} ${faultText(t, playground.fault)}`;
       announce(words);
-      if (!creator.isOpen) showRefusal(element, store, words, "playground"); // it says itself what is wrong with what it gave
+      if (!creator.isOpen) showRefusal(element, store, words, "playground"); // it shows its own errors
     },
   };
 }

@@ -1,10 +1,10 @@
-// The program in the robot: its name and state, open another, run, stop, restart. What the compiler
-// refuses is shown in its own text, at its place, while the old program goes on.
+// The program of the robot: name and state, open, run, stop, restart. Compiler errors are shown in the rejected text
+// while the previous program keeps running.
 
 import { programOf } from "../state/index.js";
-import { faultWords, placeWords, stateWord } from "../state/standing.js";
-import { behaviourChoice } from "./behaviours.js";
-import { drivingCard, showRefusal } from "./card.js";
+import { faultMessage, lineLabel, stateLabel } from "../state/program_status.js";
+import { behaviorChoice } from "./behaviors.js";
+import { controlCard, showRefusal } from "./card.js";
 import { buttonOf, fileButton, h, icon, ICONS, lock, setAttribute, setText } from "./dom.js";
 import { SUCCESS_MS } from "./notices.js";
 import { sourceView } from "./source.js";
@@ -18,7 +18,7 @@ const VERBS = /** @type {const} */ ([
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
 export function programPanel(context) {
   const { t, language, actions, store, announce, editor } = context;
-  const behaviour = behaviourChoice(context);
+  const behavior = behaviorChoice(context);
   const name = h("strong", { class: "name" });
   const lamp = h("span", { class: "state" });
   const message = h("p", { class: "message", hidden: true });
@@ -40,7 +40,7 @@ export function programPanel(context) {
   });
   const open = buttonOf(file);
   const upload = h("div", { class: "upload", hidden: true });
-  const element = drivingCard(
+  const element = controlCard(
     "program",
     t("program"),
     h("div", { class: "current" }, name, lamp),
@@ -53,7 +53,7 @@ export function programPanel(context) {
       h("small", {}, t("program.dropHint")),
     ),
     upload,
-    behaviour.element,
+    behavior.element,
   );
   /** @type {import("../state/index.js").Upload | null} */ let shown = null;
   let announced = "";
@@ -107,16 +107,16 @@ export function programPanel(context) {
     slot: "side",
     element,
     render(state) {
-      behaviour.render(state);
+      behavior.render(state);
       const program = programOf(state);
       const timePaused = state.simulator?.paused ?? false;
-      const word = program === null ? "" : stateWord(program.state, t, timePaused);
+      const word = program === null ? "" : stateLabel(program.state, t, timePaused);
       const offline = state.connection === "connected" ? "" : t("connection.needed");
       setText(name, program?.name || t("program.none"));
       setText(lamp, word);
       setAttribute(lamp, "data-state", timePaused && program?.state === "running" ? "paused" : (program?.state ?? ""));
-      const { values, level, message: told } = program ?? { values: {}, level: 0, message: "" };
-      setText(message, level > 0 ? (faultWords(values, language) || told) + placeWords(values, t) : "");
+      const { values, level, message: reported } = program ?? { values: {}, level: 0, message: "" };
+      setText(message, level > 0 ? (faultMessage(values, language) || reported) + lineLabel(values, t) : "");
       message.hidden = message.textContent === "";
       for (const { verb, button } of verbs) {
         const there = state.services.includes(actions.programService(verb));

@@ -1,6 +1,6 @@
-// Which robot the panels show; there only when there are several.
+// Tabs that choose the robot for the panels; hidden if there is only one robot.
 
-import { robotColour } from "../state/colours.js";
+import { robotColor } from "../state/robot_colors.js";
 import { h, setAttribute } from "./dom.js";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
@@ -19,7 +19,7 @@ export function robotsPanel({ t, store }) {
           ...names.map((name) =>
             h(
               "button",
-              { type: "button", "data-robot": name, style: `--colour: ${robotColour(names, name)}`, onclick: () => store.dispatch({ type: "select", robot: name }) },
+              { type: "button", "data-robot": name, style: `--color: ${robotColor(names, name)}`, onclick: () => store.dispatch({ type: "select", robot: name }) },
               name || t("app.robot"),
             ),
           ),

@@ -1,4 +1,4 @@
-// What a robot measures, row by row: SI values and Thymio's own integers. Pure.
+// The rows of the sensor panel: SI values and Thymio's integers. Pure.
 
 import { BUTTONS, GROUND, PROXIMITY } from "../state/names.js";
 
@@ -8,7 +8,7 @@ import { BUTTONS, GROUND, PROXIMITY } from "../state/names.js";
  * @property {string} label
  * @property {(robot: Robot) => string} value
  * @property {(robot: Robot) => number | undefined} raw
- * @property {number} full   of the integer, for its bar
+ * @property {number} full   full scale of the integer, for the bar
  */
 
 const WHEEL_RADIUS_M = 0.022;
@@ -124,7 +124,7 @@ export function groupsOf(t) {
   ];
 }
 
-/** The table as text for a spreadsheet: tabs between columns. @param {[string, Row[]][]} groups @param {Robot} robot */
+/** The table as tab-separated text for a spreadsheet. @param {[string, Row[]][]} groups @param {Robot} robot */
 export function asText(groups, robot) {
   return groups
     .flatMap(([title, rows]) =>
@@ -143,13 +143,17 @@ function percent(count, full) {
   return count === undefined ? "" : `${Math.round((100 * count) / full)} %`;
 }
 
-/** Strongest of the seven sensors that hear infrared; words: value, seven payloads, seven intensities. @param {number[]} words */
+/**
+ * The strongest of the seven infrared receivers. Words: value, seven payloads, seven intensities.
+ *
+ * @param {number[]} words
+ */
 function strongest(words) {
   return Math.max(0, ...words.slice(8, 15));
 }
 
 /**
- * Reflecting ground is told as "too close" (−inf) or, as the driver does, 0 (docs/spec/ros-interface.md section 4.3).
+ * Reflecting ground is reported as "too close" (−inf), or as 0 by the driver (docs/spec/ros-interface.md section 4.3).
  *
  * @param {number} range
  */

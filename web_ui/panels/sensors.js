@@ -1,4 +1,4 @@
-// What the robot measures: SI values and Thymio's own integers side by side.
+// The sensor panel: SI values and Thymio's integers side by side.
 
 import { card } from "./card.js";
 import { h, setAttribute, setText } from "./dom.js";
@@ -6,7 +6,7 @@ import { asText, groupsOf } from "./sensor_rows.js";
 
 /** @typedef {import("../state/robot.js").Robot} Robot */
 
-/** How long a button says that it has copied. */
+/** How long the button shows that the values were copied. */
 const COPIED_MS = 2000;
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
@@ -91,7 +91,12 @@ function cellsOf(label) {
   return { element: h("tr", {}, h("th", { scope: "row" }, label), value, bar), value, raw, bar };
 }
 
-/** To the clipboard; on a page that is not served from this machine, by way of a selection. @param {string} text */
+/**
+ * Copy text to the clipboard. Pages that are not from this machine have no clipboard API, so a selection is used
+ * there.
+ *
+ * @param {string} text
+ */
 async function copyText(text) {
   if (navigator.clipboard !== undefined) {
     const written = await navigator.clipboard.writeText(text).then(

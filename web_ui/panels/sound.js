@@ -1,9 +1,9 @@
-// Sound on or off. A browser keeps silent until the page has been touched; until then the button says so.
+// The sound button. Browsers block sound until the first click or key; until then the button says so.
 
-import { memory, note } from "../memory.js";
+import { localStore, trySetItem } from "../browser/local_storage.js";
 import { h, icon, ICONS, setAttribute, setText } from "./dom.js";
 
-/** Where the browser remembers that a person wants silence. */
+/** Storage key of the muted state. */
 export const MUTED_KEY = "muted";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
@@ -12,9 +12,9 @@ export function soundPanel({ t, speaker, announce }) {
   const word = h("span", { class: "word" });
   const element = h("button", { type: "button", class: "sound" }, symbol, word);
   element.addEventListener("click", () => {
-    // The first click anywhere lets the page sound; on this button it means the same, not silence.
+    // The first click anywhere enables sound; on this button it does the same and does not mute.
     const muted = shown === "on";
-    note(memory, MUTED_KEY, String(muted));
+    trySetItem(localStore, MUTED_KEY, String(muted));
     speaker.setMuted(muted);
     announce(t(`sound.${speaker.phase}`));
   });

@@ -1,4 +1,4 @@
-// A source text with line numbers and one fault marked: the line, the column, and the words below it.
+// A source text with line numbers and one error marked: the line, the column, and the message below it.
 
 import { h } from "./dom.js";
 
@@ -36,7 +36,7 @@ export function sourceView(text, fault, label) {
     { class: "source", tabindex: "0", role: "region", "aria-label": label, style: `tab-size: ${TAB}` },
     ...rows,
   );
-  // The fault in the middle, once the element has a size.
+  // Scroll to the error once the element has a size.
   requestAnimationFrame(() => {
     const marked = /** @type {HTMLElement | null} */ (element.querySelector(".fault"));
     const caret = /** @type {HTMLElement | null} */ (element.querySelector(".caret b"));

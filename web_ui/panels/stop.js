@@ -1,4 +1,4 @@
-// Stop: always in sight.
+// The stop button, always visible.
 
 import { h, icon, ICONS, lock } from "./dom.js";
 

@@ -1,9 +1,9 @@
-// Time: pause, a step, back to the start, and how fast; the factor really reached stands beside.
+// Time control: pause, step, reset, speed, and the real-time factor that is reached.
 
 import { h, icon, ICONS, lock, setAttribute, setText } from "./dom.js";
 
 export const FACTORS = [0.25, 0.5, 1, 2, 5, 10];
-/** Lengths of a step: ticks of 10 ms. */
+/** Step lengths in ticks of 10 ms. */
 const STEPS = [1, 10, 100];
 const TICKS_PER_S = 100;
 
@@ -89,7 +89,7 @@ export function timePanel({ t, actions, store, announce }) {
   };
 }
 
-/** A factor that is not in the list joins it. @param {HTMLSelectElement} select @param {number} factor */
+/** Add a factor that is not in the list. @param {HTMLSelectElement} select @param {number} factor */
 function showFactor(select, factor) {
   if (![...select.options].some((option) => Number(option.value) === factor)) {
     select.append(h("option", { value: factor }, `×${factor}`));
@@ -97,7 +97,7 @@ function showFactor(select, factor) {
   select.value = String(factor);
 }
 
-/** Minutes, seconds, and hundredths: the shortest step is one of them. @param {number} ns */
+/** Format as minutes, seconds and hundredths: the shortest step is one hundredth. @param {number} ns */
 export function formatTime(ns) {
   const hundredths = Math.floor(ns / 1e7);
   const minutes = Math.floor(hundredths / 6000);

@@ -1,4 +1,4 @@
-// Opens the tour of the page again.
+// The button that opens the tour again.
 
 import { h, setAttribute } from "./dom.js";
 

@@ -1,15 +1,15 @@
-// How to look: overview, from above, following; and whether the sensor beams are shown.
+// Camera views: overview, from above, follow, robot's view; sensor beams on or off.
 
 import { VIEWS } from "../scene/camera.js";
 import { h, icon, ICONS, lock, setAttribute } from "./dom.js";
 
 /** @param {import("./index.js").Context} context @returns {import("./index.js").Panel} */
-export function viewsPanel({ t, scene, store, mover, announce }) {
+export function viewsPanel({ t, scene, store, dragController, announce }) {
   const buttons = VIEWS.map((view) => ({
     view,
     button: h(
       "button",
-      { type: "button", title: t(`view.${view}`), "aria-label": t(`view.${view}`), onclick: () => scene.look(view) },
+      { type: "button", title: t(`view.${view}`), "aria-label": t(`view.${view}`), onclick: () => scene.setView(view) },
       icon(ICONS[view]),
     ),
   }));
@@ -32,9 +32,9 @@ export function viewsPanel({ t, scene, store, mover, announce }) {
       "aria-label": t("move"),
       "data-drives": "",
       onclick: () => {
-        mover.setMode(!mover.mode);
-        if (!mover.mode) return;
-        scene.canvas.focus(); // where its keys are
+        dragController.setMode(!dragController.mode);
+        if (!dragController.mode) return;
+        scene.canvas.focus(); // so that its keys work
         announce(t("move.help"));
       },
     },
@@ -71,8 +71,8 @@ export function viewsPanel({ t, scene, store, mover, announce }) {
     render({ connection }) {
       lock(move, connection === "connected" ? "" : t("connection.needed"));
       for (const { view, button } of buttons) setAttribute(button, "aria-pressed", String(scene.camera.view === view));
-      setAttribute(move, "aria-pressed", String(mover.mode));
-      hint.hidden = !mover.mode;
+      setAttribute(move, "aria-pressed", String(dragController.mode));
+      hint.hidden = !dragController.mode;
       setAttribute(beams, "aria-pressed", String(scene.showSensors));
     },
   };

@@ -1,6 +1,6 @@
-// A playground as it is built: titles, and items in their order. Read from and written as our format. Pure.
+// A playground as the creator edits it: titles, and items in order. Reads and writes the JSON format. Pure.
 
-import { checkSettled } from "./judge.js";
+import { checkSettled } from "./validation.js";
 import { kindNamed, ROBOT } from "./kinds/index.js";
 import { check, describe, Fault, needed, optional, RULES } from "./rules.js";
 
@@ -8,13 +8,13 @@ import { check, describe, Fault, needed, optional, RULES } from "./rules.js";
 /** @typedef {Readonly<{ title: string, description: string, translations: Readonly<Record<string, any>>, items: readonly Item[] }>} Playground */
 
 export const FORMAT = 1;
-/** As the simulator's (sim/playground/reader.py). */
+/** The same limit as the simulator's (sim/playground/reader.py). */
 export const MOST = { shapes: 1000, robots: 1000, translations: 50 };
 const LANGUAGE = /^[a-z]{2,3}(-[A-Za-z0-9]{2,8})*$/;
 
 const TITLES = { title: needed(RULES.line), description: optional(RULES.line, "") };
 
-/** The playground of a text. Throws a Fault that says where and why. @param {string} text @returns {Playground} */
+/** Parse a playground. Throws a Fault with location and reason. @param {string} text @returns {Playground} */
 export function parse(text) {
   /** @type {unknown} */ let data;
   try {
@@ -46,7 +46,7 @@ export function parse(text) {
   return playground;
 }
 
-/** The text of a playground, one item a line, as the simulator writes it. @param {Playground} playground */
+/** The playground as text, one item per line, as the simulator writes it. @param {Playground} playground */
 export function write({ title, description, translations, items }) {
   const shapes = items.filter(({ kind }) => kind !== "robot").map((item) => JSON.stringify(item));
   const robots = items.filter(({ kind }) => kind === "robot").map(({ kind: _kind, ...start }) => JSON.stringify(start));
@@ -64,7 +64,7 @@ export function write({ title, description, translations, items }) {
 }
 
 /**
- * Without what is as if left out.
+ * The values without those that equal their defaults.
  *
  * @param {Record<string, any> & { kind: string, name: string }} item
  * @returns {Item}
@@ -73,12 +73,12 @@ export function tidy(item) {
   const fields = kindNamed(item.kind)?.fields ?? {};
   return /** @type {Item} */ (
     Object.fromEntries(
-      Object.entries(item).filter(([key, value]) => !(key in fields) || value !== fields[key].otherwise),
+      Object.entries(item).filter(([key, value]) => !(key in fields) || value !== fields[key].defaultValue),
     )
   );
 }
 
-/** Where an item is in the file: `shapes[3]`. @param {Playground} playground @param {Item} item */
+/** The path of an item in the file: `shapes[3]`. @param {Playground} playground @param {Item} item */
 export function keyOf({ items }, item) {
   const isRobot = item.kind === "robot";
   const peers = items.filter(({ kind }) => (kind === "robot") === isRobot);
@@ -102,7 +102,7 @@ function readShape(shape, index) {
   const { kind, name = `${kind}_${index}`, ...values } = shape;
   check({ name: needed(RULES.name) }, { name }, key);
   const known = kindNamed(kind);
-  if (known !== undefined) check(known.fields, values, key); // one of another package is the simulator's to judge
+  if (known !== undefined) check(known.fields, values, key); // shapes of plug-ins are checked by the simulator
   return Object.freeze({ kind, name, ...values });
 }
 

@@ -1,5 +1,5 @@
-// Plane geometry: poses, convex outlines, and whether they overlap. Metres, radians, counter-clockwise. Pure.
-// The tests of overlap are those of thymio_sim_ros/sim/model/geometry.py, so that page and simulator judge alike.
+// Plane geometry: poses, convex outlines and overlap. Meters, radians, counter-clockwise. Pure.
+// The same overlap tests as in thymio_sim_ros/sim/model/geometry.py, so that page and simulator agree.
 
 /** @typedef {readonly [number, number]} Point */
 /** @typedef {{ x: number, y: number, yaw: number }} Pose */
@@ -10,7 +10,7 @@ const ON_THE_EDGE = 1e-9;
 const ROUND = 28;
 
 /**
- * Points of a pose's frame in the frame that holds the pose.
+ * Transform points from the frame of a pose to the frame in which the pose is given.
  *
  * @param {Pose} pose
  * @param {readonly Point[]} points
@@ -21,7 +21,7 @@ export function placed({ x, y, yaw }, points) {
   return points.map(([u, v]) => [x + cos * u - sin * v, y + sin * u + cos * v]);
 }
 
-/** The corners of a rectangle about its middle. @param {number} sizeX @param {number} sizeY @returns {Point[]} */
+/** The corners of a rectangle about its center. @param {number} sizeX @param {number} sizeY @returns {Point[]} */
 export function rectangle(sizeX, sizeY) {
   const [x, y] = [sizeX / 2, sizeY / 2];
   return [[x, -y], [x, y], [-x, y], [-x, -y]]; // prettier-ignore
@@ -45,8 +45,8 @@ export function overlap(one, two) {
   return !separates(one.vertices, two.vertices) && !separates(two.vertices, one.vertices);
 }
 
-/** Whether a point lies in a convex polygon or on its edge. @param {readonly Point[]} polygon @param {Point} point */
-export function holds(polygon, [x, y]) {
+/** Whether a point is inside a convex polygon or on its edge. @param {readonly Point[]} polygon @param {Point} point */
+export function containsPoint(polygon, [x, y]) {
   return polygon.every(([ax, ay], index) => {
     const [bx, by] = polygon[(index + 1) % polygon.length];
     return (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= -ON_THE_EDGE;
@@ -58,7 +58,7 @@ export function distance([ax, ay], [bx, by]) {
   return Math.hypot(bx - ax, by - ay);
 }
 
-/** The same direction in (-π, π]. @param {number} angle */
+/** Normalize an angle to (-π, π]. @param {number} angle */
 export function wrapped(angle) {
   const turn = angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
   return turn <= -Math.PI + EXACT ? Math.PI : turn;
@@ -78,7 +78,7 @@ function discOverlaps(middle, radius, hull) {
 }
 
 /**
- * Whether an edge of one has all of the other on its outer side.
+ * Whether an edge of the first polygon has all of the second on its outer side.
  *
  * @param {readonly Point[]} one
  * @param {readonly Point[]} two

@@ -1,4 +1,4 @@
-// A playground as markers, the way the simulator tells them, so that the same scene draws what runs and what is built.
+// A playground as markers, as the simulator publishes them, so that one scene draws running and edited worlds.
 
 import { MARKER } from "../state/markers.js";
 import { partsOf } from "./parts.js";
@@ -8,18 +8,18 @@ import { partsOf } from "./parts.js";
 /** @typedef {import("./primitives.js").Primitive} Primitive */
 /** @typedef {{ image: ImageBitmap | HTMLCanvasElement, width: number, height: number }} Picture */
 
-/** Each paint lies this much above the one before, as in the simulator's markers. */
+/** Each layer of paint is this much above the previous one, as in the simulator's markers. */
 const LAYER_M = 0.0002;
 
 export class Markers {
-  /** @param {(uri: string) => Picture | null} pictureOf  null while it is read */
+  /** @param {(uri: string) => Picture | null} pictureOf  null while the image is loading */
   constructor(pictureOf) {
     this.pictureOf = pictureOf;
     /** @type {WeakMap<Item, { layer: number, pictures: string, markers: Marker[] }>} */ this.known = new WeakMap();
   }
 
   /**
-   * Markers of what is the same stay the same objects.
+   * Unchanged items keep their marker objects.
    *
    * @param {readonly Item[]} items
    * @returns {ReadonlyMap<string, Marker>}

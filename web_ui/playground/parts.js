@@ -1,25 +1,25 @@
-// What an item of a playground is made of, computed once for each item: items never change, they are replaced.
+// The parts of an item, computed once per item: items are immutable.
 
 import { circle, placed } from "./geometry.js";
 import { kindNamed } from "./kinds/index.js";
 import { footprintOf } from "./primitives.js";
-import { ROBOT_OUTLINE } from "../move/things.js";
+import { ROBOT_OUTLINE } from "../move/placed_bodies.js";
 
-/** @typedef {Readonly<Record<string, any> & { kind: string, name: string }>} Item  a shape, or a robot's start (kind "robot") */
+/** @typedef {Readonly<Record<string, any> & { kind: string, name: string }>} Item  a shape, or the start pose of a robot (kind "robot") */
 /** @typedef {import("./geometry.js").Footprint} Footprint */
 /** @typedef {import("./geometry.js").Point} Point */
 /**
  * @typedef {object} Parts
- * @property {Record<string, any>} values       all of them, also those left out
+ * @property {Record<string, any>} values       all values, including defaults
  * @property {import("./primitives.js").Primitive[]} primitives
- * @property {Footprint[]} footprints    ground on which nothing else can stand
+ * @property {Footprint[]} footprints    ground on which no other body can stand
  * @property {Point[][]} floors
  */
 
 /** @type {WeakMap<Item, Parts>} */
 const KNOWN = new WeakMap();
 
-/** Throws a Fault for one that cannot be built. @param {Item} item @returns {Parts} */
+/** Throws a Fault if the item cannot be built. @param {Item} item @returns {Parts} */
 export function partsOf(item) {
   const known = KNOWN.get(item);
   if (known !== undefined) return known;
@@ -34,7 +34,7 @@ export function partsOf(item) {
   return parts;
 }
 
-/** All values of an item, with those left out. @param {Item} item @returns {Record<string, any>} */
+/** All values of an item, including defaults. @param {Item} item @returns {Record<string, any>} */
 export function valuesOf(item) {
   const fields = kindNamed(item.kind)?.fields ?? {};
   return filled(fields, item);
@@ -43,15 +43,15 @@ export function valuesOf(item) {
 /** @param {import("./rules.js").Fields} fields @param {Record<string, any>} given @returns {Record<string, any>} */
 function filled(fields, given) {
   const values = { ...given };
-  for (const [key, { rule, otherwise }] of Object.entries(fields)) {
-    if (!(key in given)) values[key] = otherwise;
+  for (const [key, { rule, defaultValue }] of Object.entries(fields)) {
+    if (!(key in given)) values[key] = defaultValue;
     else if (rule.type === "object" && given[key] !== null) values[key] = filled(rule.fields ?? {}, given[key]);
   }
   return values;
 }
 
 /**
- * What an item covers, as polygons that can be drawn and pointed at, with their heights.
+ * The areas that an item covers, as polygons for drawing and hit tests, with their heights.
  *
  * @param {Item} item
  * @returns {{ outline: Point[], height: number }[]}

@@ -1,19 +1,19 @@
-// Pictures on the ground, read by the browser from their data URIs; each is read once.
+// Images on the ground, decoded from their data URIs, each once.
 
 /** @typedef {import("./markers.js").Picture} Picture */
 
-/** Side of the largest picture that is drawn. */
+/** Maximum side of a drawn image in pixels. */
 const MOST_TEXELS = 2048;
 
 export class Pictures {
-  /** @param {() => void} changed  called when one has been read */
+  /** @param {() => void} changed  called when an image has been decoded */
   constructor(changed) {
     this.changed = changed;
     /** @type {Map<string, Picture | null>} */ this.known = new Map();
     /** @type {Map<string, Promise<void>>} */ this.reading = new Map();
   }
 
-  /** Null while it is read, and for one that cannot be. @param {string} uri @returns {Picture | null} */
+  /** The image; null while it is decoded, and if it is invalid. @param {string} uri @returns {Picture | null} */
   get(uri) {
     if (!this.known.has(uri)) void this.read(uri);
     return this.known.get(uri) ?? null;

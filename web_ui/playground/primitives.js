@@ -1,4 +1,4 @@
-// What shapes are made of. Pure; the same parts as thymio_sim_ros/sim/model/primitives.py has.
+// The primitives of shapes. Pure; the same as in thymio_sim_ros/sim/model/primitives.py.
 
 import { placed, rectangle } from "./geometry.js";
 
@@ -37,13 +37,13 @@ export function discSolid(pose, radius, height, color) {
   return { type: "solid", pose, size: null, radius, height, color };
 }
 
-/** The ground that a solid covers. @param {Solid} solid @returns {import("./geometry.js").Footprint} */
+/** The footprint of a solid. @param {Solid} solid @returns {import("./geometry.js").Footprint} */
 export function footprintOf({ pose, size, radius }) {
   if (size === null) return { middle: [pose.x, pose.y], radius };
   return { vertices: placed(pose, rectangle(...size)) };
 }
 
-/** Where a shape with these keys is. @param {Record<string, any>} values @returns {Pose} */
+/** The pose of a shape with these keys. @param {Record<string, any>} values @returns {Pose} */
 export function poseOf({ x_m, y_m, yaw_rad }) {
   return { x: x_m, y: y_m, yaw: yaw_rad };
 }

@@ -1,21 +1,21 @@
-// What a field of a playground file may hold: the rules of the published schema, and the reading of values by them.
+// Field types of playground files: the rules of the published schema, and reading values by them.
 // Pure. `tests/web_ui/playground.test.js` compares these tables with playgrounds/playground.schema.json.
 
 /**
  * @typedef {object} Rule
  * @property {"number" | "text" | "points" | "image" | "flag" | "object"} type
- * @property {string} [unit]     of a number
- * @property {number} [low]      least number
- * @property {number} [high]     largest number
- * @property {RegExp} [pattern]  of a text
- * @property {string} [meaning]  of a text: what it is, as a key of the words
- * @property {number} [longest]  characters
- * @property {number} [fewest]   points
- * @property {Fields} [fields]   of an object
+ * @property {string} [unit]     unit of a number
+ * @property {number} [low]      minimum of a number
+ * @property {number} [high]     maximum of a number
+ * @property {RegExp} [pattern]  pattern of a text
+ * @property {string} [meaning]  key of the description of a text
+ * @property {number} [longest]  maximum number of characters
+ * @property {number} [fewest]   minimum number of points
+ * @property {Fields} [fields]   fields of an object
  */
-/** @typedef {{ rule: Rule, required: boolean, otherwise?: any }} Field   otherwise: what it is when left out */
+/** @typedef {{ rule: Rule, required: boolean, defaultValue?: any }} Field   defaultValue: the default */
 /** @typedef {Readonly<Record<string, Field>>} Fields */
-/** @typedef {{ word: string, values?: Record<string, string | number> }} Phrase  a key of the words, with what it is filled in with */
+/** @typedef {{ word: string, values?: Record<string, string | number> }} Phrase  a text key with the values to fill in */
 
 const FAR_M = 100;
 const MOST_POINTS = 1000;
@@ -51,12 +51,12 @@ export const RULES = {
 
 /** @param {Rule} rule @returns {Field} */
 export const needed = (rule) => ({ rule, required: true });
-/** @param {Rule} rule @param {any} otherwise @returns {Field} */
-export const optional = (rule, otherwise) => ({ rule, required: false, otherwise });
+/** @param {Rule} rule @param {any} defaultValue @returns {Field} */
+export const optional = (rule, defaultValue) => ({ rule, required: false, defaultValue });
 /** @param {Fields} fields @returns {Rule} */
 export const object = (fields) => ({ type: "object", fields });
 
-/** A value that is refused: where, what was found, and what was expected. */
+/** A rejected value: location, what was found, and what was expected. */
 export class Fault extends Error {
   /** @param {string} key @param {string} found @param {Phrase} expected */
   constructor(key, found, expected) {
@@ -68,7 +68,7 @@ export class Fault extends Error {
 }
 
 /**
- * Check the members of an object. Throws a Fault with the path of the key that is wrong.
+ * Check the members of an object. Throws a Fault with the path of the wrong key.
  *
  * @param {Fields} fields
  * @param {unknown} data
@@ -86,8 +86,8 @@ export function check(fields, data, key) {
         values: { names: Object.keys(fields).join(", ") },
       });
   }
-  for (const [name, { rule, required, otherwise }] of Object.entries(fields)) {
-    if (otherwise === null && members[name] === null) continue;
+  for (const [name, { rule, required, defaultValue }] of Object.entries(fields)) {
+    if (defaultValue === null && members[name] === null) continue;
     if (Object.hasOwn(members, name)) checkValue(rule, members[name], join(key, name));
     else if (required) throw new Fault(join(key, name), "–", expectation(rule));
   }
@@ -120,7 +120,7 @@ function fits({ type, low = -Infinity, high = Infinity, pattern, longest = Infin
   return type === "image" ? value.startsWith("data:image/") : type === "text" && (pattern?.test(value) ?? true);
 }
 
-/** What a rule wants, in words. @param {Rule} rule @returns {Phrase} */
+/** The expectation of a rule, as a phrase. @param {Rule} rule @returns {Phrase} */
 export function expectation({ type, unit = "", low = 0, high = 0, meaning = "", longest = 0, fewest = 0 }) {
   if (type === "number") return { word: "fault.number", values: { unit, low: short(low), high: short(high) } };
   if (type === "text") return { word: meaning, values: { longest } };
@@ -128,10 +128,10 @@ export function expectation({ type, unit = "", low = 0, high = 0, meaning = "", 
   return { word: `fault.${type}` };
 }
 
-/** A value as a person recognises it. @param {unknown} value */
+/** A value as it is shown in messages. @param {unknown} value */
 export function describe(value) {
-  const told = value === undefined ? "–" : JSON.stringify(value);
-  return told.length > 60 ? `${told.slice(0, 57)}…` : told;
+  const json = value === undefined ? "–" : JSON.stringify(value);
+  return json.length > 60 ? `${json.slice(0, 57)}…` : json;
 }
 
 /** @param {string} key @param {string} name */

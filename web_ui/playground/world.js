@@ -1,4 +1,4 @@
-// A playground as the state of a page whose simulator stands still: what the scene draws while one is built or shown.
+// A playground as the state of a paused simulator, for drawing it in the creator and in the gallery.
 
 import { INITIAL } from "../state/index.js";
 import { NEW_ROBOT } from "../state/robot.js";

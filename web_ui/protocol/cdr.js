@@ -1,7 +1,7 @@
 // ROS 2 messages ↔ bytes: classic CDR (XCDR1), driven by a parsed `ros2msg` schema.
 //
-// A payload starts with four bytes that tell the byte order; every number is aligned to its own
-// size counted from behind them. A type without fields carries one byte, as ROS 2 sends it.
+// A payload starts with four bytes that give the byte order; every number is aligned to its own
+// size, counted from the end of this header. A type without fields occupies one byte, as in ROS 2.
 
 /** @typedef {import("./ros2msg.js").Definition} Definition */
 /** @typedef {import("./ros2msg.js").Field} Field */
@@ -25,7 +25,7 @@ export class CdrError extends Error {
   }
 }
 
-/** One row per primitive: its size, and how a DataView reads and writes it. */
+/** One row per primitive type: its size, and how a DataView reads and writes it. */
 const PRIMITIVES = /** @type {Record<string, Primitive>} */ ({
   bool: {
     size: 1,
@@ -76,7 +76,7 @@ const PRIMITIVES = /** @type {Record<string, Primitive>} */ ({
 });
 
 /**
- * Read one message; throws `CdrError` for bytes that are too short or of another representation.
+ * Decode a message. Throws `CdrError` if bytes are missing or the representation is not supported.
  *
  * @param {Definition} definition
  * @param {DataView} payload
@@ -91,7 +91,7 @@ export function decode(definition, payload) {
 }
 
 /**
- * Write one message in little-endian CDR; missing fields are zero, empty or false.
+ * Encode a message in little-endian CDR; missing fields are zero, empty or false.
  *
  * @param {Definition} definition
  * @param {Record<string, any>} value
@@ -112,7 +112,7 @@ class Reader {
   }
 
   /**
-   * The start of the next value of `size` bytes, of which `count` must be there.
+   * The aligned offset of the next value of `size` bytes, after checking that `count` bytes are available.
    *
    * @param {number} size
    * @param {number} count
@@ -232,7 +232,7 @@ class Writer {
       return;
     }
     const { size, write, zero } = PRIMITIVES[type];
-    const start = this.claim(size); // before `this.view` is read: it may grow
+    const start = this.claim(size); // before `this.view` is read: the buffer may grow
     write(this.view, start, value ?? zero);
   }
 

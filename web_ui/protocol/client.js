@@ -1,5 +1,5 @@
-// The socket around a `Session`: connects, tries again every second, and says so. A server that wants another token is
-// not asked again.
+// The WebSocket of a `Session`: connects, and reconnects every second. If the server requires another token,
+// it stops reconnecting.
 
 import { Session, SUBPROTOCOLS } from "./session.js";
 
@@ -13,14 +13,14 @@ import { Session, SUBPROTOCOLS } from "./session.js";
 
 const RETRY_MS = 1000;
 
-/** Close code of a server that wants a token, or another one. */
+/** Close code of a server that requires a token, or another one. */
 export const WRONG_TOKEN = 4401;
 
 export class Client {
   /**
    * @param {object} options
    * @param {string} options.address                 ws://host:port
-   * @param {string} [options.token]                 for the server; "" is none
+   * @param {string} [options.token]                 access token; "" is none
    * @param {(event: ClientEvent) => void} options.emit
    * @param {(topic: string) => boolean} options.wants
    * @param {string[]} options.parameters
@@ -34,7 +34,7 @@ export class Client {
     /** @type {Session | null} */ this.session = null;
   }
 
-  /** Connect, and stay connected for as long as the page lives. */
+  /** Connect, and keep connecting for as long as the page is open. */
   start() {
     this.emit({ type: "connecting", address: this.address });
     const query = this.token === "" ? "" : `/?token=${encodeURIComponent(this.token)}`;
@@ -59,7 +59,7 @@ export class Client {
     });
   }
 
-  /** `wants` has another opinion now. */
+  /** Call when `wants` may return other results. */
   refresh() {
     this.session?.refresh();
   }

@@ -1,5 +1,5 @@
 // Binary frames of the Foxglove WebSocket protocol ↔ values (docs/spec/foxglove.md section 2).
-// All numbers are little endian; the first byte tells the kind.
+// All numbers are little-endian; the first byte is the opcode.
 
 /**
  * @typedef {{ op: "message", subscriptionId: number, timeNs: bigint, payload: DataView }

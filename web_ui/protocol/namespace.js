@@ -1,9 +1,9 @@
-// The namespace of the suite: the page uses names as if there were none, the wire has the whole names.
+// The namespace of the suite: the page uses names without it, the connection uses full names.
 
 /** Topics that have the same name in every namespace (docs/ros.md). */
 const GLOBAL = new Set(["/clock", "/diagnostics", "/parameter_events", "/rosout", "/tf", "/tf_static"]);
 
-/** Every simulator publishes this topic; what comes before it is the namespace of its suite. */
+/** Every simulator publishes this topic; its prefix is the namespace of the suite. */
 const SIMULATOR = "/simulator/_state";
 
 export class Namespace {
@@ -12,16 +12,16 @@ export class Namespace {
     /** @type {string} */ this.preferred = "";
   }
 
-  /** The namespace of the bridge: the simulator of the page is there, or deeper. @param {string} name */
+  /** The namespace of the bridge; the simulator of the page is in it or below it. @param {string} name */
   prefer(name) {
     this.preferred = name.replace(/\/+$/, "");
     this.prefix = this.preferred;
   }
 
   /**
-   * Follow the simulator; whether the namespace is another one now.
+   * Find the simulator among the topics; returns whether the namespace has changed.
    *
-   * @param {Iterable<string>} topics  all that are offered
+   * @param {Iterable<string>} topics  all advertised topics
    */
   choose(topics) {
     const found = [...topics]
@@ -35,7 +35,7 @@ export class Namespace {
   }
 
   /**
-   * The page's name of a topic, service or parameter; null for what belongs to another suite.
+   * The page's name of a topic, service or parameter; null if it belongs to another suite.
    *
    * @param {string} name
    */
@@ -44,7 +44,7 @@ export class Namespace {
     return name.startsWith(`${this.prefix}/`) ? name.slice(this.prefix.length) : null;
   }
 
-  /** The whole name of what the page calls so. @param {string} name */
+  /** The full name for a name of the page. @param {string} name */
   outer(name) {
     return GLOBAL.has(name) ? name : this.prefix + name;
   }

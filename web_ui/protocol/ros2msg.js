@@ -1,21 +1,21 @@
-// Reads `ros2msg` schema text, as a Foxglove channel advertises it, into a definition that
-// `cdr.js` can follow: the message's own fields first, then one part per type it depends on,
+// Parses `ros2msg` schema text, as a Foxglove channel advertises it, into a definition for `cdr.js`:
+// the message's own fields first, then one section per type it depends on,
 // separated by a line of "=" and a line `MSG: package/Type`.
 
 /**
  * @typedef {object} Field
  * @property {string} name
  * @property {string} type        primitive name, or a key of `Definition.types`
- * @property {boolean} complex    true when `type` names another message
+ * @property {boolean} complex    true if `type` names another message
  * @property {boolean} isArray
  * @property {number | null} size fixed length of an array; null for a sequence or a single value
  *
  * @typedef {object} Definition
  * @property {Field[]} fields
- * @property {Map<string, Field[]>} types  fields of the types depended on, by "package/Type"
+ * @property {Map<string, Field[]>} types  fields of the dependencies, by "package/Type"
  */
 
-/** Primitive types and the names they have in older definitions. */
+/** Primitive types and their names in older definitions. */
 const PRIMITIVES = new Map([
   ["bool", "bool"],
   ["byte", "uint8"],
@@ -101,7 +101,7 @@ function parseFields(text, packageName) {
     const match = FIELD.exec(line);
     if (match === null) throw new SchemaError(`${packageName}: not a field: ${JSON.stringify(line)}`);
     const [, type, array, size, name, rest] = match;
-    if (/^\s*=/.test(rest)) continue; // a constant takes no room in a message
+    if (/^\s*=/.test(rest)) continue; // constants are not part of the encoded message
     const primitive = PRIMITIVES.get(type);
     const bounded = array !== undefined && array.startsWith("[<=");
     fields.push({

@@ -1,6 +1,6 @@
-// One connection of the Foxglove protocol without a socket: what comes in becomes events, what
-// must go out is handed to `send`. `client.js` gives it a WebSocket, a test gives it a list. Names of topics, services
-// and parameters are those of a suite without a namespace; `namespace.js` makes the whole names of them.
+// One connection of the Foxglove protocol without I/O: received frames become events, outgoing frames
+// are passed to `send`. `client.js` connects it to a WebSocket, tests to a list. Topics, services and parameters have
+// their names without namespace; `namespace.js` converts them to full names.
 
 import { decode, encode } from "./cdr.js";
 import { messageFrame, parseFrame, serviceRequestFrame } from "./frames.js";
@@ -28,12 +28,12 @@ import { parseSchema } from "./ros2msg.js";
 
 /** @typedef {{ ok: boolean, value: any, message: string }} ParameterAnswer */
 /**
- * `value` is the whole answer; `ok` and `message` are its own where it has such fields, else true and "".
+ * `value` is the whole answer; `ok` and `message` are its fields of that name if it has them, else true and "".
  *
  * @typedef {{ ok: boolean, message: string, value?: any }} ServiceAnswer
  */
 
-/** The names under which the same wire format is offered; the order is ours, the server chooses. */
+/** The names of the subprotocol in order of preference; the server chooses. */
 export const SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
 
 export const STATUS_ERROR = 2;
@@ -55,7 +55,7 @@ function multiArray(element) {
   ].join("\n");
 }
 
-/** Definitions of what the page publishes; a server that knows the topic advertises the same. */
+/** Definitions of published messages; a server that knows the topic advertises the same. */
 const OWN_SCHEMAS = /** @type {Record<string, string>} */ ({
   "std_msgs/msg/Bool": "bool data",
   "std_msgs/msg/Empty": "",
@@ -80,7 +80,7 @@ export class Session {
    * @param {object} options
    * @param {(data: string | Uint8Array) => void} options.send
    * @param {(event: SessionEvent) => void} options.emit
-   * @param {(topic: string) => boolean} options.wants  tells which topics to subscribe to
+   * @param {(topic: string) => boolean} options.wants  whether to subscribe to a topic
    * @param {string[]} [options.parameters]             parameters to watch
    */
   constructor({ send, emit, wants, parameters = [] }) {
@@ -93,17 +93,17 @@ export class Session {
     /** @type {Map<number, { channel: Channel, topic: string, definition: Definition }>} */ this.subscriptions = new Map();
     /** @type {Map<string, Service>} */ this.services = new Map();
     /** @type {Map<string, { id: number, definition: Definition }>} */ this.published = new Map();
-    /** @type {Map<number, { service: Service, settle: (answer: ServiceAnswer) => void }>} */ this.calls = new Map();
+    /** @type {Map<number, { service: Service, resolve: (answer: ServiceAnswer) => void }>} */ this.calls = new Map();
     /**
-     * @type {Map<string, { name: string, refusal: string | null, settle: (answer: ParameterAnswer) => void }>}
+     * @type {Map<string, { name: string, refusal: string | null, resolve: (answer: ParameterAnswer) => void }>}
      */
     this.requests = new Map();
     this.nextId = 1;
-    /** Whether the server lets this client watch only. */
+    /** Whether the server restricts this client to read-only access. */
     this.readOnly = false;
   }
 
-  /** Take one frame from the server: a string or a buffer. @param {string | ArrayBuffer} data */
+  /** Process one frame of the server: text or binary. @param {string | ArrayBuffer} data */
   receive(data) {
     try {
       if (typeof data === "string") this.#receiveText(JSON.parse(data));
@@ -114,7 +114,7 @@ export class Session {
   }
 
   /**
-   * Publish a message; the channel is advertised on first use. Does nothing where the client may only watch.
+   * Publish a message; the channel is advertised on first use. Does nothing on a read-only connection.
    *
    * @param {string} topic
    * @param {string} schemaName
@@ -151,8 +151,8 @@ export class Session {
     try {
       const definition = parseSchema(service.request.schemaName, service.request.schema);
       const frame = serviceRequestFrame(service.id, callId, "cdr", encode(definition, request));
-      return new Promise((settle) => {
-        this.calls.set(callId, { service, settle });
+      return new Promise((resolve) => {
+        this.calls.set(callId, { service, resolve });
         this.send(frame);
       });
     } catch (error) {
@@ -161,27 +161,27 @@ export class Session {
   }
 
   /**
-   * Set parameters. A refusal is an error status named `parameter:<name>` before the answer; the
-   * answer is about the last one of the list.
+   * Set parameters. A rejection arrives as an error status named `parameter:<name>` before the answer; the
+   * result is about the last parameter of the list.
    *
    * @param {Parameter[]} parameters
    * @returns {Promise<ParameterAnswer>}
    */
   setParameters(parameters) {
     const id = `set-${this.nextId++}`;
-    return new Promise((settle) => {
+    return new Promise((resolve) => {
       const { name } = parameters[parameters.length - 1];
-      this.requests.set(id, { name, refusal: null, settle });
+      this.requests.set(id, { name, refusal: null, resolve });
       const named = parameters.map((parameter) => ({ ...parameter, name: this.names.outer(parameter.name) }));
       this.#sendJson({ op: "setParameters", parameters: named, id });
     });
   }
 
-  /** The connection is gone: nothing pending will be answered. */
+  /** The connection has ended: pending requests fail. */
   close() {
-    for (const { settle } of this.calls.values()) settle({ ok: false, message: "connection lost" });
-    for (const { settle } of this.requests.values())
-      settle({ ok: false, value: undefined, message: "connection lost" });
+    for (const { resolve } of this.calls.values()) resolve({ ok: false, message: "connection lost" });
+    for (const { resolve } of this.requests.values())
+      resolve({ ok: false, value: undefined, message: "connection lost" });
     this.calls.clear();
     this.requests.clear();
   }
@@ -198,7 +198,7 @@ export class Session {
     if (frame.op === "time") this.emit({ type: "time", timeNs: frame.timeNs });
     else if (frame.op === "message") {
       const subscription = this.subscriptions.get(frame.subscriptionId);
-      if (subscription === undefined) return; // still on its way when we unsubscribed
+      if (subscription === undefined) return; // was still in transit when we unsubscribed
       const value = decode(subscription.definition, frame.payload);
       this.emit({ type: "message", topic: subscription.topic, value, timeNs: frame.timeNs });
     } else if (frame.op === "serviceResponse") {
@@ -208,9 +208,9 @@ export class Session {
       const { schemaName, schema } = call.service.response;
       try {
         const value = decode(parseSchema(schemaName, schema), frame.payload);
-        call.settle({ ok: value.success ?? true, message: value.message ?? "", value });
+        call.resolve({ ok: value.success ?? true, message: value.message ?? "", value });
       } catch (error) {
-        call.settle({ ok: false, message: "an answer that cannot be read" });
+        call.resolve({ ok: false, message: "the answer cannot be decoded" });
         throw error;
       }
     }
@@ -224,7 +224,7 @@ export class Session {
     this.#emitChannels();
   }
 
-  /** The suite is in another namespace than was thought: all names are others. */
+  /** The namespace has changed: all names are different. */
   #rename() {
     const subscriptionIds = [...this.subscriptions.keys()];
     if (subscriptionIds.length > 0) this.#sendJson({ op: "unsubscribe", subscriptionIds });
@@ -235,7 +235,7 @@ export class Session {
     this.watchParameters();
   }
 
-  /** `wants` has another opinion now: subscribe to what it newly wants, let go of what it does not. */
+  /** Call when `wants` may return other results: updates the subscriptions. */
   refresh() {
     const unwanted = [...this.subscriptions].filter(([, { topic }]) => !this.wants(topic)).map(([id]) => id);
     for (const id of unwanted) this.subscriptions.delete(id);
@@ -244,7 +244,7 @@ export class Session {
     this.#subscribe([...this.channels.values()].filter(({ id }) => !held.has(id)));
   }
 
-  /** Subscribe to those of these channels that are wanted. @param {Channel[]} channels */
+  /** Subscribe to the wanted channels among these. @param {Channel[]} channels */
   #subscribe(channels) {
     const subscriptions = [];
     for (const channel of channels) {
@@ -268,7 +268,7 @@ export class Session {
     this.#emitChannels();
   }
 
-  /** Ask for the watched parameters and for news of them. */
+  /** Request the watched parameters, and subscribe to their changes. */
   watchParameters() {
     if (this.watched.length === 0) return;
     const parameterNames = this.watched.map((name) => this.names.outer(name));
@@ -276,7 +276,7 @@ export class Session {
     this.#sendJson({ op: "getParameters", parameterNames, id: "watched" });
   }
 
-  /** A schema that cannot be read costs its channel only. @param {Channel} channel */
+  /** Store a channel. An invalid schema disables only its own channel. @param {Channel} channel */
   #definitionOf({ topic, schemaName, schema }) {
     try {
       return parseSchema(schemaName, schema);
@@ -306,7 +306,7 @@ export class Session {
   }
 }
 
-/** What to do with each JSON message of the server; unknown ones are passed over. */
+/** Handlers of the server's JSON messages; unknown ones are ignored. */
 const TEXT_HANDLERS = /** @type {Record<string, (session: Session, message: any) => void>} */ ({
   serverInfo(session, { name, sessionId = "", capabilities = [], metadata = {} }) {
     session.names.prefer(metadata.namespace ?? "");
@@ -326,8 +326,8 @@ const TEXT_HANDLERS = /** @type {Record<string, (session: Session, message: any)
     }
     session.emitServices();
   },
-  parameterValues(session, { parameters: told, id }) {
-    const parameters = told.flatMap((/** @type {Parameter} */ parameter) => {
+  parameterValues(session, { parameters: reported, id }) {
+    const parameters = reported.flatMap((/** @type {Parameter} */ parameter) => {
       const name = session.names.inner(parameter.name);
       return name === null ? [] : [{ ...parameter, name }];
     });
@@ -336,10 +336,10 @@ const TEXT_HANDLERS = /** @type {Record<string, (session: Session, message: any)
     if (request === undefined) return;
     session.requests.delete(id);
     const value = parameters.find((/** @type {Parameter} */ parameter) => parameter.name === request.name)?.value;
-    request.settle({ ok: request.refusal === null, value, message: request.refusal ?? "" });
+    request.resolve({ ok: request.refusal === null, value, message: request.refusal ?? "" });
   },
-  status(session, { level, message: told, id }) {
-    const message = session.names.inner(told) ?? told; // it may begin with the name of a parameter
+  status(session, { level, message: reported, id }) {
+    const message = session.names.inner(reported) ?? reported; // it may start with the name of a parameter
     session.emit({ type: "status", status: id === undefined ? { level, message } : { level, message, id } });
     if (level < STATUS_ERROR) return;
     for (const request of session.requests.values()) {
@@ -348,7 +348,7 @@ const TEXT_HANDLERS = /** @type {Record<string, (session: Session, message: any)
   },
   removeStatus: (session, { statusIds }) => session.emit({ type: "removeStatus", ids: statusIds }),
   serviceCallFailure(session, { callId, message }) {
-    session.calls.get(callId)?.settle({ ok: false, message });
+    session.calls.get(callId)?.resolve({ ok: false, message });
     session.calls.delete(callId);
   },
 });

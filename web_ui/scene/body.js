@@ -1,4 +1,4 @@
-// The shell: outline of the real robot (flat back, round front), wheel arches, pen hole, LEGO studs.
+// The shell of the robot: outline (flat back, round front), wheel arches, pen hole, LEGO studs.
 
 import * as THREE from "three";
 
@@ -20,14 +20,14 @@ const LOWER = 0xe7ebef;
 const DARK = 0x2b333c;
 const TYRE = 0x343b44;
 
-/** @typedef {import("./fleet.js").Look} Look */
+/** @typedef {import("./robot_instances.js").Look} Look */
 
-const TINT = 0.72; // share of the top light's colour in the shell when it is full
-const SHINE = 0.12; // how much brighter the shell is then
+const TINT = 0.72; // share of the top light's color in the shell at full brightness
+const SHINE = 0.12; // increase of brightness at full light
 const SHELL = new THREE.Color(WHITE);
 const HERE = new THREE.Matrix4();
 
-/** @param {import("./fleet.js").Room} room */
+/** @param {import("./robot_instances.js").Capacity} room */
 export function createBody({ robots }) {
   const counts = { each: 1, robots };
   const hole = new THREE.CircleGeometry(0.0062, 24).translate(0, 0, HEIGHT_M + 0.0003);
@@ -44,19 +44,23 @@ export function createBody({ robots }) {
   ]);
   const base = new Instances(lower, new THREE.MeshLambertMaterial({ vertexColors: true }), counts);
   const shell = new Instances(upper, new THREE.MeshLambertMaterial(), counts);
-  const colour = new THREE.Color();
+  const color = new THREE.Color();
   return {
     parts: [base, shell],
     /** @param {number} slot @param {Look} look */
     show(slot, { robot }) {
       base.put(slot, 0, HERE);
       shell.put(slot, 0, HERE);
-      shell.tint(slot, 0, shellColour(colour, robot));
+      shell.tint(slot, 0, shellColor(color, robot));
     },
   };
 }
 
-/** A robot that is small on the screen: body and wheels in one piece. @param {import("./fleet.js").Room} room */
+/**
+ * A robot that is small on the screen: body and wheels in one piece.
+ *
+ * @param {import("./robot_instances.js").Capacity} room
+ */
 export function createFarBody({ robots }) {
   const wheel = () => new THREE.CylinderGeometry(WHEEL.radius, WHEEL.radius, WHEEL.width, 8);
   const shape = merged([
@@ -66,25 +70,30 @@ export function createFarBody({ robots }) {
     [wheel().translate(0, -WHEEL.track / 2, WHEEL.radius), TYRE],
   ]);
   const body = new Instances(shape, new THREE.MeshLambertMaterial({ vertexColors: true }), { each: 1, robots });
-  const colour = new THREE.Color();
+  const color = new THREE.Color();
   return {
     parts: [body],
     /** @param {number} slot @param {Look} look */
     show(slot, { robot }) {
       body.put(slot, 0, HERE);
-      body.tint(slot, 0, shellColour(colour, robot));
+      body.tint(slot, 0, shellColor(color, robot));
     },
   };
 }
 
-/** The top light shines through the shell. @param {THREE.Color} colour  is set @param {import("../state/robot.js").Robot} robot */
-function shellColour(colour, { leds: { top } }) {
-  glow(colour, SHELL, top, TINT);
-  return colour.multiplyScalar(1 + SHINE * Math.max(0, ...(top ?? [])));
+/**
+ * The color of the shell with the top light shining through it.
+ *
+ * @param {THREE.Color} color  is set
+ * @param {import("../state/robot.js").Robot} robot
+ */
+function shellColor(color, { leds: { top } }) {
+  glow(color, SHELL, top, TINT);
+  return color.multiplyScalar(1 + SHINE * Math.max(0, ...(top ?? [])));
 }
 
 /**
- * The body seen from above; with notches where the wheels are.
+ * The outline seen from above, with notches for the wheels.
  *
  * @param {boolean} arches
  * @param {number} inset
@@ -126,7 +135,7 @@ function notch(shape, outer, inner, from, to) {
  * @param {THREE.Shape} shape
  * @param {number} bottom
  * @param {number} top
- * @param {{ bevel?: number, corners?: number }} [how]  metres; corners of a round edge
+ * @param {{ bevel?: number, corners?: number }} [how]  meters; corners of a round edge
  */
 function extruded(shape, bottom, top, { bevel = 0, corners = 10 } = {}) {
   const geometry = new THREE.ExtrudeGeometry(shape, {

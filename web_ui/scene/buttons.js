@@ -1,24 +1,24 @@
-// The five buttons on the robot's top: they light up under the pointer and sink when pressed.
-// An invisible, larger disc around each is what pointer and finger hit.
+// The five buttons on top of the robot: highlighted under the pointer, lowered when pressed.
+// The hit target of each is a larger, invisible disc.
 
 import * as THREE from "three";
 
 import { Instances, placeOf } from "./instances.js";
 import { BUTTON_PLACES } from "./parts.js";
 
-/** @typedef {import("./fleet.js").Look} Look */
+/** @typedef {import("./robot_instances.js").Look} Look */
 
 const TOUCH_RADIUS_M = 0.0078;
 const RAISED_M = 0.0014;
-const COLOURS = {
+const COLORS = {
   idle: new THREE.Color(0x8794a3),
   hover: new THREE.Color(0x1769d1),
   pressed: new THREE.Color(0x0b2f66),
 };
-/** Degrees from ahead; the centre has none. */
+/** Direction in degrees from straight ahead; the center button has none. */
 const HEADINGS = /** @type {Record<string, number>} */ ({ forward: 0, left: 90, backward: 180, right: -90 });
 
-/** @param {import("./fleet.js").Room} room */
+/** @param {import("./robot_instances.js").Capacity} room */
 export function createButtons({ robots }) {
   const round = new THREE.CylinderGeometry(0.0044, 0.0044, RAISED_M, 22).rotateX(Math.PI / 2);
   const arrow = new THREE.ExtrudeGeometry(
@@ -38,7 +38,7 @@ export function createButtons({ robots }) {
     const { x, y, z } = BUTTON_PLACES[name];
     const angle = ((HEADINGS[name] ?? 0) * Math.PI) / 180;
     part.put(slot, index, placeOf({ x, y, z: z + (pressed ? 0.0001 : RAISED_M / 2) }, { angle }));
-    part.tint(slot, index, COLOURS[pressed ? "pressed" : name === hovered ? "hover" : "idle"]);
+    part.tint(slot, index, COLORS[pressed ? "pressed" : name === hovered ? "hover" : "idle"]);
   };
   return {
     parts: [rounds, arrows],
@@ -51,7 +51,7 @@ export function createButtons({ robots }) {
   };
 }
 
-/** What pointers hit, in the robot's frame. @param {string} robot */
+/** The hit targets, in the robot's frame. @param {string} robot */
 export function createTargets(robot) {
   const geometry = new THREE.CircleGeometry(TOUCH_RADIUS_M, 16);
   const material = new THREE.MeshBasicMaterial({ visible: false });

@@ -1,4 +1,4 @@
-// The camera: orbit, pan and zoom by mouse, touch and keys; four ways to look; z is up.
+// The camera: orbit, pan and zoom by mouse, touch and keys; four views; z is up.
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -10,28 +10,28 @@ import { fit } from "./fit.js";
 export const VIEWS = /** @type {readonly ViewName[]} */ (["home", "top", "follow", "eye"]);
 
 const FOLLOW = { back: 0.42, up: 0.3 };
-/** The robot's own view: from its nose, over the front sensors. */
+/** The robot's view: from its front, above the front sensors. */
 const EYE = { ahead: 0.083, up: 0.045 };
 const TURN_STEP = Math.PI / 24;
 const ZOOM_STEP = 1.15;
 
 export class Camera {
-  /** @param {HTMLElement} element  where the pointer works @param {() => void} changed */
+  /** @param {HTMLElement} element  element that gets pointer events @param {() => void} changed */
   constructor(element, changed) {
     this.camera = new THREE.PerspectiveCamera(42, 1, 0.02, 30);
     this.camera.up.set(0, 0, 1);
     this.camera.position.set(-1, -0.8, 0.9);
     this.controls = new OrbitControls(this.camera, element);
-    this.controls.maxPolarAngle = Math.PI / 2 - 0.03; // never below ground
+    this.controls.maxPolarAngle = Math.PI / 2 - 0.03; // never below the ground
     this.controls.minDistance = 0.12;
     this.controls.maxDistance = 12;
     this.controls.addEventListener("change", changed);
     this.controls.addEventListener("start", () => (this.touched = true));
     this.changed = changed;
     /** @type {ViewName} */ this.view = "home";
-    /** Whether the person has moved the camera since the view was chosen. */
+    /** Whether the user has moved the camera since the view was chosen. */
     this.touched = false;
-    /** @type {THREE.Vector3[]} what the overview takes in */
+    /** @type {THREE.Vector3[]} corners that the overview shows */
     this.corners = [new THREE.Vector3(-0.5, -0.5, 0), new THREE.Vector3(0.5, 0.5, 0)];
     this.target = new THREE.Vector3();
     this.size = { width: 1, height: 1 };
@@ -45,22 +45,22 @@ export class Camera {
     if (this.inset === 0) this.camera.clearViewOffset();
     else this.camera.setViewOffset(width, height, -this.inset / 2, 0, width, height);
     this.camera.updateProjectionMatrix();
-    if (!this.touched && !this.goesAlong) this.look(this.view);
+    if (!this.touched && !this.goesAlong) this.setView(this.view);
   }
 
-  /** So many pixels at the left are covered by something: worlds are fitted beside it. @param {number} inset */
+  /** Number of pixels that are covered at the left; worlds are fitted into the rest. @param {number} inset */
   setInset(inset) {
     this.inset = inset;
     this.resize(this.size.width, this.size.height);
   }
 
-  /** Whether the view goes along with a robot. */
+  /** Whether the view follows a robot. */
   get goesAlong() {
     return this.view === "follow" || this.view === "eye";
   }
 
   /**
-   * A new world to fit in.
+   * Set the bounds of a new world.
    *
    * @param {THREE.Vector3[]} corners
    * @param {boolean} [held]  whether the camera stays where it is
@@ -68,16 +68,16 @@ export class Camera {
   frame(corners, held = false) {
     if (corners.length === 0) return;
     this.corners = corners;
-    if (!held && !this.goesAlong) this.look(this.view);
+    if (!held && !this.goesAlong) this.setView(this.view);
   }
 
   /**
-   * Choose a view, from its start.
+   * Choose a view and move to its start position.
    *
    * @param {ViewName} view
    * @param {{ x: number, y: number, yaw: number } | null} [robot]
    */
-  look(view, robot = null) {
+  setView(view, robot = null) {
     this.view = view;
     this.touched = false;
     this.controls.enabled = view !== "eye";
@@ -95,7 +95,7 @@ export class Camera {
       );
       return;
     }
-    // Seen from straight above there is no "up"; a hair beside it, x points to the right.
+    // Straight from above, "up" is undefined; a tiny offset makes x point to the right.
     const from = (view === "top" ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.22, -0.85, 0.85)).normalize();
     const { width, height } = this.size;
     const shown = { fov: this.camera.fov, aspect: Math.max(0.2, (width - this.inset) / height) };
@@ -104,7 +104,7 @@ export class Camera {
   }
 
   /**
-   * Keep up with the robot: in the view "follow" the person may still orbit, in "eye" it looks where the robot does.
+   * Follow the robot: in the view "follow" the user may still orbit, in "eye" the camera has the robot's heading.
    *
    * @param {{ x: number, y: number, yaw: number }} robot
    */
@@ -138,7 +138,7 @@ export class Camera {
     this.#moveTo(offset);
   }
 
-  /** @param {number} steps  positive: nearer */
+  /** @param {number} steps  positive: closer */
   zoom(steps) {
     if (this.view === "eye") return;
     const offset = this.camera.position.clone().sub(this.controls.target);

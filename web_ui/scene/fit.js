@@ -1,14 +1,14 @@
-// Where a camera stands so that all corners just fit its picture.
+// Positions a camera so that all corners just fit into its image.
 
 import * as THREE from "three";
 
 const MARGIN = 1.05;
 
 /**
- * Where to look and how far to stand along `from`: each side of the picture is a plane through the camera, pushed out
- * to the corner that is farthest.
+ * The target and the distance along `from`. Each side of the image is a plane through the camera; it is moved outward
+ * to the farthest corner, and the planes then determine the position.
  *
- * @param {{ fov: number, aspect: number }} camera  degrees upwards, width by height
+ * @param {{ fov: number, aspect: number }} camera  vertical field of view in degrees, width by height
  * @param {THREE.Vector3[]} corners
  * @param {THREE.Vector3} from  unit vector from the target to the camera
  */

@@ -1,10 +1,10 @@
-// The view from above in two dimensions, for browsers without WebGL, for a picture that was lost for good, and for slow
-// machines. Its camera is one of the 3D view's kind, so that pointers, labels and ghosts work the same.
+// The 2D view from above: for browsers without WebGL, after a lost WebGL context, and for slow machines. It uses a
+// camera like the 3D view, so that pointers, labels and ghosts work the same way.
 
 import * as THREE from "three";
 
 import { hasPicture, MARKER } from "../state/markers.js";
-import { placed, ROBOT_OUTLINE } from "../move/things.js";
+import { placed, ROBOT_OUTLINE } from "../move/placed_bodies.js";
 import { poseAt } from "./motion.js";
 import { BUTTON_PLACES, LIGHTS, PROXIMITY_PLACES } from "./parts.js";
 import { MAX_RANGE_M } from "./rays.js";
@@ -15,12 +15,12 @@ import { drawSketch } from "./sketch.js";
 /** @typedef {import("../state/robot.js").Robot} Robot */
 
 const MARGIN = 1.06;
-const FOLLOW_M = 0.9; // height of the picture while it follows a robot
+const FOLLOW_M = 0.9; // height of the visible area while following a robot
 const ABOVE_M = 5;
 const HALF_BEAM = 0.15; // rad
 
 export class FlatView {
-  /** @param {HTMLCanvasElement} canvas  that lies over the 3D one */
+  /** @param {HTMLCanvasElement} canvas  canvas over the 3D canvas */
   constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext("2d");
@@ -29,12 +29,12 @@ export class FlatView {
     this.zoom = 1;
     /** Pixels per CSS pixel. */
     this.pixelRatio = 1;
-    /** @type {Map<Marker, ImageBitmap | null>} pictures on the ground; null while they are decoded */
+    /** @type {Map<Marker, ImageBitmap | null>} images on the ground; null while they are decoded */
     this.pictures = new Map();
   }
 
   /**
-   * Let the whole world, or the surroundings of a robot, fill the picture.
+   * Show the whole world, or the area around a robot.
    *
    * @param {THREE.Vector3[]} corners
    * @param {{ x: number, y: number } | null} followed
@@ -58,13 +58,13 @@ export class FlatView {
    * @param {State} state
    * @param {object} options
    * @param {number} options.nowMs
-   * @param {(name: string) => boolean} options.senses  whether beams are drawn
-   * @param {import("../move/mover.js").Held | null} options.held
+   * @param {(name: string) => boolean} options.senses  whether the beams of a robot are drawn
+   * @param {import("../move/drag_controller.js").Held | null} options.held
    * @param {import("../creator/sketch.js").Sketch | null} options.sketch
-   * @param {(name: string) => string} options.colour
-   * @param {() => void} options.changed   called when a picture has arrived
+   * @param {(name: string) => string} options.color
+   * @param {() => void} options.changed   called when an image has been decoded
    */
-  draw(state, { nowMs, senses, held, sketch, colour, changed }) {
+  draw(state, { nowMs, senses, held, sketch, color, changed }) {
     const { context, canvas, camera } = this;
     if (context === null) return;
     Object.assign(canvas, this.#size);
@@ -72,7 +72,7 @@ export class FlatView {
     context.fillRect(0, 0, canvas.width, canvas.height);
     const scale = canvas.height / (camera.top - camera.bottom);
     const { x, y } = camera.position;
-    // Metres, y up.
+    // From here on in meters, y up.
     context.setTransform(scale, 0, 0, -scale, canvas.width / 2 - x * scale, canvas.height / 2 + y * scale);
     const lowFirst = [...state.markers.values(), ...state.objects.values()].sort((a, b) => top(a) - top(b));
     for (const marker of lowFirst) this.#marker(context, marker, changed);
@@ -85,18 +85,18 @@ export class FlatView {
       context.save();
       context.translate(pose.x, pose.y);
       context.rotate(pose.yaw);
-      drawRobot(context, robot, senses(name), colour(name));
+      drawRobot(context, robot, senses(name), color(name));
       context.restore();
     }
     if (held !== null) {
       context.fillStyle = held.blocker === null ? "rgb(23 105 209 / 50%)" : "rgb(209 26 26 / 60%)";
-      for (const polygon of placed(held.thing.outline, held.pose)) fill(context, polygon);
+      for (const polygon of placed(held.body.outline, held.pose)) fill(context, polygon);
     }
     if (sketch !== null) drawSketch(context, sketch, this.pixelRatio / scale);
     context.setTransform(1, 0, 0, 1, 0, 0);
   }
 
-  /** As it is shown on the page; as it was made, if it is not. */
+  /** The displayed size of the canvas in pixels; its own size if it is not displayed. */
   get #size() {
     const { clientWidth, clientHeight, width, height } = this.canvas;
     if (clientWidth === 0) return { width, height };
@@ -157,7 +157,7 @@ export class FlatView {
         this.pictures.set(marker, bitmap);
         changed();
       },
-      () => {}, // it stays the mosaic of its triangles
+      () => {}, // drawn as the mosaic of its triangles
     );
     return null;
   }
@@ -168,8 +168,8 @@ function top({ pose, scale, type }) {
   return pose.position.z + (type === MARKER.TRIANGLE_LIST ? 0 : scale.z / 2);
 }
 
-/** @param {CanvasRenderingContext2D} context @param {Robot} robot @param {boolean} sensors @param {string} colour */
-function drawRobot(context, robot, sensors, colour) {
+/** @param {CanvasRenderingContext2D} context @param {Robot} robot @param {boolean} sensors @param {string} color */
+function drawRobot(context, robot, sensors, color) {
   if (sensors) {
     for (const [name, { x, y, yaw }] of Object.entries(PROXIMITY_PLACES)) {
       const range = robot.proximity[name];
@@ -188,7 +188,7 @@ function drawRobot(context, robot, sensors, colour) {
   const most = Math.max(...lit);
   const [r, g, b] = lit.map((level) => 247 + (most > 0 ? most * (255 * (level / most) - 247) : 0));
   context.fillStyle = `rgb(${r} ${g} ${b})`;
-  context.strokeStyle = colour;
+  context.strokeStyle = color;
   context.lineWidth = 0.004;
   fill(context, outline);
   context.stroke();
@@ -198,7 +198,7 @@ function drawRobot(context, robot, sensors, colour) {
     context.fillStyle = robot.buttons[name] ? "#0b2f66" : "#66758a";
     disc(context, x, y, 0.005);
   }
-  for (const { group, index, place, colour: full, normal } of LIGHTS) {
+  for (const { group, index, place, color: full, normal } of LIGHTS) {
     const level = robot.leds[group]?.[index] ?? 0;
     if (level === 0) continue;
     context.fillStyle = `#${full.toString(16).padStart(6, "0")}`;
@@ -223,7 +223,7 @@ function disc(context, x, y, radius) {
   context.fill();
 }
 
-/** @param {import("../state/markers.js").Colour} colour */
+/** @param {import("../state/markers.js").Color} color */
 function css({ r, g, b, a }) {
   return `rgb(${r * 255} ${g * 255} ${b * 255} / ${a})`;
 }

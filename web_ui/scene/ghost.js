@@ -1,11 +1,11 @@
-// What a hand carries: half-transparent where it would stand, red where the place is taken; a ring turns it.
+// The ghost of a dragged body: translucent, red if the position is occupied; with a ring for turning.
 
 import * as THREE from "three";
 
-import { RING } from "../move/mover.js";
-import { reach } from "../move/things.js";
+import { RING } from "../move/drag_controller.js";
+import { reach } from "../move/placed_bodies.js";
 
-/** @typedef {import("../move/mover.js").Held} Held */
+/** @typedef {import("../move/drag_controller.js").Held} Held */
 
 const FREE = 0x1769d1;
 const TAKEN = 0xd11a1a;
@@ -20,12 +20,12 @@ export class Ghost {
     /** @type {string | null} */ this.shown = null;
   }
 
-  /** @param {Held | null} held @param {boolean} ring  whether it can be turned by a ring */
+  /** @param {Held | null} held @param {boolean} ring  whether the ring is shown */
   update(held, ring) {
     this.group.visible = held !== null;
     if (held === null) return;
-    const { thing, pose, blocker } = held;
-    const key = `${thing.name} ${ring} ${thing.outline.length} ${reach(thing)}`;
+    const { body, pose, blocker } = held;
+    const key = `${body.name} ${ring} ${body.outline.length} ${reach(body)}`;
     if (key !== this.shown) {
       this.shown = key;
       this.#build(held, ring);
@@ -37,15 +37,15 @@ export class Ghost {
   }
 
   /** @param {Held} held @param {boolean} ring */
-  #build({ thing }, ring) {
+  #build({ body }, ring) {
     this.dispose();
-    for (const polygon of thing.outline) {
+    for (const polygon of body.outline) {
       const shape = new THREE.Shape(polygon.map(([x, y]) => new THREE.Vector2(x, y)));
-      const solid = new THREE.ExtrudeGeometry(shape, { depth: thing.height + ABOVE_M, bevelEnabled: false });
+      const solid = new THREE.ExtrudeGeometry(shape, { depth: body.height + ABOVE_M, bevelEnabled: false });
       this.group.add(new THREE.Mesh(solid, this.material));
     }
     if (!ring) return;
-    const radius = reach(thing) + RING.beyond;
+    const radius = reach(body) + RING.beyond;
     const circle = new THREE.RingGeometry(radius - 0.003, radius + 0.003, 48).translate(0, 0, ABOVE_M);
     const knob = new THREE.CircleGeometry(RING.width / 2.4, 24).translate(radius, 0, ABOVE_M);
     this.group.add(new THREE.Mesh(circle, this.line), new THREE.Mesh(knob, this.line));

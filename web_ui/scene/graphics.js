@@ -1,10 +1,10 @@
-// What draws: a GPU, or the processor in its place.
+// Creates the renderer: on a GPU, or in software.
 
 import * as THREE from "three";
 
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 
-/** Null where the browser has no WebGL: panels and d-pad still work. @param {HTMLCanvasElement} canvas */
+/** Null if the browser has no WebGL: panels and buttons still work. @param {HTMLCanvasElement} canvas */
 export function createRenderer(canvas) {
   try {
     const renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftwareHere(), powerPreference: "low-power" });
@@ -15,12 +15,12 @@ export function createRenderer(canvas) {
   }
 }
 
-/** Whether the processor draws. @param {THREE.WebGLRenderer | null} renderer */
+/** Whether rendering is done in software. @param {THREE.WebGLRenderer | null} renderer */
 export function isSoftware(renderer) {
   return renderer !== null && SOFTWARE.test(nameOf(renderer.getContext()));
 }
 
-/** Software drawing pays for every sample: asked on a canvas of its own, before the real one is made. */
+/** Software rendering pays for every sample, so this is tested on a separate canvas before the real one is created. */
 function isSoftwareHere() {
   const probe = document.createElement("canvas").getContext("webgl2");
   const name = probe === null ? "" : nameOf(probe);

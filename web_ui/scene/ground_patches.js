@@ -1,5 +1,5 @@
-// The two ground sensors: a patch on the floor below each, filled with the grey it sees, long enough to
-// look out from under the nose.
+// The two ground sensors: a patch on the floor below each, filled with the measured gray, long enough to
+// be visible in front of the robot.
 
 import * as THREE from "three";
 
@@ -7,7 +7,7 @@ import { GROUND } from "../state/names.js";
 import { Instances, placeOf } from "./instances.js";
 import { GROUND_PLACES } from "./parts.js";
 
-/** @typedef {import("./fleet.js").Look} Look */
+/** @typedef {import("./robot_instances.js").Look} Look */
 
 const FULL = 1023;
 const LENGTH_M = 0.026;
@@ -17,7 +17,7 @@ const AHEAD_M = 0.006;
 const HEIGHT_M = 0.003; // above every layer of paint
 const EDGE = 0x1769d1;
 
-/** @param {import("./fleet.js").Room} room */
+/** @param {import("./robot_instances.js").Capacity} room */
 export function createGroundPatches({ robots }) {
   const counts = { each: GROUND.length, robots };
   const outer = new THREE.PlaneGeometry(LENGTH_M + 2 * RIM_M, WIDTH_M + 2 * RIM_M);
@@ -26,7 +26,7 @@ export function createGroundPatches({ robots }) {
   /** @param {number} z */
   const places = (z) => GROUND.map((name) => placeOf({ x: GROUND_PLACES[name].x + AHEAD_M, y: GROUND_PLACES[name].y, z }));
   const [below, above] = [places(HEIGHT_M), places(HEIGHT_M + 0.0004)];
-  const colour = new THREE.Color();
+  const color = new THREE.Color();
   return {
     parts: [rims, fills],
     /** @param {number} slot @param {Look} look */
@@ -34,10 +34,10 @@ export function createGroundPatches({ robots }) {
       const deltas = (robot.raw.ground ?? []).slice(4, 6);
       GROUND.forEach((_, side) => {
         const shown = sensing && deltas[side] !== undefined;
-        const grey = Math.min(1, Math.max(0, (deltas[side] ?? 0) / FULL));
+        const gray = Math.min(1, Math.max(0, (deltas[side] ?? 0) / FULL));
         rims.put(slot, side, shown ? below[side] : null);
         fills.put(slot, side, shown ? above[side] : null);
-        fills.tint(slot, side, colour.setRGB(grey, grey, grey, THREE.SRGBColorSpace));
+        fills.tint(slot, side, color.setRGB(gray, gray, gray, THREE.SRGBColorSpace));
       });
     },
   };

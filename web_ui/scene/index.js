@@ -1,16 +1,16 @@
-// The 3D view: draws the state when something changed, in one animation loop. It never decides.
+// The 3D view: draws the state when something changed, in one animation loop. It makes no decisions.
 
 import * as THREE from "three";
 
 import { watchDrags } from "../move/drag.js";
 import { Camera } from "./camera.js";
-import { robotColour } from "../state/colours.js";
+import { robotColor } from "../state/robot_colors.js";
 import { FlatView } from "./flat.js";
-import { Fleet } from "./fleet.js";
+import { RobotInstances } from "./robot_instances.js";
 import { Ghost } from "./ghost.js";
 import { createRenderer, isSoftware } from "./graphics.js";
 import { litScene } from "./lights.js";
-import { Numbers, numbersOf } from "./numbers.js";
+import { ValueLabels, valueLabelsOf } from "./value_labels.js";
 import { photograph } from "./photographer.js";
 import { PlaygroundModel } from "./playground.js";
 import { watchPointer } from "./pointer.js";
@@ -24,11 +24,11 @@ import { isSensed } from "../state/names.js";
 /** @typedef {import("./camera.js").ViewName} ViewName */
 /** @typedef {import("./pointer.js").Target} Target */
 
-/** A lost picture that has not come back by then is drawn in 2D. */
+/** If a lost WebGL context is not restored within this time, the view switches to 2D. */
 const LOST_FOR_GOOD_MS = 4000;
-/** From above, a name stands this far over its robot. */
+/** Distance of a name above its robot in the 2D view. */
 const FLAT_LABEL_PX = 24;
-/** A robot that is smaller than this, in pixels as they are drawn, is drawn coarsely. */
+/** Robots smaller than this on the screen, in drawn pixels, use the coarse model. */
 const SMALL_PX = 40;
 const SIZE_M = 0.11;
 
@@ -36,60 +36,60 @@ export class SceneView {
   /**
    * @param {object} options
    * @param {HTMLCanvasElement} options.canvas
-   * @param {HTMLCanvasElement} options.flatCanvas  over it, for two dimensions
+   * @param {HTMLCanvasElement} options.flatCanvas  canvas over it, for the 2D view
    * @param {HTMLElement} options.labels       layer for the robots' names
    * @param {() => State} options.state
-   * @param {(nowMs: number) => void} options.beforeDraw   the panels' turn in the same frame
+   * @param {(nowMs: number) => void} options.beforeDraw   updates the panels in the same frame
    * @param {(target: Target, pressed: boolean) => void} options.press
-   * @param {import("../move/mover.js").Mover} options.mover   what a hand carries
+   * @param {import("../move/drag_controller.js").DragController} options.dragController   the dragged body
    * @param {(name: string) => string} options.robotTitle
-   * @param {() => import("../creator/sketch.js").Sketch | null} options.sketch   what a builder sees over it; null while nobody builds
-   * @param {(trouble: "lost" | "gone" | null) => void} options.contextLost   gone: for good, drawn in 2D
+   * @param {() => import("../creator/sketch.js").Sketch | null} options.sketch   overlay of the creator; null while it is closed
+   * @param {(trouble: "lost" | "gone" | null) => void} options.contextLost   gone: permanently, drawn in 2D
    */
-  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, mover, robotTitle, sketch, contextLost }) {
+  constructor({ canvas, flatCanvas, labels, state, beforeDraw, press, dragController, robotTitle, sketch, contextLost }) {
     this.canvas = canvas;
     this.tags = new NameTags(labels);
     this.state = state;
     this.beforeDraw = beforeDraw;
     this.robotTitle = robotTitle;
-    this.mover = mover;
+    this.dragController = dragController;
     this.ghost = new Ghost();
     this.sketch = sketch;
     this.sketchModel = new SketchModel();
     this.framed = false;
     this.frames = 0;
     this.requested = false;
-    this.size = { width: 0, height: 0 }; // of the canvas in CSS pixels: asking it after a label was moved lays out the page
+    this.size = { width: 0, height: 0 }; // CSS pixels; cached, since reading it after moving a label forces a layout
     this.showSensors = true;
     this.showNumbers = false;
-    this.numbers = new Numbers(labels);
+    this.valueLabels = new ValueLabels(labels);
     this.flat = new FlatView(flatCanvas);
     this.wantsFlat = false;
     this.isLost = false;
     /** @type {Target | null} */ this.hovered = null;
-    /** @type {{ world: State, settle: (picture: HTMLCanvasElement) => void }[]} */ this.sittings = [];
+    /** @type {{ world: State, resolve: (picture: HTMLCanvasElement) => void }[]} */ this.photoRequests = [];
     /** @type {Map<string, { model: RobotModel, trail: PlaygroundModel }>} */ this.robots = new Map();
     this.scene = litScene();
     this.playground = new PlaygroundModel(() => this.invalidate());
     this.objects = new PlaygroundModel(() => this.invalidate());
-    this.near = new Fleet({ fine: true });
-    this.far = new Fleet({ fine: false });
+    this.near = new RobotInstances({ fine: true });
+    this.far = new RobotInstances({ fine: false });
     this.scene.add(this.playground.group, this.objects.group, this.ghost.group, this.sketchModel.group);
     this.scene.add(this.near.group, this.far.group);
     this.camera = new Camera(canvas, () => this.invalidate());
     this.renderer = createRenderer(canvas);
     this.quality = new Quality(isSoftware(this.renderer) ? 1 : 0);
-    let patience = 0;
+    let lostTimer = 0;
     canvas.addEventListener("webglcontextlost", () => {
       contextLost("lost");
-      patience = window.setTimeout(() => {
+      lostTimer = window.setTimeout(() => {
         this.isLost = true;
         contextLost("gone");
         this.invalidate();
       }, LOST_FOR_GOOD_MS);
     });
     canvas.addEventListener("webglcontextrestored", () => {
-      window.clearTimeout(patience);
+      window.clearTimeout(lostTimer);
       this.isLost = false;
       contextLost(null);
       this.invalidate();
@@ -97,7 +97,7 @@ export class SceneView {
     watchDrags({
       element: canvas,
       rayOf: (event) => (this.sketch() === null ? this.rayOf(event) : null),
-      mover,
+      dragController,
       isButton: (event) => buttons.isAt(event),
     });
     const buttons = watchPointer({
@@ -105,7 +105,7 @@ export class SceneView {
       camera: () => this.eye,
       targets: () =>
         this.sketch() !== null
-          ? [] // a robot that is placed has no buttons
+          ? [] // robots in the creator have no buttons
           : [...this.robots.values()].flatMap(({ model }) => (model.group.visible ? model.targets.meshes : [])),
       press,
       hover: (target) => {
@@ -119,7 +119,7 @@ export class SceneView {
     this.#resize();
   }
 
-  /** Ask for one frame; any number of calls before it are one. */
+  /** Request one frame; several calls before it have the effect of one. */
   invalidate() {
     if (this.requested) return;
     this.requested = true;
@@ -127,21 +127,21 @@ export class SceneView {
   }
 
   /** @param {ViewName} view */
-  look(view) {
-    this.camera.look(view, this.#selectedPose());
+  setView(view) {
+    this.camera.setView(view, this.#selectedPose());
   }
 
-  /** Whether this browser can draw in 3D now. */
+  /** Whether 3D drawing is available now. */
   get has3d() {
     return this.renderer !== null && !this.isLost;
   }
 
-  /** Whether the view is drawn from above in 2D: for want of 3D, or by choice. */
+  /** Whether the view is drawn in 2D from above, because 3D is missing or by choice. */
   get isFlat() {
     return this.wantsFlat || !this.has3d;
   }
 
-  /** The camera that is looked through. */
+  /** The active camera. */
   get eye() {
     return this.isFlat ? this.flat.camera : this.camera.camera;
   }
@@ -164,7 +164,7 @@ export class SceneView {
     this.#resize();
   }
 
-  /** Nearer or farther. @param {number} steps */
+  /** Zoom in or out. @param {number} steps */
   zoom(steps) {
     if (this.isFlat) this.flat.zoom = Math.min(8, Math.max(0.5, this.flat.zoom * 1.15 ** steps));
     else this.camera.zoom(steps);
@@ -172,8 +172,9 @@ export class SceneView {
   }
 
   /**
-   * The view as PNG in full resolution, however coarsely it is drawn now; null where the browser cannot. All of it is
-   * one task: the browser shows no frame of the large canvas.
+   * The view as PNG in full resolution, whatever the current quality; null if the browser cannot create it. This runs
+   * in
+   * one task, so that the browser never shows a frame of the large canvas.
    *
    * @returns {Promise<Blob | null>}
    */
@@ -182,10 +183,10 @@ export class SceneView {
     const ratio = pictureRatio(this.size, window.devicePixelRatio);
     this.renderer?.setPixelRatio(ratio);
     this.flat.pixelRatio = ratio;
-    this.#updateRobots(this.state(), nowMs); // none is drawn coarsely that is large in the picture
-    this.#draw(nowMs); // a 3D picture is only there until the browser has shown it
+    this.#updateRobots(this.state(), nowMs); // robots that are large in the image need the fine model
+    this.#draw(nowMs); // WebGL content is readable only until the browser has shown the frame
     const shown = this.isFlat ? this.flat.canvas : this.canvas;
-    const picture = new Promise((/** @type {(png: Blob | null) => void} */ settle) => shown.toBlob(settle, "image/png"));
+    const picture = new Promise((/** @type {(png: Blob | null) => void} */ resolve) => shown.toBlob(resolve, "image/png"));
     this.flat.pixelRatio = 1;
     this.quality.forget();
     this.#resize();
@@ -193,14 +194,14 @@ export class SceneView {
   }
 
   /**
-   * A small picture of another world, drawn in one of the next frames.
+   * A thumbnail of another world, drawn in one of the next frames.
    *
    * @param {State} world
    * @returns {Promise<HTMLCanvasElement>}
    */
   photograph(world) {
-    return new Promise((settle) => {
-      this.sittings.push({ world, settle });
+    return new Promise((resolve) => {
+      this.photoRequests.push({ world, resolve });
       this.invalidate();
     });
   }
@@ -212,7 +213,7 @@ export class SceneView {
   }
 
   /**
-   * A part's place in CSS pixels of the window; null while it is not drawn.
+   * The position of a part in CSS pixels of the window; null while it is not drawn.
    *
    * @param {string} part
    * @param {string} [robot]
@@ -223,7 +224,7 @@ export class SceneView {
     return place == null ? null : this.#toWindow(place);
   }
 
-  /** The line of sight through a pointer. @param {{ clientX: number, clientY: number }} event */
+  /** The line of sight through a pointer position. @param {{ clientX: number, clientY: number }} event */
   rayOf({ clientX, clientY }) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const place = new THREE.Vector2(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2);
@@ -232,7 +233,7 @@ export class SceneView {
     return caster.ray;
   }
 
-  /** How much of the ground one CSS pixel shows, about where the camera looks; metres. */
+  /** The size of one CSS pixel on the ground near the camera's target, in meters. */
   get pixelSize() {
     const { height } = this.size;
     if (this.isFlat) return (this.flat.camera.top - this.flat.camera.bottom) / Math.max(1, height);
@@ -241,14 +242,14 @@ export class SceneView {
     return (2 * far * Math.tan((camera.fov * Math.PI) / 360)) / Math.max(1, height);
   }
 
-  /** Let the next playground that is built fill the view. */
+  /** Fit the next world of the creator into the view. */
   reframe() {
     this.framed = false;
     this.invalidate();
   }
 
   /**
-   * Where a point of the world is in CSS pixels of the window.
+   * Project a point of the world to CSS pixels of the window.
    *
    * @param {number} x
    * @param {number} y
@@ -268,17 +269,17 @@ export class SceneView {
     if (grown) this.camera.frame(this.playground.corners(), sketch !== null && this.framed);
     this.framed = sketch !== null;
     this.objects.update(state.objects);
-    this.mover.refresh();
-    this.ghost.update(this.mover.held, this.mover.mode);
+    this.dragController.refresh();
+    this.ghost.update(this.dragController.held, this.dragController.mode);
     this.sketchModel.update(sketch);
     const moving = this.#updateRobots(state, nowMs);
     const pose = this.#selectedPose();
     if (pose !== null) this.camera.follow(pose);
-    const sitting = this.sittings.shift();
-    sitting?.settle(photograph(sitting.world, this.has3d ? this.renderer : null));
+    const photoRequest = this.photoRequests.shift();
+    photoRequest?.resolve(photograph(photoRequest.world, this.has3d ? this.renderer : null));
     this.#draw(nowMs);
     this.frames += 1;
-    if (this.sittings.length > 0) this.invalidate();
+    if (this.photoRequests.length > 0) this.invalidate();
     this.#placeLabels();
     if (moving) this.invalidate();
     if (this.quality.note(nowMs, moving)) this.#resize();
@@ -293,14 +294,14 @@ export class SceneView {
     }
     const state = this.state();
     this.flat.aim(this.camera.corners, this.camera.goesAlong ? this.#selectedPose() : null);
-    this.scene.updateMatrixWorld(); // what the renderer would do, for pointers
+    this.scene.updateMatrixWorld(); // the renderer would do this; hit tests need it
     const names = Object.keys(state.robots);
     this.flat.draw(state, {
       nowMs,
       senses: (name) => this.#isSensing(name),
-      held: this.mover.held,
+      held: this.dragController.held,
       sketch: this.sketch(),
-      colour: (name) => robotColour(names, name),
+      color: (name) => robotColor(names, name),
       changed: () => this.invalidate(),
     });
   }
@@ -327,12 +328,12 @@ export class SceneView {
       entry.trail.update(robot.trail);
       moving = entry.model.update(robot, nowMs) || moving;
       const sounds = robot.sound[0] > 0 || robot.sound[1] > 0;
-      const colour = names.length > 1 ? robotColour(names, name) : "";
-      this.tags.show(name, (sounds ? "♪ " : "") + this.robotTitle(name), colour);
+      const color = names.length > 1 ? robotColor(names, name) : "";
+      this.tags.show(name, (sounds ? "♪ " : "") + this.robotTitle(name), color);
     }
-    const standing = this.#standing(state, names);
-    this.near.update(standing.filter(({ frame }) => !this.#isSmall(frame)));
-    this.far.update(standing.filter(({ frame }) => this.#isSmall(frame)));
+    const drawn = this.#drawnRobots(state, names);
+    this.near.update(drawn.filter(({ frame }) => !this.#isSmall(frame)));
+    this.far.update(drawn.filter(({ frame }) => this.#isSmall(frame)));
     return moving;
   }
 
@@ -341,8 +342,8 @@ export class SceneView {
     return this.showSensors && !this.framed && isSensed(this.state(), name);
   }
 
-  /** The robots that are drawn. @param {State} state @param {string[]} names */
-  #standing({ robots }, names) {
+  /** The visible robots. @param {State} state @param {string[]} names */
+  #drawnRobots({ robots }, names) {
     return names.flatMap((name) => {
       const group = this.robots.get(name)?.model.group;
       if (!group?.visible) return [];
@@ -351,7 +352,7 @@ export class SceneView {
     });
   }
 
-  /** Whether a robot there is too small on the screen for fine detail. @param {THREE.Matrix4} frame */
+  /** Whether a robot at this position is too small on the screen for fine detail. @param {THREE.Matrix4} frame */
   #isSmall(frame) {
     const { camera } = this.camera;
     const away = camera.position.distanceTo(new THREE.Vector3().setFromMatrixPosition(frame));
@@ -368,8 +369,8 @@ export class SceneView {
     }
     const { robots, selected } = this.state();
     const group = this.robots.get(selected)?.model.group;
-    const numbers = this.showNumbers && group?.visible ? numbersOf(robots[selected]) : [];
-    this.numbers.show(numbers, ({ x, y, z }) =>
+    const numbers = this.showNumbers && group?.visible ? valueLabelsOf(robots[selected]) : [];
+    this.valueLabels.show(numbers, ({ x, y, z }) =>
       group === undefined ? null : this.#project(group.localToWorld(new THREE.Vector3(x, y, z))),
     );
   }

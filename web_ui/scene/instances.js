@@ -1,5 +1,5 @@
-// One shape of all robots in one draw call: up to `each` copies per robot, placed in the robot's own frame. Copies that
-// are nowhere are not sent to be drawn: without a GPU a copy costs about 11 µs a picture, whatever its size.
+// One shape of all robots in one draw call: up to `each` copies per robot, placed in the robot's frame. Hidden copies
+// are not sent to the GPU: in software rendering a copy costs about 11 µs per frame, whatever its size.
 
 import * as THREE from "three";
 
@@ -7,9 +7,9 @@ const scratch = new THREE.Matrix4();
 
 export class Instances {
   /**
-   * @param {THREE.BufferGeometry} geometry  owned from now on, with the material
+   * @param {THREE.BufferGeometry} geometry  owned by this object, like the material
    * @param {THREE.Material} material
-   * @param {{ each: number, robots: number }} counts  copies per robot, robots at most
+   * @param {{ each: number, robots: number }} counts  copies per robot, maximum number of robots
    */
   constructor(geometry, material, { each, robots }) {
     this.each = each;
@@ -18,20 +18,26 @@ export class Instances {
     this.mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
     /** @type {(THREE.Matrix4 | null)[]} */ this.locals = new Array(each * robots).fill(null);
     this.places = new Float32Array(16 * each * robots);
-    /** @type {Float32Array | null} */ this.colours = null;
+    /** @type {Float32Array | null} */ this.colors = null;
     this.robots = 0;
     this.changed = true;
   }
 
-  /** Where a copy is in its robot's frame from the next `place` on; null: nowhere. @param {number} robot @param {number} index @param {THREE.Matrix4 | null} local */
+  /**
+   * Set the position of a copy in its robot's frame, effective at the next `place`; null hides it.
+   *
+   * @param {number} robot
+   * @param {number} index
+   * @param {THREE.Matrix4 | null} local
+   */
   put(robot, index, local) {
     this.locals[robot * this.each + index] = local;
   }
 
-  /** @param {number} robot @param {number} index @param {THREE.Color} colour */
-  tint(robot, index, colour) {
-    this.colours ??= new Float32Array(3 * this.locals.length);
-    colour.toArray(this.colours, 3 * (robot * this.each + index));
+  /** @param {number} robot @param {number} index @param {THREE.Color} color */
+  tint(robot, index, color) {
+    this.colors ??= new Float32Array(3 * this.locals.length);
+    color.toArray(this.colors, 3 * (robot * this.each + index));
     this.changed = true;
   }
 
@@ -44,18 +50,18 @@ export class Instances {
     this.changed = true;
   }
 
-  /** Draw the copies of the first so many robots. @param {number} robots */
+  /** Draw the copies of the first robots. @param {number} robots */
   show(robots) {
     if (!this.changed && robots === this.robots) return;
     this.changed = false;
     this.robots = robots;
-    if (this.colours !== null) this.mesh.instanceColor ??= attribute(this.locals.length, 3);
+    if (this.colors !== null) this.mesh.instanceColor ??= attribute(this.locals.length, 3);
     const { instanceMatrix, instanceColor } = this.mesh;
     let drawn = 0;
     for (let number = 0; number < robots * this.each; number++) {
       if (this.locals[number] === null) continue;
       copy(this.places, number, instanceMatrix, drawn);
-      if (this.colours !== null && instanceColor !== null) copy(this.colours, number, instanceColor, drawn);
+      if (this.colors !== null && instanceColor !== null) copy(this.colors, number, instanceColor, drawn);
       drawn += 1;
     }
     this.mesh.count = drawn;
@@ -87,7 +93,7 @@ function copy(from, number, to, index) {
 }
 
 /**
- * A place in the robot's frame, turned about one axis.
+ * A position in the robot's frame, turned about one axis.
  *
  * @param {{ x: number, y: number, z: number }} place
  * @param {{ axis?: "X" | "Y" | "Z", angle?: number }} [turn]  radians

@@ -1,4 +1,4 @@
-// All lights: a disc each with a soft glow, and the two coloured strips; the top light colours the shell (body.js).
+// All lights: a disc with a soft glow each, and the two colored strips; the top light colors the shell (body.js).
 
 import * as THREE from "three";
 
@@ -6,20 +6,28 @@ import { glow, spot } from "./glow.js";
 import { Instances, placeOf } from "./instances.js";
 import { LIGHTS, RGB_LIGHTS } from "./parts.js";
 
-/** @typedef {import("./fleet.js").Look} Look */
+/** @typedef {import("./robot_instances.js").Look} Look */
 
 const OFF = new THREE.Color(0xc3cad2);
 const STRIP_OFF = new THREE.Color(0xcfd6dd);
 const STRIPS = /** @type {const} */ (["bottom_left", "bottom_right"]);
-const GLOW = 4.2; // size of the halo of a full light, in radii
-const BEFORE_M = 0.0004; // of the halo before its disc
-const FAR = 2.5; // size of a light that is seen from far, in radii: without halo, and only while it shines
-/** Those seen from far; the others are on the sides and under the nose, and some of them shine all the time. */
+const GLOW = 4.2; // size of the halo at full brightness, in radii
+const BEFORE_M = 0.0004; // distance of the halo in front of its disc
+const FAR = 2.5; // size of a light on a distant robot, in radii: without halo, and only while it is lit
+/**
+ * Lights that are drawn on distant robots. The others are on the sides and under the front, and some are always lit.
+ */
 const SEEN_FROM_FAR = new Set(["circle", "buttons", "proximity"]);
 
 const UP = new THREE.Vector3(0, 0, 1);
 
-/** A disc of this size where a light is. @param {import("./parts.js").Light} light @param {number} radius @param {number} before  metres */
+/**
+ * A disc of this size at a light.
+ *
+ * @param {import("./parts.js").Light} light
+ * @param {number} radius
+ * @param {number} before  meters
+ */
 function facing({ place, normal }, radius, before) {
   const direction = new THREE.Vector3(normal.x, normal.y, normal.z);
   return new THREE.Matrix4().compose(
@@ -29,7 +37,7 @@ function facing({ place, normal }, radius, before) {
   );
 }
 
-/** @param {import("./fleet.js").Room} room */
+/** @param {import("./robot_instances.js").Capacity} room */
 export function createLeds({ robots, fine }) {
   const each = LIGHTS.length;
   const texture = spot(64, [255, 255, 255], (share) => share ** 2);
@@ -41,8 +49,8 @@ export function createLeds({ robots, fine }) {
   const strips = new Instances(strip, new THREE.MeshBasicMaterial(), { each: STRIPS.length, robots });
   const places = LIGHTS.map((light) => facing(light, light.radius * (fine ? 1 : FAR), 0));
   const stripPlaces = STRIPS.map((name) => placeOf(RGB_LIGHTS[name]));
-  const full = LIGHTS.map(({ colour }) => new THREE.Color(colour));
-  const colour = new THREE.Color();
+  const full = LIGHTS.map(({ color }) => new THREE.Color(color));
+  const color = new THREE.Color();
   return {
     parts: [discs, halos, strips],
     /** @param {number} slot @param {Look} look @param {Look | null} before */
@@ -53,14 +61,14 @@ export function createLeds({ robots, fine }) {
         const size = light.radius * (1.4 + GLOW * Math.sqrt(level));
         const shown = fine || (level > 0 && SEEN_FROM_FAR.has(light.group));
         discs.put(slot, index, shown ? places[index] : null);
-        discs.tint(slot, index, colour.copy(OFF).lerp(full[index], Math.sqrt(level)));
+        discs.tint(slot, index, color.copy(OFF).lerp(full[index], Math.sqrt(level)));
         halos.put(slot, index, fine && level > 0 ? facing(light, size, BEFORE_M) : null);
         halos.tint(slot, index, full[index]);
       });
       STRIPS.forEach((name, index) => {
         strips.put(slot, index, fine || robot.leds[name]?.some((level) => level > 0) ? stripPlaces[index] : null);
-        glow(colour, STRIP_OFF, robot.leds[name], 1);
-        strips.tint(slot, index, colour);
+        glow(color, STRIP_OFF, robot.leds[name], 1);
+        strips.tint(slot, index, color);
       });
     },
     dispose: () => texture.dispose(),

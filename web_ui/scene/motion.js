@@ -1,12 +1,12 @@
-// Where a robot is drawn: between the last two poses told, so that 20 messages a second look smooth.
-// Pure; all times are the page's own milliseconds.
+// Interpolates the drawn pose of a robot between its last two poses, so that 20 messages per second look smooth.
+// Pure; all times are in milliseconds of the page's clock.
 
 /** @typedef {import("../state/robot.js").Pose} Pose */
 /** @typedef {import("../state/robot.js").PoseSample} PoseSample */
 
-/** A longer silence is a pause, not a slow movement. */
+/** A longer gap is a pause, not a slow movement. */
 const LONGEST_MS = 250;
-/** A farther leap is being put somewhere (reset, drag), not driving. */
+/** A larger distance is a reset or a placement, not driving. */
 const LEAP_M = 0.1;
 
 /**
@@ -37,7 +37,7 @@ export function poseAt(previous, latest, nowMs) {
 }
 
 /**
- * The turn from one heading to another that is at most half a circle.
+ * The rotation from one heading to another, at most half a turn.
  *
  * @param {number} from
  * @param {number} to

@@ -1,10 +1,10 @@
-// The robot's parts by name, with their places in its own frame (metres, docs/spec/thymio-robot.md sections 1,
-// 7.1 and 8.3). Everything that is drawn, hovered, pressed or looked for by a test is found here.
+// Named parts of the robot with their positions in its frame (meters, docs/spec/thymio-robot.md sections 1,
+// 7.1 and 8.3). Drawing, hit tests and browser tests use this table.
 
 import { GROUND, PROXIMITY } from "../state/names.js";
 
 /** @typedef {{ x: number, y: number, z: number }} Place */
-/** @typedef {{ name: string, group: string, index: number, place: Place, normal: Place, radius: number, colour: number }} Light */
+/** @typedef {{ name: string, group: string, index: number, place: Place, normal: Place, radius: number, color: number }} Light */
 
 export const HEIGHT_M = 0.053;
 export const WHEEL = { radius: 0.022, width: 0.015, track: 0.094 };
@@ -15,7 +15,7 @@ const YELLOW = 0xff9d1f;
 const BLUE = 0x2f6bff;
 const TOP_M = HEIGHT_M + 0.0006;
 
-/** Five buttons on top: place and size of what a finger touches. */
+/** Five buttons on top: position and size of the touch target. */
 export const BUTTON_PLACES = /** @type {Record<string, Place>} */ ({
   center: { x: 0.048, y: 0, z: HEIGHT_M },
   forward: { x: 0.063, y: 0, z: HEIGHT_M },
@@ -24,7 +24,7 @@ export const BUTTON_PLACES = /** @type {Record<string, Place>} */ ({
   right: { x: 0.048, y: -0.015, z: HEIGHT_M },
 });
 
-/** Where each proximity sensor sits and looks (degrees from straight ahead). */
+/** Position and direction of each proximity sensor (degrees from straight ahead). */
 export const PROXIMITY_PLACES = /** @type {Record<string, Place & { yaw: number }>} */ (
   Object.fromEntries(
     [
@@ -55,24 +55,24 @@ function facing(degrees) {
 /**
  * @param {string} group
  * @param {number} radius
- * @param {[number, number, number, Place, number][]} rows  x, y, z in mm, outward direction, colour
+ * @param {[number, number, number, Place, number][]} rows  x, y, z in mm, outward direction, color
  * @returns {Light[]}
  */
 function lights(group, radius, rows) {
-  return rows.map(([x, y, z, normal, colour], index) => ({
+  return rows.map(([x, y, z, normal, color], index) => ({
     name: `led.${group}.${index}`,
     group,
     index,
     place: { x: x / 1000, y: y / 1000, z: z / 1000 },
     normal,
     radius,
-    colour,
+    color,
   }));
 }
 
 const TOP_MM = TOP_M * 1000;
 
-/** Every light of one colour; the three coloured ones are `RGB_LIGHTS`. */
+/** Every light of one color; the RGB lights are `RGB_LIGHTS`. */
 export const LIGHTS = [
   ...lights("circle", 0.0021, [
     [73.2, 0, TOP_MM, UP, YELLOW],
@@ -112,14 +112,14 @@ export const LIGHTS = [
   ...lights("remote", 0.0018, [[41.7, -56.8, 36.7, facing(-90), RED]]),
 ];
 
-/** The lights of any colour: the shell's top, and two strips low on the sides. */
+/** The RGB lights: the top of the shell, and two strips low on the sides. */
 export const RGB_LIGHTS = /** @type {Record<string, Place>} */ ({
   top: { x: 0.005, y: 0.03, z: HEIGHT_M },
   bottom_left: { x: 0.039, y: 0.0562, z: 0.014 },
   bottom_right: { x: 0.039, y: -0.0562, z: 0.014 },
 });
 
-/** Place of every named part in the robot's frame. */
+/** The position of every named part in the robot's frame. */
 export const PARTS = new Map(
   /** @type {[string, Place][]} */ ([
     ["robot", { x: 0.02, y: 0, z: HEIGHT_M }],

@@ -1,12 +1,12 @@
-// Small pictures of whole worlds, one after the other, drawn with what draws the view: in a corner of its canvas,
+// Thumbnails of worlds, drawn one at a time with the renderer of the view: in a corner of its canvas,
 // before the view is drawn over it in the same frame.
 
 import * as THREE from "three";
 
-import { robotColour } from "../state/colours.js";
+import { robotColor } from "../state/robot_colors.js";
 import { fit } from "./fit.js";
 import { FlatView } from "./flat.js";
-import { Fleet } from "./fleet.js";
+import { RobotInstances } from "./robot_instances.js";
 import { litScene } from "./lights.js";
 import { PlaygroundModel } from "./playground.js";
 import { RobotModel } from "./robot.js";
@@ -14,12 +14,12 @@ import { RobotModel } from "./robot.js";
 /** @typedef {import("../state/index.js").State} State */
 
 const FROM = new THREE.Vector3(-0.22, -0.85, 0.95).normalize();
-/** Drawn finer than shown, which smooths the edges. */
+/** Oversampling, which smooths the edges. */
 const SIZE = { width: 480, height: 320 };
 
 /**
  * @param {State} world
- * @param {THREE.WebGLRenderer | null} renderer  null: from above in 2D
+ * @param {THREE.WebGLRenderer | null} renderer  null: 2D from above
  * @returns {HTMLCanvasElement}
  */
 export function photograph(world, renderer) {
@@ -36,14 +36,14 @@ function inSpace(world, renderer) {
     model.update(robot, 0);
     return model;
   });
-  const fleet = new Fleet({ fine: true });
-  fleet.update(
+  const instances = new RobotInstances({ fine: true });
+  instances.update(
     robots.map(({ name, group }) => ({
       look: { robot: world.robots[name], hovered: null, sensing: false },
       frame: group.matrix,
     })),
   );
-  scene.add(playground.group, fleet.group);
+  scene.add(playground.group, instances.group);
   const target = renderer.domElement;
   const [width, height] = [Math.min(SIZE.width, target.width), Math.min(SIZE.height, target.height)];
   const camera = new THREE.PerspectiveCamera(30, width / height, 0.02, 400);
@@ -65,7 +65,7 @@ function inSpace(world, renderer) {
   const context = canvas.getContext("2d");
   context?.drawImage(target, 0, target.height - height, width, height, 0, 0, canvas.width, canvas.height);
   playground.dispose();
-  fleet.dispose();
+  instances.dispose();
   for (const robot of robots) robot.dispose();
   return canvas;
 }
@@ -83,7 +83,7 @@ function fromAbove(world) {
     senses: () => false,
     held: null,
     sketch: null,
-    colour: (name) => robotColour(names, name),
+    color: (name) => robotColor(names, name),
     changed: () => {},
   });
   playground.dispose();

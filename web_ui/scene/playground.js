@@ -1,4 +1,4 @@
-// The playground from its markers: one mesh each, kept by namespace and id, replaced when it changes.
+// Draws the playground from its markers: one mesh each, identified by namespace and id, replaced when it changes.
 
 import * as THREE from "three";
 
@@ -6,7 +6,7 @@ import { hasPicture, MARKER } from "../state/markers.js";
 
 /** @typedef {import("../state/markers.js").Marker} Marker */
 
-/** One row per kind of marker: its geometry in its own frame, already scaled. */
+/** One row per marker type: its geometry in its own frame, already scaled. */
 const GEOMETRIES = /** @type {Record<number, (marker: Marker) => THREE.BufferGeometry>} */ ({
   [MARKER.CUBE]: ({ scale }) => new THREE.BoxGeometry(scale.x, scale.y, scale.z),
   [MARKER.SPHERE]: ({ scale }) =>
@@ -19,8 +19,8 @@ const GEOMETRIES = /** @type {Record<number, (marker: Marker) => THREE.BufferGeo
 
 export class PlaygroundModel {
   /**
-   * @param {() => void} changed  called when a picture has arrived
-   * @param {(png: Blob) => Promise<ImageBitmap>} decode  gives a picture, its first row last
+   * @param {() => void} changed  called when an image has been decoded
+   * @param {(png: Blob) => Promise<ImageBitmap>} decode  decodes an image, its last row first
    */
   constructor(changed = () => {}, decode = (png) => createImageBitmap(png, { imageOrientation: "flipY" })) {
     this.changed = changed;
@@ -33,7 +33,7 @@ export class PlaygroundModel {
     /** @type {ReadonlyMap<string, Marker> | null} */ this.shown = null;
   }
 
-  /** Take over the markers; true when something changed. @param {ReadonlyMap<string, Marker>} markers */
+  /** Update the meshes; returns whether anything changed. @param {ReadonlyMap<string, Marker>} markers */
   update(markers) {
     if (markers === this.shown) return false;
     this.shown = markers;
@@ -51,7 +51,7 @@ export class PlaygroundModel {
     return true;
   }
 
-  /** All corners, in the world: what a view has to take in. */
+  /** All corners in the world, for fitting the view. */
   corners() {
     /** @type {THREE.Vector3[]} */ const corners = [];
     for (const { mesh } of this.meshes.values()) {
@@ -76,7 +76,7 @@ export class PlaygroundModel {
     this.group.add(mesh);
   }
 
-  /** A picture lies flat in the marker's frame, as large as its scale. @param {Marker} marker */
+  /** An image lies flat in the marker's frame; the scale gives its size. @param {Marker} marker */
   #pictured({ scale, texture }) {
     const map = new THREE.Texture();
     map.colorSpace = THREE.SRGBColorSpace;
@@ -89,7 +89,7 @@ export class PlaygroundModel {
     };
     if (texture?.image !== undefined) show(texture.image);
     else {
-      map.flipY = false; // it arrives turned over
+      map.flipY = false; // the bitmap is upside down
       const png = Uint8Array.from(texture?.data ?? []);
       this.decode(new Blob([png], { type: "image/png" })).then((bitmap) => {
         show(bitmap);
@@ -133,7 +133,7 @@ function place(mesh, { pose: { position, orientation } }) {
 }
 
 /**
- * Whether two boxes or cylinders differ in their pose at most: they move.
+ * Whether two boxes or cylinders differ at most in their pose: then the mesh is only moved.
  *
  * @param {Marker} one
  * @param {Marker} two
@@ -146,7 +146,8 @@ function isSameSolid(one, two) {
 }
 
 /**
- * Whether two strips are the same: a trail is told again as a whole when the pen has drawn on.
+ * Whether two strips are equal: the whole trail is published again whenever the pen has drawn. Only the number of
+ * points and both ends are compared, because finished strokes do not change.
  *
  * @param {Marker} one
  * @param {Marker} two
@@ -172,8 +173,8 @@ function triangles({ points, colors, scale }) {
     ),
   );
   if (colors.length > 0) {
-    const colour = new THREE.Color();
-    const values = colors.flatMap(({ r, g, b }) => colour.setRGB(r, g, b, THREE.SRGBColorSpace).toArray());
+    const color = new THREE.Color();
+    const values = colors.flatMap(({ r, g, b }) => color.setRGB(r, g, b, THREE.SRGBColorSpace).toArray());
     geometry.setAttribute("color", new THREE.Float32BufferAttribute(values, 3));
   }
   geometry.computeVertexNormals();
@@ -181,7 +182,7 @@ function triangles({ points, colors, scale }) {
 }
 
 /**
- * A strip of the marker's width (scale.x) lying flat, with round joints: WebGL's own lines are one pixel wide.
+ * A flat strip of the marker's width (scale.x) with round joints: WebGL's own lines are one pixel wide.
  *
  * @param {Marker} marker
  */

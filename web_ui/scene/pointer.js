@@ -1,9 +1,9 @@
-// Fingers and mouse on the canvas: hover and press the buttons on the robots, several at once.
-// Handlers only note what happened; what misses every button is left to the camera.
+// Pointer control of the robots' buttons: hover and press, several at once.
+// Handlers only record events; pointers that miss all buttons are left to the camera.
 
 import * as THREE from "three";
 
-import { whenShiftGoes } from "../shift.js";
+import { onShiftRelease } from "../input/sticky_press.js";
 
 /** @typedef {{ robot: string, button: string }} Target */
 
@@ -14,12 +14,12 @@ import { whenShiftGoes } from "../shift.js";
  * @param {() => THREE.Object3D[]} options.targets
  * @param {(target: Target, pressed: boolean) => void} options.press
  * @param {(target: Target | null) => void} options.hover
- * @returns {{ isAt: (event: PointerEvent) => boolean }}  whether a button is there
+ * @returns {{ isAt: (event: PointerEvent) => boolean }}  whether there is a button
  */
 export function watchPointer({ element, camera, targets, press, hover }) {
   const caster = new THREE.Raycaster();
   /** @type {Map<number, Target>} */ const held = new Map();
-  /** @type {Target[]} held as long as Shift is */ let kept = [];
+  /** @type {Target[]} pressed until Shift is released */ let kept = [];
 
   /** @param {PointerEvent} event @returns {Target | null} */
   const targetAt = (event) => {
@@ -40,11 +40,11 @@ export function watchPointer({ element, camera, targets, press, hover }) {
   };
   /** @param {Target} target */
   const keep = (target) => {
-    if (kept.length === 0) whenShiftGoes(() => kept.splice(0).forEach((each) => press(each, false)));
+    if (kept.length === 0) onShiftRelease(() => kept.splice(0).forEach((each) => press(each, false)));
     kept.push(target);
   };
 
-  // Captured, so that the camera's own handlers do not see a press on a button.
+  // Registered for the capture phase, so that the camera's handlers do not see a press on a button.
   element.addEventListener(
     "pointerdown",
     (event) => {

@@ -1,5 +1,5 @@
-// Chooses how finely to draw: goes one level down when frames come too slowly, never up by itself
-// (a picture that keeps changing its sharpness is worse than a plain one). Pure.
+// Chooses the drawing quality: lowers it by one level when frames are too slow, and never raises it by itself
+// (constant changes of sharpness are worse than a plain image). Pure.
 
 /** @typedef {{ pixelRatio: number }} Level */
 
@@ -11,15 +11,15 @@ export const LEVELS = /** @type {readonly Level[]} */ ([
   { pixelRatio: 0.5 },
 ]);
 
-/** What a person may choose: by itself, or a level and no other. */
+/** Choices of the user: automatic, or a fixed level. */
 export const QUALITIES = /** @type {Readonly<Record<string, number | null>>} */ ({ auto: null, fine: 0, medium: 1, simple: 3 });
 
-/** A saved picture is at least so wide, and on neither side longer than what every graphics card draws. */
+/** Minimum width of a saved image, and the maximum side that every graphics card supports. */
 const PICTURE_WIDTH = 1920;
 const LONGEST_PICTURE = 4096;
 
 /**
- * Pixels per CSS pixel of a saved picture, whatever the view is drawn with.
+ * Pixels per CSS pixel of a saved image, independent of the current quality.
  *
  * @param {{ width: number, height: number }} size  of the view in CSS pixels
  * @param {number} devicePixelRatio
@@ -31,18 +31,18 @@ export function pictureRatio({ width, height }, devicePixelRatio) {
 
 const SLOWEST_FPS = 15;
 const WINDOW = 24;
-/** A longer gap means that nothing had to be drawn. */
+/** A longer gap means that there was nothing to draw. */
 const IDLE_MS = 1500;
 
 export class Quality {
-  /** @param {number} level index in `LEVELS` to begin with */
+  /** @param {number} level initial index in `LEVELS` */
   constructor(level) {
     this.first = level;
     this.level = level;
     this.choice = "auto";
     /** @type {number[]} */ this.intervals = [];
     /** @type {number | null} */ this.lastMs = null;
-    /** The first window is the page's own start, and no measure. */
+    /** The first measuring window is ignored: it includes the start of the page. */
     this.settled = false;
   }
 
@@ -55,18 +55,18 @@ export class Quality {
     this.intervals = [];
   }
 
-  /** What is drawn next is no measure. */
+  /** Ignore the next frame for the measurement. */
   forget() {
     this.lastMs = null;
   }
 
-  /** The level's settings. */
+  /** The settings of the level. */
   get settings() {
     return LEVELS[this.level];
   }
 
   /**
-   * Note a drawn frame; true when the level has just changed. `ongoing`: another frame follows at once.
+   * Record a drawn frame; returns whether the level has just changed. `ongoing`: another frame follows immediately.
    *
    * @param {number} nowMs
    * @param {boolean} ongoing

@@ -1,4 +1,4 @@
-// One robot: its frame at its pose, what pointers hit in it, and where its parts are. `fleet.js` draws it.
+// One robot: its frame at its pose, its hit targets, and the positions of its parts. `robot_instances.js` draws it.
 
 import * as THREE from "three";
 
@@ -18,7 +18,7 @@ export class RobotModel {
   }
 
   /**
-   * Take over where the robot is; true while it is still on its way to its last pose.
+   * Update the pose; returns whether the interpolation is still in progress.
    *
    * @param {Robot} robot
    * @param {number} nowMs
@@ -33,7 +33,7 @@ export class RobotModel {
     return !arrived;
   }
 
-  /** Where a named part is in the world; null for an unknown name. @param {string} part */
+  /** The position of a named part in the world; null for an unknown name. @param {string} part */
   partPosition(part) {
     const place = PARTS.get(part);
     if (place === undefined) return null;

@@ -1,17 +1,17 @@
-// Draws what a builder is told (creator/sketch.js): grid, ghosts, outlines and handles, over the playground.
+// Draws the overlay of the creator (creator/sketch.js): grid, ghosts, outlines and handles.
 
 import * as THREE from "three";
 
 /** @typedef {import("../creator/sketch.js").Sketch} Sketch */
 /** @typedef {import("../creator/sketch.js").Tone} Tone */
 
-/** One row per tone: its colour, and how much of it is seen. */
-export const TONES = /** @type {Record<Tone, { colour: number, area: number, line: number }>} */ ({
-  free: { colour: 0x1769d1, area: 0.45, line: 1 },
-  taken: { colour: 0xd11a1a, area: 0.55, line: 1 },
-  chosen: { colour: 0x0b57d0, area: 0.22, line: 1 },
-  soft: { colour: 0x2a3a4c, area: 0, line: 0.75 },
-  grid: { colour: 0x17263a, area: 0, line: 0.13 },
+/** One row per tone: its color and opacities. */
+export const TONES = /** @type {Record<Tone, { color: number, area: number, line: number }>} */ ({
+  free: { color: 0x1769d1, area: 0.45, line: 1 },
+  taken: { color: 0xd11a1a, area: 0.55, line: 1 },
+  chosen: { color: 0x0b57d0, area: 0.22, line: 1 },
+  soft: { color: 0x2a3a4c, area: 0, line: 0.75 },
+  grid: { color: 0x17263a, area: 0, line: 0.13 },
 });
 const ABOVE_M = 0.003;
 const GRID_M = 0.0012;
@@ -21,25 +21,25 @@ export class SketchModel {
     this.group = new THREE.Group();
     /** @type {Sketch | null} */ this.shown = null;
     this.materials = Object.fromEntries(
-      Object.entries(TONES).map(([tone, { colour, area, line }]) => [
+      Object.entries(TONES).map(([tone, { color, area, line }]) => [
         tone,
         {
           area: new THREE.MeshBasicMaterial({
-            color: colour,
+            color: color,
             transparent: true,
             opacity: area,
             depthWrite: false,
-            polygonOffset: true, // it lies on the faces of what it is about
+            polygonOffset: true, // avoids z-fighting with the faces it covers
             polygonOffsetFactor: -2,
             polygonOffsetUnits: -2,
           }),
           line: new THREE.LineBasicMaterial({
-            color: colour,
+            color: color,
             transparent: true,
             opacity: line,
             depthTest: tone === "grid",
           }),
-          knob: new THREE.MeshBasicMaterial({ color: colour, transparent: true, depthTest: false }),
+          knob: new THREE.MeshBasicMaterial({ color: color, transparent: true, depthTest: false }),
         },
       ]),
     );
@@ -84,11 +84,11 @@ export class SketchModel {
 }
 
 /**
- * The same in two dimensions; the context is in metres, y up.
+ * The same overlay in 2D; the context is in meters, y up.
  *
  * @param {CanvasRenderingContext2D} context
  * @param {Sketch} sketch
- * @param {number} pixel  metres
+ * @param {number} pixel  meters
  */
 export function drawSketch(context, { areas, lines, knobs, knobSize }, pixel) {
   for (const { outline, tone } of areas) {
@@ -124,7 +124,7 @@ function trace(context, points) {
 
 /** @param {Tone} tone @param {number} opacity */
 function css(tone, opacity) {
-  return `#${TONES[tone].colour.toString(16).padStart(6, "0")}${Math.round(opacity * 255)
+  return `#${TONES[tone].color.toString(16).padStart(6, "0")}${Math.round(opacity * 255)
     .toString(16)
     .padStart(2, "0")}`;
 }

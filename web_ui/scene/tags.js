@@ -1,4 +1,4 @@
-// The robots' names over them: elements of a layer over the canvas, written only where something changed.
+// Labels with the robots' names: elements in a layer over the canvas, updated only where something changed.
 
 /** @typedef {{ x: number, y: number }} Spot  CSS pixels of the layer */
 
@@ -6,26 +6,31 @@ export class NameTags {
   /** @param {HTMLElement} layer */
   constructor(layer) {
     this.layer = layer;
-    /** @type {Map<string, { label: HTMLElement, transform: string, colour: string }>} */ this.tags = new Map();
+    /** @type {Map<string, { label: HTMLElement, transform: string, color: string }>} */ this.tags = new Map();
   }
 
-  /** @param {string} robot @param {string} title @param {string} colour  of its spot; none if empty */
-  show(robot, title, colour) {
+  /** @param {string} robot @param {string} title @param {string} color  of its dot; empty: no dot */
+  show(robot, title, color) {
     let tag = this.tags.get(robot);
     if (tag === undefined) {
-      tag = { label: document.createElement("span"), transform: "", colour: "" };
+      tag = { label: document.createElement("span"), transform: "", color: "" };
       tag.label.className = "robot-label";
       this.layer.append(tag.label);
       this.tags.set(robot, tag);
     }
     if (tag.label.textContent !== title) tag.label.textContent = title;
-    if (tag.colour === colour) return;
-    tag.colour = colour;
-    tag.label.toggleAttribute("data-coloured", colour !== "");
-    tag.label.style.setProperty("--colour", colour);
+    if (tag.color === color) return;
+    tag.color = color;
+    tag.label.toggleAttribute("data-colored", color !== "");
+    tag.label.style.setProperty("--color", color);
   }
 
-  /** Its lower middle is to be there; null: out of sight. @param {string} robot @param {Spot | null} spot */
+  /**
+   * Position a label by the center of its lower edge; null hides it.
+   *
+   * @param {string} robot
+   * @param {Spot | null} spot
+   */
   place(robot, spot) {
     const tag = this.tags.get(robot);
     if (tag === undefined) return;

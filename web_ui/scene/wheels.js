@@ -1,4 +1,4 @@
-// Two wheels that turn with the joint states; spokes make the turning visible.
+// Two wheels that turn with the joint states; spokes make the rotation visible.
 
 import * as THREE from "three";
 
@@ -6,21 +6,21 @@ import { Instances, placeOf } from "./instances.js";
 import { merged } from "./merged.js";
 import { WHEEL } from "./parts.js";
 
-/** @typedef {import("./fleet.js").Look} Look */
+/** @typedef {import("./robot_instances.js").Look} Look */
 
 const SIDES = /** @type {const} */ (["left", "right"]);
-const COLOURS = { tyre: 0x343b44, hub: 0xd5dbe2, spoke: 0x6b7684 };
+const COLORS = { tyre: 0x343b44, hub: 0xd5dbe2, spoke: 0x6b7684 };
 
-/** @param {import("./fleet.js").Room} room */
+/** @param {import("./robot_instances.js").Capacity} room */
 export function createWheels({ robots }) {
   const spoke = () => new THREE.BoxGeometry(0.003, WHEEL.width + 0.0024, 0.024);
   /** @param {number} radius @param {number} width @param {number} corners */
   const disc = (radius, width, corners) => new THREE.CylinderGeometry(radius, radius, width, corners);
   const geometry = merged([
-    [disc(WHEEL.radius, WHEEL.width, 28), COLOURS.tyre],
-    [disc(0.0135, WHEEL.width + 0.0012, 20), COLOURS.hub],
-    [spoke(), COLOURS.spoke],
-    [spoke().rotateY(Math.PI / 2), COLOURS.spoke],
+    [disc(WHEEL.radius, WHEEL.width, 28), COLORS.tyre],
+    [disc(0.0135, WHEEL.width + 0.0012, 20), COLORS.hub],
+    [spoke(), COLORS.spoke],
+    [spoke().rotateY(Math.PI / 2), COLORS.spoke],
   ]);
   const material = new THREE.MeshLambertMaterial({ vertexColors: true });
   const wheels = new Instances(geometry, material, { each: 2, robots });

@@ -1,25 +1,25 @@
-// Plays what the robots' loudspeakers say, through Web Audio. A browser lets nothing sound before a person has
-// touched the page; a tone ends when the simulator says so, so that it lasts as long as in simulated time.
+// Plays the sounds of the robots through Web Audio. Browsers block sound before the first user action. A tone ends
+// when the simulator reports its end, so that it lasts as long as in simulated time.
 
 import { goesOn, SAMPLE_RATE, voiceOf, waveform, WAVE_LENGTH } from "./voice.js";
 
 /** @typedef {import("./voice.js").Voice} Voice */
 /** @typedef {import("../state/index.js").State} State */
 /** @typedef {{ voice: Voice, source: AudioBufferSourceNode, gain: GainNode }} Playing */
-/** @typedef {"on" | "muted" | "waiting" | "unavailable"} Phase  waiting: for a person's first touch */
+/** @typedef {"on" | "muted" | "waiting" | "unavailable"} Phase  waiting: for the first user action */
 
-/** Browsers take no buffer below 8000 Hz; its speed makes up for that. */
+/** Browsers reject buffers below 8000 Hz; the playback rate compensates for that. */
 const BUFFER_RATE = 8000;
-/** One robot at full swing; several together stay below the limit. */
+/** Gain of one robot at full amplitude; several together stay below the limit. */
 const LOUDNESS = 0.25;
 const FADE_S = 0.004;
-/** Samples follow the speed of time between these; beyond them they would only hiss or growl. */
+/** Samples follow the real-time factor between these limits; beyond them they would be unintelligible. */
 const SPEEDS = { slowest: 0.25, fastest: 4 };
 
 export class Speaker {
   /**
    * @param {object} options
-   * @param {(() => AudioContext) | null} options.createContext  null where the browser has none
+   * @param {(() => AudioContext) | null} options.createContext  null if the browser has no Web Audio
    * @param {boolean} options.muted
    * @param {() => void} options.changed   called when `phase` may have changed
    */
@@ -40,7 +40,7 @@ export class Speaker {
     return this.context === null ? "waiting" : "on";
   }
 
-  /** A person has touched the page: from now on it may sound. */
+  /** Call on a user action: sound is allowed from now on. */
   unlock() {
     if (this.createContext === null || this.muted) return;
     if (this.context === null) {
@@ -75,12 +75,12 @@ export class Speaker {
     }
   }
 
-  /** Let sound what is said, and nothing else. */
+  /** Play exactly the reported sounds. */
   #play() {
     const { context, state } = this;
     if (context === null || this.muted || state === null) return;
     const paused = state.simulator?.paused ?? false;
-    // Time that stands still holds a sound where it is.
+    // While the simulation is paused, sounds are suspended.
     if (paused && context.state === "running") void context.suspend();
     if (!paused && context.state !== "running") void context.resume();
     const connected = state.connection === "connected";
@@ -126,7 +126,7 @@ export class Speaker {
     if (playing === undefined || this.context === null) return;
     this.playing.delete(name);
     const now = this.context.currentTime;
-    playing.gain.gain.setTargetAtTime(0, now, FADE_S); // no click
+    playing.gain.gain.setTargetAtTime(0, now, FADE_S); // avoids a click
     playing.source.stop(now + 8 * FADE_S);
   }
 

@@ -1,5 +1,5 @@
-// What a robot's loudspeaker says, as something that can be played. Pure.
-// Sound: 8 bit samples, 7812.5 a second; tones go through a wave of 142 of them (docs/spec/thymio-robot.md section 9).
+// Converts the sound topics of a robot to a playable voice. Pure.
+// 8-bit samples at 7812.5 Hz; tones use a wave of 142 samples (docs/spec/thymio-robot.md section 9).
 
 /** @typedef {import("../state/robot.js").Robot} Robot */
 /**
@@ -13,17 +13,17 @@
 export const SAMPLE_RATE = 7812.5;
 export const WAVE_LENGTH = 142;
 const SILENCE = 128;
-/** Samples and what is said of them come on two topics; they belong together when they are as long. */
+/** Samples and their duration arrive on two topics; they belong together if their durations agree to this. */
 const SAME_LENGTH_S = 0.001;
 
-/** The wave until a robot says otherwise: a triangle. */
+/** The default wave: a triangle. */
 export const TRIANGLE = Array.from({ length: WAVE_LENGTH }, (_, place) => {
   const phase = place / WAVE_LENGTH;
   const height = phase < 0.25 ? 4 * phase : phase < 0.75 ? 2 - 4 * phase : 4 * phase - 4;
   return Math.round(127 * height);
 });
 
-/** What sounds now; null for silence, and while the samples of a sound have not come yet. @param {Robot} robot */
+/** The current sound; null for silence, and while the samples of a sound have not arrived. @param {Robot} robot */
 export function voiceOf({ sound, wave, samples }) {
   const [frequency, seconds, volume] = sound;
   if (frequency > 0) return /** @type {Voice} */ ({ kind: "tone", frequency, data: wave ?? TRIANGLE, volume });
@@ -33,7 +33,7 @@ export function voiceOf({ sound, wave, samples }) {
 }
 
 /**
- * Whether the second is the first going on, at most with another loudness.
+ * Whether the second voice continues the first, at most with another volume.
  *
  * @param {Voice | null} one
  * @param {Voice | null} two
@@ -41,11 +41,11 @@ export function voiceOf({ sound, wave, samples }) {
 export function goesOn(one, two) {
   if (one === null || two === null || one.kind !== two.kind || one.frequency !== two.frequency) return false;
   if (one.data === two.data) return true;
-  if (two.kind === "samples" && one.volume === two.volume) return false; // the same sound once more
+  if (two.kind === "samples" && one.volume === two.volume) return false; // the same sound was started again
   return one.data.length === two.data.length && Array.from(one.data).every((value, at) => value === two.data[at]);
 }
 
-/** Values −1…1 of a voice. @param {Voice} voice */
+/** The values of a voice, −1…1. @param {Voice} voice */
 export function waveform({ kind, data }) {
   const middle = kind === "tone" ? 0 : SILENCE;
   return Float32Array.from(data, (value) => (value - middle) / SILENCE);

@@ -1,49 +1,49 @@
-// The page's state and the one function that changes it: `state = reduce(state, message)`.
-// Pure: no clock, no socket, no document; a message carries what it needs.
+// The page's state and the function that changes it: `state = reduce(state, message)`.
+// Pure: no clock, no socket, no DOM; messages carry everything that is needed.
 
 import { applyMarkers } from "./markers.js";
 import { PARAMETERS, TRANSFORMS, isSensed, splitTopic } from "./names.js";
 import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
-import { placedBy } from "./transforms.js";
+import { applyTransforms } from "./transforms.js";
 
 /** @typedef {import("./robot.js").Robot} Robot */
 /** @typedef {import("./robot.js").Program} Program */
 /** @typedef {import("./markers.js").Marker} Marker */
-/** @typedef {{ text: string, line: number | null, column: number | null }} Fault  1-based place, where known */
+/** @typedef {{ text: string, line: number | null, column: number | null }} Fault  position from 1, if known */
 /**
- * @typedef {object} Upload   something given to the simulator, and what came of it
+ * @typedef {object} Upload   a file sent to the simulator, and the result
  * @property {string} name
  * @property {string} text
  * @property {"sending" | "accepted" | "refused"} phase
  * @property {Fault | null} fault
  */
-/** @typedef {"program" | "playground"} What */
-/** @typedef {{ name: string, description: string }} Behaviour */
+/** @typedef {"program" | "playground"} UploadKind */
+/** @typedef {{ name: string, description: string }} Behavior */
 /** @typedef {{ title: string, description: string }} Titles */
 /** @typedef {Titles & { name: string, translations: Readonly<Record<string, Titles>> }} PlaygroundInfo  by language */
 /**
  * @typedef {object} Simulator
  * @property {string} playground
  * @property {string} title
- * @property {string[]} notes   what its file says that is left out or looks like a mistake
+ * @property {string[]} notes   warnings about the file
  * @property {boolean} paused
- * @property {number} factor     wanted
+ * @property {number} factor     wanted real-time factor
  * @property {number} achieved
- * @property {string[] | null} robots  names; null where it does not say
- * @property {Readonly<Record<string, string>>} worldNames  of the robots, by those in topics
+ * @property {string[] | null} robots  names; null if not reported
+ * @property {Readonly<Record<string, string>>} worldNames  names of the robots in the world, by their names in topics
  * @property {string[]} fallen    robots that fell off an edge, by their names in topics
- * @property {string[]} movables  names of things that can be moved
+ * @property {string[]} movables  names of movable objects
  */
 /**
- * What a person is told beside the thing itself; `cause` names what it is about, so that it goes when that is gone.
+ * A notice for the user; `cause` identifies its reason, so that it disappears when the reason is resolved.
  *
  * @typedef {{ id: number, level: "info" | "warning" | "error", text: string, cause: string }} Notice
  */
 /**
  * @typedef {object} State
  * @property {"connecting" | "connected" | "lost" | "noToken" | "wrongToken"} connection
- * @property {boolean} readOnly   whether the server lets this page watch only
- * @property {boolean} greeted    whether the server of this connection has said who it is
+ * @property {boolean} readOnly   whether the server restricts this page to read-only access
+ * @property {boolean} greeted    whether the server of this connection has identified itself
  * @property {string} server
  * @property {string} sessionId
  * @property {string[]} topics
@@ -51,16 +51,16 @@ import { placedBy } from "./transforms.js";
  * @property {Readonly<Record<string, any>>} parameters
  * @property {Simulator | null} simulator
  * @property {PlaygroundInfo[]} playgrounds
- * @property {Behaviour[]} behaviours  built-in programs
- * @property {ReadonlyMap<string, Marker>} markers  what stays where it is
- * @property {ReadonlyMap<string, Marker>} objects  movable things and doors
+ * @property {Behavior[]} behaviors  built-in behaviors
+ * @property {ReadonlyMap<string, Marker>} markers  static markers
+ * @property {ReadonlyMap<string, Marker>} objects  movable objects and doors
  * @property {Readonly<Record<string, Robot>>} robots
- * @property {Readonly<Record<string, Program>>} programs  by namespace of the runtime that says so
- * @property {string} selected     name of the robot the panels show
+ * @property {Readonly<Record<string, Program>>} programs  by namespace of the runtime
+ * @property {string} selected     name of the robot in the panels
  * @property {number} timeNs       simulated time
  * @property {Readonly<{ program: Upload | null, playground: Upload | null }>} uploads
  * @property {Notice[]} notices
- * @property {number} noticeCount  how many there ever were: their ids
+ * @property {number} noticeCount  total number of notices so far, the source of their ids
  */
 
 /**
@@ -76,9 +76,9 @@ import { placedBy } from "./transforms.js";
  *   | { type: "removeStatus", ids: string[] }
  *   | { type: "fault", what: string }
  *   | { type: "select", robot: string }
- *   | { type: "upload", what: What, name: string, text: string }
- *   | { type: "uploaded", what: What, message: string | null, fault?: Fault | null }
- *   | { type: "forget", what: What }
+ *   | { type: "upload", what: UploadKind, name: string, text: string }
+ *   | { type: "uploaded", what: UploadKind, message: string | null, fault?: Fault | null }
+ *   | { type: "forget", what: UploadKind }
  *   | { type: "notice", level: Notice["level"], text: string, cause?: string }
  *   | { type: "solved", cause: string }
  *   | { type: "dismiss", id: number }} Message
@@ -86,9 +86,9 @@ import { placedBy } from "./transforms.js";
 
 const KEPT_NOTICES = 4;
 
-/** Cause of notices about a file that was not even sent. */
+/** Cause of notices about a file that was rejected by the page. */
 export const FILE = "file";
-/** Cause of notices about what needs the simulator. */
+/** Cause of notices about missing connection. */
 export const CONNECTION = "connection";
 
 /** @type {State} */
@@ -103,7 +103,7 @@ export const INITIAL = {
   parameters: {},
   simulator: null,
   playgrounds: [],
-  behaviours: [],
+  behaviors: [],
   markers: new Map(),
   objects: new Map(),
   robots: {},
@@ -135,12 +135,12 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   serverInfo(state, { name, sessionId, readOnly = false }) {
     const known = { ...state, greeted: true, server: name, sessionId, readOnly };
     if (sessionId === state.sessionId && sessionId !== "") return known;
-    // On a connection that goes on, the simulation began anew: its topics stay, its time does not.
+    // On the same connection the simulation was restarted: topics stay, time is reset.
     if (state.greeted) return { ...known, timeNs: 0 };
-    // Another simulator: what was known belongs to one that is no more.
+    // Another simulator: discard the data of the previous one.
     const { connection, notices, noticeCount, selected } = state;
-    const told = notices.filter(({ cause }) => !isSimulators(cause));
-    return { ...INITIAL, connection, notices: told, noticeCount, selected, readOnly, greeted: true, server: name, sessionId };
+    const remaining = notices.filter(({ cause }) => !isSimulatorCause(cause));
+    return { ...INITIAL, connection, notices: remaining, noticeCount, selected, readOnly, greeted: true, server: name, sessionId };
   },
   channels: withChannels,
   services: (state, { names }) => ({ ...state, services: names }),
@@ -154,8 +154,8 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
     },
   }),
   status(state, { status }) {
-    if (typeof status.id === "string" && status.id.startsWith("parameter:")) return state; // told where it was asked
-    if (status.id === "access") return state; // the connection panel says so in the page's language
+    if (typeof status.id === "string" && status.id.startsWith("parameter:")) return state; // shown where it was set
+    if (status.id === "access") return state; // the connection panel shows it, translated
     return withNotice(
       state,
       /** @type {const} */ (["info", "warning", "error"])[status.level] ?? "error",
@@ -165,13 +165,13 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   },
   removeStatus: (state, { ids }) => withoutNotices(state, ids.map(statusCause)),
   fault: (state, { what }) => withNotice(state, "error", what),
-  select: (state, { robot }) => withoutUnheard({ ...state, selected: robot }, state.selected),
+  select: (state, { robot }) => withoutStaleReadings({ ...state, selected: robot }, state.selected),
   upload: (state, { what, name, text }) =>
     withoutNotices(withUpload(state, what, { name, text, phase: "sending", fault: null }), [uploadCause(what), FILE]),
-  uploaded(state, { what, message, fault: told = null }) {
-    const upload = state.uploads[/** @type {What} */ (what)];
+  uploaded(state, { what, message, fault: reported = null }) {
+    const upload = state.uploads[/** @type {UploadKind} */ (what)];
     if (upload === null) return state;
-    const fault = message === null ? null : (told ?? locate(message, upload.name));
+    const fault = message === null ? null : (reported ?? locate(message, upload.name));
     return withUpload(state, what, { ...upload, phase: fault === null ? "accepted" : "refused", fault });
   },
   forget: (state, { what }) => withUpload(state, what, null),
@@ -181,13 +181,13 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
 });
 
 /**
- * What a robot measured is forgotten when it is not followed any more: it would look like what it measures now.
+ * Discard the readings of a robot that is no longer subscribed to: they would look current.
  *
  * @param {State} state
  * @param {string} robot
  * @returns {State}
  */
-function withoutUnheard(state, robot) {
+function withoutStaleReadings(state, robot) {
   const known = state.robots[robot];
   if (known === undefined || isSensed(state, robot)) return state;
   return { ...state, robots: { ...state.robots, [robot]: { ...known, proximity: {}, ground: {}, raw: {} } } };
@@ -200,23 +200,23 @@ function withChannels(state, { topics }) {
     const part = splitTopic(topic);
     if (part?.name === "_ground_truth/odom") names.add(part.robot);
   }
-  const there = [...names].filter((name) => isThere(state, name)).sort(byName);
+  const there = [...names].filter((name) => isKnownRobot(state, name)).sort(byName);
   const robots = Object.fromEntries(there.map((name) => [name, state.robots[name] ?? NEW_ROBOT]));
   return { ...state, topics, robots, selected: selection(state.selected, robots) };
 }
 
-/** thymio_2 before thymio_10. @param {string} one @param {string} other */
+/** Numeric order: thymio_2 before thymio_10. @param {string} one @param {string} other */
 function byName(one, other) {
   return one.localeCompare(other, "en", { numeric: true });
 }
 
 /**
- * Whether the simulator, if it says so, has this robot: a topic may outlive it.
+ * Whether the simulator has this robot, if it reports its robots: a topic may outlive its robot.
  *
  * @param {State} state
  * @param {string} robot
  */
-function isThere({ simulator }, robot) {
+function isKnownRobot({ simulator }, robot) {
   return simulator?.robots?.includes(robot) ?? true;
 }
 
@@ -227,34 +227,34 @@ function withTopic(state, { topic, value, nowMs = 0 }) {
   if (part.robot === null) return GLOBAL_STEPS[part.name](state, value, nowMs);
   if (part.name === "_aseba/status")
     return { ...state, programs: { ...state.programs, [part.robot]: readStatus(value) } };
-  if (!isThere(state, part.robot)) return state;
+  if (!isKnownRobot(state, part.robot)) return state;
   const robot = reduceRobot(state.robots[part.robot] ?? NEW_ROBOT, part.name, value, nowMs);
   return { ...state, robots: { ...state.robots, [part.robot]: robot } };
 }
 
 const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any, nowMs: number) => State>} */ ({
-  [TRANSFORMS]: placedBy,
+  [TRANSFORMS]: applyTransforms,
   "/_markers": (state, value) => ({ ...state, markers: applyMarkers(state.markers, value.markers) }),
   "/_markers/objects": (state, value) => ({ ...state, objects: applyMarkers(state.objects, value.markers) }),
   "/simulator/_state"(state, value) {
-    const told = JSON.parse(value.data);
+    const reported = JSON.parse(value.data);
     const simulator = {
-      playground: told.playground ?? "",
-      title: told.title ?? told.playground ?? "",
-      notes: told.notes ?? [],
-      paused: told.paused ?? false,
-      factor: told.real_time_factor ?? 1,
-      achieved: told.achieved ?? 0,
-      robots: told.robots?.map((/** @type {any} */ { name }) => name) ?? null,
+      playground: reported.playground ?? "",
+      title: reported.title ?? reported.playground ?? "",
+      notes: reported.notes ?? [],
+      paused: reported.paused ?? false,
+      factor: reported.real_time_factor ?? 1,
+      achieved: reported.achieved ?? 0,
+      robots: reported.robots?.map((/** @type {any} */ { name }) => name) ?? null,
       worldNames: Object.fromEntries(
-        (told.robots ?? []).map((/** @type {any} */ { name, robot = name }) => [name, robot]),
+        (reported.robots ?? []).map((/** @type {any} */ { name, robot = name }) => [name, robot]),
       ),
-      fallen: (told.robots ?? []).filter((/** @type {any} */ robot) => robot.fallen).map((/** @type {any} */ { name }) => name),
-      movables: told.movables ?? [],
+      fallen: (reported.robots ?? []).filter((/** @type {any} */ robot) => robot.fallen).map((/** @type {any} */ { name }) => name),
+      movables: reported.movables ?? [],
     };
     return withChannels({ ...state, simulator }, state);
   },
-  "/aseba_runtime/_behaviours": (state, value) => ({ ...state, behaviours: JSON.parse(value.data) }),
+  "/aseba_runtime/_behaviours": (state, value) => ({ ...state, behaviors: JSON.parse(value.data) }),
   "/simulator/_playgrounds": (state, value) => ({
     ...state,
     playgrounds: JSON.parse(value.data).map(
@@ -280,28 +280,28 @@ function withNotice(state, level, text, cause = "") {
   return { ...state, noticeCount: id, notices: [...state.notices, { id, level, text, cause }].slice(-KEPT_NOTICES) };
 }
 
-/** Without the notices of causes that are gone. @param {State} state @param {readonly string[]} causes @returns {State} */
+/** Remove the notices of resolved causes. @param {State} state @param {readonly string[]} causes @returns {State} */
 function withoutNotices(state, causes) {
   const notices = state.notices.filter(({ cause }) => cause === "" || !causes.includes(cause));
   return notices.length === state.notices.length ? state : { ...state, notices };
 }
 
-/** Cause of notices about a file that was refused. @param {What} what */
+/** Cause of notices about a rejected file. @param {UploadKind} what */
 export function uploadCause(what) {
   return `upload ${what}`;
 }
 
-/** Cause of what the bridge reports under an id. @param {string} id */
+/** Cause of status messages of the bridge, by id. @param {string} id */
 function statusCause(id) {
   return `status ${id}`;
 }
 
-/** Whether a cause is gone with the simulator that reported it. @param {string} cause */
-function isSimulators(cause) {
+/** Whether a cause ends with the simulator that reported it. @param {string} cause */
+function isSimulatorCause(cause) {
   return cause.startsWith("status ") || cause.startsWith("/");
 }
 
-/** @param {State} state @param {What} what @param {Upload | null} upload @returns {State} */
+/** @param {State} state @param {UploadKind} what @param {Upload | null} upload @returns {State} */
 function withUpload(state, what, upload) {
   return { ...state, uploads: { ...state.uploads, [what]: upload } };
 }
@@ -309,21 +309,21 @@ function withUpload(state, what, upload) {
 const NODE_AND_PARAMETER = new RegExp(`^(${Object.values(PARAMETERS).join("|").replaceAll(".", "\\.")}):\\s*`);
 
 /**
- * The place and the words of a refusal: "/node.parameter: name: line 3, column 5: words".
+ * Split a rejection into position and message: "/node.parameter: name: line 3, column 5: message".
  *
  * @param {string} message
- * @param {string} [name]  of what was refused, which need not be repeated
+ * @param {string} [name]  name of the rejected file, which is removed from the message
  * @returns {Fault}
  */
 export function locate(message, name = "") {
-  const told = message.replace(NODE_AND_PARAMETER, "");
-  const text = name !== "" && told.startsWith(`${name}:`) ? told.slice(name.length + 1).trim() : told;
+  const reported = message.replace(NODE_AND_PARAMETER, "");
+  const text = name !== "" && reported.startsWith(`${name}:`) ? reported.slice(name.length + 1).trim() : reported;
   const match = /line (\d+), column (\d+):?\s*/.exec(text);
   if (match === null) return { text, line: null, column: null };
   return { text: text.replace(match[0], ""), line: Number(match[1]), column: Number(match[2]) };
 }
 
-/** The program state of the selected robot, else of the runtime they share. @param {State} state */
+/** The program state of the selected robot, else of the shared runtime. @param {State} state */
 export function programOf(state) {
   return state.programs[state.selected] ?? state.programs[""] ?? null;
 }
@@ -334,7 +334,7 @@ function visible(robot) {
 }
 
 /**
- * What tests see of the state: plain data, with the selected robot and its program at hand.
+ * A snapshot of the state for tests: plain data, with the selected robot and its program.
  *
  * @param {State} state
  */

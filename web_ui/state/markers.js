@@ -1,7 +1,7 @@
-// The playground as markers by namespace and id, the way RViz keeps them.
+// The playground as markers by namespace and id, as in RViz.
 
 /** @typedef {{ x: number, y: number, z: number }} Vector */
-/** @typedef {{ r: number, g: number, b: number, a: number }} Colour */
+/** @typedef {{ r: number, g: number, b: number, a: number }} Color */
 /**
  * @typedef {object} Marker
  * @property {string} ns
@@ -10,11 +10,11 @@
  * @property {number} action
  * @property {{ position: Vector, orientation: { x: number, y: number, z: number, w: number } }} pose
  * @property {Vector} scale
- * @property {Colour} color
+ * @property {Color} color
  * @property {Vector[]} points
- * @property {Colour[]} colors
- * @property {{ data: ArrayLike<number>, image?: ImageBitmap | HTMLCanvasElement }} [texture]  a picture over the whole of
- *   the marker: PNG, empty for none, or already read
+ * @property {Color[]} colors
+ * @property {{ data: ArrayLike<number>, image?: ImageBitmap | HTMLCanvasElement }} [texture]  an image over the whole
+ * marker: PNG, empty for none, or already decoded
  */
 
 export const MARKER = { CUBE: 1, SPHERE: 2, CYLINDER: 3, LINE_STRIP: 4, TRIANGLE_LIST: 11 };
@@ -38,7 +38,7 @@ export function applyMarkers(markers, changes) {
   return next;
 }
 
-/** Whether there is a picture on it. @param {Marker} marker */
+/** Whether a marker has an image. @param {Marker} marker */
 export function hasPicture({ texture }) {
   return texture !== undefined && (texture.image !== undefined || texture.data.length > 0);
 }

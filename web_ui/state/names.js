@@ -1,12 +1,12 @@
-// Topic names: which belong to the simulator, which to a robot, and which the page watches.
-// A robot alone has no namespace; of several each has its own (docs/spec/ros-interface.md section 2).
+// Topic names: those of the simulator, those of a robot, and those that the page subscribes to.
+// A single robot has no namespace; of several each has its own (docs/spec/ros-interface.md section 2).
 
 /** The sensors in Thymio's order 0…6. */
 export const PROXIMITY = ["left", "center_left", "center", "center_right", "right", "rear_left", "rear_right"];
 export const GROUND = ["left", "right"];
 export const BUTTONS = ["forward", "left", "center", "right", "backward"];
 
-/** Where all robots are. */
+/** The transforms of all robots. */
 export const TRANSFORMS = "/tf";
 
 export const GLOBAL_TOPICS = [
@@ -42,55 +42,55 @@ export const ROBOT_TOPICS = [
   ...BUTTONS.map((name) => `buttons/${name}`),
 ];
 
-/** Of more robots than these, what only panels and beams show is asked of the selected one alone. */
-export const CROWD = 4;
+/** With more robots than this, topics for panels and beams are subscribed to for the selected robot only. */
+export const MANY_ROBOTS = 4;
 
-/** What every robot is drawn by. */
+/** Topics that are needed to draw a robot. */
 const DRAWN = /^(?:_ground_truth|joint_states|_led|buttons|_pen|_sound|_aseba)\b/;
-/** What the transforms tell as well while time goes on. */
+/** Topics that the transforms replace while the simulation runs. */
 const PLACED = /^(?:_ground_truth|joint_states)\b/;
 
 /** @typedef {{ isByTransforms: boolean }} Placed */
 /**
- * @typedef {object} Watching   what of the state decides what is asked for
+ * @typedef {object} SubscriptionState   the part of the state that determines the subscriptions
  * @property {Readonly<Record<string, Placed>>} robots
  * @property {string} selected
  * @property {{ paused: boolean } | null} simulator
  */
 
-/** @param {Pick<Watching, "robots">} state */
-function isCrowd({ robots }) {
-  return Object.keys(robots).length > CROWD;
+/** @param {Pick<SubscriptionState, "robots">} state */
+function hasManyRobots({ robots }) {
+  return Object.keys(robots).length > MANY_ROBOTS;
 }
 
 /**
- * Whether beams and values of a robot are followed.
+ * Whether beams and values of a robot are subscribed to.
  *
- * @param {Pick<Watching, "selected"> & { robots: Readonly<Record<string, unknown>> }} state
+ * @param {Pick<SubscriptionState, "selected"> & { robots: Readonly<Record<string, unknown>> }} state
  * @param {string} robot
  */
 export function isSensed({ robots, selected }, robot) {
-  return robot === selected || Object.keys(robots).length <= CROWD;
+  return robot === selected || Object.keys(robots).length <= MANY_ROBOTS;
 }
 
 /**
- * Whether the page wants to hear a topic now.
+ * Whether the page wants to subscribe to a topic now.
  *
- * @param {Watching} state
+ * @param {SubscriptionState} state
  * @param {string} topic
  */
 export function isWatched(state, topic) {
   const part = splitTopic(topic);
   if (part === null) return false;
-  if (part.robot === null) return topic !== TRANSFORMS || isCrowd(state);
+  if (part.robot === null) return topic !== TRANSFORMS || hasManyRobots(state);
   if (isSensed(state, part.robot)) return true;
   if (PLACED.test(part.name) && state.robots[part.robot]?.isByTransforms && !state.simulator?.paused) return false;
   return DRAWN.test(part.name);
 }
 
-/** Another text whenever `isWatched` may say something else of the same topics. @param {Watching} state */
-export function watchedFor(state) {
-  if (!isCrowd(state)) return "";
+/** A key that changes whenever `isWatched` may return another result for the same topics. @param {SubscriptionState} state */
+export function subscriptionKey(state) {
+  if (!hasManyRobots(state)) return "";
   const placed = Object.values(state.robots).filter(({ isByTransforms }) => isByTransforms).length;
   return `${state.selected} ${placed} ${state.simulator?.paused}`;
 }
@@ -100,12 +100,12 @@ export const PARAMETERS = /** @type {const} */ ({
   factor: "/simulator.real_time_factor",
   stepTicks: "/simulator.step_ticks",
   source: "/aseba_runtime.script.source",
-  behaviour: "/aseba_runtime.behaviour",
+  behavior: "/aseba_runtime.behaviour",
   programName: "/aseba_runtime.script.name",
 });
 
 /**
- * Split a topic into robot and relative name; null for what the page does not watch.
+ * Split a topic into robot and relative name; null if the page does not use it.
  *
  * @param {string} topic
  * @returns {{ robot: string | null, name: string } | null}

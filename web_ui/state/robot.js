@@ -1,19 +1,19 @@
-// What the page knows of one robot, and how each of its topics changes that.
+// The page's state of one robot, and how each of its topics changes it.
 
 import { applyMarkers } from "./markers.js";
 import { BUTTONS } from "./names.js";
 
 /** @typedef {import("./markers.js").Marker} Marker */
-/** @typedef {{ x: number, y: number, z: number, yaw: number, roll: number, pitch: number }} Pose  metres, radians */
+/** @typedef {{ x: number, y: number, z: number, yaw: number, roll: number, pitch: number }} Pose  meters, radians */
 /** @typedef {{ pose: Pose, stampNs: number, arrivedMs: number }} PoseSample */
 /**
  * @typedef {object} Program
  * @property {string} state      running, paused, stopped, fault, or ""
  * @property {string} name
  * @property {string} message
- * @property {number} level      0 good, 1 warning, 2 error
+ * @property {number} level      0 ok, 1 warning, 2 error
  * @property {string} line
- * @property {Readonly<Record<string, string>>} values  all that the runtime tells (docs/aseba_ros.md)
+ * @property {Readonly<Record<string, string>>} values  all values of the status message (docs/aseba_ros.md)
  */
 /**
  * @typedef {object} Robot
@@ -22,15 +22,15 @@ import { BUTTONS } from "./names.js";
  * @property {{ left: number, right: number }} wheels            rad
  * @property {{ left: number, right: number }} wheelSpeeds       rad/s
  * @property {Record<string, number[]>} leds                     levels 0…1 by group
- * @property {Record<string, number>} proximity                  metres, Infinity: nothing
+ * @property {Record<string, number>} proximity                  meters, Infinity: nothing
  * @property {Record<string, number>} ground                     Range: ±Infinity
  * @property {Record<string, number[]>} raw                      Thymio integers by sensor
  * @property {Record<string, boolean>} buttons
- * @property {readonly number[]} sound                           Hz, s, volume 0…1 of what sounds
- * @property {ArrayLike<number> | null} wave                     period of its tones
- * @property {ArrayLike<number> | null} samples                  of its last sound that is no tone
- * @property {ReadonlyMap<string, Marker>} trail                 what its pen has drawn
- * @property {boolean} isByTransforms                            whether the common transforms tell where it is
+ * @property {readonly number[]} sound                           Hz, s, volume 0…1 of the current sound
+ * @property {ArrayLike<number> | null} wave                     one period of its tones
+ * @property {ArrayLike<number> | null} samples                  of its last sound other than a tone
+ * @property {ReadonlyMap<string, Marker>} trail                 the line drawn by its pen
+ * @property {boolean} isByTransforms                            whether its pose comes from the shared transforms
  */
 
 /** @type {Robot} */
@@ -119,7 +119,7 @@ function readJoints(robot, value) {
   };
 }
 
-/** All LED levels in one array, cut by the labelled dimensions. @param {any} value */
+/** Split the array of all LED levels by its labeled dimensions. @param {any} value */
 function splitGroups(value) {
   /** @type {Record<string, number[]>} */
   const groups = {};
@@ -131,7 +131,7 @@ function splitGroups(value) {
   return groups;
 }
 
-/** What a runtime says of its program. @param {any} status @returns {Program} */
+/** The program state in a status message of the runtime. @param {any} status @returns {Program} */
 export function readStatus(status) {
   const values = Object.fromEntries(status.values.map((/** @type {any} */ { key, value }) => [key, value]));
   return {

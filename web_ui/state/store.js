@@ -1,4 +1,4 @@
-// Holds the state, feeds it messages, and tells who wants to know.
+// Holds the state, applies messages, and notifies subscribers.
 
 import { INITIAL, reduce } from "./index.js";
 

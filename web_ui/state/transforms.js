@@ -1,4 +1,4 @@
-// Where the robots of a crowd are, from the transforms that all of them share: one message instead of two a robot.
+// Poses of many robots from their shared transforms: one message instead of two per robot.
 
 import { isSensed } from "./names.js";
 import { poseOf } from "./robot.js";
@@ -14,7 +14,8 @@ const BODY = "base_link";
 const WHEELS = /** @type {const} */ ({ left: "left_wheel_link", right: "right_wheel_link" });
 
 /**
- * Robots whose own topics are not followed, placed by a TFMessage; those whose frames are not in it stay as they are.
+ * Set the poses of robots from a TFMessage, unless their own topics are subscribed to. Robots without frames in it are
+ * unchanged.
  *
  * @template {{ robots: Readonly<Record<string, Robot>>, selected: string }} S
  * @param {S} state
@@ -22,9 +23,9 @@ const WHEELS = /** @type {const} */ ({ left: "left_wheel_link", right: "right_wh
  * @param {number} nowMs  wall time of arrival, for drawing only
  * @returns {S}
  */
-export function placedBy(state, message, nowMs) {
+export function applyTransforms(state, message, nowMs) {
   const frames = new Map();
-  for (const told of message.transforms) frames.set(told.child_frame_id, told);
+  for (const reported of message.transforms) frames.set(reported.child_frame_id, reported);
   /** @type {Record<string, Robot>} */
   const moved = {};
   for (const [name, robot] of Object.entries(state.robots)) {
@@ -35,7 +36,7 @@ export function placedBy(state, message, nowMs) {
     if (odometry?.header.frame_id !== MAP || body?.header.frame_id !== frame(ODOMETRY)) continue;
     const { sec, nanosec } = body.header.stamp;
     const stampNs = sec * 1e9 + nanosec;
-    const isNews = robot.latest?.stampNs !== stampNs;
+    const isNew = robot.latest?.stampNs !== stampNs;
     const { translation, rotation } = chained(odometry.transform, body.transform);
     const sample = { pose: poseOf(translation, rotation), stampNs, arrivedMs: nowMs };
     const angle = (/** @type {"left" | "right"} */ side) => {
@@ -44,7 +45,7 @@ export function placedBy(state, message, nowMs) {
     };
     moved[name] = {
       ...robot,
-      ...(isNews ? { previous: robot.latest, latest: sample } : {}),
+      ...(isNew ? { previous: robot.latest, latest: sample } : {}),
       wheels: { left: angle("left"), right: angle("right") },
       isByTransforms: true,
     };

@@ -1,4 +1,4 @@
-// The tour of the page: a card that is no obstacle, since everything beside it goes on working.
+// The tour of the page: a card that does not block the page.
 
 import { h, icon, ICONS, setAttribute, setText } from "../panels/dom.js";
 import { translator } from "../i18n/index.js";
@@ -8,13 +8,13 @@ import { WORDS } from "./words.js";
 
 import "./tour.css";
 
-/** The ring stands off from what it surrounds, and stays in the window. */
+/** Distance of the ring from the highlighted element; it stays inside the window. */
 const RING_PX = 5;
 
 /**
  * @param {object} options
  * @param {string} options.language
- * @param {number} options.step     to begin with
+ * @param {number} options.step     the first step to show
  * @param {(step: number) => void} options.stepped
  * @param {() => void} options.close
  */
@@ -45,11 +45,11 @@ export function createTour({ language, step: first, stepped, close }) {
   );
   const ring = h("div", { class: "tour-ring", "aria-hidden": "true" });
   card.addEventListener("keydown", (event) => {
-    event.stopPropagation(); // Escape closes, and stops no robot
+    event.stopPropagation(); // Escape closes the tour and does not stop robots
     if (event.key === "Escape") close();
   });
 
-  /** The element that the step shows; null where none can be seen. */
+  /** The element that the step shows; null if none is visible. */
   const target = () => {
     for (const selector of STEPS[step].targets) {
       const found = document.querySelector(selector);
@@ -64,7 +64,7 @@ export function createTour({ language, step: first, stepped, close }) {
     step = Math.max(0, step + by);
     stepped(step);
     show();
-    if (step === 0) next.focus(); // the button that had the focus is disabled now
+    if (step === 0) next.focus(); // the button that had the focus is now disabled
   };
 
   const show = () => {
@@ -95,8 +95,8 @@ export function createTour({ language, step: first, stepped, close }) {
 
   return {
     render,
-    /** It is on the page now. */
-    begin() {
+    /** Call after the card has been added to the page. */
+    start() {
       document.body.append(ring, card);
       card.show();
       show();

@@ -1,4 +1,4 @@
-// Where the card of the tour stands: beside what it speaks of, inside the window. Pure.
+// Positions the card of the tour: beside its target, inside the window. Pure.
 
 /** @typedef {{ left: number, top: number, width: number, height: number }} Box  CSS pixels of the window */
 /** @typedef {{ width: number, height: number }} Size */
@@ -7,10 +7,10 @@ const GAP = 14;
 const MARGIN = 8;
 
 /**
- * Upper left corner of the card.
+ * The upper left corner of the card.
  *
  * @param {Size} card
- * @param {Box | null} target  null: nothing that can be seen
+ * @param {Box | null} target  null: no visible target
  * @param {Size} window
  * @returns {{ left: number, top: number }}
  */
@@ -26,7 +26,7 @@ export function placed(card, target, window) {
     { left: target.left - card.width - GAP, top: alongY },
   ].map((corner) => inside(corner, card, window));
   const free = beside.find((corner) => !overlap({ ...corner, ...card }, target));
-  // A large target has room in it: above, where the card hides least of the view.
+  // A large target has room for the card inside: at the top, where it covers least of the view.
   return free ?? inside({ left: alongX, top: target.top + 2 * GAP }, card, window);
 }
 

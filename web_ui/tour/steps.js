@@ -1,4 +1,4 @@
-// The steps of the tour: a name, which has words, and what is shown, the first of these that can be seen.
+// The steps of the tour: a name, which is a text key, and the targets, of which the first visible one is shown.
 
 /** @typedef {{ name: string, targets: readonly string[] }} Step */
 

@@ -1,4 +1,4 @@
-// All text of the playground creator, one table per language, loaded with it only.
+// Texts of the playground creator, one table per language, loaded together with it.
 
 import { de } from "./de.js";
 import { en } from "./en.js";

@@ -1,4 +1,4 @@
-// The constants of the program: values are changed in place, and kept in the file.
+// The constants of the program: edited in place, stored in the file.
 
 import { h, renew, setText } from "../../panels/dom.js";
 import { GREATEST, LEAST } from "../aesl.js";

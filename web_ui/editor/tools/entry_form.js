@@ -1,4 +1,4 @@
-// A line with which an event or constant is added: name, number, button; wrong input is told in place.
+// A form row to add an event or constant: name, number, button; errors are shown in place.
 
 import { h, setText } from "../../panels/dom.js";
 import { WORD } from "../help.js";
@@ -10,7 +10,7 @@ import { parseNumbers } from "../numbers.js";
  * @param {"event" | "constant"} options.kind
  * @param {number} options.least
  * @param {number} options.greatest
- * @param {string} options.label   of the number
+ * @param {string} options.label   label of the number
  * @param {(name: string, value: number) => void} options.add
  */
 export function entryForm({ t, kind, least, greatest, label, add }) {
@@ -30,7 +30,7 @@ export function entryForm({ t, kind, least, greatest, label, add }) {
   const trouble = h("p", { class: "fault", role: "alert", hidden: true });
   const form = h("form", { class: "entry" }, name, value, h("button", { type: "submit" }, t("add")), trouble);
   /** @param {string} text */
-  const complain = (text) => {
+  const showError = (text) => {
     trouble.hidden = text === "";
     setText(trouble, text);
   };
@@ -38,10 +38,10 @@ export function entryForm({ t, kind, least, greatest, label, add }) {
     event.preventDefault();
     const word = name.value.trim();
     if (new RegExp(`^${WORD.source}$`, "u").exec(word) === null || /^[0-9]/.test(word))
-      return complain(t("name.bad", { name: word }));
+      return showError(t("name.bad", { name: word }));
     const { values, trouble: wrong } = parseNumbers(value.value || "0", 1, least, greatest);
-    if (values === null) return complain(t(wrong.key, wrong.values));
-    complain("");
+    if (values === null) return showError(t(wrong.key, wrong.values));
+    showError("");
     add(word, values[0]);
     name.value = value.value = "";
     name.focus();

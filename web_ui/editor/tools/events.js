@@ -1,8 +1,8 @@
-// The program's events: send, add, remove, plot; and the log of what robots said.
+// The program's events: send, add, remove, plot; and the log of received events.
 
 import { h, lock, renew, setAttribute, setText } from "../../panels/dom.js";
 import { LARGEST_EVENT } from "../aesl.js";
-import { eventKey } from "../desk.js";
+import { eventKey } from "../editor_session.js";
 import { download } from "../download.js";
 import { csv, parseNumbers } from "../numbers.js";
 import { entryForm } from "./entry_form.js";
@@ -13,13 +13,13 @@ const SHOWN_EVENTS = 100;
 const seconds = (timeNs) => (Number(timeNs / 1_000_000n) / 1000).toFixed(3);
 
 /** @param {import("./index.js").ToolContext} context @returns {import("./index.js").Tool} */
-export function eventsTool({ t, desk, emit, define, announce, redraw }) {
+export function eventsTool({ t, session, emit, define, announce, redraw }) {
   const body = h("tbody");
   const trouble = h("p", { class: "fault", role: "alert", hidden: true });
   const log = h("div", { class: "log", role: "log", tabindex: "0", "aria-label": t("events.log") });
   /** @type {import("./index.js").View | null} */ let shown = null;
   let listed = "";
-  /** @type {Map<string, HTMLElement>} with what was written in them */ let rows = new Map();
+  /** @type {Map<string, HTMLElement>} fields with typed values */ let rows = new Map();
   /** @type {readonly import("../state.js").LoggedEvent[] | null} */ let logged = null;
 
   const form = entryForm({
@@ -54,7 +54,7 @@ export function eventsTool({ t, desk, emit, define, announce, redraw }) {
       "aria-label": t("variables.watch", { name }),
       title: t("variables.watch", { name }),
       onclick: () => {
-        desk.toggleWatch(eventKey(name));
+        session.toggleWatch(eventKey(name));
         redraw();
       },
     });
@@ -96,7 +96,7 @@ export function eventsTool({ t, desk, emit, define, announce, redraw }) {
       "div",
       { class: "row" },
       h("h2", {}, t("events.log")),
-      h("button", { type: "button", onclick: () => desk.receive({ type: "forgetLog" }, "") ?? redraw() }, t("clear")),
+      h("button", { type: "button", onclick: () => session.receive({ type: "forgetLog" }, "") ?? redraw() }, t("clear")),
       h(
         "button",
         {
@@ -133,7 +133,7 @@ export function eventsTool({ t, desk, emit, define, announce, redraw }) {
         lock(/** @type {HTMLButtonElement} */ (button), view.offline);
       }
       for (const star of body.querySelectorAll("[data-watch]")) {
-        const watched = desk.watched.has(eventKey(star.getAttribute("data-watch") ?? ""));
+        const watched = session.watched.has(eventKey(star.getAttribute("data-watch") ?? ""));
         setText(star, watched ? "★" : "☆");
         setAttribute(star, "aria-pressed", String(watched));
       }

@@ -8,20 +8,20 @@ import { referenceTool } from "./reference.js";
 import { variablesTool } from "./variables.js";
 
 /**
- * @typedef {object} View   what a tool draws
+ * @typedef {object} View   the data that tools draw
  * @property {string} robot
  * @property {import("../state.js").Target | null} target
  * @property {import("../state.js").Variables | null} variables
  * @property {readonly import("../state.js").LoggedEvent[]} log
  * @property {import("../aesl.js").Aesl} file
- * @property {string} offline   why no robot can be reached; empty: it can
+ * @property {string} offline   why the robots cannot be reached; empty if they can
  */
 /**
  * @typedef {object} ToolContext
  * @property {import("../../i18n/index.js").Translate} t
- * @property {import("../desk.js").Desk} desk
+ * @property {import("../editor_session.js").EditorSession} session
  * @property {(text: string) => void} announce
- * @property {(text: string) => void} insert          into the program, at the cursor
+ * @property {(text: string) => void} insert          inserts text into the program at the cursor
  * @property {(name: string, values: number[]) => Promise<{ ok: boolean, message: string }>} setVariable
  * @property {(event: string, values: number[]) => void} emit
  * @property {(kind: "event" | "constant", name: string, value: number | null) => void} define
@@ -34,7 +34,7 @@ const TOOLS = [variablesTool, eventsTool, constantsTool, plotTool, referenceTool
 
 /** @param {ToolContext} context */
 export function toolbox(context) {
-  const { t, desk } = context;
+  const { t, session } = context;
   const tools = TOOLS.map((create) => create(context));
   const tabs = tools.map(({ name }) =>
     h(
@@ -54,14 +54,14 @@ export function toolbox(context) {
   );
   /** @param {string} name */
   const choose = (name) => {
-    desk.tool = name;
+    session.tool = name;
     context.redraw();
   };
   const list = h("div", { role: "tablist", class: "tabs", "aria-label": t("tools") }, ...tabs);
   list.addEventListener("keydown", ({ key }) => {
     const step = key === "ArrowRight" ? 1 : key === "ArrowLeft" ? -1 : 0;
     if (step === 0) return;
-    const index = (tools.findIndex(({ name }) => name === desk.tool) + step + tools.length) % tools.length;
+    const index = (tools.findIndex(({ name }) => name === session.tool) + step + tools.length) % tools.length;
     choose(tools[index].name);
     tabs[index].focus();
   });
@@ -70,7 +70,7 @@ export function toolbox(context) {
     /** @param {View} view */
     render(view) {
       tools.forEach((tool, index) => {
-        const chosen = tool.name === desk.tool;
+        const chosen = tool.name === session.tool;
         setAttribute(tabs[index], "aria-selected", String(chosen));
         setAttribute(tabs[index], "tabindex", chosen ? "0" : "-1");
         panels[index].hidden = !chosen;

@@ -1,4 +1,4 @@
-// What is watched, over time: a canvas with one line per value, and its numbers as CSV.
+// The plot of watched values: a canvas with one line per value, and CSV export.
 
 import { h, setText } from "../../panels/dom.js";
 import { download } from "../download.js";
@@ -8,7 +8,7 @@ import { drawPlot, STYLES } from "../plot.js";
 const SPANS = [5, 10, 30, 60, 300]; // seconds
 
 /** @param {import("./index.js").ToolContext} context @returns {import("./index.js").Tool} */
-export function plotTool({ t, desk, redraw }) {
+export function plotTool({ t, session, redraw }) {
   const canvas = h("canvas", { class: "plot", role: "img", "aria-label": t("tool.plot") });
   const legend = h("ul", { class: "legend" });
   const nothing = h("p", { class: "nothing" }, t("plot.none"));
@@ -47,7 +47,7 @@ export function plotTool({ t, desk, redraw }) {
           {
             type: "button",
             onclick: () => {
-              desk.history.clear();
+              session.history.clear();
               redraw();
             },
           },
@@ -55,7 +55,7 @@ export function plotTool({ t, desk, redraw }) {
         ),
         h(
           "button",
-          { type: "button", onclick: () => download("plot.csv", csv(desk.history.rows()), "text/csv") },
+          { type: "button", onclick: () => download("plot.csv", csv(session.history.rows()), "text/csv") },
           "CSV",
         ),
       ),
@@ -64,7 +64,7 @@ export function plotTool({ t, desk, redraw }) {
       legend,
     ),
     render() {
-      const series = [...desk.history.series.values()];
+      const series = [...session.history.series.values()];
       nothing.hidden = series.length > 0;
       if (paused) return;
       drawPlot(canvas, series, Number(span.value));

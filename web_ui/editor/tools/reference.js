@@ -1,4 +1,4 @@
-// What the robot offers: native functions, local events, variables, with help; a click writes the name.
+// The reference of native functions, local events and variables; a click inserts the name.
 
 import { h, setText } from "../../panels/dom.js";
 import { signature } from "../help.js";

@@ -1,11 +1,11 @@
-// All variables with their values, as they change; a click edits, a star watches and plots.
+// All variables with live values; a click edits one, a star watches and plots it.
 
 import { h, setAttribute, setText } from "../../panels/dom.js";
 import { download } from "../download.js";
 import { csv, parseNumbers } from "../numbers.js";
 
 /** @param {import("./index.js").ToolContext} context @returns {import("./index.js").Tool} */
-export function variablesTool({ t, desk, announce, setVariable, redraw }) {
+export function variablesTool({ t, session, announce, setVariable, redraw }) {
   const filter = h("input", { type: "search", placeholder: t("filter"), "aria-label": t("filter"), oninput: redraw });
   const hidden = h("input", { type: "checkbox", onchange: redraw });
   const body = h("tbody");
@@ -36,12 +36,12 @@ export function variablesTool({ t, desk, announce, setVariable, redraw }) {
     let open = true;
     const close = (/** @type {boolean} */ focus) => {
       if (!open) return;
-      open = false; // taking it away blurs it, which comes here again
+      open = false; // removing the element blurs it, which calls this function again
       trouble.hidden = true;
       input.replaceWith(cell);
       if (focus) cell.focus();
     };
-    const complain = (/** @type {string} */ text) => {
+    const showError = (/** @type {string} */ text) => {
       trouble.hidden = false;
       setText(trouble, `${name}: ${text}`);
       input.setAttribute("aria-invalid", "true");
@@ -50,9 +50,9 @@ export function variablesTool({ t, desk, announce, setVariable, redraw }) {
       if (key === "Escape") close(true);
       if (key !== "Enter") return;
       const { values, trouble: wrong } = parseNumbers(input.value, before.length);
-      if (values === null) return complain(t(wrong.key, wrong.values));
+      if (values === null) return showError(t(wrong.key, wrong.values));
       const { ok, message } = await setVariable(name, values);
-      if (!ok) return complain(message);
+      if (!ok) return showError(message);
       close(true);
       announce(`${name} = ${values.join(" ")}`);
     });
@@ -70,7 +70,7 @@ export function variablesTool({ t, desk, announce, setVariable, redraw }) {
       "aria-label": t("variables.watch", { name }),
       title: t("variables.watch", { name }),
       onclick: () => {
-        desk.toggleWatch(name);
+        session.toggleWatch(name);
         redraw();
       },
     });
@@ -108,12 +108,12 @@ export function variablesTool({ t, desk, announce, setVariable, redraw }) {
         return name.toLowerCase().includes(wanted) && (hidden.checked || !secret);
       });
       const sorted = [
-        ...names.filter((name) => desk.watched.has(name)),
-        ...names.filter((name) => !desk.watched.has(name) && !known.has(name)), // the program's own
-        ...names.filter((name) => !desk.watched.has(name) && known.has(name)),
+        ...names.filter((name) => session.watched.has(name)),
+        ...names.filter((name) => !session.watched.has(name) && !known.has(name)), // the program's own
+        ...names.filter((name) => !session.watched.has(name) && known.has(name)),
       ];
       if (sorted.join() !== listed) {
-        if (body.querySelector("input") !== null) return; // somebody is typing
+        if (body.querySelector("input") !== null) return; // the user is typing
         listed = sorted.join();
         const focused = /** @type {HTMLElement | null} */ (body.querySelector(":focus"));
         body.replaceChildren(
@@ -123,7 +123,7 @@ export function variablesTool({ t, desk, announce, setVariable, redraw }) {
             return row.row;
           }),
         );
-        focused?.focus(); // moving its row took it away
+        focused?.focus(); // reordering the rows removed the focus
       }
       for (const name of sorted) {
         const row = rows.get(name);
@@ -131,7 +131,7 @@ export function variablesTool({ t, desk, announce, setVariable, redraw }) {
         const text = values.get(name)?.join(" ") ?? "";
         setText(row.value, text);
         setAttribute(row.value, "aria-label", t("variables.value", { name, value: text }));
-        const watched = desk.watched.has(name);
+        const watched = session.watched.has(name);
         setText(row.star, watched ? "★" : "☆");
         setAttribute(row.star, "aria-pressed", String(watched));
       }

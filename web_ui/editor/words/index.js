@@ -1,4 +1,4 @@
-// All text of the editor, one table per language, loaded with the editor only.
+// Texts of the editor, one table per language, loaded together with it.
 
 import { de, phrases as dePhrases } from "./de.js";
 import { en, phrases as enPhrases } from "./en.js";

@@ -1,4 +1,4 @@
-// Walls round a piece of ground, shared by the grounds; not a kind of its own.
+// Walls around a ground, shared by all grounds; not a kind.
 
 import { needed, object, optional, RULES } from "../rules.js";
 

@@ -1,4 +1,4 @@
-// A low plate with an area beside it; while a robot is in the area, the door of that name opens.
+// A pressure plate with its trigger area; while a robot is in the area, the named door opens.
 
 import { placed } from "../geometry.js";
 import { boxSolid, poseOf } from "../primitives.js";
@@ -7,7 +7,7 @@ import { needed, optional, RULES } from "../rules.js";
 /** @type {import("./index.js").Kind} */
 export const activation = {
   name: "activation",
-  group: "thing",
+  group: "object",
   fields: {
     x_m: needed(RULES.coordinate),
     y_m: needed(RULES.coordinate),

@@ -2,12 +2,12 @@
 
 import { boxSolid, poseOf } from "../primitives.js";
 import { needed, optional, RULES } from "../rules.js";
-import { LOAD } from "./_standing.js";
+import { PUSHABLE } from "./_pushable.js";
 
 /** @type {import("./index.js").Kind} */
 export const box = {
   name: "box",
-  group: "thing",
+  group: "object",
   fields: {
     x_m: needed(RULES.coordinate),
     y_m: needed(RULES.coordinate),
@@ -16,7 +16,7 @@ export const box = {
     height_m: needed(RULES.extent),
     color: needed(RULES.shade),
     yaw_rad: optional(RULES.angle, 0),
-    ...LOAD,
+    ...PUSHABLE,
   },
   points: [["x_m", "y_m"]],
   fresh: { size_x_m: 0.1, size_y_m: 0.1, height_m: 0.1, color: "#e08a2e" },

@@ -2,19 +2,19 @@
 
 import { discSolid } from "../primitives.js";
 import { needed, RULES } from "../rules.js";
-import { LOAD } from "./_standing.js";
+import { PUSHABLE } from "./_pushable.js";
 
 /** @type {import("./index.js").Kind} */
 export const cylinder = {
   name: "cylinder",
-  group: "thing",
+  group: "object",
   fields: {
     x_m: needed(RULES.coordinate),
     y_m: needed(RULES.coordinate),
     radius_m: needed(RULES.extent),
     height_m: needed(RULES.extent),
     color: needed(RULES.shade),
-    ...LOAD,
+    ...PUSHABLE,
   },
   points: [["x_m", "y_m"]],
   fresh: { radius_m: 0.04, height_m: 0.12, color: "#3f88c5" },

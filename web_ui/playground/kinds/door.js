@@ -1,4 +1,4 @@
-// A box that slides between two places while a robot stands on a plate that names it.
+// A box that slides between two positions while a robot is on a pressure plate that names it.
 
 import { boxSolid } from "../primitives.js";
 import { needed, optional, RULES } from "../rules.js";
@@ -6,7 +6,7 @@ import { needed, optional, RULES } from "../rules.js";
 /** @type {import("./index.js").Kind} */
 export const door = {
   name: "door",
-  group: "thing",
+  group: "object",
   fields: {
     closed_x_m: needed(RULES.coordinate),
     closed_y_m: needed(RULES.coordinate),

@@ -1,4 +1,4 @@
-// The kinds of things in a playground. To add one: a file, and a line here.
+// The kinds of items in a playground. To add one: a file, and a line here.
 
 import { activation } from "./activation.js";
 import { box } from "./box.js";
@@ -15,14 +15,14 @@ import { wall } from "./wall.js";
 /**
  * @typedef {object} Kind
  * @property {string} name
- * @property {"ground" | "paint" | "thing" | "robot"} group
+ * @property {"ground" | "paint" | "object" | "robot"} group
  * @property {import("../rules.js").Fields} fields   besides `kind`, and for shapes `name`
- * @property {[string, string][]} points   keys of the places by which it is where it is; the first is its middle
+ * @property {[string, string][]} points   keys of the coordinates that position it; the first pair is its center
  * @property {string} [path]        key of a list of points
- * @property {boolean} [relative]   the path is in the thing's own frame
- * @property {number} [clicks]      places that are asked for; 1 where left out
- * @property {Record<string, any>} fresh   values of a new one
- * @property {(values: Record<string, any>) => import("../primitives.js").Primitive[]} primitives  of all values
+ * @property {boolean} [relative]   whether the path is in the frame of the item
+ * @property {number} [clicks]      number of points to click; default 1
+ * @property {Record<string, any>} fresh   values of a new item
+ * @property {(values: Record<string, any>) => import("../primitives.js").Primitive[]} primitives  from all values
  */
 
 /** Kinds of shapes. */
@@ -41,7 +41,7 @@ export const SHAPES = /** @type {Kind[]} */ ([
 export const ROBOT = robot;
 const BY_NAME = new Map([...SHAPES, robot].map((kind) => [kind.name, kind]));
 
-/** The kind of a name; undefined for one of another package. @param {string} name */
+/** The kind of a name; undefined for one of a plug-in. @param {string} name */
 export function kindNamed(name) {
   return BY_NAME.get(name);
 }

@@ -1,4 +1,4 @@
-// A picture on the ground: paint, neither an obstacle nor a floor. Unturned it lies as on a page.
+// An image on the ground: paint, neither an obstacle nor a floor. At yaw 0 it is oriented as on a page.
 
 import { poseOf } from "../primitives.js";
 import { needed, optional, RULES } from "../rules.js";

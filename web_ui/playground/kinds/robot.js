@@ -1,4 +1,4 @@
-// A robot, where it starts. Not a shape, but it is placed, moved and turned like one.
+// The start pose of a robot. Not a shape, but it is placed, moved and turned like one.
 
 import { needed, object, optional, RULES } from "../rules.js";
 

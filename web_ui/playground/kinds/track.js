@@ -1,11 +1,11 @@
-// A painted track: straight pieces between points, joined by arcs where a corner radius is given.
-// The same stations as thymio_sim_ros/sim/shapes/track.py computes.
+// A painted track: straight segments between points, joined by arcs if a corner radius is given.
+// Computes the same stations as thymio_sim_ros/sim/shapes/track.py.
 
 import { distance, wrapped } from "../geometry.js";
 import { Fault, needed, optional, RULES } from "../rules.js";
 
 /** @typedef {import("../geometry.js").Point} Point */
-/** @typedef {[number, number, number]} Station  a place on the middle line: x, y, direction */
+/** @typedef {[number, number, number]} Station  a point of the center line: x, y, direction */
 
 const ARC_STEP = (5 * Math.PI) / 180;
 const SAME_PLACE_M = 1e-9;
@@ -47,7 +47,7 @@ export const track = {
 };
 
 /**
- * The middle line. Throws a Fault when all points are one, or when there is no room for the arcs.
+ * The center line. Throws a Fault if all points coincide or if there is no room for the arcs.
  *
  * @param {Record<string, any>} values
  * @returns {Station[]}
@@ -61,7 +61,7 @@ function stationsOf({ points_m, width_m: width, closed, corner_radius_m: radius 
   if (points.length < 2) throw new Fault("points_m", "1", { word: "fault.places" });
   const ring = closed ? [...points, points[0]] : points;
   const directions = ring.slice(1).map(([x, y], index) => Math.atan2(y - ring[index][1], x - ring[index][0]));
-  /** How much of a straight piece its corner's arc replaces. @param {number} from @param {number} to */
+  /** The length of a segment that the arc at its corner replaces. @param {number} from @param {number} to */
   const cut = (from, to) => {
     const turn = Math.abs(wrapped(to - from));
     return turn < Math.PI - 1e-6 ? radius * Math.tan(turn / 2) : 0;

@@ -1,10 +1,10 @@
-// The U of the thesis: three boxes, open to +x, drawn in units of `unit_m`.
+// The U shape of the thesis: three boxes, open toward +x, in units of `unit_m`.
 
 import { placed } from "../geometry.js";
 import { boxSolid, poseOf } from "../primitives.js";
 import { needed, optional, RULES } from "../rules.js";
 
-/** Middle and size of the boxes, in units. */
+/** Center and size of the boxes, in units. */
 const PARTS = /** @type {const} */ ([
   [[0, -4], [8, 1]],
   [[-3, 0], [2, 7]],
@@ -14,7 +14,7 @@ const PARTS = /** @type {const} */ ([
 /** @type {import("./index.js").Kind} */
 export const uFigure = {
   name: "u_figure",
-  group: "thing",
+  group: "object",
   fields: {
     unit_m: needed(RULES.extent),
     height_m: needed(RULES.extent),

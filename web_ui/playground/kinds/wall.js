@@ -1,4 +1,4 @@
-// A straight wall from one point to another; both ends reach half a thickness farther, so that corners close.
+// A straight wall between two points; both ends extend by half the thickness so that corners close.
 
 import { boxSolid } from "../primitives.js";
 import { needed, optional, RULES } from "../rules.js";
@@ -6,7 +6,7 @@ import { needed, optional, RULES } from "../rules.js";
 /** @type {import("./index.js").Kind} */
 export const wall = {
   name: "wall",
-  group: "thing",
+  group: "object",
   fields: {
     start_x_m: needed(RULES.coordinate),
     start_y_m: needed(RULES.coordinate),

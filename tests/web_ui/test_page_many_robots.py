@@ -1,0 +1,64 @@
+"""Many robots: all of them move in the view, although few topics are subscribed to."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+pytest.importorskip("playwright.sync_api")
+
+from tests.web_ui.page_support import MARKS, open_page
+
+pytestmark = MARKS
+
+NAMES = [f"thymio_{number}" for number in range(6)]
+ALL_TURN = """(count) => Object.values(window.thymio.state().robots).filter(({previous, latest}) =>
+    previous && latest && previous.pose.yaw !== latest.pose.yaw).length === count"""
+PLACED = "() => Object.entries(window.thymio.state().robots).filter(([, {isByTransforms}]) => isByTransforms).length"
+STANDS = """([name, x, y]) => {
+    const pose = window.thymio.state().robots[name]?.latest?.pose;
+    return pose && Math.hypot(pose.x - x, pose.y - y) < 0.01;
+}"""
+STAMPS = "() => Object.values(window.thymio.state().robots).map(({latest}) => latest?.stampNs)"
+AS_LATE = f"(stamps) => ({STAMPS})().every((stamp, at) => stamp >= stamps[at])"
+
+
+@pytest.fixture
+def crowd(suite, page, tmp_path) -> Any:
+    """Six robots that drive small circles."""
+    shapes = [{"kind": "rectangle", "size_x_m": 3.0, "size_y_m": 1.0, "color": "#eef2f6"}]
+    robots = [{"name": name, "x_m": -1.2 + 0.5 * number, "y_m": 0.0} for number, name in enumerate(NAMES)]
+    world, program = tmp_path / "crowd.json", tmp_path / "circle.aesl"
+    world.write_text(json.dumps({"format": 1, "title": "Crowd", "shapes": shapes, "robots": robots}))
+    program.write_text("motor.left.target = 100\nmotor.right.target = 200\n")
+    open_page(page, suite("--playground", str(world), "--program", str(program)))
+    page.wait_for_function(ALL_TURN, arg=len(NAMES))
+    return page
+
+
+def test_all_of_many_robots_move_by_their_shared_transforms(crowd):
+    crowd.wait_for_function(f"() => ({PLACED})() === 5")
+    selected = crowd.evaluate("() => window.thymio.state().selected")
+    assert selected == NAMES[0]
+    crowd.get_by_role("group", name="Robot", exact=True).get_by_role("button", name=NAMES[3]).click()
+    crowd.wait_for_function(f"() => ({PLACED})() === 6")
+    stamps = crowd.evaluate("() => Object.values(window.thymio.state().robots).map(({latest}) => latest.stampNs)")
+    later = (
+        "(stamps) => Object.values(window.thymio.state().robots).every(({latest}, at) => latest.stampNs > stamps[at])"
+    )
+    crowd.wait_for_function(later, arg=stamps)
+    crowd.wait_for_function("() => window.thymio.state().robot.raw.motor !== undefined")
+
+
+def test_a_browser_that_connects_while_paused_gets_all_poses(crowd, other_page):
+    crowd.wait_for_function(f"() => ({PLACED})() === 5")
+    crowd.get_by_role("button", name="Pause").click()
+    crowd.wait_for_function("() => window.thymio.state().simulator.paused")
+    open_page(other_page, crowd.url)
+    other_page.wait_for_function(f"(count) => ({STAMPS})().filter(Boolean).length === count", arg=len(NAMES))
+    crowd.wait_for_function(AS_LATE, arg=other_page.evaluate(STAMPS))  # its last ones may come after the pause
+    stood = crowd.evaluate("() => Object.values(window.thymio.state().robots).map(({latest}) => latest.pose)")
+    for name, pose in zip(NAMES, stood, strict=True):
+        other_page.wait_for_function(STANDS, arg=[name, pose["x"], pose["y"]])

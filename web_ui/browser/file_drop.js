@@ -1,0 +1,21 @@
+// Reports files that are dropped anywhere on the page.
+
+/** @param {HTMLElement} hint  shown while a file is dragged over the page @param {(file: File) => void} open */
+export function watchDrops(hint, open) {
+  let depth = 0;
+  /** @param {number} change */
+  const over = (change) => {
+    depth = Math.max(0, depth + change);
+    hint.hidden = depth === 0;
+  };
+  window.addEventListener("dragenter", (event) => {
+    if (event.dataTransfer?.types.includes("Files")) over(+1);
+  });
+  window.addEventListener("dragleave", () => over(-1));
+  window.addEventListener("dragover", (event) => event.preventDefault());
+  window.addEventListener("drop", (event) => {
+    event.preventDefault();
+    over(-depth);
+    for (const file of event.dataTransfer?.files ?? []) open(file);
+  });
+}

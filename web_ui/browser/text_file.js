@@ -1,0 +1,34 @@
+// Decodes text files: by byte order mark or XML declaration, else as UTF-8.
+
+const MARKS = /** @type {const} */ ([
+  ["utf-16le", 0xff, 0xfe],
+  ["utf-16be", 0xfe, 0xff],
+  ["utf-16le", 0x3c, 0], // "<" of XML without a byte order mark
+  ["utf-16be", 0, 0x3c],
+]);
+const DECLARED = /^(\s*<\?xml\s[^>]*?encoding\s*=\s*["'])([A-Za-z0-9._-]+)/;
+const HEAD = 200; // bytes that are searched for an XML declaration
+
+/** @param {File} file @returns {Promise<string | null>}  null if the file cannot be decoded */
+export async function textOf(file) {
+  try {
+    return decoded(new Uint8Array(await file.arrayBuffer()));
+  } catch {
+    return null;
+  }
+}
+
+/**
+ * Decode bytes to text without byte order mark. A declared encoding is rewritten to UTF-8, in which the text is saved.
+ *
+ * @param {Uint8Array} bytes
+ * @returns {string}  throws TypeError for invalid bytes, RangeError for an unknown encoding
+ */
+export function decoded(bytes) {
+  const head = new TextDecoder("iso-8859-1").decode(bytes.subarray(0, HEAD));
+  const [marked] = MARKS.find(([, first, second]) => bytes[0] === first && bytes[1] === second) ?? [];
+  const declared = DECLARED.exec(head)?.[2] ?? "utf-8";
+  const encoding = marked ?? (/^utf-?16/i.test(declared) ? "utf-8" : declared); // a readable declaration cannot be in UTF-16
+  const text = new TextDecoder(encoding, { fatal: true }).decode(bytes);
+  return /^utf-?8$/i.test(marked ?? declared) ? text : text.replace(DECLARED, "$1UTF-8");
+}

@@ -1,0 +1,33 @@
+// The list of all items of the playground; a click selects one.
+
+import { h, setAttribute, setText } from "../panels/dom.js";
+
+/** @param {import("../i18n/index.js").Translate} t @param {import("./creator_model.js").CreatorModel} model */
+export function itemList(t, model) {
+  const summary = h("summary");
+  const list = h("ul", { class: "things" });
+  const element = h("details", { class: "things-list" }, summary, list);
+  /** @type {readonly import("../playground/parts.js").Item[] | null} */ let shown = null;
+  /** @type {{ name: string, button: HTMLElement }[]} */ let rows = [];
+  return {
+    element,
+    render() {
+      const { items } = model.playground;
+      if (items !== shown) {
+        shown = items;
+        rows = items.map(({ kind, name }) => ({
+          name,
+          button: h(
+            "button",
+            { type: "button", class: "plain", "data-thing": name, onclick: () => model.select(name) },
+            name,
+            h("small", {}, t(`kind.${kind}`)),
+          ),
+        }));
+        list.replaceChildren(...rows.map(({ button }) => h("li", {}, button)));
+        setText(summary, t("things", { count: items.length }));
+      }
+      for (const { name, button } of rows) setAttribute(button, "aria-pressed", String(name === model.selected));
+    },
+  };
+}

@@ -1,0 +1,163 @@
+// Integrates the playground creator into the page: loads it on demand and runs its playground in the simulator.
+
+import { localStore } from "../browser/local_storage.js";
+import { faultView } from "../panels/fault.js";
+import { parse } from "../playground/document.js";
+import { CONNECTION } from "../state/index.js";
+
+/** @typedef {import("../creator/index.js").Creator} Creator */
+/** @typedef {import("../creator/creator_session.js").CreatorSession} CreatorSession */
+/** @typedef {import("../panels/index.js").Context} Context */
+
+/** Width of the tool palette at the left of the view. */
+const PALETTE_PX = 66;
+
+export class CreatorHost {
+  /**
+   * @param {object} options
+   * @param {(slot: "stage" | "creator" | "footer") => HTMLElement} options.slot
+   * @param {() => import("../scene/index.js").SceneView} options.scene
+   */
+  constructor({ slot, scene }) {
+    this.slot = slot;
+    this.scene = scene;
+    this.isOpen = false;
+    /** @type {typeof import("../creator/index.js") | null} */ this.module = null;
+    /** @type {CreatorSession | null} */ this.session = null;
+    /** @type {Creator | null} */ this.creator = null;
+    /** @type {Context | null} */ this.context = null;
+  }
+
+  /** The world to draw instead of the simulator's; null while the creator is closed. */
+  get world() {
+    return this.isOpen ? (this.session?.world ?? null) : null;
+  }
+
+  /** The overlay to draw over the world. */
+  get sketch() {
+    return this.isOpen ? (this.session?.sketch ?? null) : null;
+  }
+
+  /** Call once per frame, before drawing. */
+  render() {
+    if (!this.isOpen || this.context === null) return;
+    const { store, t } = this.context;
+    this.creator?.render(store.state.connection === "connected" ? "" : t("connection.needed"));
+  }
+
+  /** Set the context: on start, and after a change of language. @param {Context} context */
+  setContext(context) {
+    this.context = context;
+    if (this.isOpen) this.#build();
+  }
+
+  /**
+   * Open the creator, continuing the session or with a new playground.
+   *
+   * @param {import("../playground/document.js").Playground} [playground]
+   */
+  async open(playground) {
+    const { context } = this;
+    if (context === null) return;
+    this.module ??= await import("../creator/index.js").catch(() => null);
+    if (this.module === null) {
+      context.store.dispatch({ type: "notice", level: "error", text: context.t("app.notLoaded"), cause: CONNECTION });
+      return;
+    }
+    const title = this.module.WORDS[context.language]["new.title"];
+    this.session ??= new this.module.CreatorSession({
+      storage: localStore,
+      title,
+      report: (phrase) => this.creator?.report(phrase),
+      changed: () => this.scene().invalidate(),
+    });
+    if (playground !== undefined) {
+      this.session.replacePlayground(playground, { word: "did.opened", values: { name: playground.title } });
+      this.scene().reframe();
+    }
+    if (!this.isOpen) {
+      this.isOpen = true;
+      window.addEventListener("pagehide", this.#keep);
+      document.body.classList.add("building");
+      this.slot("creator").hidden = false;
+      context.dragController.setMode(false);
+      context.editor.close(); // there is no room for both
+      this.scene().camera.setInset(PALETTE_PX);
+      this.#build();
+    }
+    this.scene().setView("home");
+  }
+
+  /** Open a playground from text. Throws Fault if it is not in the format of this project. @param {string} text */
+  async openText(text) {
+    await this.open(parse(text));
+  }
+
+  /** Open a file that was dropped on the page. @param {File} file */
+  openFile(file) {
+    this.creator?.open(file);
+  }
+
+  close() {
+    if (!this.isOpen) return;
+    this.session?.keep();
+    this.isOpen = false;
+    window.removeEventListener("pagehide", this.#keep);
+    this.creator?.destroy();
+    this.creator = null;
+    document.body.classList.remove("building");
+    this.slot("creator").hidden = true;
+    this.scene().camera.setInset(0);
+    this.scene().setView("home");
+  }
+
+  /** Plain data for tests; null before the creator was first opened. */
+  snapshot() {
+    if (this.session === null) return null;
+    const { playground, selected, placing, ghost, cameraOn, history } = this.session.model;
+    return {
+      isOpen: this.isOpen,
+      playground,
+      selected,
+      placing: placing === null ? null : { kind: placing.kind, place: placing.place, points: placing.points.length },
+      problem: ghost?.problem?.word ?? null,
+      cameraOn,
+      steps: history.past.length,
+      camera: this.scene().camera.camera.position.toArray(),
+    };
+  }
+
+  #keep = () => this.session?.keep();
+
+  /** Load the playground into the simulator; if it is rejected, the creator stays open and shows the reason. */
+  async #tryIt() {
+    const { context, session, creator } = this;
+    if (context === null || session === null || creator === null) return;
+    const { actions, store, t } = context;
+    creator.refuse(null);
+    await actions.loadPlayground(session.fileName, new TextEncoder().encode(session.text));
+    const upload = store.state.uploads.playground;
+    if (upload?.phase === "accepted") this.close();
+    else creator.refuse(faultView(t, t("playground.refused", { name: session.fileName }), upload?.fault ?? null));
+  }
+
+  #build() {
+    const { module, session, context } = this;
+    if (module === null || session === null || context === null) return;
+    this.creator?.destroy();
+    this.creator = module.createCreator({
+      session,
+      language: context.language,
+      pageText: context.t,
+      scene: this.scene(),
+      announce: context.announce,
+      tryIt: () => void this.#tryIt(),
+      close: () => this.close(),
+    });
+    const { stage, side, footer } = this.creator.elements;
+    this.slot("stage").append(stage);
+    this.slot("creator").append(side);
+    this.slot("footer").append(footer);
+    this.scene().invalidate();
+  }
+}

@@ -1,0 +1,93 @@
+// Integrates the tour into the page: shown at the first visit, never again after it was closed, and on request.
+
+import { localStore, trySetItem } from "../browser/local_storage.js";
+import { CONNECTION } from "../state/index.js";
+
+/** @typedef {import("../tour/index.js").Tour} Tour */
+/** @typedef {import("../panels/index.js").Context} Context */
+
+const KEY = "tour";
+const CLOSED = "closed";
+
+/**
+ * Whether the tour starts by itself. In the address, `tour=off` prevents it (kiosks, tests), and `tour=on` starts it
+ * even if it was closed before.
+ *
+ * @param {object} visit
+ * @param {string} visit.search             query part of the address
+ * @param {Pick<import("../browser/local_storage.js").KeyValueStore, "getItem">} visit.storage
+ * @param {unknown} visit.entry             history state of this visit; available even without storage
+ */
+export function shouldStart({ search, storage, entry }) {
+  const asked = new URLSearchParams(search).get("tour");
+  if (asked === "on" || asked === "off") return asked === "on";
+  return storage.getItem(KEY) !== CLOSED && /** @type {any} */ (entry)?.[KEY] !== CLOSED;
+}
+
+export class TourHost {
+  constructor() {
+    this.step = 0;
+    /** @type {Tour | null} */ this.tour = null;
+    /** @type {typeof import("../tour/index.js") | null} */ this.module = null;
+    /** @type {Context | null} */ this.context = null;
+    /** @type {Element | null} previously focused element */ this.before = null;
+  }
+
+  get isOpen() {
+    return this.tour !== null;
+  }
+
+  /** Set the context: on start, and after a change of language. @param {Context} context */
+  setContext(context) {
+    this.context = context;
+    if (this.isOpen) this.#build();
+  }
+
+  /** Call once, when the page is ready. */
+  start() {
+    if (shouldStart({ search: location.search, storage: localStore, entry: history.state })) void this.open();
+  }
+
+  async open() {
+    if (this.isOpen) return;
+    const { activeElement } = document;
+    this.module ??= await import("../tour/index.js").catch(() => null);
+    if (this.module === null) {
+      const { store, t } = /** @type {Context} */ (this.context);
+      store.dispatch({ type: "notice", level: "error", text: t("app.notLoaded"), cause: CONNECTION });
+      return;
+    }
+    this.before = activeElement;
+    this.step = 0;
+    this.#build();
+  }
+
+  /** Close the tour permanently: only the button in the header opens it again. */
+  close() {
+    this.tour?.destroy();
+    this.tour = null;
+    trySetItem(localStore, KEY, CLOSED);
+    history.replaceState({ ...history.state, [KEY]: CLOSED }, "");
+    const place = this.before instanceof HTMLElement && this.before !== document.body ? this.before : null;
+    (place?.isConnected ? place : /** @type {HTMLElement | null} */ (document.querySelector("#tour-switch")))?.focus();
+  }
+
+  /** Call once per frame: the described element may have moved. */
+  render() {
+    this.tour?.render();
+  }
+
+  #build() {
+    if (this.module === null || this.context === null) return;
+    this.tour?.destroy();
+    this.tour = this.module.createTour({
+      language: this.context.language,
+      step: this.step,
+      stepped: (step) => {
+        this.step = step;
+      },
+      close: () => this.close(),
+    });
+    this.tour.start();
+  }
+}

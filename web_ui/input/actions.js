@@ -1,0 +1,274 @@
+// User actions, as messages, service calls and parameters. No DOM and no 3D scene.
+
+import { CHECK_SERVICE, checkRequest, firstFault } from "../editor/checking.js";
+import { startOf } from "../move/start.js";
+import { FILE } from "../state/index.js";
+import { PARAMETERS, robotTopic } from "../state/names.js";
+import { textOf } from "../browser/text_file.js";
+
+/** @typedef {import("../protocol/client.js").Client} Client */
+/** @typedef {import("../state/store.js").Store} Store */
+
+/** From rcl_interfaces/msg/ParameterType. */
+const DOUBLE_ARRAY = 8;
+/** Maximum size of a program file in bytes. */
+export const LARGEST_PROGRAM = 1_000_000;
+/**
+ * Maximum size of a playground file in bytes. It may contain images, and as text it must fit into one message of the
+ * bridge.
+ */
+export const LARGEST_PLAYGROUND = 3_000_000;
+
+/**
+ * Longer than the 20 ms between two button polls even at a quarter of real time (docs/spec/thymio-robot.md section 3).
+ */
+const SHORTEST_PRESS_MS = 120;
+
+/** File kinds by file name extension. */
+const KINDS = { program: /\.(aesl|aseba|txt)$/i, playground: /\.(json|playground|xml|zip)$/i };
+
+/** @param {{ name: string }} file */
+export function isProgram({ name }) {
+  return KINDS.program.test(name);
+}
+
+export class Actions {
+  /**
+   * @param {object} options
+   * @param {Client} options.client
+   * @param {Store} options.store
+   * @param {(key: string, values?: Record<string, any>) => string} options.t
+   * @param {() => string} options.language  language of the page
+   * @param {() => number} [options.now]  clock in milliseconds
+   * @param {(act: () => void, ms: number) => void} [options.later]
+   */
+  constructor({ client, store, t, language, now = () => performance.now(), later = setTimeout.bind(globalThis) }) {
+    this.client = client;
+    /** What was loaded last. */
+    this.loaded = "";
+    this.store = store;
+    this.t = t;
+    this.language = language;
+    this.now = now;
+    this.later = later;
+    /** @type {Map<string, number>} time of the press, by topic of the button */ this.held = new Map();
+  }
+
+  /**
+   * Press or release a button of a robot. The robot polls its buttons, so a touch that is too short to be seen is
+   * prolonged.
+   *
+   * @param {string} robot
+   * @param {string} button
+   * @param {boolean} pressed
+   */
+  press(robot, button, pressed) {
+    const topic = robotTopic(robot, `_press/${button}`);
+    const since = this.held.get(topic);
+    const send = () => this.client.publish(topic, "std_msgs/msg/Bool", { data: pressed });
+    if (pressed) {
+      this.held.set(topic, this.now());
+      return send();
+    }
+    const rest = since === undefined ? 0 : since + SHORTEST_PRESS_MS - this.now();
+    if (rest <= 0) return send();
+    this.later(() => {
+      if (this.held.get(topic) === since) send(); // else it has been pressed again
+    }, rest);
+  }
+
+  /**
+   * Apply a stimulus to the selected robot.
+   *
+   * @param {string} name    topic relative to the robot
+   * @param {string} type
+   * @param {Record<string, any>} value
+   */
+  operate(name, type, value) {
+    this.client.publish(robotTopic(this.store.state.selected, name), type, value);
+  }
+
+  /** Stop everything: all programs, and all wheels. */
+  async stop() {
+    const { services, robots } = this.store.state;
+    const stops = services.filter((name) => name.endsWith("/aseba/stop"));
+    await Promise.all(stops.map((name) => this.call(name)));
+    for (const robot of Object.keys(robots)) {
+      this.client.publish(robotTopic(robot, "cmd_vel"), "geometry_msgs/msg/Twist", {});
+    }
+  }
+
+  /** Run, stop or reset the program of the selected robot. @param {"run" | "stop" | "reset"} verb */
+  program(verb) {
+    return this.call(this.programService(verb));
+  }
+
+  /** The name of that service for the selected robot. @param {"run" | "stop" | "reset"} verb */
+  programService(verb) {
+    const { services, selected } = this.store.state;
+    const own = robotTopic(selected, `aseba/${verb}`);
+    return services.includes(own) ? own : `/aseba/${verb}`;
+  }
+
+  /** @param {boolean} paused */
+  pause(paused) {
+    return this.call("/simulator/pause", { data: paused });
+  }
+
+  /** Run a number of ticks of 10 ms while the simulation is paused. @param {number} ticks */
+  async step(ticks) {
+    const chosen = await this.client.setParameters([{ name: PARAMETERS.stepTicks, value: ticks }]);
+    if (!chosen.ok) return this.#report("/simulator/step", chosen);
+    await this.call("/simulator/step");
+  }
+
+  reset() {
+    return this.call("/simulator/reset");
+  }
+
+  /** @param {number} factor  1: real time */
+  async setFactor(factor) {
+    const answer = await this.client.setParameters([{ name: PARAMETERS.factor, value: factor, type: "float64" }]);
+    this.#report(PARAMETERS.factor, answer);
+  }
+
+  /**
+   * Move a robot or an object; returns whether the simulator accepted the pose.
+   *
+   * @param {string} name   name in the world
+   * @param {{ x: number, y: number, yaw: number }} pose  meters, radians
+   */
+  async place(name, { x, y, yaw }) {
+    const value = { type: DOUBLE_ARRAY, double_array_value: [x, y, yaw] };
+    const answer = await this.client.call("/simulator/set_poses", { parameters: [{ name, value }] });
+    const result = answer.value?.results?.[0] ?? { successful: answer.ok, reason: answer.message };
+    if (!result.successful) {
+      this.#report("/simulator/set_poses", {
+        ok: false,
+        message: this.t("move.refused", { reason: result.reason }),
+      });
+    } else {
+      this.#report("/simulator/set_poses", { ok: true, message: "" });
+      if (this.store.state.simulator?.paused) {
+        this.store.dispatch({ type: "notice", level: "info", text: this.t("move.later") });
+      }
+    }
+    return result.successful;
+  }
+
+  /**
+   * Restart programs that are loaded again: setting a parameter to its current value has no effect.
+   *
+   * @param {string} loaded
+   */
+  async #restartPrograms(loaded) {
+    const isSame = this.loaded === loaded;
+    this.loaded = loaded;
+    if (!isSame) return;
+    const robots = Object.keys(this.store.state.robots);
+    if (loaded.startsWith("program")) {
+      await this.client.setParameters([{ name: PARAMETERS.behavior, value: "" }]);
+    }
+    for (const verb of ["reset", "run"]) {
+      await Promise.all(robots.map((robot) => this.call(robotTopic(robot, `aseba/${verb}`))));
+    }
+  }
+
+  /** Return a fallen robot to its start pose, or next to it if that is occupied. @param {string} robot  in topics */
+  async putBack(robot) {
+    const text = await this.playgroundText();
+    if (text === null) return;
+    const name = this.store.state.simulator?.worldNames[robot] ?? robot;
+    await this.place(name, startOf(this.store.state, text, name));
+  }
+
+  /** Start a built-in behavior on the robots. @param {string} name */
+  async setBehavior(name) {
+    const answer = await this.client.setParameters([{ name: PARAMETERS.behavior, value: name }]);
+    if (answer.ok) await this.#restartPrograms(`behavior ${name}`);
+    this.#report(PARAMETERS.behavior, answer);
+  }
+
+  /** @param {string} name @param {string} text */
+  async loadProgram(name, text) {
+    this.store.dispatch({ type: "upload", what: "program", name, text });
+    const answer = await this.client.setParameters([
+      { name: PARAMETERS.programName, value: name },
+      { name: PARAMETERS.source, value: text },
+    ]);
+    if (answer.ok) await this.#restartPrograms(`program ${text}`);
+    const fault = answer.ok ? null : await this.#faultOf(text);
+    this.store.dispatch({ type: "uploaded", what: "program", message: answer.ok ? null : answer.message, fault });
+  }
+
+  /** The compiler's error message in the language of the page; null if there is none. @param {string} source */
+  async #faultOf(source) {
+    const question = checkRequest({ source, language: this.language(), events: [], constants: [] });
+    const { ok, value } = await this.client.call(CHECK_SERVICE, question);
+    return ok && value !== undefined ? firstFault(value) : null;
+  }
+
+  /** @param {string} name @param {Uint8Array} [content]  content of a file; without it, `name` is a shipped playground */
+  async loadPlayground(name, content) {
+    this.store.dispatch({ type: "upload", what: "playground", name, text: "" });
+    const value =
+      content === undefined
+        ? name
+        : `data:application/octet-stream;name=${encodeURIComponent(name)};base64,${base64(content)}`;
+    const isPresent = this.store.state.parameters[PARAMETERS.playground] === value;
+    const answer = await this.client.setParameters([{ name: PARAMETERS.playground, value }]);
+    if (answer.ok && isPresent) await this.reset();
+    this.store.dispatch({ type: "uploaded", what: "playground", message: answer.ok ? null : answer.message });
+  }
+
+  /** The running playground as JSON text; null if the simulator does not report it. */
+  async playgroundText() {
+    const answer = await this.client.call("/simulator/get_playground");
+    this.#report("/simulator/get_playground", answer);
+    return answer.ok ? answer.message : null;
+  }
+
+  /** Load a chosen or dropped file according to its extension. @param {File} file */
+  async loadFile(file) {
+    if (isProgram(file)) {
+      if (file.size > LARGEST_PROGRAM) return this.refuse("file.tooLarge", file);
+      const text = await textOf(file);
+      if (text === null) return this.refuse("file.notText", file);
+      await this.loadProgram(file.name, text);
+    } else if (KINDS.playground.test(file.name)) {
+      if (file.size > LARGEST_PLAYGROUND) return this.refuse("file.tooLarge", file);
+      await this.loadPlayground(file.name, new Uint8Array(await file.arrayBuffer()));
+    } else this.refuse("file.unknown", file);
+  }
+
+  /** @param {string} key @param {File} file */
+  refuse(key, { name }) {
+    this.store.dispatch({ type: "notice", level: "error", text: this.t(key, { name }), cause: FILE });
+  }
+
+  /** @param {string} service @param {Record<string, any>} [request] */
+  async call(service, request) {
+    this.#report(service, await this.client.call(service, request));
+  }
+
+  /**
+   * Show an error until the same action succeeds.
+   *
+   * @param {string} cause
+   * @param {{ ok: boolean, message: string }} answer
+   */
+  #report(cause, { ok, message }) {
+    this.store.dispatch({ type: "solved", cause });
+    if (!ok) this.store.dispatch({ type: "notice", level: "error", text: message, cause });
+  }
+}
+
+/** @param {Uint8Array} bytes */
+function base64(bytes) {
+  const step = 0x8000; // few enough to be arguments of one call
+  let text = "";
+  for (let from = 0; from < bytes.length; from += step) {
+    text += String.fromCharCode(...bytes.subarray(from, from + step));
+  }
+  return btoa(text);
+}

@@ -1,0 +1,128 @@
+// Checks a playground as a whole, and whether an item can be at its position. Pure.
+// The same rules as in thymio_sim_ros/sim/playground/checks.py: the simulator accepts what passes here.
+
+import { containsPoint, overlap } from "./geometry.js";
+import { kindNamed } from "./kinds/index.js";
+import { partsOf, valuesOf } from "./parts.js";
+import { check, Fault, needed, RULES } from "./rules.js";
+
+/** @typedef {import("./parts.js").Item} Item */
+/** @typedef {import("./document.js").Playground} Playground */
+/** @typedef {import("./rules.js").Phrase} Phrase */
+
+/** The same limit as the simulator's (sim/playground/reader.py). */
+const MOST_PARTS = 10_000;
+
+/**
+ * The problem of an item among others; null if there is none.
+ *
+ * @param {readonly Item[]} others  all items except this one
+ * @param {Item} item
+ * @returns {Phrase | null}
+ */
+export function findProblem(others, item) {
+  const kind = kindNamed(item.kind);
+  if (kind === undefined) return null;
+  try {
+    const { kind: _kind, ...values } = item;
+    check({ ...kind.fields, name: needed(RULES.name) }, values, "");
+    partsOf(item);
+  } catch (error) {
+    if (error instanceof Fault) return { word: "problem.value", values: { key: error.key, found: error.found } };
+    throw error;
+  }
+  const blocker = blockerOf(others, item);
+  return blocker === null ? null : { word: "problem.taken", values: { name: blocker } };
+}
+
+/**
+ * The name of an item in the way, or null: robots must not overlap solid items.
+ *
+ * @param {readonly Item[]} others
+ * @param {Item} item
+ */
+export function blockerOf(others, item) {
+  const mine = partsOf(item).footprints;
+  if (mine.length === 0) return null;
+  const inTheWay = others.find(
+    (other) =>
+      (item.kind === "robot" || other.kind === "robot") &&
+      partsOf(other).footprints.some((there) => mine.some((here) => overlap(here, there))),
+  );
+  return inTheWay?.name ?? null;
+}
+
+/**
+ * Whether an item is on ground. Without any ground, nothing can fall.
+ *
+ * @param {readonly Item[]} others
+ * @param {Item} item
+ */
+export function isOnGround(others, item) {
+  const kind = kindNamed(item.kind);
+  if (kind === undefined || kind.group === "ground") return true;
+  const floors = others.flatMap((other) => partsOf(other).floors);
+  if (floors.length === 0) return true;
+  return groundPoints(item).every((point) => floors.some((floor) => containsPoint(floor, point)));
+}
+
+/** Items that extend over an edge: the simulator accepts them with a warning. @param {readonly Item[]} items */
+export function itemsOffGround(items) {
+  return items.filter((item) => !isOnGround(items, item));
+}
+
+/** Whether there is certainly no ground; a shape of a plug-in may be one. @param {readonly Item[]} items */
+export function lacksGround(items) {
+  return items.every((item) => kindNamed(item.kind) !== undefined && partsOf(item).floors.length === 0);
+}
+
+/** @param {Item} item @returns {import("./geometry.js").Point[]} */
+function groundPoints(item) {
+  const kind = kindNamed(item.kind);
+  const values = valuesOf(item);
+  if (kind?.path !== undefined && !kind.relative) return values[kind.path];
+  const places = item.kind === "wall" ? (kind?.points ?? []) : (kind?.points ?? []).slice(0, 1);
+  return places.map(([x, y]) => [values[x], values[y]]);
+}
+
+/**
+ * Check a playground whose items are valid individually. Throws a Fault with the key of the error.
+ *
+ * @param {Playground} playground
+ */
+export function checkSettled({ items }) {
+  const shapes = items.filter(({ kind }) => kind !== "robot");
+  const robots = items.filter(({ kind }) => kind === "robot");
+  const keyed = [
+    ...shapes.map((item, index) => ({ item, key: `shapes[${index}]` })),
+    ...robots.map((item, index) => ({ item, key: `robots[${index}]` })),
+  ];
+  /** @type {Map<string, string>} */ const seen = new Map();
+  for (const { item, key } of keyed) {
+    const other = seen.get(item.name);
+    if (other !== undefined)
+      throw new Fault(`${key}.name`, `"${item.name}"`, { word: "fault.ownName", values: { other } });
+    seen.set(item.name, key);
+  }
+  let count = 0;
+  for (const { item, key } of keyed) {
+    try {
+      count += partsOf(item).primitives.length;
+    } catch (error) {
+      throw error instanceof Fault ? new Fault(`${key}.${error.key}`, error.found, error.expected) : error;
+    }
+    if (count > MOST_PARTS) throw new Fault(key, String(count), { word: "fault.parts", values: { most: MOST_PARTS } });
+  }
+  robots.forEach((robot, index) => {
+    const blocker = blockerOf([...shapes, ...robots.slice(0, index)], robot);
+    if (blocker !== null) throw new Fault(`robots[${index}]`, `"${blocker}"`, { word: "fault.free" });
+  });
+  const doors = shapes.filter(({ kind }) => kind === "door").map(({ name }) => name);
+  for (const { item, key } of keyed) {
+    if (item.kind !== "activation" || doors.includes(item.door)) continue;
+    throw new Fault(`${key}.door`, `"${item.door}"`, {
+      word: "fault.door",
+      values: { names: doors.join(", ") || "–" },
+    });
+  }
+}

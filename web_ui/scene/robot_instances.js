@@ -1,0 +1,89 @@
+// Draws all robots with instancing: each piece of the model is one draw call, whatever the number of robots. Near
+// robots and small ones on the screen are two separate sets. To add a piece, extend the lists below.
+
+import * as THREE from "three";
+
+import { createContactShadow } from "./contact_shadow.js";
+import { createBody, createFarBody } from "./body.js";
+import { createButtons } from "./buttons.js";
+import { createGroundPatches } from "./ground_patches.js";
+import { createLeds } from "./leds.js";
+import { createRays } from "./rays.js";
+import { createWheels } from "./wheels.js";
+
+/** @typedef {import("../state/robot.js").Robot} Robot */
+/** @typedef {import("./instances.js").Instances} Instances */
+/** @typedef {{ robot: Robot, hovered: string | null, sensing: boolean }} Look  button under the pointer; whether beams and patches are shown */
+/** @typedef {{ look: Look, frame: THREE.Matrix4 }} DrawnRobot   the appearance of a robot, and its frame */
+/**
+ * @typedef {object} Piece
+ * @property {Instances[]} parts
+ * @property {(slot: number, look: Look, before: Look | null) => void} show  before: what was shown in this slot, null: nothing
+ * @property {() => void} [dispose]
+ */
+
+/** @typedef {{ robots: number, fine: boolean }} Capacity   maximum number of robots, and level of detail */
+
+/** @typedef {(capacity: Capacity) => Piece} PieceFactory */
+const FINE = /** @type {PieceFactory[]} */ ([
+  createContactShadow,
+  createBody,
+  createWheels,
+  createLeds,
+  createRays,
+  createGroundPatches,
+  createButtons,
+]);
+const COARSE = /** @type {PieceFactory[]} */ ([createContactShadow, createFarBody, createLeds, createRays, createGroundPatches]);
+
+export class RobotInstances {
+  /** @param {{ fine: boolean }} how */
+  constructor({ fine }) {
+    this.fine = fine;
+    this.group = new THREE.Group();
+    this.capacity = 0;
+    /** @type {Piece[]} */ this.pieces = [];
+    /** @type {DrawnRobot[]} */ this.shown = [];
+  }
+
+  /** Show exactly these robots. @param {DrawnRobot[]} robots */
+  update(robots) {
+    if (robots.length > this.capacity) this.#grow(robots.length);
+    robots.forEach(({ look, frame }, slot) => {
+      const before = this.shown[slot] ?? null;
+      const same = before !== null && isSame(before.look, look);
+      if (same && before.frame.equals(frame)) return;
+      for (const { parts, show } of this.pieces) {
+        if (!same) show(slot, look, before?.look ?? null);
+        for (const part of parts) part.place(slot, frame);
+      }
+      this.shown[slot] = { look, frame: frame.clone() };
+    });
+    if (this.shown.length > robots.length) this.shown.length = robots.length;
+    for (const { parts } of this.pieces) for (const part of parts) part.show(robots.length);
+  }
+
+  /** Allocate slots for twice the current number of robots. @param {number} robots */
+  #grow(robots) {
+    this.dispose();
+    this.capacity = robots === 1 ? 1 : 2 * robots;
+    const capacity = { robots: this.capacity, fine: this.fine };
+    this.pieces = (this.fine ? FINE : COARSE).map((create) => create(capacity));
+    for (const { parts } of this.pieces) this.group.add(...parts.map(({ mesh }) => mesh));
+  }
+
+  dispose() {
+    for (const { parts, dispose } of this.pieces) {
+      for (const part of parts) part.dispose();
+      dispose?.();
+    }
+    this.group.clear();
+    this.pieces = [];
+    this.shown = [];
+  }
+}
+
+/** @param {Look} one @param {Look} other */
+function isSame(one, other) {
+  return one.robot === other.robot && one.hovered === other.hovered && one.sensing === other.sensing;
+}

@@ -1,8 +1,0 @@
-// A colour for each robot, the same in its tab, at its name and in the view from above. Never the only sign.
-
-const COLOURS = ["#1259b8", "#b3201a", "#14703c", "#8a4b00", "#7a2fa8", "#0b6f7c", "#a3246b", "#4d5d70"];
-
-/** @param {readonly string[]} names  of all robots @param {string} name */
-export function robotColour(names, name) {
-  return COLOURS[Math.max(0, names.indexOf(name)) % COLOURS.length];
-}
