@@ -19,6 +19,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Protocol, TypeVar
 
+from thymio_sim_ros.errors import ThymioSimError
+
 __all__ = ["RegistryError", "collect", "folders", "forget", "own_names"]
 
 PREFIX = "thymio_sim_ros"
@@ -38,7 +40,7 @@ class Named(Protocol):
 T = TypeVar("T", bound=Named)
 
 
-class RegistryError(Exception):
+class RegistryError(ThymioSimError):
     """A module of a plug-in folder exports nothing, or something of the wrong kind."""
 
     def __init__(self, module: str, export: str, found: str) -> None:

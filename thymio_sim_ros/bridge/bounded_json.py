@@ -12,13 +12,15 @@ from collections.abc import Callable
 from json.decoder import scanstring  # type: ignore[attr-defined]  # not in typeshed
 from typing import Any
 
+from thymio_sim_ros.errors import ThymioSimError
+
 __all__ = ["MAX_STRUCTURE", "TooMuchStructureError", "loads"]
 
 MAX_STRUCTURE = 128 << 10
 """Characters outside of strings, quotes included: some 4000 subscriptions in one message."""
 
 
-class TooMuchStructureError(ValueError):
+class TooMuchStructureError(ThymioSimError, ValueError):
     """More than `MAX_STRUCTURE` characters outside of strings."""
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from thymio_sim_ros.errors import ThymioSimError
+
 __all__ = ["BridgeError", "FrameError"]
 
 
-class BridgeError(Exception):
+class BridgeError(ThymioSimError):
     """Base of the bridge's errors."""
 
 

@@ -32,6 +32,7 @@ from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import ProgramError
 from thymio_sim_ros.device.programs.program_assignment import Share
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_shares
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
@@ -58,7 +59,7 @@ USAGE_ERROR, DIFFERENT, FAULTY = 2, 1, 1
 ROS_ARGS = "--ros-args"
 
 
-class UsageError(Exception):
+class UsageError(ThymioSimError):
     """Something the user asked for cannot be done; the text is one line."""
 
 

@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 import thymio_sim_ros
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.runlog import command_codec
 from thymio_sim_ros.runlog.command_codec import CommandJsonError
 from thymio_sim_ros.sim.input_recorder import Input, Posted, Removed, Reset, Spawned, WorldOptions
@@ -47,7 +48,7 @@ _WRONG = (ValueError, KeyError, TypeError, RecursionError, FieldError, Playgroun
 _DIGITS = 8
 
 
-class RunLogError(Exception):
+class RunLogError(ThymioSimError):
     """A log that cannot be read: file and line, what was found there, what was expected."""
 
     def __init__(self, path: str, line: int, problem: str) -> None:

@@ -19,6 +19,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from thymio_sim_ros.device.firmware import wav
+from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = ["Card", "CardError", "SoundFile"]
 
@@ -33,7 +34,7 @@ SoundFile = tuple[bytes, str]
 """Unsigned 8 bit samples, and what is wrong with the file's format, if anything."""
 
 
-class CardError(Exception):
+class CardError(ThymioSimError):
     """A folder that cannot stand for a card; the text is one line."""
 
 

@@ -9,6 +9,7 @@ import json
 from pathlib import Path
 
 from aseba_vm.cli.output import rewrite_file
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.audio.synthesis import VOLUME_OFF
 from thymio_sim_ros.sim.commands import MotorTargets
 
@@ -31,7 +32,7 @@ _MOST_TARGET = 1000
 INT16 = range(-0x8000, 0x8000)
 
 
-class SettingsError(Exception):
+class SettingsError(ThymioSimError):
     """A file that cannot hold settings; the text is one line."""
 
 

@@ -11,6 +11,7 @@ from aseba_vm.aesl.network import Selection, is_other_device, with_vpl_events
 from aseba_vm.aesl.network import select as select_nodes
 from aseba_vm.messages import MESSAGES, wording
 from thymio_sim_ros.device.layout import THYMIO, target
+from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = [
     "ProgramError",
@@ -28,7 +29,7 @@ __all__ = [
 NO_CONSTANTS: Mapping[str, int] = MappingProxyType({})
 
 
-class ProgramError(Exception):
+class ProgramError(ThymioSimError):
     """A program that is refused: file, line and column from 1 (None where there is no place), message."""
 
     def __init__(self, name: str, line: int | None, column: int | None, message: str) -> None:

@@ -19,6 +19,7 @@ from rclpy.validate_full_topic_name import validate_full_topic_name
 from thymio_sim_ros.bridge.constants import JSON, StatusLevel
 from thymio_sim_ros.bridge.events import Command, Tell
 from thymio_sim_ros.bridge.messages import ClientChannel, Status
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.foxglove import json_messages
 from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_parts
@@ -37,7 +38,7 @@ They leave as far apart as they came: a button that is pressed and let go meanwh
 _MOTION_TYPES = frozenset(f"geometry_msgs/msg/{name}" for name in ("Twist", "TwistStamped"))
 
 
-class _RefusalError(Exception):
+class _RefusalError(ThymioSimError):
     """Why a client's channel or message is not accepted; the text is for its user."""
 
 

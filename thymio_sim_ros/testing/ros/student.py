@@ -23,6 +23,8 @@ from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecu
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from thymio_sim_ros.errors import ThymioSimError
+
 __all__ = ["StudentError", "load_class", "nobody_spins", "remap_arguments", "start"]
 
 _SPINS = ("spin", "spin_once", "spin_until_future_complete")
@@ -33,7 +35,7 @@ _SPUN = (
 _TURNS = (*_SPINS, "spin_once_until_future_complete")
 
 
-class StudentError(Exception):
+class StudentError(ThymioSimError):
     """What was handed in is no node that can be started; the text says what is missing."""
 
 
