@@ -9,10 +9,10 @@ from thymio_sim_ros import resources
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground import writer
 
-__all__ = ["Gallery"]
+__all__ = ["PlaygroundIndex"]
 
 
-class Gallery:
+class PlaygroundIndex:
     """Texts by name, each made once for each version of its file. Several threads may ask."""
 
     def __init__(self) -> None:

@@ -21,7 +21,7 @@ from typing import Protocol, TypeVar
 
 from thymio_sim_ros.errors import ThymioSimError
 
-__all__ = ["RegistryError", "collect", "folders", "forget", "own_names"]
+__all__ = ["RegistryError", "clear_cache", "collect", "folders", "own_names"]
 
 PREFIX = "thymio_sim_ros"
 NAME = re.compile(r"[a-z](_?[a-z0-9])*")
@@ -71,7 +71,7 @@ def collect(
         if not isinstance(plugin, kind):
             raise RegistryError(module.__name__, f"{export} of type {kind.__name__}", type(plugin).__name__)
         found[plugin.name] = plugin
-    for plugin in _added(f"{PREFIX}.{package.__name__.rpartition('.')[2]}", export, kind, tuple(found), check):
+    for plugin in _external(f"{PREFIX}.{package.__name__.rpartition('.')[2]}", export, kind, tuple(found), check):
         found[plugin.name] = guard(plugin)
     return tuple(found[name] for name in sorted(found))
 
@@ -91,18 +91,18 @@ def folders(group: str) -> tuple[Path, ...]:
             module = entry.load()
             found.extend(Path(folder) for folder in module.__path__)
         except Exception as error:
-            _name(entry, error)
+            _log_skipped(entry, error)
     return tuple(found)
 
 
-def forget() -> None:
+def clear_cache() -> None:
     """Look for the plug-ins of other packages anew the next time."""
     folders.cache_clear()
-    _added.cache_clear()
+    _external.cache_clear()
 
 
 @functools.cache
-def _added(
+def _external(
     group: str, export: str, kind: type[T], taken: tuple[str, ...], check: Callable[[T], object]
 ) -> tuple[T, ...]:
     """What other packages add to a group, whole and by names that are not taken."""
@@ -119,7 +119,7 @@ def _added(
                 raise RegistryError(entry.value, "a name of its own", f"'{plugin.name}', which exists")
             check(plugin)
         except Exception as error:
-            _name(entry, error)
+            _log_skipped(entry, error)
         else:
             found[plugin.name] = plugin
     return tuple(found.values())
@@ -129,7 +129,7 @@ def _entries(group: str) -> list[importlib.metadata.EntryPoint]:
     return sorted(importlib.metadata.entry_points(group=group), key=lambda entry: (entry.name, entry.value))
 
 
-def _name(entry: importlib.metadata.EntryPoint, error: Exception) -> None:
+def _log_skipped(entry: importlib.metadata.EntryPoint, error: Exception) -> None:
     """Tell which plug-in is left out; whatever its code raises, the others go on."""
     package = entry.dist.name if entry.dist is not None else "?"
     logging.getLogger(__name__).warning(

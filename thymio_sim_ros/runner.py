@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
-from thymio_sim_ros.device.firmware.behavior_host import BehaviourHost
+from thymio_sim_ros.device.firmware.behavior_host import BehaviorHost
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.runlog.run_log import RunLog
@@ -27,7 +27,7 @@ __all__ = ["Runner"]
 BUDGET = 5000
 """Instructions of a device per round of a tick; a handler that needs more goes on in the next."""
 
-MOST_ROUNDS = 10
+MAX_ROUNDS = 10
 """Times per tick that robots may answer each other's events; what is left goes on in the next tick."""
 
 _SECOND_NS = 1_000_000_000
@@ -55,7 +55,7 @@ class Runner:
         """One program for all robots, or one by robot's name; KeyError for a name that is not there.
 
         With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu.
-        CardError, SettingsError: a folder of the options cannot be used. A `log` follows the world from the start.
+        SdCardError, SettingsError: a folder of the options cannot be used. A `log` follows the world from the start.
         """
         self.world = World(playground, seed=seed, noise=noise, motor_model=motor_model, proximity_model=proximity_model)
         if log is not None:
@@ -68,7 +68,7 @@ class Runner:
         self.devices = {
             name: AsebaDevice(node_id=numbers[name], options=options.for_robot(name, alone=alone)) for name in wanted
         }
-        self.hosts = {name: BehaviourHost(device) for name, device in self.devices.items()}
+        self.hosts = {name: BehaviorHost(device) for name, device in self.devices.items()}
         for name, host in self.hosts.items():
             program = (programs or {}).get(name)
             if behaviour:
@@ -77,7 +77,7 @@ class Runner:
                 host.load(program)
         self._bound = frozenset(bindings.sensor_names())
         self.emitted: list[tuple[str, EmittedEvent]] = []
-        self._here: dict[str, AsebaDevice] = {}
+        self._present: dict[str, AsebaDevice] = {}
         """Devices of the robots that are in the world; the others rest."""
         self._start()
 
@@ -89,8 +89,8 @@ class Runner:
     def step(self) -> StepResult:
         """One tick of the world, and what the programs make of it."""
         result = self.world.step()
-        self._look_who_is_here()
-        bound, devices = self._bound, self._here
+        self._update_present_devices()
+        bound, devices = self._bound, self._present
         for robot, sensor, reading in result.readings:
             if sensor in bound and robot in devices:
                 devices[robot].feed(sensor, reading.words)
@@ -129,7 +129,7 @@ class Runner:
     def load(self, robot: str, program: ThymioProgram) -> None:
         """Give a robot that has a device another program, which begins now; KeyError: it has none."""
         self.hosts[robot].load(program)
-        self._look_who_is_here()
+        self._update_present_devices()
         self._run_devices()
 
     def reset(self) -> None:
@@ -140,43 +140,43 @@ class Runner:
         self._start()
 
     def _start(self) -> None:
-        self._here = dict(self.devices)
-        for device in self._here.values():
+        self._present = dict(self.devices)
+        for device in self._present.values():
             device.advance(self.now_ns)
         self._run_devices()
 
-    def _look_who_is_here(self) -> None:
+    def _update_present_devices(self) -> None:
         """Robots come and go; one that is back begins anew."""
         robots = self.world.robots
-        if len(self._here) == len(self.devices) and self.devices.keys() <= robots.keys():
+        if len(self._present) == len(self.devices) and self.devices.keys() <= robots.keys():
             return
-        here = {name: device for name, device in self.devices.items() if name in robots}
-        for name in here:
-            if name not in self._here:
+        present = {name: device for name, device in self.devices.items() if name in robots}
+        for name in present:
+            if name not in self._present:
                 self.hosts[name].restart()
-        self._here = here
+        self._present = present
 
     def _run_devices(self) -> None:
         self.emitted.clear()
-        for _ in range(MOST_ROUNDS):
-            for device in self._here.values():
+        for _ in range(MAX_ROUNDS):
+            for device in self._present.values():
                 device.run(BUDGET)
-            speakers = [name for name, device in self._here.items() if device.has_emitted]
-            if sum(self._pass_on(name, self.hosts[name]) for name in speakers) == 0:
+            senders = [name for name, device in self._present.items() if device.has_emitted]
+            if sum(self._forward_events(name, self.hosts[name]) for name in senders) == 0:
                 break
-        for name, device in self._here.items():
-            for command in device.take_commands():
+        for name, device in self._present.items():
+            for command in device.pop_commands():
                 self.world.post(name, command)
 
-    def _pass_on(self, name: str, sender: BehaviourHost) -> int:
+    def _forward_events(self, name: str, sender: BehaviorHost) -> int:
         """Let the others hear what a device emitted, or change its program; how many have something new to do."""
         running = sender.program
-        events = sender.take_events()
-        heard = int(sender.program is not running)
+        events = sender.pop_events()
+        woken = int(sender.program is not running)
         for event in events:
             self.emitted.append((name, event))
-            for device in self._here.values():
-                if device is not sender.device and device.hears(sender.device) and device.declares(event.name):
+            for device in self._present.values():
+                if device is not sender.device and device.receives_from(sender.device) and device.declares(event.name):
                     device.receive_event(event.name, event.args, source=sender.device.node_id)
-                    heard += 1
-        return heard
+                    woken += 1
+        return woken

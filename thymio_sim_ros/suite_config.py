@@ -16,7 +16,7 @@ ADDRESS = "localhost"
 
 
 @dataclass(frozen=True)
-class Suite:
+class SuiteConfig:
     """One start of simulator, Aseba runtime, Foxglove bridge and page.
 
     `playground`: shipped name, path or JSON text; `program`: behaviour or path; `behaviour`: what the robot is

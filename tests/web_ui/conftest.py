@@ -54,7 +54,7 @@ class Suites:
         self._running.append(Process(self._folder, "thymio_sim_ros.cli.main", *command))
         return f"http://127.0.0.1:{port}/"
 
-    def end(self) -> None:
+    def evict(self) -> None:
         """End all that run."""
         while self._running:
             self._running.pop().end()

@@ -1,4 +1,4 @@
-"""What can go wrong at the bridge's border."""
+"""Exceptions of the bridge."""
 
 from __future__ import annotations
 

@@ -36,9 +36,9 @@ def run(argv: Sequence[str]) -> int:
     try:
         _, playground = load_playground(options.file)
     except (PlaygroundError, resources.ResourceError, OSError) as error:
-        return _say(str(error), REFUSED)
+        return _print_error(str(error), REFUSED)
     for note in playground.notes:
-        _say(f"{options.file}: {note}", 0)
+        _print_error(f"{options.file}: {note}", 0)
     if options.strict and playground.notes:
         return INCOMPLETE
     return _write(dumps(playground), options.output)
@@ -54,11 +54,13 @@ def _write(text: str, output: Path | None) -> int:
     except BrokenPipeError:
         raise
     except OSError as error:
-        return _say(f"{output or 'standard output'}: {error.strerror}; expected a file that can be written", REFUSED)
+        return _print_error(
+            f"{output or 'standard output'}: {error.strerror}; expected a file that can be written", REFUSED
+        )
     return 0
 
 
-def _say(text: str, code: int) -> int:
+def _print_error(text: str, code: int) -> int:
     print(f"thymio-sim convert: {text}", file=sys.stderr)
     return code
 

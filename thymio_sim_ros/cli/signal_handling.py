@@ -7,21 +7,21 @@ from collections.abc import Iterable, Iterator
 from types import FrameType, TracebackType
 from typing import Self, TypeVar
 
-__all__ = ["Interruption"]
+__all__ = ["StopSignal"]
 
 Step = TypeVar("Step")
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-class Interruption:
+class StopSignal:
     """Meanwhile the first SIGINT or SIGTERM is noted and does nothing else; the next one does what it did before."""
 
     def __init__(self) -> None:
         self.number: int | None = None
         """The signal that came."""
 
-    def heeded(self, steps: Iterable[Step]) -> Iterator[Step]:
+    def until_signal(self, steps: Iterable[Step]) -> Iterator[Step]:
         """These steps, as far as the one during which a signal came."""
         for step in steps:
             yield step

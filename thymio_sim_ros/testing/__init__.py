@@ -1,4 +1,4 @@
-"""What teachers' tests are made of: robots in a simulated world, what they did, and checks of it (docs/testing.md).
+"""What teachers' tests are made of: robots in a simulated world, what they did, and checks of it (docs/grading.md).
 
 The fixtures are in `thymio_sim_ros.pytest_plugin`; what needs ROS is in `thymio_sim_ros.testing.ros`.
 """

@@ -71,13 +71,13 @@ def reached(
     def judge() -> tuple[bool, str]:
         here = thymio.pose
         distance = math.hypot(here.x_m - x, here.y_m - y)
-        said = f"{thymio.name} is at ({here.x_m:.3f}, {here.y_m:.3f}), {distance:.3f} m from ({x:g}, {y:g})"
+        text = f"{thymio.name} is at ({here.x_m:.3f}, {here.y_m:.3f}), {distance:.3f} m from ({x:g}, {y:g})"
         holds, wanted = distance <= tolerance, f"expected at most {tolerance:g} m"
         if yaw:
             turn = abs(wrap_angle(here.yaw_rad - yaw[0]))
-            said += f", and turned {math.degrees(turn):.0f}° away from {math.degrees(yaw[0]):.0f}°"
+            text += f", and turned {math.degrees(turn):.0f}° away from {math.degrees(yaw[0]):.0f}°"
             holds, wanted = holds and turn <= yaw_tolerance, f"{wanted} and {math.degrees(yaw_tolerance):.0f}°"
-        return holds, f"{said}: {wanted}"
+        return holds, f"{text}: {wanted}"
 
     return Check(judge)
 
@@ -89,9 +89,9 @@ def no_contact(thymio: Thymio, *, since: float = 0.0) -> Check:
         touches = [touch for touch in thymio.touches if touch.at_s >= since]
         if not touches:
             return True, f"{thymio.name} touched nothing"
-        told = ", ".join(f"{touch.other} at {touch.at_s:.2f} s" for touch in touches[:3])
+        text = ", ".join(f"{touch.other} at {touch.at_s:.2f} s" for touch in touches[:3])
         more = f" and {len(touches) - 3} times more" if len(touches) > 3 else ""
-        return False, f"{thymio.name} touched {told}{more}: expected no contact"
+        return False, f"{thymio.name} touched {text}{more}: expected no contact"
 
     return Check(judge)
 
@@ -107,8 +107,8 @@ def emitted(
         wanted = "at least once" if times is None else f"{times} times"
         what = event if args is None else f"{event} {list(args)}"
         last = ", ".join(f"{seen.name} {list(seen.args)} at {seen.at_s:.2f} s" for seen in events[-3:])
-        told = f"{thymio.name} emitted {what} {count} times; last of {len(events)} events: {last or 'none'}"
-        return (count > 0 if times is None else count == times), f"{told}: expected {wanted}"
+        text = f"{thymio.name} emitted {what} {count} times; last of {len(events)} events: {last or 'none'}"
+        return (count > 0 if times is None else count == times), f"{text}: expected {wanted}"
 
     return Check(judge)
 
@@ -141,7 +141,7 @@ def slower_than(thymio: Thymio, speed_m_s: float, *, since: float = 0.0) -> Chec
         fastest = max(thymio.record.since(since), key=lambda moment: abs(moment.speed_m_s), default=None)
         if fastest is None:
             return True, f"{thymio.name} has not been seen"
-        told = f"{thymio.name} drove {fastest.speed_m_s:.3f} m/s at {fastest.at_s:.2f} s"
-        return abs(fastest.speed_m_s) <= speed_m_s, f"{told}: expected at most {speed_m_s:g} m/s"
+        text = f"{thymio.name} drove {fastest.speed_m_s:.3f} m/s at {fastest.at_s:.2f} s"
+        return abs(fastest.speed_m_s) <= speed_m_s, f"{text}: expected at most {speed_m_s:g} m/s"
 
     return Check(judge)

@@ -16,17 +16,17 @@ from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.world import World
-from thymio_sim_ros.testing.failure_messages import told
+from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.report import robot_lines
 from thymio_sim_ros.testing.sources import playground_of, program_of
-from thymio_sim_ros.testing.thymio import Machine, Thymio
+from thymio_sim_ros.testing.thymio import RobotMachine, Thymio
 
 __all__ = ["Classroom"]
 
 
 @dataclass(frozen=True, slots=True)
-class _Machine:
+class _ClassroomMachine:
     device: AsebaDevice
     program: ThymioProgram
 
@@ -60,7 +60,7 @@ class Classroom:
             own = dict.fromkeys(names, program_of(programs, folder))
         self.runner = Runner(loaded, own, seed=seed, noise=noise)
         self.robots: Mapping[str, Thymio] = {name: Thymio(name, self) for name in names}
-        self._hear()
+        self._record_events()
 
     def __getitem__(self, robot: str) -> Thymio:
         """A robot by its name; KeyError names those there are."""
@@ -92,11 +92,11 @@ class Classroom:
     def tick(self) -> None:
         """Let 10 ms pass."""
         self.runner.step()
-        self._hear()
+        self._record_events()
         for name, thymio in self.robots.items():
             robot = self.world.robots.get(name)
             if robot is not None:
-                thymio.record.look(robot, self.runner.now_ns)
+                thymio.record.add_tick(robot, self.runner.now_ns)
 
     def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
         """Let time pass until the condition is true, at most so many simulated seconds; returns its value.
@@ -107,7 +107,7 @@ class Classroom:
         end_ns = self.runner.now_ns + round(seconds * SECOND_NS)
         while not (value := condition()):
             if self.runner.now_ns >= end_ns:
-                head = f"not within {seconds:g} simulated s: {what or told(condition)}"
+                head = f"not within {seconds:g} simulated s: {what or describe_condition(condition)}"
                 pytest.fail("\n".join([head, *robot_lines(self)]))
             self.tick()
         return value
@@ -117,17 +117,17 @@ class Classroom:
         self.runner.reset()
         for thymio in self:
             thymio.record.clear()
-        self._hear()
+        self._record_events()
 
-    def machine(self, robot: str) -> Machine:
+    def machine(self, robot: str) -> RobotMachine:
         """The machine of a robot."""
         host = self.runner.hosts[robot]
-        return _Machine(host.device, host.program)
+        return _ClassroomMachine(host.device, host.program)
 
     def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
         """Give a robot a program, which begins at once."""
         self.runner.load(robot, program_of(program, self._folder))
-        self._hear()
+        self._record_events()
 
     def emit(self, event: str, args: Sequence[int]) -> None:
         """Let every robot whose program declares the event hear it in the next tick; LookupError when there is none."""
@@ -138,9 +138,9 @@ class Classroom:
         for device in listeners:
             device.receive_event(event, args)
 
-    def _hear(self) -> None:
+    def _record_events(self) -> None:
         for name, event in self.runner.emitted:
-            self.robots[name].record.hear(event.name, event.args, self.runner.now_ns)
+            self.robots[name].record.add_event(event.name, event.args, self.runner.now_ns)
 
 
 def _check_robot(name: str, names: Sequence[str]) -> None:

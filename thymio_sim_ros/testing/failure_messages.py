@@ -8,12 +8,12 @@ import textwrap
 from collections.abc import Callable
 from typing import Any
 
-__all__ = ["counted", "told"]
+__all__ = ["describe_condition", "pluralized"]
 
 _LONGEST = 160
 
 
-def told(condition: Callable[[], Any]) -> str:
+def describe_condition(condition: Callable[[], Any]) -> str:
     """A check in its own words, a lambda as it is written, any other function by its name."""
     code = getattr(condition, "__code__", None)
     if code is None:
@@ -24,7 +24,7 @@ def told(condition: Callable[[], Any]) -> str:
     return textwrap.shorten(_lambda(condition, line) or f"the lambda of line {line}", _LONGEST)
 
 
-def counted(number: int, noun: str) -> str:
+def pluralized(number: int, noun: str) -> str:
     """So many of them, in words."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 

@@ -51,7 +51,7 @@ class Record:
         """How many times the past was forgotten."""
         self._touching: frozenset[str] = frozenset()
 
-    def look(self, robot: Robot, now_ns: int) -> None:
+    def add_tick(self, robot: Robot, now_ns: int) -> None:
         """Note how the robot is now, after a tick."""
         at_s, twist = self._at_s(now_ns), robot.twist
         self.moments.append(Moment(at_s, robot.pose, twist.linear_m_s, twist.angular_rad_s))
@@ -60,7 +60,7 @@ class Record:
             self.touches += [Touch(at_s, other) for other in sorted(touching - self._touching)]
             self._touching = touching
 
-    def hear(self, name: str, args: Sequence[int], now_ns: int) -> None:
+    def add_event(self, name: str, args: Sequence[int], now_ns: int) -> None:
         """Note an event that the program emitted."""
         self.events.append(Event(self._at_s(now_ns), name, tuple(args)))
 

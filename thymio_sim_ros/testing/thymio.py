@@ -30,10 +30,10 @@ from thymio_sim_ros.sim.model.primitives import Stroke
 from thymio_sim_ros.sim.world import World
 from thymio_sim_ros.testing.record import Event, Moment, Record, Touch
 
-__all__ = ["Machine", "Stage", "Thymio"]
+__all__ = ["RobotMachine", "Stage", "Thymio"]
 
 
-class Machine(Protocol):
+class RobotMachine(Protocol):
     """A robot's Aseba machine and the program that it runs."""
 
     @property
@@ -58,7 +58,7 @@ class Stage(Protocol):
     def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
         """Let simulated time pass until a condition is true."""
 
-    def machine(self, robot: str) -> Machine | None:
+    def machine(self, robot: str) -> RobotMachine | None:
         """The machine of a robot, or None where it has none."""
 
     def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
@@ -233,7 +233,7 @@ class Thymio:
             raise ValueError(f"no button '{button}': expected one of {', '.join(BUTTONS)}")
         self.post(PressButton(button, pressed))
 
-    def _machine(self) -> Machine:
+    def _machine(self) -> RobotMachine:
         machine = self.stage.machine(self.name)
         if machine is None:
             raise LookupError(f"no Aseba machine runs for {self.name}: start one with the fixture `runtime`")

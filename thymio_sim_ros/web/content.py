@@ -12,7 +12,7 @@ import urllib.parse
 from dataclasses import dataclass
 from pathlib import Path
 
-from thymio_sim_ros.playground_index import Gallery
+from thymio_sim_ros.playground_index import PlaygroundIndex
 
 __all__ = ["TYPES", "Content", "Document"]
 
@@ -55,7 +55,7 @@ class Content:
         """`folder` is None where the page has not been built."""
         self._folder = None if folder is None else folder.resolve()
         self._config = _document(config, ".json")
-        self._gallery = Gallery()
+        self._index = PlaygroundIndex()
         self._files: dict[Path, tuple[tuple[int, int], Document]] = {}
         self._playgrounds: dict[str, tuple[bytes, Document]] = {}
 
@@ -79,7 +79,7 @@ class Content:
         return self._file(names or ("index.html",))
 
     def _playground(self, name: str) -> Document | None:
-        text = self._gallery.text(name)
+        text = self._index.text(name)
         if text is None:
             return None
         known = self._playgrounds.get(name)

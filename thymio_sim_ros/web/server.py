@@ -20,7 +20,7 @@ from aiohttp import web
 
 from thymio_sim_ros.resources import PAGE_BUILD_HINT
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
-from thymio_sim_ros.web.connections import Connections, Phase, Place
+from thymio_sim_ros.web.connections import Connections, ConnectionSlot, Phase
 from thymio_sim_ros.web.content import TYPES, Content, Document
 from thymio_sim_ros.web.settings import Settings
 
@@ -61,11 +61,11 @@ class _Connection(web.RequestHandler):
     """A connection that knows its place among the others; aiohttp has no limit for a first or a slow request."""
 
     def __init__(
-        self, server: web.Server, connections: Connections, place: Place, report: Report, **options: Any
+        self, server: web.Server, connections: Connections, slot: ConnectionSlot, report: Report, **options: Any
     ) -> None:
         super().__init__(server, **options)
         self._connections = connections
-        self._place = place
+        self._slot = slot
         self._report = report
         self._ahead = 0
 
@@ -73,47 +73,47 @@ class _Connection(web.RequestHandler):
         """The connection is there."""
         plain = cast(asyncio.Transport, transport)
         descriptor = plain.get_extra_info("socket").fileno()
-        self._place.close = plain.abort
-        self._place.has_news = lambda: _is_ready(
-            descriptor, select.POLLOUT if self._place.phase is Phase.STALLED else select.POLLIN
+        self._slot.close = plain.abort
+        self._slot.has_pending_io = lambda: _is_ready(
+            descriptor, select.POLLOUT if self._slot.phase is Phase.STALLED else select.POLLIN
         )
         super().connection_made(transport)
 
     def connection_lost(self, exc: BaseException | None) -> None:
         """Give the place back."""
-        self._connections.leave(self._place)
+        self._connections.remove(self._slot)
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
         """Pass bytes on, unless there are too many before the answer."""
-        place = self._place
-        if place.phase in (Phase.SILENT, Phase.IDLE):
-            self._connections.enter(place, Phase.READING)
-        elif place.phase is not Phase.READING:
+        slot = self._slot
+        if slot.phase in (Phase.SILENT, Phase.IDLE):
+            self._connections.set_phase(slot, Phase.READING)
+        elif slot.phase is not Phase.READING:
             self._ahead += len(data)
             if self._ahead > MAX_AHEAD:
-                place.close()
+                slot.close()
                 return
         super().data_received(data)
 
     def eof_received(self) -> None:
         """The client sends nothing more: end what waits for it."""
-        if self._place.phase < Phase.STALLED:
+        if self._slot.phase < Phase.STALLED:
             self.force_close()
 
     def pause_writing(self) -> None:
         """The client reads more slowly than it is answered."""
         super().pause_writing()
-        self._connections.enter(self._place, Phase.STALLED)
+        self._connections.set_phase(self._slot, Phase.STALLED)
 
     def resume_writing(self) -> None:
         """The client has read."""
         super().resume_writing()
-        self._connections.enter(self._place, Phase.ANSWERING)
+        self._connections.set_phase(self._slot, Phase.ANSWERING)
 
-    def begin_answer(self) -> None:
+    def start_answer(self) -> None:
         """A request is complete."""
-        self._connections.enter(self._place, Phase.ANSWERING)
+        self._connections.set_phase(self._slot, Phase.ANSWERING)
 
     async def finish_response(self, *arguments: Any, **options: Any) -> Any:
         """Send an answer; afterwards the client may ask again."""
@@ -121,7 +121,7 @@ class _Connection(web.RequestHandler):
             return await super().finish_response(*arguments, **options)
         finally:
             self._ahead = 0
-            self._connections.enter(self._place, Phase.IDLE)
+            self._connections.set_phase(self._slot, Phase.IDLE)
 
     def handle_error(
         self,
@@ -149,7 +149,7 @@ class _Page:
 
     async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
         """The response to a request."""
-        cast(_Connection, request.protocol).begin_answer()
+        cast(_Connection, request.protocol).start_answer()
         host = request.headers.get("Host")
         if host is not None and not self._settings.is_allowed_host(_host_name(host)):
             self._report("host", "refused a page under another name of this computer; see allowed_hosts of web_ui")
@@ -197,7 +197,7 @@ class _Page:
         return response
 
 
-class _Door:
+class _Acceptor:
     """Lets connections in, as long as there are places."""
 
     def __init__(self, server: web.Server, connections: Connections, report: Report, log: logging.Logger) -> None:
@@ -206,7 +206,7 @@ class _Door:
         self._report = report
         self._log = log
 
-    async def keep_open(self, listener: socket) -> None:
+    async def accept_forever(self, listener: socket) -> None:
         """Accept the connections of a listening socket, until it is cancelled."""
         loop = asyncio.get_running_loop()
         listener.setblocking(False)
@@ -222,29 +222,29 @@ class _Door:
             while self._connections.is_full:
                 self._report("full", "there are as many connections as there may be; more have to wait")
                 await self._make_room()
-            place = self._connections.admit(str(peer[0]))
+            slot = self._connections.add(str(peer[0]))
             try:
-                await loop.connect_accepted_socket(partial(self._connection, place), accepted)
+                await loop.connect_accepted_socket(partial(self._connection, slot), accepted)
             except OSError:  # it has left
-                self._connections.leave(place)
+                self._connections.remove(slot)
                 accepted.close()
 
     async def _make_room(self) -> None:
         """End the connection that waits for the longest time, unless the event loop has only not got round to it."""
-        place = self._connections.longest_waiting()
-        if place is None:
+        slot = self._connections.eviction_candidate()
+        if slot is None:
             await asyncio.sleep(_RETRY_S)
             return
-        since_s = place.since_s
+        since_s = slot.since_s
         for _ in range(_TURNS):
             await asyncio.sleep(0)
-        self._connections.end(place, since_s)
+        self._connections.evict(slot, since_s)
 
-    def _connection(self, place: Place) -> _Connection:
+    def _connection(self, slot: ConnectionSlot) -> _Connection:
         return _Connection(
             self._server,
             self._connections,
-            place,
+            slot,
             self._report,
             loop=asyncio.get_running_loop(),
             keepalive_timeout=_NEVER_S,  # `connections` closes what is idle
@@ -267,15 +267,15 @@ async def serve(
         page = _Page(content, settings, report, pool)
         server = web.Server(page.answer)
 
-        door = _Door(server, connections, report, log)
-        doors = [loop.create_task(door.keep_open(listener)) for listener in listeners]
+        acceptor = _Acceptor(server, connections, report, log)
+        tasks = [loop.create_task(acceptor.accept_forever(listener)) for listener in listeners]
         while not stop.is_set():
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(stop.wait(), _SWEEP_S)
             connections.close_overdue()
-        for one in doors:
+        for one in tasks:
             one.cancel()
-        await asyncio.gather(*doors, return_exceptions=True)
+        await asyncio.gather(*tasks, return_exceptions=True)
         await server.shutdown(_CLOSE_S)
 
 

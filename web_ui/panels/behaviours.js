@@ -3,7 +3,7 @@
 import { programOf } from "../state/index.js";
 import { h, lock, setAttribute } from "./dom.js";
 
-/** The colours the robot itself shows in each of them (docs/behaviours.md). */
+/** The colours the robot itself shows in each of them (docs/behaviors.md). */
 export const COLOURS = /** @type {Record<string, string>} */ ({
   friendly: "#12c22f",
   explorer: "#f2d600",

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from thymio_sim_ros.device.firmware.sd_card import Card
+from thymio_sim_ros.device.firmware.sd_card import SdCard
 from thymio_sim_ros.device.firmware.settings import Settings
-from thymio_sim_ros.device.firmware.sound_recorder import Recorder
+from thymio_sim_ros.device.firmware.sound_recorder import SoundRecorder
 from thymio_sim_ros.sim.audio.synthesis import SYSTEM_SOUNDS
 from thymio_sim_ros.sim.commands import (
     Command,
@@ -19,16 +19,16 @@ from thymio_sim_ros.sim.commands import (
     StopSound,
 )
 
-__all__ = ["RESTART", "SWITCH_OFF", "Body"]
+__all__ = ["RESTART", "SWITCH_OFF", "FirmwareServices"]
 
 RESTART, SWITCH_OFF = "restart", "off"
 """What a program may ask of the whole robot."""
 
 Send = Callable[[Command], None]
-Tell = Callable[[str], None]
+Notify = Callable[[str], None]
 
 
-class Body:
+class FirmwareServices:
     """One robot's parts.
 
     `send` takes what they tell the actuators, `tell` sentences for the user; `recalibrate` is called when the motors'
@@ -39,10 +39,10 @@ class Body:
         self,
         node_id: int,
         *,
-        card: Card | None,
+        card: SdCard | None,
         settings: Settings,
         send: Send,
-        tell: Tell,
+        notify: Notify,
         recalibrate: Callable[[], None],
     ) -> None:
         self._first_id = node_id
@@ -51,12 +51,12 @@ class Body:
         """Channel and network of the radio: robots of different ones do not hear each other."""
         self.card = card
         self.settings = settings
-        self.wanted = ""
+        self.requested = ""
         """RESTART or SWITCH_OFF, until the device has done it."""
-        self.tell = tell
+        self.notify = notify
         self._send = send
         self._recalibrate = recalibrate
-        self._recorder: Recorder | None = None
+        self._recorder: SoundRecorder | None = None
         self._now_ns = 0
 
     def reset(self) -> None:
@@ -66,16 +66,16 @@ class Body:
             self.card.close()
         self._send(SetVolume(self.settings.volume_shift))
 
-    def renew(self) -> None:
+    def reinitialize(self) -> None:
         """As for a new robot: unsaved settings and the radio's are forgotten."""
-        self.settings.renew()
+        self.settings.reload()
         self.node_id, self.network = self._first_id, (0, 0)
 
     def advance(self, now_ns: int, intensity: int) -> None:
         """Time has come so far, and the microphone tells this intensity."""
         self._now_ns = now_ns
         if self._recorder is not None:
-            self._recorder.listen(now_ns, intensity)
+            self._recorder.record_until(now_ns, intensity)
 
     def change_setting(self, address: int, value: int) -> None:
         """Put a word into the settings; what it means holds at once."""
@@ -85,9 +85,9 @@ class Body:
 
     def flash_settings(self) -> None:
         """Keep the settings for the next restart."""
-        complaint = self.settings.flash()
-        if complaint:
-            self.tell(complaint)
+        problem = self.settings.flash()
+        if problem:
+            self.notify(problem)
 
     def play_system_sound(self, number: int) -> int:
         """One of the robot's own sounds, or the card's in place of a number that is none; −1 stops. Bytes read."""
@@ -108,14 +108,14 @@ class Body:
         if found is None:
             self._send(StopSound())
         if found is None and number != -1:
-            self.tell(f"there is no {name}{number}.wav on the card" if self.card else f"no card: {name}{number}.wav")
+            self.notify(f"there is no {name}{number}.wav on the card" if self.card else f"no card: {name}{number}.wav")
         return found or 0
 
     def record(self, number: int) -> int:
         """Begin to record; −1 stops and stores. Returns the bytes written."""
         written = self.stop_recording()
         if number >= 0 and self.card is not None:
-            self._recorder = Recorder(number, self._now_ns)
+            self._recorder = SoundRecorder(number, self._now_ns)
         return written
 
     def stop_recording(self) -> int:
@@ -125,14 +125,14 @@ class Body:
             return 0
         samples = recorder.samples
         if not self.card.write_sound(f"r{recorder.number}", samples):
-            self.tell(f"r{recorder.number}.wav cannot be stored on the card")
-            self.tell_full_card()
+            self.notify(f"r{recorder.number}.wav cannot be stored on the card")
+            self.notify_card_full()
         return len(samples)
 
-    def tell_full_card(self) -> None:
+    def notify_card_full(self) -> None:
         """Tell the user if the card has refused a program something as it is full."""
         if self.card is not None and self.card.refusal:
-            self.tell(self.card.refusal)
+            self.notify(self.card.refusal)
 
     def recorded_bytes(self, number: int) -> int:
         """Samples of a record; 0 when there is none."""
@@ -143,8 +143,8 @@ class Body:
         found = self.card.read_sound(name) if self.card is not None else None
         if found is None:
             return None
-        samples, complaint = found
-        if complaint:
-            self.tell(complaint)
+        samples, problem = found
+        if problem:
+            self.notify(problem)
         self._send(PlaySamples(samples))
         return len(samples)

@@ -7,15 +7,15 @@ from __future__ import annotations
 
 from thymio_sim_ros.sim.audio.synthesis import BLOCK_NS, BLOCK_SAMPLES, SILENCE
 
-__all__ = ["Recorder"]
+__all__ = ["SoundRecorder"]
 
 _HALF_PERIOD = 8
 """Samples above and then below the middle: a tone of 488 Hz."""
-MOST_BLOCKS = 10 * 60 * 61
+MAX_BLOCKS = 10 * 60 * 61
 """Ticks in a record, ten minutes; what comes later is lost."""
 
 
-class Recorder:
+class SoundRecorder:
     """A record that is being made. Invariant: it holds every whole tick since the beginning."""
 
     def __init__(self, number: int, now_ns: int) -> None:
@@ -28,11 +28,11 @@ class Recorder:
         """The record so far, unsigned 8 bit."""
         return b"".join(_block(intensity) for intensity in self._blocks)
 
-    def listen(self, now_ns: int, intensity: int) -> None:
+    def record_until(self, now_ns: int, intensity: int) -> None:
         """Time has come so far, and the microphone tells this intensity."""
         while now_ns >= self._next_ns:
             self._next_ns += BLOCK_NS
-            if len(self._blocks) < MOST_BLOCKS:
+            if len(self._blocks) < MAX_BLOCKS:
                 self._blocks.append(max(0, min(255, intensity)))
 
 

@@ -17,7 +17,7 @@ from rclpy.serialization import deserialize_message
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
 from thymio_sim_ros.bridge.constants import JSON, StatusLevel
-from thymio_sim_ros.bridge.events import Command, Tell
+from thymio_sim_ros.bridge.events import Command, SendToClient
 from thymio_sim_ros.bridge.messages import ClientChannel, Status
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat import tf2_messages
@@ -179,7 +179,7 @@ class ClientPublishers:
         return port
 
     def _refuse(self, client: int, text: str) -> None:
-        self._post(Tell(client, Status(StatusLevel.ERROR, text)))
+        self._post(SendToClient(client, Status(StatusLevel.ERROR, text)))
 
 
 def _decode(payload: bytes, encoding: str, port: _Port) -> Any:

@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Callable, Sequence
 from typing import Any, overload
 
-from thymio_sim_ros.testing.failure_messages import counted
+from thymio_sim_ros.testing.failure_messages import pluralized
 
 __all__ = ["Recorder"]
 
@@ -34,7 +34,7 @@ class Recorder(Sequence[Any]):
         self._messages: list[Any] = []
         self._last = ""
 
-    def take(self, message: Any) -> None:
+    def add(self, message: Any) -> None:
         """A message arrives."""
         self._last = self._now()
         if self._where is None or self._where(message):
@@ -77,7 +77,7 @@ class Recorder(Sequence[Any]):
             return f"{self.topic}: nothing arrived"
         last = textwrap.shorten(_PACKAGE.sub("", str(self._messages[-1])), _LONGEST, placeholder=" …")
         when = f" {self._last}" if self._last else ""
-        return f"{self.topic}: {counted(len(self), 'message')}, last{when}: {last}"
+        return f"{self.topic}: {pluralized(len(self), 'message')}, last{when}: {last}"
 
     def __len__(self) -> int:
         return len(self._messages)
