@@ -1,4 +1,4 @@
-"""What a person reads when the suite has started: where to look, from here and from elsewhere."""
+"""The banner printed when the suite has started: addresses for this computer and for others."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _read_only_places(suite: SuiteConfig, tokens: Tokens) -> list[str]:
 
 
 def startup_notice(robots: int) -> str | None:
-    """A line for somebody who has to wait before there is anything to see; None when it is not long."""
+    """A line that announces a long start, or None for a short one."""
     seconds = _HUNDRED_S * (robots / 100) ** 2
     return None if seconds < _LONG_S else f"Start     {robots} robots: this takes about {seconds:.0f} s"
 

@@ -1,4 +1,4 @@
-"""The part of ROS that a process sees: its domain, and which computers."""
+"""The ROS domain and discovery range of a process, as text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The base class of all exceptions of this package: `except ThymioSimError` catches whatever it raises on purpose.
+"""The base class of all exceptions of this package: `except ThymioSimError` catches every error that it raises itself.
 
 Each subpackage defines its own exceptions below it. Where callers expect a built-in exception too, the class has both
 bases (`OptionError(ThymioSimError, ValueError)`). The compiler and the virtual machine are a package of their own with

@@ -1,9 +1,10 @@
-"""Collects plug-ins: what the modules of a folder of ours export, and what other packages offer by entry points.
+"""Collects plug-ins: exports of the modules of a folder of this project, and entry points of other packages.
 
-A package of plug-ins is its own registry (docs/plugins.md): putting a file into the folder adds the plug-in,
-and nothing else has to know. Another package adds to `thymio_sim_ros.sensors`, `.actuators` or `.shapes` by an entry
-point of a group of that name, and whole folders to `.behaviours` and `.playgrounds`. Ours must be whole; one of
-others that is broken is named in the log and left out. Name order makes every walk over a registry repeatable.
+A package of plug-ins is its own registry (docs/plugins.md): a file in the folder is a plug-in, without any
+registration. Another package adds to `thymio_sim_ros.sensors`, `.actuators` or `.shapes` by an entry
+point of a group of that name, and whole folders to `.behaviours` and `.playgrounds`. Errors in plug-ins of
+this project are raised; broken ones of other packages are logged and skipped. Plug-ins are sorted by name, so that the
+order of iteration is repeatable.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ NAME = re.compile(r"[a-z](_?[a-z0-9])*")
 
 
 class Named(Protocol):
-    """What every plug-in has."""
+    """The attribute that every plug-in has."""
 
     @property
     def name(self) -> str:
@@ -96,7 +97,7 @@ def folders(group: str) -> tuple[Path, ...]:
 
 
 def clear_cache() -> None:
-    """Look for the plug-ins of other packages anew the next time."""
+    """Clear the caches, so that plug-ins of other packages are searched again."""
     folders.cache_clear()
     _external.cache_clear()
 
@@ -105,7 +106,7 @@ def clear_cache() -> None:
 def _external(
     group: str, export: str, kind: type[T], taken: tuple[str, ...], check: Callable[[T], object]
 ) -> tuple[T, ...]:
-    """What other packages add to a group, whole and by names that are not taken."""
+    """Valid plug-ins of other packages in a group, without those whose names are in use."""
     found: dict[str, T] = {}
     for entry in _entries(group):
         try:
@@ -130,7 +131,7 @@ def _entries(group: str) -> list[importlib.metadata.EntryPoint]:
 
 
 def _log_skipped(entry: importlib.metadata.EntryPoint, error: Exception) -> None:
-    """Tell which plug-in is left out; whatever its code raises, the others go on."""
+    """Log that a plug-in is skipped; errors of its code do not affect the others."""
     package = entry.dist.name if entry.dist is not None else "?"
     logging.getLogger(__name__).warning(
         "plug-in '%s' of the package %s (%s) is left out: %s: %s",

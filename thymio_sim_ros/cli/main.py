@@ -1,6 +1,6 @@
 """The command `thymio-sim`: start the whole suite, run a program without ROS, replay a run, or convert a playground.
 
-Everything a user can get wrong is checked before anything starts: one line on stderr, exit code 2.
+All input is checked before anything starts; an error is one line on stderr, with exit code 2.
 """
 
 from __future__ import annotations
@@ -42,16 +42,16 @@ from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig
 EXAMPLE = """\
 example:
   thymio-sim --playground obstacle --program my_robot.aesl
-  thymio-sim --behaviour menu                                (the arrows choose, the centre button starts)
-  thymio-sim runner --program my_robot.aesl --seconds 60     (no ROS, as fast as possible)
-  thymio-sim runner --log run.jsonl; thymio-sim replay run.jsonl   (the same again, bit for bit)
-  thymio-sim convert maze.playground -o maze.json            (from Aseba and others; no ROS)
+  thymio-sim --behaviour menu                                (arrows choose, the center button starts)
+  thymio-sim runner --program my_robot.aesl --seconds 60     (without ROS, as fast as possible)
+  thymio-sim runner --log run.jsonl; thymio-sim replay run.jsonl   (repeats the run, bit for bit)
+  thymio-sim convert maze.playground -o maze.json            (from Aseba and others; without ROS)
   thymio-sim foxglove-layout -o thymio.json                  (panels for Foxglove and Lichtblick)
-  thymio-sim --ros-args -r __ns:=/lab1                       (arguments of ROS come last; here a namespace)
+  thymio-sim --ros-args -r __ns:=/lab1                       (ROS arguments come last; here a namespace)
 """
 
 RUNNER_CODES = """\
-exit code: 0 done; 1 a program stopped with a fault, which is told on stderr and in the result; 2 refused
+exit code: 0 done; 1 a program stopped with a fault (reported on stderr and in the result); 2 rejected input
 """
 
 USAGE_ERROR, DIFFERENT, FAULTY = 2, 1, 1
@@ -60,7 +60,7 @@ ROS_ARGS = "--ros-args"
 
 
 class UsageError(ThymioSimError):
-    """Something the user asked for cannot be done; the text is one line."""
+    """A request that cannot be executed; the text is one line."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -77,7 +77,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments = arguments[1:]
     try:
         return command(arguments)
-    except BrokenPipeError:  # who reads has enough, as `head` has
+    except BrokenPipeError:  # the reader has closed the pipe, as `head` does
         return 0
     except OSError as error:
         if error.filename != STANDARD_OUTPUT:
@@ -91,7 +91,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def start_suite(argv: Sequence[str]) -> int:
-    """Simulator, Aseba runtime, Foxglove bridge and page, until Ctrl-C."""
+    """Run simulator, Aseba runtime, Foxglove bridge and page until Ctrl-C."""
     own, of_ros = _split_ros_args(argv)
     options = _suite_parser().parse_args(own)
     suite = SuiteConfig(
@@ -122,7 +122,7 @@ def start_suite(argv: Sequence[str]) -> int:
     _check_ros()
     if (wait := startup_notice(len(robots))) is not None:
         _tell(wait)
-    # A class room's robots stay apart, unless somebody has chosen otherwise (docs/spec/ros-packaging.md section 4).
+    # Robots of a classroom stay separate unless the environment says otherwise (docs/spec/ros-packaging.md section 4).
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     from thymio_sim_ros.ros.compat import shm_cleanup
 
@@ -136,14 +136,14 @@ def start_suite(argv: Sequence[str]) -> int:
 
 
 def _split_ros_args(argv: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Our own arguments, and those of ROS: from `--ros-args` on."""
+    """Split the arguments into those of this command and those of ROS, from `--ros-args` on."""
     words = list(argv)
     place = words.index(ROS_ARGS) if ROS_ARGS in words else len(words)
     return words[:place], words[place:]
 
 
 def run_without_ros(argv: Sequence[str]) -> int:
-    """World and program in lock-step, as fast as possible; prints where the robots are."""
+    """Run world and programs in lock-step, as fast as possible; print the final poses."""
     options = _runner_parser().parse_args(argv)
     device = _device(options)
     playground, shares = _check_files(options.playground, _program(options), options.behaviour, device.layout)

@@ -1,4 +1,4 @@
-"""What programs of a batch run have to say: faults and notices, each told once, as soon as it is there."""
+"""Faults and notices of programs in a headless run; each is reported once, as soon as it occurs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["RunnerFaults"]
 
 
 class RunnerFaults:
-    """Looks at the robots of a runner after each step, and tells lines of text.
+    """Checks the robots of a runner after each step and reports faults and notices as lines of text.
 
     `first` holds the first fault of each robot whose program failed.
     """
@@ -23,7 +23,7 @@ class RunnerFaults:
         self._reported: set[tuple[str, str]] = set()
 
     def checked(self, steps: Iterable[StepResult]) -> Iterator[StepResult]:
-        """These steps, with a look before the first, for initialisations, and after each."""
+        """Yield these steps; check before the first one, for faults of initializations, and after each."""
         self._check()
         for step in steps:
             self._check()

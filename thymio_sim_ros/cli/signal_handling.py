@@ -1,4 +1,4 @@
-"""Ctrl-C, or the end of a batch job's time, while a run goes on: what was made so far is kept."""
+"""Handling of SIGINT and SIGTERM during a headless run: the results so far are kept."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class StopSignal:
-    """Meanwhile the first SIGINT or SIGTERM is noted and does nothing else; the next one does what it did before."""
+    """Context in which the first SIGINT or SIGTERM only sets `number`; a second one has its previous effect."""
 
     def __init__(self) -> None:
         self.number: int | None = None
-        """The signal that came."""
+        """The signal received, or None."""
 
     def until_signal(self, steps: Iterable[Step]) -> Iterator[Step]:
-        """These steps, as far as the one during which a signal came."""
+        """Yield these steps, up to the one during which a signal arrived."""
         for step in steps:
             yield step
             if self.number is not None:

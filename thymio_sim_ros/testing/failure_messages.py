@@ -1,4 +1,4 @@
-"""How a test's condition, and numbers, are told to a person who reads that it did not come true."""
+"""Texts of conditions and counts for failure messages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _LONGEST = 160
 
 
 def describe_condition(condition: Callable[[], Any]) -> str:
-    """A check in its own words, a lambda as it is written, any other function by its name."""
+    """Describe a condition: a check by its text, a lambda by its source, another function by its name."""
     code = getattr(condition, "__code__", None)
     if code is None:
         return repr(condition)
@@ -25,7 +25,7 @@ def describe_condition(condition: Callable[[], Any]) -> str:
 
 
 def pluralized(number: int, noun: str) -> str:
-    """So many of them, in words."""
+    """A count with its noun in singular or plural."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 

@@ -1,4 +1,4 @@
-"""How robots and their programs are, in lines that a person reads after a failure."""
+"""State of robots and programs as lines of failure messages."""
 
 from __future__ import annotations
 

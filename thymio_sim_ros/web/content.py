@@ -1,6 +1,6 @@
-"""What the page's server has to give: a request's path → a document, or nothing.
+"""The documents of the page's server: a request path → a document, or None.
 
-Each document is read and compressed once for each version of its file. Several threads may ask.
+Each document is read and compressed once for each version of its file. Thread-safe.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Content:
 
     @property
     def is_built(self) -> bool:
-        """Whether there is a page."""
+        """Whether the page has been built."""
         return self._folder is not None
 
     def find(self, path: str) -> Document | None:

@@ -34,7 +34,7 @@ BACKLOG = 1024
 SEND_BUFFER = 131_072
 """Bytes that the kernel keeps for a client that does not read; by default these are megabytes."""
 MAX_AHEAD = 65_536
-"""Bytes that a client may send while its request is answered: more requests, or a body nobody reads."""
+"""Bytes that a client may send while its request is answered: further requests, or an unread body."""
 _CLOSE_S = 0.3
 _SWEEP_S = 0.5
 _RETRY_S = 0.02
@@ -58,7 +58,7 @@ _COMMON = {
 
 
 class _Connection(web.RequestHandler):
-    """A connection that knows its place among the others; aiohttp has no limit for a first or a slow request."""
+    """A connection with a slot; aiohttp itself has no limits for missing or slow requests."""
 
     def __init__(
         self, server: web.Server, connections: Connections, slot: ConnectionSlot, report: Report, **options: Any
@@ -80,7 +80,7 @@ class _Connection(web.RequestHandler):
         super().connection_made(transport)
 
     def connection_lost(self, exc: BaseException | None) -> None:
-        """Give the place back."""
+        """Free the slot."""
         self._connections.remove(self._slot)
         super().connection_lost(exc)
 
@@ -107,7 +107,7 @@ class _Connection(web.RequestHandler):
         self._connections.set_phase(self._slot, Phase.STALLED)
 
     def resume_writing(self) -> None:
-        """The client has read."""
+        """The client reads again."""
         super().resume_writing()
         self._connections.set_phase(self._slot, Phase.ANSWERING)
 
@@ -130,7 +130,7 @@ class _Connection(web.RequestHandler):
         exc: BaseException | None = None,
         message: str | None = None,
     ) -> web.StreamResponse:
-        """The answer to what is no request, or to a fault of ours; it repeats nothing of what came."""
+        """The response to an invalid request or an internal error; it quotes nothing of the request."""
         if status >= 500:
             self._report("fault", f"internal error (please report): {exc!r}")
         response = _text(status, "This is not a request that can be answered.")
@@ -198,7 +198,7 @@ class _Page:
 
 
 class _Acceptor:
-    """Lets connections in, as long as there are places."""
+    """Accepts connections while there are slots."""
 
     def __init__(self, server: web.Server, connections: Connections, report: Report, log: logging.Logger) -> None:
         self._server = server
@@ -215,7 +215,7 @@ class _Acceptor:
         while True:
             try:
                 accepted, peer = await loop.sock_accept(listener)
-            except OSError as error:  # no more files; or a client that has left already
+            except OSError as error:  # out of file descriptors, or the client has disconnected
                 self._report("accept", f"connections cannot be accepted: {error.strerror}")
                 await asyncio.sleep(_SWEEP_S)
                 continue
@@ -225,12 +225,12 @@ class _Acceptor:
             slot = self._connections.add(str(peer[0]))
             try:
                 await loop.connect_accepted_socket(partial(self._connection, slot), accepted)
-            except OSError:  # it has left
+            except OSError:  # the client has disconnected
                 self._connections.remove(slot)
                 accepted.close()
 
     async def _make_room(self) -> None:
-        """End the connection that waits for the longest time, unless the event loop has only not got round to it."""
+        """Close the best candidate for eviction, unless it becomes active in the next iterations of the event loop."""
         slot = self._connections.eviction_candidate()
         if slot is None:
             await asyncio.sleep(_RETRY_S)
@@ -257,12 +257,12 @@ class _Acceptor:
 async def serve(
     listeners: Iterable[socket], content: Content, settings: Settings, report: Report, stop: asyncio.Event
 ) -> None:
-    """Serve on listening sockets, which become the server's own, until `stop` is set."""
+    """Serve on listening sockets, owned by the server from now on, until `stop` is set."""
     loop = asyncio.get_running_loop()
     loop.set_exception_handler(lambda _loop, context: report(_kind(context), _sentence(context)))
     connections = Connections(settings.max_connections, loop.time)
     log = logging.getLogger(__name__)
-    log.setLevel(logging.CRITICAL)  # what strangers send is no news; faults of ours come by `report`
+    log.setLevel(logging.CRITICAL)  # invalid requests are not logged; internal errors go to `report`
     with ThreadPoolExecutor(2, "page") as pool:
         page = _Page(content, settings, report, pool)
         server = web.Server(page.answer)

@@ -23,7 +23,7 @@ MAX_ROUNDS = 10
 
 
 class ExecutorTurns:
-    """The executor of one node. One each: a node's turn comes when it was started, not in the order of a set."""
+    """The executor of one node. Each node has its own, so that nodes run in the order in which they were started."""
 
     def __init__(self, node: Node, context: Context) -> None:
         self._node = node
@@ -31,7 +31,7 @@ class ExecutorTurns:
         self._executor.add_node(node)
 
     def run(self) -> None:
-        """Handle what is there for the node, waiting for nothing; what a callback raises is raised here."""
+        """Handle all waiting messages and timers without blocking; exceptions of callbacks are raised here."""
         for _ in range(MAX_ROUNDS):
             may_be_more = self._round()
             if not may_be_more and not any(timer.is_ready() for timer in self._node.timers):
@@ -57,6 +57,6 @@ class ExecutorTurns:
             handler.result()
 
     def shutdown(self) -> None:
-        """Take leave of the node, which may wait for something that never comes."""
+        """Shut the executor down without waiting for unfinished callbacks of the node."""
         self._executor.remove_node(self._node)
         self._executor.shutdown(timeout_sec=0)

@@ -1,4 +1,4 @@
-"""The messages of one topic, as they arrive during a test."""
+"""The messages received on one topic during a test."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ class Recorder(Sequence[Any]):
         self._last = ""
 
     def add(self, message: Any) -> None:
-        """A message arrives."""
+        """Add a received message."""
         self._last = self._now()
         if self._where is None or self._where(message):
             self._messages.append(message)
 
     @property
     def latest(self) -> Any:
-        """The last message; LookupError while there is none."""
+        """The last message. Raises LookupError if there is none."""
         if not self._messages:
             raise LookupError(f"nothing arrived on {self.topic} yet")
         return self._messages[-1]
