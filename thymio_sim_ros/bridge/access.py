@@ -1,7 +1,7 @@
-"""Who may do what: tokens, the roles that they give, and a limit for attempts without one. No sockets in here.
+"""Access control: tokens, their roles, and a limit for attempts with wrong tokens. Without sockets.
 
-A server without a token serves everyone whom its address reaches. Tokens travel in addresses and headers, never in
-messages, parameters or logs, which every client may read.
+A server without a token serves every client that can reach its address. Tokens travel in addresses and headers, never
+in messages, parameters or logs, which every client may read.
 """
 
 from __future__ import annotations

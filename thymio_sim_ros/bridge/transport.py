@@ -1,8 +1,8 @@
 """Connections to which any thread may write.
 
-A message that crosses to the event loop's thread wakes it, and each of the two threads waits for the interpreter the
-other one holds: that costs more than sending (docs/decisions.md). So whoever has a message gives it to the kernel at
-once; only what the kernel does not take is left to the loop.
+Passing a message to the thread of the event loop costs more than sending it, because both threads wait for the
+interpreter lock (docs/decisions.md). The calling thread therefore writes to the socket itself; only bytes that the
+kernel does not accept are left to the loop.
 """
 
 from __future__ import annotations

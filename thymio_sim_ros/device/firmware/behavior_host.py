@@ -1,4 +1,4 @@
-"""Which program a robot runs: the menu, a behaviour chosen in it, or what a computer has loaded.
+"""Selects the program of a robot: the menu, a behavior chosen in it, or a program loaded by a user.
 
 The firmware's menu and behaviours (docs/spec/thymio-behaviors.md section 1) are programs of the folder `behaviours`
 here. One asks for another by an event that stays inside the robot, so that neither other robots nor ROS hear it:
@@ -42,7 +42,7 @@ ENTRIES = {
 """Entry → built-in program: the firmware's numbers up to 8, then what the menu does not show."""
 
 POWER_ON_TICKS = 100
-"""For so long after the robot is switched on, the centre button is not heard."""
+"""Ticks of 20 ms after switching on in which the center button is ignored."""
 
 _PREFIX = "menu."
 _START, _BACK, _OPEN = "menu.start", "menu.back", "menu.open"
@@ -66,7 +66,7 @@ def built_in(name: str, layout: str = THYMIO) -> ThymioProgram:
 
 
 class BehaviorHost:
-    """A device and what decides about its program. Invariant: `program` is what the device runs."""
+    """A device and the selection of its program. Invariant: the device runs `program`."""
 
     def __init__(self, device: AsebaDevice) -> None:
         self.device = device
@@ -77,7 +77,7 @@ class BehaviorHost:
         self._notices: list[str] = []
 
     def load(self, program: ThymioProgram) -> None:
-        """A computer gives a program: whatever runs ends with its wheels stopped, and the program begins."""
+        """Load a user program: stop the current one and the wheels, and start it."""
         self._first = program
         self._user_program = _unless_empty(program)
         self._entry = PROGRAM_ENTRY
@@ -94,7 +94,7 @@ class BehaviorHost:
         self._run(program, warm=False, wait=POWER_ON_TICKS)
 
     def restart(self) -> None:
-        """As `load` or `start` did it, by a robot that is new again."""
+        """Reset the device to a new robot and repeat the last `load` or `start`."""
         self.device.reinitialize()
         self._begin()
 
@@ -107,7 +107,7 @@ class BehaviorHost:
             self._begin()
 
     def pop_events(self) -> list[EmittedEvent]:
-        """What the program emitted since the last time, for others to hear; what it asks of the robot is done."""
+        """Return and clear the emitted events for other robots; execute requests to change the program."""
         events = self.device.pop_events()
         request = next((event for event in events if is_internal(event.name)), None)
         if request is None:
@@ -116,7 +116,7 @@ class BehaviorHost:
         return [event for event in events if not is_internal(event.name)]
 
     def pop_notices(self) -> list[str]:
-        """What the user should know, the device's notices among it."""
+        """Return and clear the notices for the user, including those of the device."""
         notices, self._notices = self._notices, []
         return self.device.pop_notices() + notices
 

@@ -1,7 +1,7 @@
-"""What the robot itself shows while a program runs: its sensors on its lights, a sound for each button.
+"""Indicators of the firmware while a program runs: sensor values on the lights, and a sound for each button.
 
-Rules and numbers: docs/spec/thymio-robot.md section 8.4. They run 50 times a second. A indicator ends when a program
-takes its lights over, and the sounds end when a program uses sound itself; after a reset all begin again.
+Rules and numbers: docs/spec/thymio-robot.md section 8.4. They are updated 50 times per second. An indicator ends when
+a program sets its lights, button sounds end when a program uses sound; a reset starts all of them again.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from thymio_sim_ros.sim.commands import LED_FULL, Command, PlaySystemSound, Show
 __all__ = ["PERIOD_NS", "Indicators"]
 
 PERIOD_NS = 20_000_000
-"""Time between two looks."""
+"""Time between two updates."""
 ARROW_SOUND, CENTER_SOUND = 2, 3
 """System sounds of the buttons (section 9)."""
 

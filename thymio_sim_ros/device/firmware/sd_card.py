@@ -1,9 +1,9 @@
-"""The memory card: a folder that stands for it (docs/spec/thymio-robot.md sections 6.3, 9 and 10).
+"""The memory card, represented by a folder (docs/spec/thymio-robot.md sections 6.3, 9 and 10).
 
 Programs name files by number only: data `uN.dat`; sounds `pN.wav` to play, `rN.wav` recorded, `sN.wav` in place of
 missing system sounds. Names are found in any case, as on the card's file system. Nothing outside the folder is
-read or written, not even where a link in it points. What a program may store is limited, so that one without an end
-cannot fill a disk: beyond `MAX_FILES` and `MAX_BYTES` of the whole folder it gets the robot's answer for a failure.
+read or written, not even where a link in it points. What a program may store is limited, so that an
+endless program cannot fill a disk: beyond `MAX_FILES` and `MAX_BYTES` of the whole folder calls fail as on the robot.
 
 The folder is listed when something but this card has added or removed files (its modification time tells), not for
 every name. No file is open between calls.
@@ -24,9 +24,9 @@ from thymio_sim_ros.errors import ThymioSimError
 __all__ = ["SdCard", "SdCardError", "SoundFile"]
 
 MAX_BYTES = 64_000_000
-"""Bytes of all files on the card; nothing grows beyond."""
+"""Limit of bytes of all files on the card."""
 MAX_FILES = 256
-"""Files on the card; no more are made."""
+"""Limit of files on the card."""
 MAX_SAMPLES = 10 * 60 * 7813
 """Longest sound that is read: ten minutes."""
 
@@ -35,11 +35,11 @@ SoundFile = tuple[bytes, str]
 
 
 class SdCardError(ThymioSimError):
-    """A folder that cannot stand for a card; the text is one line."""
+    """A folder that cannot be used as a card; the text is one line."""
 
 
 class SdCard:
-    """A card in its slot: at most one data file is open, as a place in the folder; nothing is held between calls."""
+    """A card in its slot: at most one data file is selected; no file is open between calls."""
 
     def __init__(self, folder: Path) -> None:
         """SdCardError when the folder cannot be made or is none."""

@@ -1,6 +1,6 @@
-"""The parts of a robot that its firmware itself serves: card, settings, radio, records, the switch.
+"""Services of the firmware: card, settings, radio, sound recording, power switch.
 
-They live as long as the device; a reset of the program closes files, a restart also forgets unsaved settings.
+They exist as long as the device. A reset of the program closes files; a restart also drops unsaved settings.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from thymio_sim_ros.sim.commands import (
 __all__ = ["RESTART", "SWITCH_OFF", "FirmwareServices"]
 
 RESTART, SWITCH_OFF = "restart", "off"
-"""What a program may ask of the whole robot."""
+"""Requests of a program that concern the whole robot."""
 
 Send = Callable[[Command], None]
 Notify = Callable[[str], None]
 
 
 class FirmwareServices:
-    """One robot's parts.
+    """The services of one robot.
 
-    `send` takes what they tell the actuators, `tell` sentences for the user; `recalibrate` is called when the motors'
-    targets may mean something else.
+    `send` receives commands for actuators, `notify` sentences for the user; `recalibrate` is called when the
+    calibration of the motors may have changed.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class FirmwareServices:
         self._first_id = node_id
         self.node_id = node_id
         self.network = (0, 0)
-        """Channel and network of the radio: robots of different ones do not hear each other."""
+        """Channel and network of the radio: robots receive events of their own network only."""
         self.card = card
         self.settings = settings
         self.requested = ""
@@ -60,25 +60,25 @@ class FirmwareServices:
         self._now_ns = 0
 
     def reset(self) -> None:
-        """The program begins anew."""
+        """Reset the services when the program restarts."""
         self.stop_recording()
         if self.card is not None:
             self.card.close()
         self._send(SetVolume(self.settings.volume_shift))
 
     def reinitialize(self) -> None:
-        """As for a new robot: unsaved settings and the radio's are forgotten."""
+        """Return to the state of a new robot: drop unsaved settings and those of the radio."""
         self.settings.reload()
         self.node_id, self.network = self._first_id, (0, 0)
 
     def advance(self, now_ns: int, intensity: int) -> None:
-        """Time has come so far, and the microphone tells this intensity."""
+        """Advance simulated time; `intensity` is the current reading of the microphone."""
         self._now_ns = now_ns
         if self._recorder is not None:
             self._recorder.record_until(now_ns, intensity)
 
     def change_setting(self, address: int, value: int) -> None:
-        """Put a word into the settings; what it means holds at once."""
+        """Change a word of the settings; it takes effect at once."""
         self.settings[address] = value
         self._send(SetVolume(self.settings.volume_shift))
         self._recalibrate()
@@ -90,7 +90,7 @@ class FirmwareServices:
             self.notify(problem)
 
     def play_system_sound(self, number: int) -> int:
-        """One of the robot's own sounds, or the card's in place of a number that is none; −1 stops. Bytes read."""
+        """Play a system sound, or a sound of the card for an unknown number; −1 stops. Returns the bytes read."""
         if number == -1:
             self._send(StopSound())
             return 0
@@ -100,7 +100,7 @@ class FirmwareServices:
         return found or 0
 
     def play(self, name: str, number: int) -> int:
-        """A sound of the card, by the letter of its kind and its number; −1 stops, and so does one that is missing.
+        """Play a sound of the card, by the letter of its kind and its number; −1 or a missing sound stops.
 
         Returns the bytes read.
         """
@@ -112,14 +112,14 @@ class FirmwareServices:
         return found or 0
 
     def record(self, number: int) -> int:
-        """Begin to record; −1 stops and stores. Returns the bytes written."""
+        """Start recording; −1 stops and stores. Returns the bytes written."""
         written = self.stop_recording()
         if number >= 0 and self.card is not None:
             self._recorder = SoundRecorder(number, self._now_ns)
         return written
 
     def stop_recording(self) -> int:
-        """Store what was recorded, if something is being recorded; returns the bytes written."""
+        """Stop and store the current recording, if any; return the bytes written."""
         recorder, self._recorder = self._recorder, None
         if recorder is None or self.card is None:
             return 0
@@ -130,12 +130,12 @@ class FirmwareServices:
         return len(samples)
 
     def notify_card_full(self) -> None:
-        """Tell the user if the card has refused a program something as it is full."""
+        """Notify the user if the last operation failed because the card is full."""
         if self.card is not None and self.card.refusal:
             self.notify(self.card.refusal)
 
     def recorded_bytes(self, number: int) -> int:
-        """Samples of a record; 0 when there is none."""
+        """Samples of a recording; 0 if there is none."""
         return 0 if self.card is None else self.card.sound_bytes(f"r{number}")
 
     def _play_file(self, name: str) -> int | None:

@@ -1,6 +1,6 @@
-"""What `sound.record` stores: the loudness that the microphone told, since a simulated robot has nothing finer.
+"""Recordings of `sound.record`: the intensity of the microphone, because the simulation has no waveform.
 
-For each tick of the sound (128 samples) the record holds a square wave whose swing is `mic.intensity`.
+For each block (128 samples) the recording has a square wave with the amplitude `mic.intensity`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ MAX_BLOCKS = 10 * 60 * 61
 
 
 class SoundRecorder:
-    """A record that is being made. Invariant: it holds every whole tick since the beginning."""
+    """A recording in progress. Invariant: it contains every whole block since its start."""
 
     def __init__(self, number: int, now_ns: int) -> None:
         self.number = number
@@ -25,11 +25,11 @@ class SoundRecorder:
 
     @property
     def samples(self) -> bytes:
-        """The record so far, unsigned 8 bit."""
+        """The samples so far, unsigned 8 bit."""
         return b"".join(_block(intensity) for intensity in self._blocks)
 
     def record_until(self, now_ns: int, intensity: int) -> None:
-        """Time has come so far, and the microphone tells this intensity."""
+        """Record blocks up to this time with the current intensity of the microphone."""
         while now_ns >= self._next_ns:
             self._next_ns += BLOCK_NS
             if len(self._blocks) < MAX_BLOCKS:
