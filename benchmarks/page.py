@@ -1,9 +1,9 @@
 """The page in a real browser: python benchmarks/page.py [--seconds S] [--rounds N] [--robots N] [--size WxH]
 
 Prints what a class waits for and pays for: the first picture of the 3D view, what is loaded before the editor is
-opened, requests to other hosts, and the pictures per second with one robot and with many, each driving a circle of its
-own. Suite, browser and (without a GPU) drawing share the processor, as on a pupil's laptop. Needs Chromium, Playwright
-and ROS.
+opened, requests to other hosts, and the frames per second with one robot and with many, each driving in its own circle.
+The suite, the browser and (without a GPU) the drawing share the processor, as on a pupil's laptop. Needs Chromium,
+Playwright and ROS.
 """
 
 from __future__ import annotations

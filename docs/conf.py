@@ -14,7 +14,15 @@ version = release = re.search(r'"(.+)"', (ROOT / "thymio_sim_ros" / "__init__.py
 
 extensions = ["myst_parser", "autodoc2"]
 root_doc = "docs/index"
-include_patterns = ["docs/*.md", "docs/apidocs/index.rst", "docs/**/*.md", "*.md", "playgrounds/README.md", "tests/README.md", "tests/data/*/README.md"]
+include_patterns = [
+    "docs/*.md",
+    "docs/apidocs/index.rst",
+    "docs/**/*.md",
+    "*.md",
+    "playgrounds/README.md",
+    "tests/README.md",
+    "tests/data/*/README.md",
+]
 exclude_patterns = ["build", ".venv*", "web_ui", "node_modules"]
 html_theme = "furo"
 html_title = project

@@ -58,7 +58,7 @@ def installed(folder: Path, shown: dict[str, str], monkeypatch: pytest.MonkeyPat
 
 def _forget() -> None:
     """Whatever was derived from the plug-ins that there were."""
-    registry.forget()
+    registry.clear_cache()
     for cached in (bindings.sensors, bindings.outputs, bindings.natives, bindings.at_reset, layout.target,
-                   layout.fitting, behavior_host.built_in):  # fmt: skip
+                   layout.compatible_plugins, behavior_host.built_in):  # fmt: skip
         cached.cache_clear()

@@ -14,25 +14,25 @@ import segno
 
 from thymio_sim_ros import banner
 from thymio_sim_ros.bridge import Tokens
-from thymio_sim_ros.domain import described
-from thymio_sim_ros.suite_config import Suite
+from thymio_sim_ros.domain import describe_domain
+from thymio_sim_ros.suite_config import SuiteConfig
 
 
 @pytest.mark.parametrize("address", ["localhost", "127.0.0.1"])
 def test_on_this_computer_only(address):
-    told = banner.greeting(Suite(address=address), ["thymio"]).splitlines()
+    told = banner.banner(SuiteConfig(address=address), ["thymio"]).splitlines()
     assert told[:2] == ["Page      http://localhost:8080/", "Foxglove  ws://localhost:8765"]
 
 
 def test_for_the_whole_network(monkeypatch):
     monkeypatch.setattr(banner, "own_address", lambda: "10.1.2.3")
-    told = banner.greeting(Suite(address="0.0.0.0", port=80, foxglove_port=81), ["thymio"]).splitlines()
+    told = banner.banner(SuiteConfig(address="0.0.0.0", port=80, foxglove_port=81), ["thymio"]).splitlines()
     assert told[0] == "Page      http://localhost:80/, from other computers http://10.1.2.3:80/"
     assert told[1] == "Foxglove  ws://localhost:81, from other computers ws://10.1.2.3:81"
 
 
 def test_on_one_address():
-    assert "Page      http://10.1.2.3:8080/\n" in banner.greeting(Suite(address="10.1.2.3"), ["thymio"])
+    assert "Page      http://10.1.2.3:8080/\n" in banner.banner(SuiteConfig(address="10.1.2.3"), ["thymio"])
 
 
 @pytest.mark.parametrize(
@@ -50,11 +50,11 @@ def test_other_addresses(monkeypatch, address, told):
 
 
 def test_without_page_and_bridge():
-    told = banner.greeting(Suite(web=False, foxglove=False), ["thymio"])
+    told = banner.banner(SuiteConfig(web=False, foxglove=False), ["thymio"])
     assert told.splitlines() == [
         "Page      none (started without it)",
         "Foxglove  none (started without it)",
-        f"Domain    {described(os.environ)}",
+        f"Domain    {describe_domain(os.environ)}",
         "Stop      Ctrl-C",
     ]
 
@@ -64,7 +64,7 @@ TOKENS = Tokens("fulltoken", "looktoken")
 
 def test_tokens_are_in_the_addresses_and_the_read_only_ones_apart(monkeypatch):
     monkeypatch.setattr(banner, "own_address", lambda: "10.1.2.3")
-    told = banner.greeting(Suite(address="0.0.0.0", port=80, foxglove_port=81, tokens=TOKENS), ["thymio"])
+    told = banner.banner(SuiteConfig(address="0.0.0.0", port=80, foxglove_port=81, tokens=TOKENS), ["thymio"])
     lines = told.splitlines()
     full = "http://localhost:80/#token=fulltoken, from other computers http://10.1.2.3:80/#token=fulltoken"
     assert lines[0] == f"Page      {full}"
@@ -90,12 +90,12 @@ def test_tokens_are_in_the_addresses_and_the_read_only_ones_apart(monkeypatch):
     ],
 )
 def test_one_line_says_who_can_reach_what(address, tokens, said):
-    assert f"Access    {said}" in banner.greeting(Suite(address=address, tokens=tokens), ["thymio"]).splitlines()
+    assert f"Access    {said}" in banner.banner(SuiteConfig(address=address, tokens=tokens), ["thymio"]).splitlines()
 
 
 def test_the_qr_code_holds_the_address_for_other_computers(monkeypatch):
     monkeypatch.setattr(banner, "own_address", lambda: "10.1.2.3")
-    suite = Suite(address="0.0.0.0", port=80, tokens=TOKENS)
+    suite = SuiteConfig(address="0.0.0.0", port=80, tokens=TOKENS)
     expected = io.StringIO()
     segno.make_qr("http://10.1.2.3:80/#token=fulltoken", error="l").terminal(expected, border=2, compact=True)
     drawn = banner.qr_code(suite)
@@ -103,14 +103,14 @@ def test_the_qr_code_holds_the_address_for_other_computers(monkeypatch):
     assert max(map(len, re.sub(r"\x1b\[[0-9;]*m", "", drawn).splitlines())) < 80
 
 
-@pytest.mark.parametrize("suite", [Suite(), Suite(address="0.0.0.0", web=False)])
+@pytest.mark.parametrize("suite", [SuiteConfig(), SuiteConfig(address="0.0.0.0", web=False)])
 def test_there_is_no_qr_code_where_there_is_no_page_for_others(suite):
     assert banner.qr_code(suite) == ""
 
 
 def test_without_the_package_there_is_no_qr_code(monkeypatch):
     monkeypatch.setitem(sys.modules, "segno", None)
-    assert banner.qr_code(Suite(address="0.0.0.0")) == ""
+    assert banner.qr_code(SuiteConfig(address="0.0.0.0")) == ""
 
 
 def test_this_computer_has_a_number_or_a_name(monkeypatch):
@@ -128,4 +128,4 @@ def test_this_computer_has_a_number_or_a_name(monkeypatch):
     ("robots", "told"), [(1, None), (20, None), (50, "Start     50 robots: this takes about 17 s")]
 )
 def test_who_has_to_wait_is_told_for_how_long(robots: int, told: str | None) -> None:
-    assert banner.patience(robots) == told
+    assert banner.startup_notice(robots) == told

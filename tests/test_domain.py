@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.domain import described
+from thymio_sim_ros.domain import describe_domain
 
 RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 
@@ -21,8 +21,8 @@ RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
     ],
 )
 def test_domain_and_reach_are_one_line(environment, told):
-    assert described(environment) == told
+    assert describe_domain(environment) == told
 
 
 def test_a_domain_that_is_known_goes_first():
-    assert described({"ROS_DOMAIN_ID": "7"}, 9) == "ROS_DOMAIN_ID 9, this network"
+    assert describe_domain({"ROS_DOMAIN_ID": "7"}, 9) == "ROS_DOMAIN_ID 9, this network"

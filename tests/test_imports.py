@@ -110,8 +110,8 @@ def _rule(module: str) -> Rule:
 def _is_refused(name: str, rule: Rule) -> bool:
     top = name.split(".")[0]
     if top in PACKAGES:
-        # The package itself holds nothing but the version.
-        return name != OURS and not any(_below(name, allowed) for allowed in rule.ours)
+        # The package itself holds nothing but the version, `errors` nothing but the base of all exceptions.
+        return name not in (OURS, f"{OURS}.errors") and not any(_below(name, allowed) for allowed in rule.ours)
     if top in sys.stdlib_module_names:
         return top in rule.never
     return top not in rule.others

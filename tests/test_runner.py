@@ -15,7 +15,7 @@ from tests.tracks import farthest_in_laps
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.loading import load_playground, read_program
-from thymio_sim_ros.runner import BUDGET, MOST_ROUNDS, Runner
+from thymio_sim_ros.runner import BUDGET, MAX_ROUNDS, Runner
 from thymio_sim_ros.sim.commands import BodyTwist, MoveRobot, WheelVelocities
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.reader import RobotStart
@@ -232,9 +232,9 @@ def test_a_reset_forgets_settings_and_radio():
     assert runner.devices["bert"].node_id == 77
     runner.press("bert", "center")
     runner.run(0.1)
-    assert runner.devices["bert"].body.network == (3, 4)
+    assert runner.devices["bert"].services.network == (3, 4)
     runner.reset()
-    assert runner.devices["bert"].body.network == (0, 0)
+    assert runner.devices["bert"].services.network == (0, 0)
     assert runner.devices["bert"].get_variable("was") == (0,)
     assert runner.devices["bert"].get_variable("_id") == (2,)
 
@@ -313,6 +313,6 @@ def runaway(path, engine, card):
 def test_a_program_without_an_end_gets_its_budget_whatever_runs_it(path, tmp_path):
     wanted = runaway(path, INTERPRETER, tmp_path / INTERPRETER)
     longest_call = 2 * 0x10000 + 5000
-    assert all(0 < sum(spent) <= len(spent) * (MOST_ROUNDS * BUDGET + longest_call) for spent, _, _ in wanted[:1])
+    assert all(0 < sum(spent) <= len(spent) * (MAX_ROUNDS * BUDGET + longest_call) for spent, _, _ in wanted[:1])
     for engine in TRANSLATORS:
         assert runaway(path, engine, tmp_path / engine) == wanted

@@ -5,24 +5,24 @@ from __future__ import annotations
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.model.geometry import Point
-from thymio_sim_ros.testing.line_following import EYES, Line
+from thymio_sim_ros.testing.line_following import SENSOR_CENTER, TrackLine
 
 
 def distance_to(points: list[Point], point: Point) -> float:
     """Distance in metres from a closed line through these points."""
-    return Line(points, closed=True).distance(point)
+    return TrackLine(points, closed=True).distance(point)
 
 
 def farthest_in_laps(runner: Runner, laps: float, playground: str = "line", track: str = "") -> float:
     """Largest distance in m of the ground sensors' middle from the line's middle during so many laps of the line."""
     robot = runner.world.robots["thymio"]
-    line, _ = Line.of(load_playground(playground)[1], track)
-    _, last = line.locate(robot.pose.place(EYES))
+    line, _ = TrackLine.of(load_playground(playground)[1], track)
+    _, last = line.locate(robot.pose.place(SENSOR_CENTER))
     driven, farthest = 0.0, 0.0
     while driven < laps * line.length_m:
         assert runner.now_ns < laps * 60e9
         runner.run(0.1)
-        distance, along = line.locate(robot.pose.place(EYES), last)
-        driven += line.way(last, along)
+        distance, along = line.locate(robot.pose.place(SENSOR_CENTER), last)
+        driven += line.offset(last, along)
         farthest, last = max(farthest, distance), along
     return farthest

@@ -1,4 +1,4 @@
-"""What a person reads when the suite has started: where to look, from here and from elsewhere."""
+"""The banner printed when the suite has started: addresses for this computer and for others."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from collections.abc import Sequence
 
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.cli import foxglove_layout
-from thymio_sim_ros.domain import described
-from thymio_sim_ros.suite_config import Suite
+from thymio_sim_ros.domain import describe_domain
+from thymio_sim_ros.suite_config import SuiteConfig
 
-__all__ = ["access", "greeting", "own_address", "patience", "places", "qr_code", "urls"]
+__all__ = ["access", "banner", "own_address", "places", "qr_code", "startup_notice", "urls"]
 
 _SOMEWHERE = ("192.0.2.1", 9)
 """Of a network that nobody has (RFC 5737); nothing is sent there."""
@@ -25,7 +25,7 @@ goes with the square of their number (measured, docs/performance.md)."""
 _LONG_S = 5.0
 
 
-def greeting(suite: Suite, robots: Sequence[str]) -> str:
+def banner(suite: SuiteConfig, robots: Sequence[str]) -> str:
     """The lines a person needs. They contain the tokens: for standard output, never for a log."""
     tokens = suite.tokens or Tokens()
     page = places("http", suite.address, suite.port, "/", tokens.full) if suite.web else _NONE
@@ -36,7 +36,7 @@ def greeting(suite: Suite, robots: Sequence[str]) -> str:
         lines += [f"Read only {place}" for place in _read_only_places(suite, tokens)]
         lines.append(f"Layout    {foxglove_layout.hint(robots)}")
         lines.append(f"Access    {access(suite.address, tokens)}")
-    return "\n".join([*lines, f"Domain    {described(os.environ)}", "Stop      Ctrl-C"])
+    return "\n".join([*lines, f"Domain    {describe_domain(os.environ)}", "Stop      Ctrl-C"])
 
 
 def access(address: str, tokens: Tokens) -> str:
@@ -49,7 +49,7 @@ def access(address: str, tokens: Tokens) -> str:
     return f"{everything}; with a read-only address: watch"
 
 
-def qr_code(suite: Suite) -> str:
+def qr_code(suite: SuiteConfig) -> str:
     """The page's address for other computers as a QR code in terminal characters; empty where there is none."""
     tokens = suite.tokens or Tokens()
     if not suite.web or is_loopback(suite.address):
@@ -64,7 +64,7 @@ def qr_code(suite: Suite) -> str:
     return drawn.getvalue().rstrip("\n")
 
 
-def _read_only_places(suite: Suite, tokens: Tokens) -> list[str]:
+def _read_only_places(suite: SuiteConfig, tokens: Tokens) -> list[str]:
     """For the class: the page and the bridge for other computers, with the token that only lets watch."""
     if not tokens.read_only:
         return []
@@ -72,8 +72,8 @@ def _read_only_places(suite: Suite, tokens: Tokens) -> list[str]:
     return [*page, urls("ws", suite.address, suite.foxglove_port, "/", tokens.read_only)[-1]]
 
 
-def patience(robots: int) -> str | None:
-    """A line for somebody who has to wait before there is anything to see; None when it is not long."""
+def startup_notice(robots: int) -> str | None:
+    """A line that announces a long start, or None for a short one."""
     seconds = _HUNDRED_S * (robots / 100) ** 2
     return None if seconds < _LONG_S else f"Start     {robots} robots: this takes about {seconds:.0f} s"
 

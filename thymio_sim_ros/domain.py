@@ -1,10 +1,10 @@
-"""The part of ROS that a process sees: its domain, and which computers."""
+"""The ROS domain and discovery range of a process, as text."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-__all__ = ["described"]
+__all__ = ["describe_domain"]
 
 _RANGES = {
     "": "this network",
@@ -15,7 +15,7 @@ _RANGES = {
 }
 
 
-def described(environment: Mapping[str, str], number: int | None = None) -> str:
+def describe_domain(environment: Mapping[str, str], number: int | None = None) -> str:
     """Domain and reach in one line, from ROS's own variables. `number`: the domain, where it is known already."""
     domain = environment.get("ROS_DOMAIN_ID") or "0"
     given = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()

@@ -17,7 +17,7 @@ from aseba_vm.errors import TextError
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_file, load_program, parse
-from thymio_sim_ros.device.programs.program_assignment import Member, Share, share_out
+from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId, assign_programs
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.format_detection import MAX_BYTES, is_recognized
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
@@ -86,12 +86,12 @@ def read_program(path: str, layout: str = THYMIO) -> ThymioProgram:
     return load_program(*read_text(path), layout)
 
 
-def read_shares(path: str, robots: Sequence[str], layout: str = THYMIO) -> dict[str, Share]:
+def read_assignments(path: str, robots: Sequence[str], layout: str = THYMIO) -> dict[str, Assignment]:
     """What each robot of a playground gets of a file, as from the Aseba runtime. Errors as `read_program`."""
     is_alone = len(robots) == 1
-    members = {robot: Member("" if is_alone else robot, number) for number, robot in enumerate(robots, start=1)}
+    members = {robot: RobotId("" if is_alone else robot, number) for number, robot in enumerate(robots, start=1)}
     names = [member.name for member in members.values() if member.name]
-    shares = share_out(load_file(*read_text(path), layout, robots=names), list(members.values()))
+    shares = assign_programs(load_file(*read_text(path), layout, robots=names), list(members.values()))
     return {robot: shares[member.name] for robot, member in members.items()}
 
 

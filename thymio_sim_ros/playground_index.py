@@ -1,4 +1,4 @@
-"""The shipped playgrounds as texts that need no other file, for pages that draw and change them."""
+"""The shipped playgrounds as self-contained texts, for pages that draw and edit them."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from thymio_sim_ros import resources
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground import writer
 
-__all__ = ["Gallery"]
+__all__ = ["PlaygroundIndex"]
 
 
-class Gallery:
-    """Texts by name, each made once for each version of its file. Several threads may ask."""
+class PlaygroundIndex:
+    """Texts of playgrounds by name, cached by version of the file. Thread-safe."""
 
     def __init__(self) -> None:
         self._texts: dict[Path, tuple[int, bytes]] = {}

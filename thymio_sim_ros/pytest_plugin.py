@@ -1,4 +1,4 @@
-"""The pytest plug-in of Thymio Sim ROS: its fixtures are there as soon as the package is installed (docs/testing.md).
+"""The pytest plug-in of Thymio Sim ROS: its fixtures are there as soon as the package is installed (docs/grading.md).
 
 pytest imports this module in every project of the environment: it costs nothing, since each fixture imports what it
 needs. Those that need ROS skip their test where there is none.

@@ -1,9 +1,10 @@
-"""Collects plug-ins: what the modules of a folder of ours export, and what other packages offer by entry points.
+"""Collects plug-ins: exports of the modules of a folder of this project, and entry points of other packages.
 
-A package of plug-ins is its own registry (docs/plugins.md): putting a file into the folder adds the plug-in,
-and nothing else has to know. Another package adds to `thymio_sim_ros.sensors`, `.actuators` or `.shapes` by an entry
-point of a group of that name, and whole folders to `.behaviours` and `.playgrounds`. Ours must be whole; one of
-others that is broken is named in the log and left out. Name order makes every walk over a registry repeatable.
+A package of plug-ins is its own registry (docs/plugins.md): a file in the folder is a plug-in, without any
+registration. Another package adds to `thymio_sim_ros.sensors`, `.actuators` or `.shapes` by an entry
+point of a group of that name, and whole folders to `.behaviours` and `.playgrounds`. Errors in plug-ins of
+this project are raised; broken ones of other packages are logged and skipped. Plug-ins are sorted by name, so that the
+order of iteration is repeatable.
 """
 
 from __future__ import annotations
@@ -19,7 +20,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Protocol, TypeVar
 
-__all__ = ["RegistryError", "collect", "folders", "forget", "own_names"]
+from thymio_sim_ros.errors import ThymioSimError
+
+__all__ = ["RegistryError", "clear_cache", "collect", "folders", "own_names"]
 
 PREFIX = "thymio_sim_ros"
 NAME = re.compile(r"[a-z](_?[a-z0-9])*")
@@ -27,7 +30,7 @@ NAME = re.compile(r"[a-z](_?[a-z0-9])*")
 
 
 class Named(Protocol):
-    """What every plug-in has."""
+    """The attribute that every plug-in has."""
 
     @property
     def name(self) -> str:
@@ -38,7 +41,7 @@ class Named(Protocol):
 T = TypeVar("T", bound=Named)
 
 
-class RegistryError(Exception):
+class RegistryError(ThymioSimError):
     """A module of a plug-in folder exports nothing, or something of the wrong kind."""
 
     def __init__(self, module: str, export: str, found: str) -> None:
@@ -69,7 +72,7 @@ def collect(
         if not isinstance(plugin, kind):
             raise RegistryError(module.__name__, f"{export} of type {kind.__name__}", type(plugin).__name__)
         found[plugin.name] = plugin
-    for plugin in _added(f"{PREFIX}.{package.__name__.rpartition('.')[2]}", export, kind, tuple(found), check):
+    for plugin in _external(f"{PREFIX}.{package.__name__.rpartition('.')[2]}", export, kind, tuple(found), check):
         found[plugin.name] = guard(plugin)
     return tuple(found[name] for name in sorted(found))
 
@@ -89,21 +92,21 @@ def folders(group: str) -> tuple[Path, ...]:
             module = entry.load()
             found.extend(Path(folder) for folder in module.__path__)
         except Exception as error:
-            _name(entry, error)
+            _log_skipped(entry, error)
     return tuple(found)
 
 
-def forget() -> None:
-    """Look for the plug-ins of other packages anew the next time."""
+def clear_cache() -> None:
+    """Clear the caches, so that plug-ins of other packages are searched again."""
     folders.cache_clear()
-    _added.cache_clear()
+    _external.cache_clear()
 
 
 @functools.cache
-def _added(
+def _external(
     group: str, export: str, kind: type[T], taken: tuple[str, ...], check: Callable[[T], object]
 ) -> tuple[T, ...]:
-    """What other packages add to a group, whole and by names that are not taken."""
+    """Valid plug-ins of other packages in a group, without those whose names are in use."""
     found: dict[str, T] = {}
     for entry in _entries(group):
         try:
@@ -117,7 +120,7 @@ def _added(
                 raise RegistryError(entry.value, "a name of its own", f"'{plugin.name}', which exists")
             check(plugin)
         except Exception as error:
-            _name(entry, error)
+            _log_skipped(entry, error)
         else:
             found[plugin.name] = plugin
     return tuple(found.values())
@@ -127,8 +130,8 @@ def _entries(group: str) -> list[importlib.metadata.EntryPoint]:
     return sorted(importlib.metadata.entry_points(group=group), key=lambda entry: (entry.name, entry.value))
 
 
-def _name(entry: importlib.metadata.EntryPoint, error: Exception) -> None:
-    """Tell which plug-in is left out; whatever its code raises, the others go on."""
+def _log_skipped(entry: importlib.metadata.EntryPoint, error: Exception) -> None:
+    """Log that a plug-in is skipped; errors of its code do not affect the others."""
     package = entry.dist.name if entry.dist is not None else "?"
     logging.getLogger(__name__).warning(
         "plug-in '%s' of the package %s (%s) is left out: %s: %s",

@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from thymio_sim_ros import registry
+from thymio_sim_ros.errors import ThymioSimError
 
 _PACKAGE = Path(__file__).resolve().parent
 _PLAYGROUND_FILES = ("*.json", "*.playground")
@@ -23,7 +24,7 @@ PAGE_BUILD_HINT = "The page is not built yet: run `make web` in the source folde
 """One sentence for a person who finds no built page (a colcon workspace has none)."""
 
 
-class ResourceError(Exception):
+class ResourceError(ThymioSimError):
     """A file that was asked for by name or path is not there; the text says what was looked for."""
 
 

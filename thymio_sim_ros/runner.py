@@ -1,9 +1,9 @@
 """World and devices in lock-step, in one thread, without ROS: tests, batch runs, benchmarks.
 
-One step: (1) the world ticks; (2) each robot's device is fed its readings and told the time; (3) the devices run, in
-the order of the playground, and the events that one emits reach the others, until nobody has anything left to hear;
-(4) the commands go to the world, where they take effect in the next tick. All devices are on one Aseba bus: who emits
-does not hear himself. The same playground, programs and seed give the same run bit for bit.
+One step: (1) the world ticks; (2) each device gets its readings and the time; (3) the devices run in the order of the
+playground, and emitted events are forwarded to the other devices until none is pending; (4) the commands are posted to
+the world and take effect in the next tick. All devices share one Aseba bus; an event is not sent back to its sender.
+The same playground, programs and seed give the same run bit for bit.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from thymio_sim_ros.device import bindings
 from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
-from thymio_sim_ros.device.firmware.behavior_host import BehaviourHost
+from thymio_sim_ros.device.firmware.behavior_host import BehaviorHost
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.runlog.run_log import RunLog
@@ -25,10 +25,10 @@ from thymio_sim_ros.sim.world import StepResult, World
 __all__ = ["Runner"]
 
 BUDGET = 5000
-"""Instructions of a device per round of a tick; a handler that needs more goes on in the next."""
+"""Instructions of a device per round of a tick; a longer handler continues in the next."""
 
-MOST_ROUNDS = 10
-"""Times per tick that robots may answer each other's events; what is left goes on in the next tick."""
+MAX_ROUNDS = 10
+"""Rounds per tick in which robots may react to events of others; the rest continues in the next tick."""
 
 _SECOND_NS = 1_000_000_000
 
@@ -36,7 +36,7 @@ _SECOND_NS = 1_000_000_000
 class Runner:
     """A world, and a device for each robot that has a program or a behaviour.
 
-    `emitted` holds the events that the last step brought, as (robot, event), in order.
+    `emitted` has the events of the last step as (robot, event), in order.
     """
 
     def __init__(
@@ -52,10 +52,10 @@ class Runner:
         noise: bool = True,
         log: RunLog | None = None,
     ) -> None:
-        """One program for all robots, or one by robot's name; KeyError for a name that is not there.
+        """Create the world and a device for each robot with a program: one program for all, or one by robot name.
 
         With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu.
-        CardError, SettingsError: a folder of the options cannot be used. A `log` follows the world from the start.
+        SdCardError, SettingsError: a folder of the options cannot be used. A `log` follows the world from the start.
         """
         self.world = World(playground, seed=seed, noise=noise, motor_model=motor_model, proximity_model=proximity_model)
         if log is not None:
@@ -68,7 +68,7 @@ class Runner:
         self.devices = {
             name: AsebaDevice(node_id=numbers[name], options=options.for_robot(name, alone=alone)) for name in wanted
         }
-        self.hosts = {name: BehaviourHost(device) for name, device in self.devices.items()}
+        self.hosts = {name: BehaviorHost(device) for name, device in self.devices.items()}
         for name, host in self.hosts.items():
             program = (programs or {}).get(name)
             if behaviour:
@@ -77,8 +77,8 @@ class Runner:
                 host.load(program)
         self._bound = frozenset(bindings.sensor_names())
         self.emitted: list[tuple[str, EmittedEvent]] = []
-        self._here: dict[str, AsebaDevice] = {}
-        """Devices of the robots that are in the world; the others rest."""
+        self._present: dict[str, AsebaDevice] = {}
+        """Devices of the robots that are in the world; the others do not run."""
         self._start()
 
     @property
@@ -87,10 +87,10 @@ class Runner:
         return self.world.now_ns
 
     def step(self) -> StepResult:
-        """One tick of the world, and what the programs make of it."""
+        """Run one tick of the world and of the programs."""
         result = self.world.step()
-        self._look_who_is_here()
-        bound, devices = self._bound, self._here
+        self._update_present_devices()
+        bound, devices = self._bound, self._present
         for robot, sensor, reading in result.readings:
             if sensor in bound and robot in devices:
                 devices[robot].feed(sensor, reading.words)
@@ -100,17 +100,17 @@ class Runner:
         return result
 
     def run(self, seconds: float) -> None:
-        """So many simulated seconds."""
+        """Run for this many simulated seconds."""
         for _ in self.steps(seconds):
             pass
 
     def steps(self, seconds: float) -> Iterator[StepResult]:
-        """So many simulated seconds, tick by tick."""
+        """Run for this many simulated seconds; yield the result of each tick."""
         for _ in range(round(seconds * _SECOND_NS / TICK_NS)):
             yield self.step()
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Run until the condition holds, at most so many simulated seconds; whether it held."""
+        """Run until the condition is true, at most this many simulated seconds; return whether it became true."""
         end_ns = self.now_ns + round(seconds * _SECOND_NS)
         while not condition():
             if self.now_ns >= end_ns:
@@ -119,64 +119,64 @@ class Runner:
         return True
 
     def post(self, robot: str, command: Command) -> None:
-        """A command for a robot; it takes effect in the next tick."""
+        """Post a command for a robot; it takes effect in the next tick."""
         self.world.post(robot, command)
 
     def press(self, robot: str, button: str, *, pressed: bool = True) -> None:
-        """Put a finger on a button, or take it off."""
+        """Press or release a button."""
         self.post(robot, PressButton(button, pressed))
 
     def load(self, robot: str, program: ThymioProgram) -> None:
-        """Give a robot that has a device another program, which begins now; KeyError: it has none."""
+        """Load another program, which starts now. Raises KeyError for a robot without a device."""
         self.hosts[robot].load(program)
-        self._look_who_is_here()
+        self._update_present_devices()
         self._run_devices()
 
     def reset(self) -> None:
-        """World, noise and programs as at the start."""
+        """Reset world, noise and programs to the start."""
         self.world.reset()
         for host in self.hosts.values():
             host.restart()
         self._start()
 
     def _start(self) -> None:
-        self._here = dict(self.devices)
-        for device in self._here.values():
+        self._present = dict(self.devices)
+        for device in self._present.values():
             device.advance(self.now_ns)
         self._run_devices()
 
-    def _look_who_is_here(self) -> None:
-        """Robots come and go; one that is back begins anew."""
+    def _update_present_devices(self) -> None:
+        """Update the devices after robots were added or removed; the device of a robot added again restarts."""
         robots = self.world.robots
-        if len(self._here) == len(self.devices) and self.devices.keys() <= robots.keys():
+        if len(self._present) == len(self.devices) and self.devices.keys() <= robots.keys():
             return
-        here = {name: device for name, device in self.devices.items() if name in robots}
-        for name in here:
-            if name not in self._here:
+        present = {name: device for name, device in self.devices.items() if name in robots}
+        for name in present:
+            if name not in self._present:
                 self.hosts[name].restart()
-        self._here = here
+        self._present = present
 
     def _run_devices(self) -> None:
         self.emitted.clear()
-        for _ in range(MOST_ROUNDS):
-            for device in self._here.values():
+        for _ in range(MAX_ROUNDS):
+            for device in self._present.values():
                 device.run(BUDGET)
-            speakers = [name for name, device in self._here.items() if device.has_emitted]
-            if sum(self._pass_on(name, self.hosts[name]) for name in speakers) == 0:
+            senders = [name for name, device in self._present.items() if device.has_emitted]
+            if sum(self._forward_events(name, self.hosts[name]) for name in senders) == 0:
                 break
-        for name, device in self._here.items():
-            for command in device.take_commands():
+        for name, device in self._present.items():
+            for command in device.pop_commands():
                 self.world.post(name, command)
 
-    def _pass_on(self, name: str, sender: BehaviourHost) -> int:
-        """Let the others hear what a device emitted, or change its program; how many have something new to do."""
+    def _forward_events(self, name: str, sender: BehaviorHost) -> int:
+        """Forward the emitted events of a device, or change its program; return how many devices have new work."""
         running = sender.program
-        events = sender.take_events()
-        heard = int(sender.program is not running)
+        events = sender.pop_events()
+        woken = int(sender.program is not running)
         for event in events:
             self.emitted.append((name, event))
-            for device in self._here.values():
-                if device is not sender.device and device.hears(sender.device) and device.declares(event.name):
+            for device in self._present.values():
+                if device is not sender.device and device.receives_from(sender.device) and device.declares(event.name):
                     device.receive_event(event.name, event.args, source=sender.device.node_id)
-                    heard += 1
-        return heard
+                    woken += 1
+        return woken

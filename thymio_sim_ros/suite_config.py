@@ -1,4 +1,4 @@
-"""What one start of the whole suite is: values only, shared by the command line and the nodes."""
+"""Configuration of a start of the whole suite, shared by the command line and the nodes."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 HTTP_PORT = 8080
 FOXGLOVE_PORT = 8765
 ADDRESS = "localhost"
-"""Loopback: whoever wants the network asks for it."""
+"""Loopback only, unless the network is requested."""
 
 
 @dataclass(frozen=True)
-class Suite:
+class SuiteConfig:
     """One start of simulator, Aseba runtime, Foxglove bridge and page.
 
     `playground`: shipped name, path or JSON text; `program`: behaviour or path; `behaviour`: what the robot is

@@ -20,6 +20,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from thymio_sim_ros.errors import ThymioSimError
+
 __all__ = [
     "NODE_WHEEL",
     "Node",
@@ -41,7 +43,7 @@ _NOT_SOURCES = {"node_modules", "dist"}
 _TOLD_LINES = 40
 
 
-class WebBuildError(RuntimeError):
+class WebBuildError(ThymioSimError, RuntimeError):
     """The page cannot be built; the text says why and what helps."""
 
 

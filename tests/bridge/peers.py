@@ -45,8 +45,8 @@ class Sink:
 
     def post(self, event: ev.Event) -> None:
         """Take an event."""
-        if isinstance(event, ev.ParametersAsked):
-            self.answer(ev.ShowParameters(event.client, event.names or None, event.request_id))
+        if isinstance(event, ev.ParametersRequested):
+            self.answer(ev.SendParameters(event.client, event.names or None, event.request_id))
             return
         self.events.append(event)
         self._arrived.set()
@@ -144,10 +144,10 @@ async def bridge(settings: ServerSettings | None = None) -> AsyncIterator[Bridge
     sink = Sink()
     board = Switchboard(ServerInfo("test", tuple(Capability), ("cdr", "json")))
     server = BridgeServer(board, sink, settings)
-    sink.answer = server.carry_out
+    sink.answer = server.execute
     (listener,) = listen("127.0.0.1", 0)
     await server.start([listener])
-    server.carry_out(ev.AddChannels((CHANNEL,)))
+    server.execute(ev.AddChannels((CHANNEL,)))
     try:
         yield Bridge(server, sink, listener.getsockname()[1])
     finally:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.bridge.access import TOKEN, Attempts, Role, Tokens, given_token, is_loopback, new_token
+from thymio_sim_ros.bridge.access import TOKEN, AttemptLimiter, Role, Tokens, given_token, is_loopback, new_token
 
 TOKENS = Tokens("fulltoken", "looktoken")
 
@@ -74,30 +74,30 @@ def test_a_token_is_found_in_the_address_or_in_a_header(
 
 def test_wrong_tokens_may_be_tried_some_times_and_then_slowly() -> None:
     now_s = 0.0
-    attempts = Attempts(lambda: now_s)
+    attempts = AttemptLimiter(lambda: now_s)
     tried = 0
-    while attempts.may_try("10.0.0.1"):
-        attempts.failed("10.0.0.1")
+    while attempts.is_allowed_to_try("10.0.0.1"):
+        attempts.record_failure("10.0.0.1")
         tried += 1
     assert tried == 30
-    assert attempts.may_try("10.0.0.2")
+    assert attempts.is_allowed_to_try("10.0.0.2")
     now_s = 2.5
     for _ in range(2):
-        assert attempts.may_try("10.0.0.1")
-        attempts.failed("10.0.0.1")
-    assert not attempts.may_try("10.0.0.1")
+        assert attempts.is_allowed_to_try("10.0.0.1")
+        attempts.record_failure("10.0.0.1")
+    assert not attempts.is_allowed_to_try("10.0.0.1")
 
 
 def test_one_computer_does_not_get_more_attempts_by_more_numbers_of_ipv6() -> None:
-    attempts = Attempts(lambda: 0.0)
+    attempts = AttemptLimiter(lambda: 0.0)
     for number in range(30):
-        attempts.failed(f"fd00::{number:x}")
-    assert not attempts.may_try("fd00::ffff")
-    assert attempts.may_try("fd01::1")
+        attempts.record_failure(f"fd00::{number:x}")
+    assert not attempts.is_allowed_to_try("fd00::ffff")
+    assert attempts.is_allowed_to_try("fd01::1")
 
 
 def test_so_many_addresses_are_remembered_and_no_more() -> None:
-    attempts = Attempts(lambda: 0.0)
+    attempts = AttemptLimiter(lambda: 0.0)
     for number in range(2000):
-        attempts.failed(f"10.0.{number // 250}.{number % 250}")
+        attempts.record_failure(f"10.0.{number // 250}.{number % 250}")
     assert len(attempts._left) == 1000

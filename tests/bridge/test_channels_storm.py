@@ -62,10 +62,10 @@ class Storm(RuleBasedStateMachine):
 
     def note(self, events: list[ev.Event]) -> None:
         for event in events:
-            if isinstance(event, ev.ChannelWanted):
+            if isinstance(event, ev.ChannelSubscribed):
                 assert event.channel_id not in self.wanted
                 self.wanted.add(event.channel_id)
-            elif isinstance(event, ev.ChannelUnwanted):
+            elif isinstance(event, ev.ChannelUnsubscribed):
                 self.wanted.remove(event.channel_id)
 
     @invariant()

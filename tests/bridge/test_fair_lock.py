@@ -4,27 +4,27 @@ from __future__ import annotations
 
 import threading
 
-from thymio_sim_ros.bridge.fair_lock import Turn
+from thymio_sim_ros.bridge.fair_lock import FairLock
 
 DEADLINE_S = 20.0
 
 
 def test_one_at_a_time_has_the_turn() -> None:
-    turn = Turn()
+    lock = FairLock()
     count, rounds = 0, 2000
 
     def add() -> None:
         nonlocal count
         for number in range(rounds):
             if number % 2:
-                with turn:
+                with lock:
                     seen = count
                     count = seen + 1
             else:
-                turn.take()
+                lock.acquire()
                 seen = count
                 count = seen + 1
-                turn.give_back()
+                lock.release()
 
     threads = [threading.Thread(target=add) for _ in range(4)]
     for thread in threads:
@@ -35,12 +35,12 @@ def test_one_at_a_time_has_the_turn() -> None:
 
 
 def test_who_waits_has_the_turn_before_one_who_comes_back_at_once() -> None:
-    turn = Turn()
+    lock = FairLock()
     has_had_it, is_enough = threading.Event(), threading.Event()
 
     def take_it_again_and_again() -> None:
         while not is_enough.is_set():
-            with turn:
+            with lock:
                 pass
 
     restless = threading.Thread(target=take_it_again_and_again)
@@ -48,7 +48,7 @@ def test_who_waits_has_the_turn_before_one_who_comes_back_at_once() -> None:
 
     def take_it_once() -> None:
         for _ in range(50):
-            with turn:
+            with lock:
                 pass
         has_had_it.set()
 
@@ -62,9 +62,9 @@ def test_who_waits_has_the_turn_before_one_who_comes_back_at_once() -> None:
 
 
 def test_an_error_ends_a_turn() -> None:
-    turn = Turn()
+    lock = FairLock()
     try:
-        with turn:
+        with lock:
             raise ValueError
     except ValueError:
-        turn.take()
+        lock.acquire()

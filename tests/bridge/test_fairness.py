@@ -47,9 +47,9 @@ class Turns:
 
     def __init__(self) -> None:
         self.count = 0
-        self._task = asyncio.create_task(self._turn())
+        self._task = asyncio.create_task(self._lock())
 
-    async def _turn(self) -> None:
+    async def _lock(self) -> None:
         while True:
             await asyncio.sleep(0)
             self.count += 1
@@ -81,7 +81,7 @@ def test_a_client_that_asks_little_does_not_queue_behind_those_that_rest(monkeyp
         async with bridge() as server, server.client() as client:
             await client.settle()
             monkeypatch.setattr("thymio_sim_ros.bridge.server.time", SlowClock())
-            async with server.server._rest_lock:
+            async with server.server._throttle_lock:
                 for _ in range(20):
                     await client.settle()
 
@@ -102,7 +102,7 @@ def test_a_flood_in_one_packet_is_handled_in_many_turns(frame: bytes, count: int
                 await client.say(ms.FetchAsset("end", 1))
 
             async def watch() -> None:
-                await server.sink.until(lambda events: ev.AssetWanted(2, "end", 1) in events)
+                await server.sink.until(lambda events: ev.AssetRequested(2, "end", 1) in events)
                 handled.append(turns.count)
 
             async def read() -> None:
@@ -122,7 +122,7 @@ def test_calls_that_are_refused_leave_the_others_room() -> None:
     async def scenario() -> None:
         async with bridge() as server, server.client() as busy, server.client() as other:
             side = ms.ServiceSide("cdr", "t", "ros2msg", "")
-            server.server.carry_out(ev.AddServices((ms.Service(5, "/s", "t", side, side),)))
+            server.server.execute(ev.AddServices((ms.Service(5, "/s", "t", side, side),)))
             for number in range(3000):
                 await busy.send(ms.ServiceRequest(5, number, "cdr", b""))
             await other.send(ms.ServiceRequest(5, 1, "cdr", b""))
@@ -215,11 +215,11 @@ def test_newcomers_are_told_of_what_there_is_now() -> None:
         async with bridge() as server:
             for number in range(20, 23):
                 channel = ms.Channel(number, f"/t{number}", "cdr", "t", "")
-                server.server.carry_out(ev.AddChannels((channel,)))
+                server.server.execute(ev.AddChannels((channel,)))
                 for _ in range(2):
                     async with server.client() as client:
                         assert channel in (await greeting(client)).channels
-            server.server.carry_out(ev.RemoveChannels((21,)))
+            server.server.execute(ev.RemoveChannels((21,)))
             async with server.client() as client:
                 assert [channel.id for channel in (await greeting(client)).channels] == [10, 20, 22]
 

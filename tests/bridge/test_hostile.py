@@ -15,7 +15,7 @@ from tests.bridge.peers import CHANNEL, DEADLINE_S, Bridge, Client, StalledClien
 from thymio_sim_ros.bridge import ServerSettings, wire
 from thymio_sim_ros.bridge import events as ev
 from thymio_sim_ros.bridge import messages as ms
-from thymio_sim_ros.bridge.client_send_queue import Outlet
+from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue
 from thymio_sim_ros.bridge.client_state import ClientState
 from thymio_sim_ros.bridge.transport import SharedConnection, SharedTransport
 
@@ -110,7 +110,7 @@ async def visit(server: Bridge, number: int) -> None:
 def census() -> Counter[type]:
     """Living objects of what a connection costs."""
     gc.collect()
-    kinds = (ClientState, Outlet, SharedConnection, SharedTransport, asyncio.Task, socket.socket)
+    kinds = (ClientState, ClientSendQueue, SharedConnection, SharedTransport, asyncio.Task, socket.socket)
     return Counter(type(thing) for thing in gc.get_objects() if type(thing) in kinds)
 
 
@@ -143,7 +143,7 @@ def test_one_large_answer_reaches_who_reads_it() -> None:
 
     async def scenario() -> None:
         async with bridge(ServerSettings(buffer_limit=1 << 14)) as server, server.client() as client:
-            server.server.carry_out(ev.ParametersChanged((ms.Parameter("/n.p", "x" * size),)))
+            server.server.execute(ev.ParametersChanged((ms.Parameter("/n.p", "x" * size),)))
             await client.send(ms.GetParameters((), "large"))
             answer = await client.next(ms.ParameterValues)
             assert [len(str(item.value)) for item in answer.parameters] == [size]
@@ -156,7 +156,7 @@ def test_a_flood_of_control_answers_to_a_stalled_client_is_bounded() -> None:
         limit = 1 << 14
         async with bridge(ServerSettings(buffer_limit=limit)) as server, server.client() as other:
             await other.subscribe(1)
-            server.server.carry_out(ev.ParametersChanged((ms.Parameter("/n.p", "x" * limit),)))
+            server.server.execute(ev.ParametersChanged((ms.Parameter("/n.p", "x" * limit),)))
             stalled = StalledClient(server.port)
             await stalled.connect()
             async with asyncio.timeout(DEADLINE_S):

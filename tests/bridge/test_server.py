@@ -103,8 +103,8 @@ def test_new_and_vanished_channels_are_told_to_all() -> None:
         async with bridge() as server, server.client() as one, server.client() as two:
             for client in (one, two):
                 assert await client.next(ms.Advertise) == ms.Advertise((CHANNEL,))
-            server.server.carry_out(ev.AddChannels((added,)))
-            server.server.carry_out(ev.RemoveChannels((11,)))
+            server.server.execute(ev.AddChannels((added,)))
+            server.server.execute(ev.RemoveChannels((11,)))
             for client in (one, two):
                 assert await client.next(ms.Advertise) == ms.Advertise((added,))
                 assert await client.next(ms.Unadvertise) == ms.Unadvertise((11,))
@@ -128,7 +128,10 @@ def test_equal_client_channel_ids_of_two_clients_are_not_confused() -> None:
     assert isinstance(opened_a, ev.ClientChannelOpened)
     assert isinstance(opened_b, ev.ClientChannelOpened)
     assert (opened_a.channel.topic, opened_b.channel.topic) == ("/a", "/b")
-    assert sent == [ev.ClientSent(opened_b.client, 1, b"two"), ev.ClientSent(opened_a.client, 1, b"one")]
+    assert sent == [
+        ev.ClientMessageReceived(opened_b.client, 1, b"two"),
+        ev.ClientMessageReceived(opened_a.client, 1, b"one"),
+    ]
 
 
 def test_a_bad_frame_is_answered_and_the_connection_kept() -> None:
@@ -170,7 +173,7 @@ def test_a_client_that_vanishes_is_forgotten() -> None:
             await server.sink.until(lambda events: len(events) == 2)
             client.abort()
             await server.sink.until(lambda events: len(events) == 4)
-            assert [type(event) for event in server.sink.events[2:]] == [ev.ChannelUnwanted, ev.ClientChannelClosed]
+            assert [type(event) for event in server.sink.events[2:]] == [ev.ChannelUnsubscribed, ev.ClientChannelClosed]
             assert server.server.client_count == 0
 
     run(scenario())
@@ -246,7 +249,7 @@ def test_a_slow_connection_is_told_so_once() -> None:
                 server.publish(KILOBYTE)
             await stalled.say(ms.FetchAsset("end", 1))
             await server.sink.until(lambda events: len(events) == 2)
-            server.server.carry_out(ev.Tell(1, ms.Status(StatusLevel.INFO, "end")))
+            server.server.execute(ev.SendToClient(1, ms.Status(StatusLevel.INFO, "end")))
             texts = []
             while "end" not in texts:
                 texts.append((await stalled.next(ms.Status)).message)
@@ -266,7 +269,7 @@ def test_a_client_that_lets_even_control_messages_pile_up_is_cut_off() -> None:
             await server.until(lambda: server.server.client_count == 1)
             text = "x" * LIMIT
             for _ in range(200):
-                server.server.carry_out(ev.Tell(1, ms.Status(StatusLevel.INFO, text)))
+                server.server.execute(ev.SendToClient(1, ms.Status(StatusLevel.INFO, text)))
             await server.until(lambda: server.server.client_count == 0)
             stalled.abort()
 
@@ -285,7 +288,7 @@ def test_while_the_owner_is_behind_a_busy_client_waits_and_others_are_served() -
             assert (await other.next(ms.MessageData)).payload == b"data"
             server.sink.full = False
             await server.sink.until(lambda events: len(events) == 4)
-            assert [event.payload for event in server.sink.events if isinstance(event, ev.ClientSent)] == [
+            assert [event.payload for event in server.sink.events if isinstance(event, ev.ClientMessageReceived)] == [
                 b"first",
                 b"second",
             ]
@@ -432,4 +435,4 @@ def test_a_read_only_client_watches_and_does_not_disturb_the_others() -> None:
 
     payload, events = run(scenario())
     assert payload == b"seen"
-    assert not any(isinstance(event, ev.ClientChannelOpened | ev.ClientSent) for event in events)
+    assert not any(isinstance(event, ev.ClientChannelOpened | ev.ClientMessageReceived) for event in events)

@@ -39,7 +39,7 @@ class Sink:
 
     def post(self, event: ev.Event) -> None:
         """Take an event."""
-        if isinstance(event, ev.ChannelWanted):
+        if isinstance(event, ev.ChannelSubscribed):
             self.subscribed.set()
 
 
@@ -136,7 +136,7 @@ def test_data_and_other_commands_do_not_overtake_each_other() -> None:
         assert sink.subscribed.wait(DEADLINE_S)
         for number in range(200):
             for _ in range(number % 3):
-                server.post(ev.Tell(1, ms.Status(StatusLevel.INFO, str(number))))
+                server.post(ev.SendToClient(1, ms.Status(StatusLevel.INFO, str(number))))
             server.publish(1, number, b"x")
         told: list[str] = []
         while told.count("data 199") < 1:
@@ -166,7 +166,7 @@ def test_commands_do_not_wait_for_a_busy_event_loop() -> None:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
         server.publish(1, 7, b"x")
-        server.post(ev.Tell(1, ms.Status(StatusLevel.INFO, "told")))
+        server.post(ev.SendToClient(1, ms.Status(StatusLevel.INFO, "told")))
         while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
             pass
         assert message.time_ns == 7
@@ -207,13 +207,13 @@ def test_a_command_that_cannot_be_told_harms_neither_its_sender_nor_later_ones(
     with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(DEADLINE_S)
-        server.post(ev.Tell(1, ms.ParameterValues((ms.Parameter("/n.p", float("nan")),))))
+        server.post(ev.SendToClient(1, ms.ParameterValues((ms.Parameter("/n.p", float("nan")),))))
         server.publish(1, 7, b"x")
         while not isinstance(message := wire.decode_server(client.recv(timeout=DEADLINE_S)), ms.MessageData):
             pass
         assert message.time_ns == 7
     server.close()
-    assert caplog.messages == ["Tell failed"]
+    assert caplog.messages == ["internal error (please report): SendToClient failed"]
 
 
 def test_a_thread_that_sends_without_a_pause_keeps_nobody_away() -> None:

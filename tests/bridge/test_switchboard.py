@@ -17,11 +17,11 @@ from thymio_sim_ros.bridge.switchboard import (
     MAX_CALLS,
     MAX_CLIENT_CHANNELS,
     MAX_OPEN_SIZE,
+    MAX_PARAMETER_REQUESTS,
     MAX_REFUSALS,
     MAX_WATCHED,
-    MAX_WISHES,
     READ_ONLY,
-    Letter,
+    Delivery,
     Switchboard,
 )
 
@@ -50,16 +50,16 @@ def switchboard(*clients: int, capabilities: Sequence[Capability] = tuple(Capabi
 
 def subscribe(board: Switchboard, client: int, subscription: int, channel_id: int) -> list[ev.Event]:
     outcome = board.receive(client, ms.Subscribe((ms.Subscription(subscription, channel_id),)))
-    assert not [letter for letter in outcome.letters if isinstance(letter.message, ms.Status)]
+    assert not [delivery for delivery in outcome.deliveries if isinstance(delivery.message, ms.Status)]
     return outcome.events
 
 
-def refusals(letters: Sequence[Letter]) -> list[tuple[int, str]]:
-    """(client, text) of each status; every letter must be one."""
+def refusals(deliveries: Sequence[Delivery]) -> list[tuple[int, str]]:
+    """(client, text) of each status; every delivery must be one."""
     found = []
-    for letter in letters:
-        assert isinstance(letter.message, ms.Status)
-        found.append((letter.clients[0], letter.message.message))
+    for delivery in deliveries:
+        assert isinstance(delivery.message, ms.Status)
+        found.append((delivery.clients[0], delivery.message.message))
     return found
 
 
@@ -95,10 +95,10 @@ def test_an_empty_server_advertises_nothing() -> None:
 
 def test_the_owner_hears_of_the_first_and_the_last_subscriber_only() -> None:
     board = switchboard(A, B)
-    assert subscribe(board, A, 1, 10) == [ev.ChannelWanted(10)]
+    assert subscribe(board, A, 1, 10) == [ev.ChannelSubscribed(10)]
     assert subscribe(board, B, 1, 10) == []
     assert board.receive(A, ms.Unsubscribe((1,))).events == []
-    assert board.receive(B, ms.Unsubscribe((1,))).events == [ev.ChannelUnwanted(10)]
+    assert board.receive(B, ms.Unsubscribe((1,))).events == [ev.ChannelUnsubscribed(10)]
 
 
 def test_equal_subscription_ids_of_two_clients_are_two_subscriptions() -> None:
@@ -112,7 +112,7 @@ def test_one_client_gets_a_channel_once() -> None:
     board = switchboard(A)
     subscribe(board, A, 1, 10)
     outcome = board.receive(A, ms.Subscribe((ms.Subscription(2, 10),)))
-    assert refusals(outcome.letters) == [(A, "subscription 2: already subscribed to /t")]
+    assert refusals(outcome.deliveries) == [(A, "subscription 2: already subscribed to /t")]
     assert board.routes(10) == ((A, 1),)
 
 
@@ -120,27 +120,27 @@ def test_a_subscription_id_in_use_is_refused_and_changes_nothing() -> None:
     board = switchboard(A)
     subscribe(board, A, 1, 10)
     outcome = board.receive(A, ms.Subscribe((ms.Subscription(1, 11),)))
-    assert refusals(outcome.letters) == [(A, "subscription 1 exists already")]
+    assert refusals(outcome.deliveries) == [(A, "subscription 1 exists already")]
     assert (board.routes(11), outcome.events) == ((), [])
 
 
 def test_an_unknown_channel_is_a_warning_and_the_rest_is_done() -> None:
     board = switchboard(A)
     outcome = board.receive(A, ms.Subscribe((ms.Subscription(1, 99), ms.Subscription(2, 10))))
-    assert outcome.letters == [
-        Letter((A,), ms.Status(StatusLevel.WARNING, "subscription 1: no channel 99")),
+    assert outcome.deliveries == [
+        Delivery((A,), ms.Status(StatusLevel.WARNING, "subscription 1: no channel 99")),
     ]
     assert board.routes(10) == ((A, 2),)
 
 
 def test_an_unknown_subscription_cannot_be_ended() -> None:
     outcome = switchboard(A).receive(A, ms.Unsubscribe((3,)))
-    assert refusals(outcome.letters) == [(A, "no subscription 3")]
+    assert refusals(outcome.deliveries) == [(A, "no subscription 3")]
 
 
 def test_a_frame_full_of_nonsense_is_refused_a_few_times_only() -> None:
     outcome = switchboard(A).receive(A, ms.Unsubscribe(tuple(range(1000))))
-    assert len(refusals(outcome.letters)) == MAX_REFUSALS
+    assert len(refusals(outcome.deliveries)) == MAX_REFUSALS
 
 
 def test_a_leaving_client_takes_its_subscriptions_along() -> None:
@@ -148,14 +148,14 @@ def test_a_leaving_client_takes_its_subscriptions_along() -> None:
     subscribe(board, A, 1, 10)
     subscribe(board, A, 2, 11)
     subscribe(board, B, 1, 11)
-    assert board.leave(A) == [ev.ChannelUnwanted(10)]
+    assert board.leave(A) == [ev.ChannelUnsubscribed(10)]
     assert (board.routes(10), board.routes(11)) == ((), ((B, 1),))
 
 
 def test_a_vanished_channel_ends_its_subscriptions() -> None:
     board = switchboard(A)
     subscribe(board, A, 1, 10)
-    assert board.apply(ev.RemoveChannels((10,))) == [Letter((A,), ms.Unadvertise((10,)))]
+    assert board.apply(ev.RemoveChannels((10,))) == [Delivery((A,), ms.Unadvertise((10,)))]
     assert board.routes(10) == ()
 
 
@@ -164,7 +164,7 @@ def test_ending_a_subscription_that_went_with_its_channel_is_no_fault() -> None:
     subscribe(board, A, 1, 10)
     board.apply(ev.RemoveChannels((10,)))
     outcome = board.receive(A, ms.Unsubscribe((1, 2)))
-    assert refusals(outcome.letters) == [(A, "no subscription 2")]
+    assert refusals(outcome.deliveries) == [(A, "no subscription 2")]
 
 
 # --- latched channels ---
@@ -173,50 +173,50 @@ def test_ending_a_subscription_that_went_with_its_channel_is_no_fault() -> None:
 def test_a_newcomer_gets_what_is_kept_and_nobody_else_gets_it_again() -> None:
     board = switchboard(A, B)
     subscribe(board, A, 1, 10)
-    board.apply(ev.KeepLast(10, 1))
-    board.keep(ev.Data(10, 5, b"old"))
-    board.keep(ev.Data(10, 6, b"new"))
+    board.apply(ev.RetainLast(10, 1))
+    board.retain(ev.Data(10, 5, b"old"))
+    board.retain(ev.Data(10, 6, b"new"))
     outcome = board.receive(B, ms.Subscribe((ms.Subscription(4, 10),)))
-    assert outcome.letters == [Letter((B,), ms.MessageData(4, 6, b"new"))]
+    assert outcome.deliveries == [Delivery((B,), ms.MessageData(4, 6, b"new"))]
 
 
 @pytest.mark.parametrize(
-    ("said", "kept"),
+    ("published", "retained"),
     [((b"one", b"two", b"two"), [(1, b"one"), (3, b"two")]), ((b"on", b"off", b"on"), [(2, b"off"), (3, b"on")])],
 )
-def test_a_repeated_message_takes_one_place_and_is_the_latest(said: Sequence[bytes], kept: object) -> None:
+def test_a_repeated_message_takes_one_place_and_is_the_latest(published: Sequence[bytes], retained: object) -> None:
     board = switchboard(A, B)
     subscribe(board, A, 1, 10)
-    board.apply(ev.KeepLast(10, 2))
-    for time_ns, payload in enumerate(said, start=1):
-        board.keep(ev.Data(10, time_ns, payload))
-    letters = board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).letters
-    assert [(letter.message.time_ns, letter.message.payload) for letter in letters] == kept
+    board.apply(ev.RetainLast(10, 2))
+    for time_ns, payload in enumerate(published, start=1):
+        board.retain(ev.Data(10, time_ns, payload))
+    deliveries = board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).deliveries
+    assert [(delivery.message.time_ns, delivery.message.payload) for delivery in deliveries] == retained
 
 
 def test_nothing_is_kept_of_an_ordinary_channel() -> None:
     board = switchboard(A, B)
     subscribe(board, A, 1, 10)
-    board.keep(ev.Data(10, 5, b"x"))
-    assert board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).letters == []
+    board.retain(ev.Data(10, 5, b"x"))
+    assert board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).deliveries == []
 
 
 def test_what_is_kept_is_forgotten_with_the_last_subscriber() -> None:
     board = switchboard(A)
     subscribe(board, A, 1, 10)
-    board.apply(ev.KeepLast(10, 1))
-    board.keep(ev.Data(10, 5, b"x"))
+    board.apply(ev.RetainLast(10, 1))
+    board.retain(ev.Data(10, 5, b"x"))
     board.receive(A, ms.Unsubscribe((1,)))
-    assert board.receive(A, ms.Subscribe((ms.Subscription(1, 10),))).letters == []
+    assert board.receive(A, ms.Subscribe((ms.Subscription(1, 10),))).deliveries == []
 
 
 def test_depth_zero_ends_keeping() -> None:
     board = switchboard(A, B)
     subscribe(board, A, 1, 10)
-    board.apply(ev.KeepLast(10, 1))
-    board.keep(ev.Data(10, 5, b"x"))
-    board.apply(ev.KeepLast(10, 0))
-    assert board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).letters == []
+    board.apply(ev.RetainLast(10, 1))
+    board.retain(ev.Data(10, 5, b"x"))
+    board.apply(ev.RetainLast(10, 0))
+    assert board.receive(B, ms.Subscribe((ms.Subscription(4, 10),))).deliveries == []
 
 
 # --- client channels ---
@@ -226,8 +226,8 @@ def test_equal_client_channel_ids_of_two_clients_are_two_channels() -> None:
     board = switchboard(A, B)
     board.receive(A, ms.ClientAdvertise((client_channel(1, "/a"),)))
     board.receive(B, ms.ClientAdvertise((client_channel(1, "/b"),)))
-    assert board.receive(A, ms.ClientMessageData(1, b"x")).events == [ev.ClientSent(A, 1, b"x")]
-    assert board.receive(B, ms.ClientMessageData(1, b"y")).events == [ev.ClientSent(B, 1, b"y")]
+    assert board.receive(A, ms.ClientMessageData(1, b"x")).events == [ev.ClientMessageReceived(A, 1, b"x")]
+    assert board.receive(B, ms.ClientMessageData(1, b"y")).events == [ev.ClientMessageReceived(B, 1, b"y")]
 
 
 def test_a_leaving_client_closes_its_channels() -> None:
@@ -235,19 +235,19 @@ def test_a_leaving_client_closes_its_channels() -> None:
     board.receive(A, ms.ClientAdvertise((client_channel(1), client_channel(2))))
     board.receive(B, ms.ClientAdvertise((client_channel(1),)))
     assert board.leave(A) == [ev.ClientChannelClosed(A, 1), ev.ClientChannelClosed(A, 2)]
-    assert board.receive(B, ms.ClientMessageData(1, b"y")).events == [ev.ClientSent(B, 1, b"y")]
+    assert board.receive(B, ms.ClientMessageData(1, b"y")).events == [ev.ClientMessageReceived(B, 1, b"y")]
 
 
 def test_a_client_channel_is_closed_once() -> None:
     board = switchboard(A)
     board.receive(A, ms.ClientAdvertise((client_channel(1),)))
     assert board.receive(A, ms.ClientUnadvertise((1,))).events == [ev.ClientChannelClosed(A, 1)]
-    assert refusals(board.receive(A, ms.ClientUnadvertise((1,))).letters) == [(A, "no client channel 1")]
+    assert refusals(board.receive(A, ms.ClientUnadvertise((1,))).deliveries) == [(A, "no client channel 1")]
 
 
 def test_a_message_on_a_channel_that_was_not_advertised_is_refused() -> None:
     outcome = switchboard(A).receive(A, ms.ClientMessageData(1, b"x"))
-    assert refusals(outcome.letters) == [(A, "message on client channel 1, which is not advertised")]
+    assert refusals(outcome.deliveries) == [(A, "message on client channel 1, which is not advertised")]
     assert outcome.events == []
 
 
@@ -261,14 +261,14 @@ def test_a_message_on_a_channel_that_was_not_advertised_is_refused() -> None:
 def test_a_client_channel_with_a_used_id_or_an_unknown_encoding_is_refused(second: ms.ClientChannel, text: str) -> None:
     board = switchboard(A)
     outcome = board.receive(A, ms.ClientAdvertise((client_channel(1), second)))
-    assert refusals(outcome.letters) == [(A, text)]
+    assert refusals(outcome.deliveries) == [(A, text)]
     assert outcome.events == [ev.ClientChannelOpened(A, client_channel(1))]
 
 
 def test_a_client_cannot_open_endless_channels() -> None:
     board = switchboard(A)
     outcome = board.receive(A, ms.ClientAdvertise(tuple(client_channel(n) for n in range(MAX_CLIENT_CHANNELS + 1))))
-    assert refusals(outcome.letters) == [(A, "channel 256 for /cmd_vel: more than 256 channels")]
+    assert refusals(outcome.deliveries) == [(A, "channel 256 for /cmd_vel: more than 256 channels")]
     assert len(outcome.events) == MAX_CLIENT_CHANNELS
 
 
@@ -279,11 +279,11 @@ def test_all_clients_together_cannot_open_endless_channels() -> None:
         board.receive(client, ms.ClientAdvertise(tuple(client_channel(n) for n in range(MAX_CLIENT_CHANNELS))))
     one = ms.ClientAdvertise((client_channel(1),))
     text = f"channel 1 for /cmd_vel: more than {MAX_ALL_CLIENT_CHANNELS} channels of all clients"
-    assert refusals(board.receive(99, one).letters) == [(99, text)]
+    assert refusals(board.receive(99, one).deliveries) == [(99, text)]
     board.receive(clients[0], ms.ClientUnadvertise((0,)))
     assert board.receive(99, one).events == [ev.ClientChannelOpened(99, client_channel(1))]
     board.leave(clients[1])
-    assert board.receive(clients[0], ms.ClientAdvertise((client_channel(0),))).letters == []
+    assert board.receive(clients[0], ms.ClientAdvertise((client_channel(0),))).deliveries == []
 
 
 # --- services, assets ---
@@ -296,9 +296,9 @@ def test_a_call_of_a_service_reaches_the_owner() -> None:
 
 def test_a_call_of_an_unknown_service_fails_with_a_status_beside_it() -> None:
     outcome = switchboard(A).receive(A, ms.ServiceRequest(6, 1, "cdr", b""))
-    assert outcome.letters == [
-        Letter((A,), ms.ServiceCallFailure(6, 1, "no service 6")),
-        Letter((A,), ms.Status(StatusLevel.ERROR, "no service 6")),
+    assert outcome.deliveries == [
+        Delivery((A,), ms.ServiceCallFailure(6, 1, "no service 6")),
+        Delivery((A,), ms.Status(StatusLevel.ERROR, "no service 6")),
     ]
 
 
@@ -309,13 +309,13 @@ def call(number: int, payload: bytes = b"") -> ms.ServiceRequest:
 def test_more_open_calls_than_the_limit_are_refused_at_once_and_others_are_not_concerned() -> None:
     board = switchboard(A, B)
     for number in range(MAX_CALLS):
-        assert board.receive(A, call(number)).letters == []
+        assert board.receive(A, call(number)).deliveries == []
     outcome = board.receive(A, call(99))
     text = f"/s: {MAX_CALLS} calls of this client wait already"
     assert outcome.events == []
-    assert outcome.letters == [
-        Letter((A,), ms.ServiceCallFailure(5, 99, text)),
-        Letter((A,), ms.Status(StatusLevel.ERROR, text)),
+    assert outcome.deliveries == [
+        Delivery((A,), ms.ServiceCallFailure(5, 99, text)),
+        Delivery((A,), ms.Status(StatusLevel.ERROR, text)),
     ]
     assert board.receive(B, call(99)).events == [ev.ServiceCalled(B, call(99))]
 
@@ -325,8 +325,8 @@ def test_an_answer_makes_room_for_another_call(answer: ms.ServiceResponse | ms.S
     board = switchboard(A)
     for number in range(MAX_CALLS):
         board.receive(A, call(number))
-    assert board.apply(ev.Answer(A, answer, 0)) == [Letter((A,), answer)]
-    assert board.receive(A, call(99)).letters == []
+    assert board.apply(ev.AnswerCall(A, answer, 0)) == [Delivery((A,), answer)]
+    assert board.receive(A, call(99)).deliveries == []
     assert board.receive(A, call(100)).events == []
 
 
@@ -334,22 +334,22 @@ def test_a_large_request_is_accepted_alone_and_refused_beside_others() -> None:
     board = switchboard(A)
     large = call(1, bytes(MAX_OPEN_SIZE + 1))
     assert board.receive(A, large).events == [ev.ServiceCalled(A, large)]
-    assert refusals(board.receive(A, call(2, b"small")).letters[1:]) == [
+    assert refusals(board.receive(A, call(2, b"small")).deliveries[1:]) == [
         (A, "/s: more than 16 MiB of this client's requests wait already")
     ]
-    board.apply(ev.Answer(A, ms.ServiceCallFailure(5, 1, "done"), len(large.payload)))
-    assert board.receive(A, call(3, b"small")).letters == []
+    board.apply(ev.AnswerCall(A, ms.ServiceCallFailure(5, 1, "done"), len(large.payload)))
+    assert board.receive(A, call(3, b"small")).deliveries == []
 
 
 def test_a_vanished_service_cannot_be_called() -> None:
     board = switchboard(A)
-    assert board.apply(ev.RemoveServices((5,))) == [Letter((A,), ms.UnadvertiseServices((5,)))]
+    assert board.apply(ev.RemoveServices((5,))) == [Delivery((A,), ms.UnadvertiseServices((5,)))]
     assert board.receive(A, ms.ServiceRequest(5, 1, "cdr", b"")).events == []
 
 
 def test_a_wish_for_an_asset_reaches_the_owner() -> None:
     outcome = switchboard(A).receive(A, ms.FetchAsset("package://p/m.stl", 3))
-    assert outcome.events == [ev.AssetWanted(A, "package://p/m.stl", 3)]
+    assert outcome.events == [ev.AssetRequested(A, "package://p/m.stl", 3)]
 
 
 # --- parameters ---
@@ -365,8 +365,8 @@ def with_parameters(*clients: int) -> Switchboard:
 
 def test_asking_for_values_is_the_owners_business() -> None:
     outcome = with_parameters(A).receive(A, ms.GetParameters(("/n.name",), "q"))
-    assert outcome.events == [ev.ParametersAsked(A, ("/n.name",), "q")]
-    assert outcome.letters == []
+    assert outcome.events == [ev.ParametersRequested(A, ("/n.name",), "q")]
+    assert outcome.deliveries == []
 
 
 def test_watching_tells_the_owner_which_names() -> None:
@@ -375,60 +375,60 @@ def test_watching_tells_the_owner_which_names() -> None:
 
 
 def test_an_answer_about_all_parameters_carries_all() -> None:
-    letters = with_parameters(A).apply(ev.ShowParameters(A, None, "q"))
-    assert letters == [Letter((A,), ms.ParameterValues((SPEED, NAME), "q"))]
+    deliveries = with_parameters(A).apply(ev.SendParameters(A, None, "q"))
+    assert deliveries == [Delivery((A,), ms.ParameterValues((SPEED, NAME), "q"))]
 
 
 def test_setting_is_the_owners_business() -> None:
     outcome = with_parameters(A).receive(A, ms.SetParameters((SPEED,), "q"))
     assert outcome.events == [ev.ParametersSet(A, (SPEED,), "q")]
-    assert outcome.letters == []
+    assert outcome.deliveries == []
 
 
 def test_more_open_sets_than_the_limit_are_refused_with_the_value_in_force() -> None:
     board = with_parameters(A, B)
-    for _ in range(MAX_WISHES):
-        assert board.receive(A, ms.SetParameters((SPEED,), "q")).letters == []
+    for _ in range(MAX_PARAMETER_REQUESTS):
+        assert board.receive(A, ms.SetParameters((SPEED,), "q")).deliveries == []
     outcome = board.receive(A, ms.SetParameters((ms.Parameter("/n.speed", 9.0),), "late"))
-    text = f"/n.speed: {MAX_WISHES} requests of this client wait already"
+    text = f"/n.speed: {MAX_PARAMETER_REQUESTS} requests of this client wait already"
     assert outcome.events == []
-    assert outcome.letters == [
-        Letter((A,), ms.Status(StatusLevel.ERROR, text, "parameter:/n.speed")),
-        Letter((A,), ms.ParameterValues((SPEED,), "late")),
+    assert outcome.deliveries == [
+        Delivery((A,), ms.Status(StatusLevel.ERROR, text, "parameter:/n.speed")),
+        Delivery((A,), ms.ParameterValues((SPEED,), "late")),
     ]
     assert board.receive(B, ms.SetParameters((SPEED,), "q")).events == [ev.ParametersSet(B, (SPEED,), "q")]
-    board.apply(ev.ShowParameters(A, ("/n.speed",), "q"))
-    assert board.receive(A, ms.SetParameters((SPEED,), "q")).letters == []
+    board.apply(ev.SendParameters(A, ("/n.speed",), "q"))
+    assert board.receive(A, ms.SetParameters((SPEED,), "q")).deliveries == []
 
 
 def test_more_open_gets_than_the_limit_are_refused_with_a_status() -> None:
     board = with_parameters(A)
-    for _ in range(MAX_WISHES):
+    for _ in range(MAX_PARAMETER_REQUESTS):
         board.receive(A, ms.GetParameters((), "q"))
     outcome = board.receive(A, ms.GetParameters((), "late"))
     assert outcome.events == []
-    text = f"parameters (request 'late'): {MAX_WISHES} requests of this client wait already"
-    assert refusals(outcome.letters) == [(A, text)]
+    text = f"parameters (request 'late'): {MAX_PARAMETER_REQUESTS} requests of this client wait already"
+    assert refusals(outcome.deliveries) == [(A, text)]
 
 
 def test_a_client_may_not_watch_ever_more_names() -> None:
     board = with_parameters(A)
     names = tuple(f"/n.x{number}" for number in range(MAX_WATCHED))
-    assert board.receive(A, ms.SubscribeParameterUpdates(names)).letters == []
+    assert board.receive(A, ms.SubscribeParameterUpdates(names)).deliveries == []
     outcome = board.receive(A, ms.SubscribeParameterUpdates(("/n.speed",)))
-    assert (len(refusals(outcome.letters)), outcome.events) == (1, [])
+    assert (len(refusals(outcome.deliveries)), outcome.events) == (1, [])
 
 
 def test_an_answer_carries_the_value_in_force() -> None:
-    letters = with_parameters(A).apply(ev.ShowParameters(A, ("/n.speed", "/n.no"), "q"))
-    assert letters == [Letter((A,), ms.ParameterValues((SPEED,), "q"))]
+    deliveries = with_parameters(A).apply(ev.SendParameters(A, ("/n.speed", "/n.no"), "q"))
+    assert deliveries == [Delivery((A,), ms.ParameterValues((SPEED,), "q"))]
 
 
 def test_an_answer_to_a_client_that_left_is_forgotten() -> None:
     board = with_parameters(A)
     board.leave(A)
-    assert board.apply(ev.ShowParameters(A, ("/n.speed",), "q")) == []
-    assert board.apply(ev.Tell(A, ms.RemoveStatus(()))) == []
+    assert board.apply(ev.SendParameters(A, ("/n.speed",), "q")) == []
+    assert board.apply(ev.SendToClient(A, ms.RemoveStatus(()))) == []
 
 
 def test_changes_go_to_those_who_asked_for_them() -> None:
@@ -436,8 +436,8 @@ def test_changes_go_to_those_who_asked_for_them() -> None:
     board.receive(A, ms.SubscribeParameterUpdates(("/n.speed", "/n.later")))
     faster = ms.Parameter("/n.speed", 2.0, "float64")
     later = ms.Parameter("/n.later", True)
-    letters = board.apply(ev.ParametersChanged((faster, later, ms.Parameter("/n.name", "y"))))
-    assert letters == [Letter((A,), ms.ParameterValues((faster, later)))]
+    deliveries = board.apply(ev.ParametersChanged((faster, later, ms.Parameter("/n.name", "y"))))
+    assert deliveries == [Delivery((A,), ms.ParameterValues((faster, later)))]
 
 
 def test_an_equal_value_is_no_change() -> None:
@@ -449,8 +449,8 @@ def test_an_equal_value_is_no_change() -> None:
 def test_an_unset_parameter_is_told_without_value() -> None:
     board = with_parameters(A)
     board.receive(A, ms.SubscribeParameterUpdates(("/n.speed",)))
-    letters = board.apply(ev.ParametersChanged((), ("/n.speed", "/n.unknown")))
-    assert letters == [Letter((A,), ms.ParameterValues((ms.Parameter("/n.speed"),)))]
+    deliveries = board.apply(ev.ParametersChanged((), ("/n.speed", "/n.unknown")))
+    assert deliveries == [Delivery((A,), ms.ParameterValues((ms.Parameter("/n.speed"),)))]
 
 
 def test_updates_end_when_they_are_unsubscribed() -> None:
@@ -467,28 +467,28 @@ GRAPH = ConnectionGraph({"/t": ("/n",)})
 
 def test_the_owner_hears_of_the_first_and_the_last_who_watch_the_graph() -> None:
     board = switchboard(A, B)
-    assert board.receive(A, ms.SubscribeConnectionGraph()).events == [ev.GraphWanted(True)]
+    assert board.receive(A, ms.SubscribeConnectionGraph()).events == [ev.GraphSubscriptionChanged(True)]
     assert board.receive(B, ms.SubscribeConnectionGraph()).events == []
     assert board.receive(A, ms.UnsubscribeConnectionGraph()).events == []
-    assert board.leave(B) == [ev.GraphWanted(False)]
+    assert board.leave(B) == [ev.GraphSubscriptionChanged(False)]
 
 
 def test_each_watcher_gets_the_whole_graph_first_and_then_differences() -> None:
     board = switchboard(A, B)
     board.receive(A, ms.SubscribeConnectionGraph())
     whole = ms.ConnectionGraphUpdate((ms.PublishedTopic("/t", ("/n",)),))
-    assert board.apply(ev.SetGraph(GRAPH)) == [Letter((A,), whole)]
-    assert board.receive(B, ms.SubscribeConnectionGraph()).letters == [Letter((B,), whole)]
+    assert board.apply(ev.SetGraph(GRAPH)) == [Delivery((A,), whole)]
+    assert board.receive(B, ms.SubscribeConnectionGraph()).deliveries == [Delivery((B,), whole)]
     assert board.apply(ev.SetGraph(GRAPH)) == []
     gone = ms.ConnectionGraphUpdate(removed_topics=("/t",))
-    assert board.apply(ev.SetGraph(ConnectionGraph())) == [Letter((A,), gone), Letter((B,), gone)]
+    assert board.apply(ev.SetGraph(ConnectionGraph())) == [Delivery((A,), gone), Delivery((B,), gone)]
 
 
 def test_asking_twice_for_the_graph_is_asking_once() -> None:
     board = switchboard(A)
     board.receive(A, ms.SubscribeConnectionGraph())
     outcome = board.receive(A, ms.SubscribeConnectionGraph())
-    assert (outcome.letters, outcome.events) == ([], [])
+    assert (outcome.deliveries, outcome.events) == ([], [])
 
 
 # --- sessions, capabilities ---
@@ -498,12 +498,12 @@ def test_a_new_session_is_announced_with_its_id_and_the_whole_graph() -> None:
     board = switchboard(A, B)
     board.receive(A, ms.SubscribeConnectionGraph())
     board.apply(ev.SetGraph(GRAPH))
-    letters = board.apply(ev.NewSession("second"))
-    assert [letter.clients for letter in letters] == [(A, B), (A, B), (A,)]
-    assert isinstance(letters[0].message, ms.ServerInfo)
-    assert letters[0].message.session_id == "second"
-    assert letters[1].message == ms.Advertise(())
-    assert letters[2].message == ms.ConnectionGraphUpdate((ms.PublishedTopic("/t", ("/n",)),))
+    deliveries = board.apply(ev.NewSession("second"))
+    assert [delivery.clients for delivery in deliveries] == [(A, B), (A, B), (A,)]
+    assert isinstance(deliveries[0].message, ms.ServerInfo)
+    assert deliveries[0].message.session_id == "second"
+    assert deliveries[1].message == ms.Advertise(())
+    assert deliveries[2].message == ms.ConnectionGraphUpdate((ms.PublishedTopic("/t", ("/n",)),))
 
 
 def test_latched_messages_are_told_again_at_the_time_of_now() -> None:
@@ -511,11 +511,11 @@ def test_latched_messages_are_told_again_at_the_time_of_now() -> None:
     subscribe(board, A, 1, 10)
     subscribe(board, B, 2, 11)
     for channel_id in (10, 11):
-        board.apply(ev.KeepLast(channel_id, 1))
-        board.keep(ev.Data(channel_id, 40, b"latched"))
-    board.apply(ev.KeepLast(11, 0))
+        board.apply(ev.RetainLast(channel_id, 1))
+        board.retain(ev.Data(channel_id, 40, b"latched"))
+    board.apply(ev.RetainLast(11, 0))
     board.apply(ev.SetTime(7))
-    assert board.apply(ev.RepeatKept()) == [Letter((A,), ms.MessageData(1, 7, b"latched"))]
+    assert board.apply(ev.ResendRetained()) == [Delivery((A,), ms.MessageData(1, 7, b"latched"))]
 
 
 @pytest.mark.parametrize(
@@ -531,7 +531,7 @@ def test_latched_messages_are_told_again_at_the_time_of_now() -> None:
 )
 def test_what_is_not_offered_is_refused(message: ms.ClientMessage, capability: Capability) -> None:
     outcome = switchboard(A, capabilities=[]).receive(A, message)
-    assert refusals(outcome.letters) == [(A, f"this server does not offer {capability}")]
+    assert refusals(outcome.deliveries) == [(A, f"this server does not offer {capability}")]
     assert outcome.events == []
 
 
@@ -555,17 +555,18 @@ def test_a_read_only_client_changes_nothing_and_is_told_so(message: ms.ClientMes
     board = viewer_of(switchboard(A))
     outcome = board.receive(B, message)
     assert outcome.events == []
-    statuses = [letter.message for letter in outcome.letters if isinstance(letter.message, ms.Status)]
+    statuses = [delivery.message for delivery in outcome.deliveries if isinstance(delivery.message, ms.Status)]
     assert all("read-only" in status.message for status in statuses)
     assert statuses
-    assert {letter.clients for letter in outcome.letters} == {(B,)}
+    assert {delivery.clients for delivery in outcome.deliveries} == {(B,)}
 
 
 def test_a_read_only_client_that_sets_a_parameter_gets_the_value_in_force() -> None:
     board = viewer_of(switchboard())
     board.apply(ev.ParametersChanged((ms.Parameter("/n.p", 1),)))
     status, answer = (
-        letter.message for letter in board.receive(B, ms.SetParameters((ms.Parameter("/n.p", 2),), "mine")).letters
+        delivery.message
+        for delivery in board.receive(B, ms.SetParameters((ms.Parameter("/n.p", 2),), "mine")).deliveries
     )
     assert status.id == "parameter:/n.p"
     assert answer == ms.ParameterValues((ms.Parameter("/n.p", 1),), "mine")
@@ -574,11 +575,11 @@ def test_a_read_only_client_that_sets_a_parameter_gets_the_value_in_force() -> N
 def test_a_read_only_client_that_calls_a_service_gets_a_failure() -> None:
     board = viewer_of(switchboard())
     outcome = board.receive(B, ms.ServiceRequest(SERVICE.id, 3, "cdr", b""))
-    assert outcome.letters[0].message == ms.ServiceCallFailure(SERVICE.id, 3, READ_ONLY)
+    assert outcome.deliveries[0].message == ms.ServiceCallFailure(SERVICE.id, 3, READ_ONLY)
 
 
 def test_a_read_only_client_calls_services_that_change_nothing() -> None:
-    board = Switchboard(ServerInfo("test", tuple(Capability), ("cdr",)), changes_nothing=lambda name: name == "/s")
+    board = Switchboard(ServerInfo("test", tuple(Capability), ("cdr",)), is_read_only_service=lambda name: name == "/s")
     board.apply(ev.AddServices((SERVICE,)))
     request = ms.ServiceRequest(SERVICE.id, 1, "cdr", b"")
     assert viewer_of(board).receive(B, request).events == [ev.ServiceCalled(B, request)]
@@ -593,15 +594,15 @@ def test_a_read_only_client_watches_parameters_graph_and_assets() -> None:
         ms.FetchAsset("package://a/b.stl", 1),
     ):
         outcome = board.receive(B, message)
-        assert not any(isinstance(letter.message, ms.Status) for letter in outcome.letters)
+        assert not any(isinstance(delivery.message, ms.Status) for delivery in outcome.deliveries)
 
 
 def test_a_new_session_tells_each_client_what_it_may() -> None:
     board = viewer_of(switchboard(A))
     infos = {
-        letter.clients: letter.message
-        for letter in board.apply(ev.NewSession("second"))
-        if isinstance(letter.message, ms.ServerInfo)
+        delivery.clients: delivery.message
+        for delivery in board.apply(ev.NewSession("second"))
+        if isinstance(delivery.message, ms.ServerInfo)
     }
     assert infos[A,].metadata == {}
     assert infos[B,].metadata == {"access": "read_only"}

@@ -121,8 +121,8 @@ def test_an_offer_is_refused_while_more_than_its_limit_waits() -> None:
         async with ends() as pair:
             written = pair.fill()
             waiting = pair.transport.get_write_buffer_size()
-            assert not pair.transport.offer(b"late", waiting - 1)
-            assert pair.transport.offer(b"in time", waiting)
+            assert not pair.transport.try_write(b"late", waiting - 1)
+            assert pair.transport.try_write(b"in time", waiting)
             assert (await pair.read(written + 7)).endswith(b"in time")
 
     run(scenario())

@@ -20,7 +20,7 @@ from tests.processes import free_port
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
 from thymio_sim_ros.cli import main
 from thymio_sim_ros.cli.replay import replay
-from thymio_sim_ros.cli.signal_handling import Interruption
+from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.runlog import run_log
 from thymio_sim_ros.sim.audio.synthesis import SAMPLE_NS
 
@@ -287,9 +287,9 @@ def ctrl_c():
 
 
 def test_a_second_ctrl_c_ends_at_once(ctrl_c):
-    with Interruption() as interruption:
+    with StopSignal() as stop:
         signal.raise_signal(signal.SIGINT)
-        assert interruption.number == signal.SIGINT
+        assert stop.number == signal.SIGINT
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
     assert signal.getsignal(signal.SIGINT) is ctrl_c

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from thymio_sim_ros.device.device import AsebaDevice, EmittedEvent
-from thymio_sim_ros.device.firmware.behavior_host import BehaviourHost
+from thymio_sim_ros.device.firmware.behavior_host import BehaviorHost
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.sim.commands import (
     BUTTONS,
@@ -24,7 +24,7 @@ class HandheldRobot:
     """`leds` by group, `targets` of the wheels, `sounds` that began and `events` that others hear, in order."""
 
     def __init__(self) -> None:
-        self.host = BehaviourHost(AsebaDevice())
+        self.host = BehaviorHost(AsebaDevice())
         self.now_ns = 0
         self.leds = {group: (0,) * size for group, size in LED_GROUPS.items()}
         self.targets = (0, 0)
@@ -61,8 +61,8 @@ class HandheldRobot:
             self.device.advance(self.now_ns)
             while self.device.is_busy:
                 self.device.run(BUDGET)
-                self.events += self.host.take_events()
-            for command in self.device.take_commands():
+                self.events += self.host.pop_events()
+            for command in self.device.pop_commands():
                 self._obey(command)
 
     def press(self, *buttons: str) -> None:

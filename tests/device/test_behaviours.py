@@ -63,7 +63,7 @@ class Bench:
     def _run(self) -> None:
         while self.device.is_busy:
             self.device.run(BUDGET)
-        for command in self.device.take_commands():
+        for command in self.device.pop_commands():
             match command:
                 case MotorTargets(left, right):
                     self.shown.left, self.shown.right = left, right

@@ -23,14 +23,14 @@ def device_with(source, events=()):
     device = AsebaDevice()
     device.load(load_program(text, "test.aesl"))
     device.run(BUDGET)
-    device.take_commands()
+    device.pop_commands()
     return device
 
 
 def test_a_new_program_darkens_the_lights_and_stops_the_wheels():
     device = AsebaDevice()
     device.load(load_program("", "none"))
-    commands = device.take_commands()
+    commands = device.pop_commands()
     assert MotorTargets(0, 0) in commands
     groups = [command.group for command in commands if isinstance(command, ReleaseLeds)]
     assert sorted(groups) == sorted(LED_GROUPS)
@@ -42,7 +42,7 @@ def test_a_new_program_gives_the_lights_back_to_the_robot():
     for now_ns, is_own in ((20_000_000, False), (40_000_000, True)):
         device.feed("temperature", (300,))
         device.advance(now_ns)
-        assert (own in device.take_commands()) == is_own
+        assert (own in device.pop_commands()) == is_own
         device.load(load_program("", "none"))
 
 
@@ -59,8 +59,8 @@ def test_targets_become_one_command_when_they_change():
     for _ in range(3):
         device.feed("proximity", NEAR)
         device.run(BUDGET)
-    assert device.take_commands() == [MotorTargets(100, -50)]
-    assert device.take_commands() == []
+    assert device.pop_commands() == [MotorTargets(100, -50)]
+    assert device.pop_commands() == []
 
 
 def test_prox_comes_once_with_ground_and_horizontal_complete():
@@ -114,17 +114,17 @@ def test_the_robot_s_own_lights_show_what_somebody_writes_to_its_variables():
     device = device_with("")
     device.feed("temperature", (200,))
     device.advance(20_000_000)
-    device.take_commands()
+    device.pop_commands()
     device.set_variable("temperature", (300,))
     device.advance(40_000_000)
-    assert ShowOnLeds("temperature", (32, 0)) in device.take_commands()
+    assert ShowOnLeds("temperature", (32, 0)) in device.pop_commands()
 
 
 def test_natives_of_the_lights_become_commands_in_order():
     device = device_with("onevent prox\ncall leds.top(32, 0, 99)\ncall leds.prox.v(1, 2)\ncall leds.top(0, -1, 5)")
     device.feed("proximity", NEAR)
     device.run(BUDGET)
-    assert device.take_commands() == [
+    assert device.pop_commands() == [
         SetLeds("top", (32, 0, 32)),
         SetLeds("ground", (1, 2)),
         SetLeds("top", (0, 32, 5)),
@@ -141,7 +141,7 @@ def test_lights_that_are_set_to_the_same_again_are_told_once():
     def told(sensor, words):
         device.feed(sensor, words)
         device.run(BUDGET)
-        return [command for command in device.take_commands() if isinstance(command, SetLeds)]
+        return [command for command in device.pop_commands() if isinstance(command, SetLeds)]
 
     both = [SetLeds("top", (1, 2, 3)), SetLeds("microphone", (4,))]
     assert told("proximity", NEAR) == both
@@ -166,7 +166,7 @@ def test_variables_of_the_lights_work_like_their_natives():
     device = device_with("onevent prox\nleds.circle[3] = 20")
     device.feed("proximity", NEAR)
     device.run(BUDGET)
-    assert device.take_commands() == [SetLeds("circle", (0, 0, 0, 20, 0, 0, 0, 0))]
+    assert device.pop_commands() == [SetLeds("circle", (0, 0, 0, 20, 0, 0, 0, 0))]
 
 
 def test_timers_raise_their_events_in_simulated_time():
@@ -226,12 +226,12 @@ def test_emitted_events_are_taken_in_order():
     )
     device.feed("proximity", NEAR)
     device.run(BUDGET)
-    assert [(event.name, event.args) for event in device.take_events()] == [
+    assert [(event.name, event.args) for event in device.pop_events()] == [
         ("two", (3, 4)),
         ("none", ()),
         ("two", (0, 4000)),
     ]
-    assert device.take_events() == []
+    assert device.pop_events() == []
 
 
 def test_a_received_event_brings_source_and_arguments():
@@ -273,7 +273,7 @@ def test_events_beyond_what_can_wait_are_lost_with_a_notice():
         device.receive_event("add", ())
     device.run(BUDGET)
     assert device.get_variable("n") == (100,)
-    assert device.take_notices() == ["more events arrive than the program can handle: add is lost"]
+    assert device.pop_notices() == ["more events arrive than the program can handle: add is lost"]
 
 
 def test_a_machine_that_does_not_run_hears_no_events():
@@ -331,7 +331,7 @@ def test_a_fault_stops_machine_and_wheels_and_names_the_line():
     device.feed("proximity", NEAR)
     device.run(BUDGET)
     assert device.status == DeviceStatus("fault", "prox", 6, "index 5 is outside an array of 2")
-    assert device.take_commands() == [MotorTargets(0, 0)]
+    assert device.pop_commands() == [MotorTargets(0, 0)]
     device.feed("proximity", NEAR)
     assert not device.is_busy
 
@@ -397,14 +397,14 @@ def test_pause_step_and_resume():
 def test_stop_halts_and_reset_begins_anew():
     device = device_with("var n = 5\nmotor.left.target = 100\nonevent prox\nn = n + 1")
     device.stop()
-    assert device.take_commands() == [MotorTargets(0, 0)]
+    assert device.pop_commands() == [MotorTargets(0, 0)]
     assert device.status.state == "stopped"
     device.set_variable("n", (40,))
     device.reset()
     device.resume()
     device.run(BUDGET)
     assert device.get_variable("n") == (5,)
-    assert MotorTargets(100, 0) in device.take_commands()
+    assert MotorTargets(100, 0) in device.pop_commands()
 
 
 def test_variables_are_read_and_written_whole():
@@ -430,7 +430,7 @@ def test_without_a_card_files_cannot_be_opened_and_sounds_not_played():
     for _ in range(2):
         device.feed("proximity", NEAR)
         device.run(BUDGET)
-    assert device.take_notices() == ["no card: p1.wav"]
+    assert device.pop_notices() == ["no card: p1.wav"]
     assert device.get_variable("status") == (-1,)
 
 
@@ -438,7 +438,7 @@ def test_a_device_is_due_for_events_and_for_the_robots_own_rules():
     device = device_with("onevent prox\nmotor.left.target = 100")
     device.advance(1_000_000_000)
     assert device.is_due
-    device.take_commands()
+    device.pop_commands()
     assert not device.is_due
     device.advance(1_010_000_000)
     device.feed("motor", (1, 2, 3, 4))
@@ -448,7 +448,7 @@ def test_a_device_is_due_for_events_and_for_the_robots_own_rules():
     assert device.is_due
     device.run(BUDGET)
     assert device.is_due
-    assert MotorTargets(100, 0) in device.take_commands()
+    assert MotorTargets(100, 0) in device.pop_commands()
     assert not device.is_due
     device.advance(1_200_000_000)
     assert device.is_due
@@ -458,16 +458,16 @@ def test_a_robot_that_switches_itself_off_is_dark_silent_and_deaf_to_its_variabl
     device = device_with("onevent button.center\nleds.top = [32, 0, 0]\ncall prox.comm.enable(1)\ncall _poweroff()")
     device.feed("buttons", CENTER)
     device.run(BUDGET)
-    commands = device.take_commands()
+    commands = device.pop_commands()
     assert commands.index(SetLeds("top", (32, 0, 0))) < commands.index(ReleaseLeds("top"))
     assert commands.index(EnableComm(True)) < commands.index(EnableComm(False))
     device.feed("temperature", (300,))
     device.advance(1_000_000_000)
-    assert device.take_commands() == []
+    assert device.pop_commands() == []
     device.set_variable("motor.left.target", (300,))
     device.set_variable("leds.top", (0, 32, 0))
-    assert device.take_commands() == []
+    assert device.pop_commands() == []
     device.resume()
     device.run(BUDGET)
     device.set_variable("leds.top", (0, 32, 0))
-    assert SetLeds("top", (0, 32, 0)) in device.take_commands()
+    assert SetLeds("top", (0, 32, 0)) in device.pop_commands()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.device.events import FIRMWARE, MOST_WAITING, PLAYGROUND, POLICIES, EventQueue, GlobalEvent
+from thymio_sim_ros.device.events import FIRMWARE, MAX_PENDING, PLAYGROUND, POLICIES, EventQueue, GlobalEvent
 
 HELLO = GlobalEvent(0, 2, (7,))
 MILLISECOND_NS = 1_000_000
@@ -17,8 +17,8 @@ def queue(policy: str) -> EventQueue:
 def everything(waiting: EventQueue) -> list[int | GlobalEvent]:
     """All events in the order in which they are heard."""
     taken = []
-    while waiting.waits:
-        event = waiting.take()
+    while waiting.has_events:
+        event = waiting.pop()
         if event is not None:
             taken.append(event)
     return taken
@@ -28,38 +28,38 @@ def everything(waiting: EventQueue) -> list[int | GlobalEvent]:
 def test_local_events_are_flags_on_the_robot_and_one_by_one_in_the_playground(policy: str, heard: list[int]) -> None:
     waiting = queue(policy)
     for index in (14, 5, 14, 6):
-        waiting.arrive(index)
+        waiting.add_local(index)
     assert everything(waiting) == heard
 
 
 def test_timers_that_fired_before_come_before_what_arrives_now() -> None:
     waiting = queue(FIRMWARE)
     waiting.advance(0)
-    waiting.notice([3, 0])
+    waiting.set_timer_periods([3, 0])
     waiting.advance(10 * MILLISECOND_NS)
-    waiting.arrive(5)
+    waiting.add_local(5)
     assert everything(waiting) == [15, 15, 15, 5]
 
 
 def test_global_events_wait_in_line_before_local_ones() -> None:
     waiting = queue(FIRMWARE)
-    waiting.arrive(5)
-    waiting.receive(HELLO)
-    waiting.receive(HELLO)
+    waiting.add_local(5)
+    waiting.add_global(HELLO)
+    waiting.add_global(HELLO)
     assert everything(waiting) == [HELLO, HELLO, 5]
 
 
 def test_there_is_room_for_so_many_global_events() -> None:
     waiting = queue(FIRMWARE)
-    assert [waiting.receive(HELLO) for _ in range(MOST_WAITING + 1)] == [True] * MOST_WAITING + [False]
+    assert [waiting.add_global(HELLO) for _ in range(MAX_PENDING + 1)] == [True] * MAX_PENDING + [False]
 
 
 def test_what_waits_is_forgotten_and_timers_stop() -> None:
     waiting = queue(FIRMWARE)
     waiting.advance(0)
-    waiting.notice([10, 0])
-    waiting.arrive(5)
-    waiting.receive(HELLO)
+    waiting.set_timer_periods([10, 0])
+    waiting.add_local(5)
+    waiting.add_global(HELLO)
     waiting.reset()
     waiting.advance(0)
     waiting.advance(100 * MILLISECOND_NS)
@@ -69,17 +69,17 @@ def test_what_waits_is_forgotten_and_timers_stop() -> None:
 def test_timers_that_fired_unheard_are_forgotten_too() -> None:
     waiting = queue(PLAYGROUND)
     waiting.advance(0)
-    waiting.notice([10, 0])
+    waiting.set_timer_periods([10, 0])
     waiting.advance(25 * MILLISECOND_NS)
-    assert waiting.take() == 15
+    assert waiting.pop() == 15
     waiting.advance(30 * MILLISECOND_NS)
     waiting.advance(31 * MILLISECOND_NS)
     waiting.clear()
-    assert not waiting.waits
+    assert not waiting.has_events
 
 
 def test_a_machine_that_stands_still_collects_no_events_without_end() -> None:
     waiting = queue(PLAYGROUND)
-    for _ in range(10 * MOST_WAITING):
-        waiting.arrive(5)
-    assert len(everything(waiting)) == MOST_WAITING
+    for _ in range(10 * MAX_PENDING):
+        waiting.add_local(5)
+    assert len(everything(waiting)) == MAX_PENDING

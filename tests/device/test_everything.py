@@ -69,13 +69,13 @@ def expectations() -> Iterator[tuple[str, tuple[int, ...]]]:
 def device(tmp_path: Path) -> AsebaDevice:
     """A robot with a card on which there are two sounds, after the beginning of the program."""
     device = AsebaDevice(options=DeviceOptions(card=tmp_path / "card", settings=tmp_path / "flash"))
-    assert device.body.card is not None
-    device.body.card.write_sound("p1", b"\x80\x90" * 100)
-    device.body.card.write_sound("r1", bytes([128]) * 7812)
+    assert device.services.card is not None
+    device.services.card.write_sound("p1", b"\x80\x90" * 100)
+    device.services.card.write_sound("r1", bytes([128]) * 7812)
     events = "".join(f'<event size="2" name="{name}"/>' for name in ("told", "off", "again"))
     code = SOURCE.replace("&", "&amp;").replace("<", "&lt;")
     device.load(load_program(f'<network>{events}<node name="thymio-II">{code}</node></network>', "everything.aesl"))
-    device.take_commands()
+    device.pop_commands()
     device.advance(0)
     while device.is_busy:
         device.run(10_000)
@@ -85,7 +85,7 @@ def device(tmp_path: Path) -> AsebaDevice:
 def run(device: AsebaDevice) -> list[Command]:
     while device.is_busy:
         device.run(10_000)
-    return device.take_commands()
+    return device.pop_commands()
 
 
 def test_the_program_names_every_native_and_every_variable() -> None:
@@ -109,11 +109,11 @@ def test_every_native_and_variable_gives_what_the_program_expects(device: AsebaD
     run(device)
     assert device.status.state == "running"
     assert {name: device.get_variable(name) for name, _ in expectations()} == dict(expectations())
-    assert device.take_notices() == []
+    assert device.pop_notices() == []
 
 
 def test_every_native_that_reaches_an_actuator_tells_it(device: AsebaDevice) -> None:
-    assert device.take_commands() == [
+    assert device.pop_commands() == [
         SetVolume(0),
         SetVolume(2),
         SetLeds("circle", (1, 2, 3, 4, 5, 6, 7, 8)),
@@ -146,13 +146,13 @@ def test_files_of_the_card_and_the_flash_hold_what_was_written(device: AsebaDevi
 
 
 def test_the_radio_has_the_number_and_network_it_was_given(device: AsebaDevice) -> None:
-    assert (device.node_id, device.body.network) == (9, (1, 77))
+    assert (device.node_id, device.services.network) == (9, (1, 77))
     device.reset()
     assert device.get_variable("_id") == (9,)
 
 
 def test_switched_off_everything_is_dark_and_still_until_it_is_switched_on(device: AsebaDevice) -> None:
-    device.take_commands()
+    device.pop_commands()
     device.receive_event("off", (0, 0))
     commands = run(device)
     assert commands[-1] == PlaySystemSound(1)
@@ -175,12 +175,12 @@ def test_switched_off_everything_is_dark_and_still_until_it_is_switched_on(devic
 def test_a_restart_begins_anew_and_keeps_what_was_flashed(device: AsebaDevice) -> None:
     sensed(device)
     run(device)
-    device.body.settings[0] = 7
+    device.services.settings[0] = 7
     device.receive_event("again", (0, 0))
     commands = run(device)
     assert commands[-1] == MotorTargets(101, -100)
     assert commands[0] != commands[-1]
     assert SetWave(TRIANGLE) in commands
-    assert device.body.settings[0] == 2
+    assert device.services.settings[0] == 2
     assert device.get_variable("far") == (0,) * 7
     assert device.status.state == "running"

@@ -65,12 +65,12 @@ def test_programs_of_either_layout_see_and_move_the_same_robot(layout: str) -> N
     )
     robot = device(layout)
     robot.load(load_program(source, "program", layout))
-    robot.take_commands()
+    robot.pop_commands()
     robot.feed("ground", (0, 0, 900, 800, 900, 800))
     robot.feed("proximity", (0, 0, 4000, 0, 0, 0, 0))
     robot.run(1000)
     assert robot.get_variable("seen") == (4000, 800)
-    told = [str(command) for command in robot.take_commands()]
+    told = [str(command) for command in robot.pop_commands()]
     assert told == [
         "SetLeds(group='bottom_left', levels=(1, 2, 3))",
         "SetLeds(group='circle', levels=(1, 2, 3, 4, 5, 6, 7, 8))",

@@ -30,7 +30,7 @@ def inside(setting):
 
 
 def word(robot, address):
-    return robot.device.body.settings[address]
+    return robot.device.services.settings[address]
 
 
 def test_left_and_right_together_for_two_seconds_open_the_settings():

@@ -15,7 +15,7 @@ from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.natives import native_functions
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
-from thymio_sim_ros.device.programs.load import Meter
+from thymio_sim_ros.device.programs.load import LoadMeter
 from thymio_sim_ros.device.programs.program import load_program
 from thymio_sim_ros.sim.audio.synthesis import BLOCK_NS
 from thymio_sim_ros.sim.commands import Command, MotorTargets, PlaySamples, PlaySystemSound, SetVolume, StopSound
@@ -33,10 +33,10 @@ def start(source: str, options: DeviceOptions = DEFAULTS, *, sounds: Sequence[st
     """A device with a program that waits for its first instruction; its card holds a click under these names."""
     device = AsebaDevice(options=options)
     for name in sounds:
-        assert device.body.card is not None
-        device.body.card.write_sound(name, CLICK)
+        assert device.services.card is not None
+        device.services.card.write_sound(name, CLICK)
     device.load(load_program(source, "test"))
-    device.take_commands()
+    device.pop_commands()
     return device
 
 
@@ -44,7 +44,7 @@ def run(device: AsebaDevice) -> list[Command]:
     """What the device tells until it waits."""
     while device.is_busy:
         device.run(5000)
-    return device.take_commands()
+    return device.pop_commands()
 
 
 def told(source: str, options: DeviceOptions = DEFAULTS, *, sounds: Sequence[str] = ()) -> list[Command]:
@@ -116,7 +116,7 @@ def test_sounds_come_from_the_robot_or_from_the_card(
 def test_a_sound_that_is_missing_is_said(options: DeviceOptions) -> None:
     device = start("call sound.play(2)", options)
     run(device)
-    assert device.take_notices() == ["there is no p2.wav on the card"]
+    assert device.pop_notices() == ["there is no p2.wav on the card"]
 
 
 def test_a_wave_out_of_range_is_a_fault_of_the_program() -> None:
@@ -150,7 +150,7 @@ def test_settings_survive_a_new_program_and_tell_the_volume() -> None:
     device = start("call _system.settings.write(0, 4)")
     run(device)
     device.load(load_program("", "test"))
-    assert SetVolume(4) in device.take_commands()
+    assert SetVolume(4) in device.pop_commands()
 
 
 def test_a_record_holds_what_the_microphone_told_meanwhile(options: DeviceOptions) -> None:
@@ -164,8 +164,8 @@ def test_a_record_holds_what_the_microphone_told_meanwhile(options: DeviceOption
     device.feed("proximity", (0,) * 7)
     run(device)
     assert device.get_variable("t") == (19,)
-    assert device.body.card is not None
-    samples, complaint = device.body.card.read_sound("r5") or (b"", "missing")
+    assert device.services.card is not None
+    samples, complaint = device.services.card.read_sound("r5") or (b"", "missing")
     assert (len(samples), complaint) == (2_000_000_000 // BLOCK_NS * 128, "")
     assert (min(samples), max(samples)) == (78, 178)
 
@@ -175,9 +175,9 @@ def test_a_record_is_stored_when_the_program_ends(options: DeviceOptions, end: C
     device = start("call sound.record(1)", options)
     run(device)
     end(device)
-    assert device.body.recorded_bytes(1) == 0
-    assert device.body.card is not None
-    assert device.body.card.read_sound("r1") == (b"", "")
+    assert device.services.recorded_bytes(1) == 0
+    assert device.services.card is not None
+    assert device.services.card.read_sound("r1") == (b"", "")
 
 
 @pytest.mark.parametrize("number", [0, -3])
@@ -229,7 +229,7 @@ def test_events_of_the_playground_cut_off_a_long_handler() -> None:
     run(device)
     assert device.get_variable("n") == (2,)
     assert device.get_variable("long")[0] < 1000
-    assert device.take_notices() == ["motor cuts off prox, which takes more than 1000 instructions"]
+    assert device.pop_notices() == ["motor cuts off prox, which takes more than 1000 instructions"]
 
 
 def test_in_the_playground_a_program_has_its_turn_before_an_event_cuts_it_off() -> None:
@@ -239,12 +239,12 @@ def test_in_the_playground_a_program_has_its_turn_before_an_event_cuts_it_off() 
     device.receive_event("hello", ())
     run(device)
     assert (device.get_variable("ready"), device.get_variable("heard")) == ((1,), (1,))
-    assert device.take_notices() == []
+    assert device.pop_notices() == []
 
 
 def test_no_native_of_the_robot_is_left_without_a_function() -> None:
     device = AsebaDevice()
-    functions = native_functions(device._outputs.send, device.body, Meter())
+    functions = native_functions(device._outputs.send, device.services, LoadMeter())
     assert sorted({*functions, *NATIVES}) == sorted(native.name for native in target().natives)
 
 

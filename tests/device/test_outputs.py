@@ -1,120 +1,120 @@
-"""What actuators are told of natives and variables, and what is not told twice."""
+"""Commands from native functions and variables; unchanged values cause none."""
 
 from __future__ import annotations
 
 import pytest
 
 from aseba_vm import VirtualMachine
-from thymio_sim_ros.device.firmware.indicators import OwnRules
+from thymio_sim_ros.device.firmware.indicators import Indicators
 from thymio_sim_ros.device.firmware.settings import Settings
 from thymio_sim_ros.device.layout import THYMIO, target
-from thymio_sim_ros.device.outputs import LIT_NS, Outputs
+from thymio_sim_ros.device.outputs import LIGHT_REPEAT_NS, Outputs
 from thymio_sim_ros.sim.commands import MotorTargets, PlaySystemSound, PlayTone, SetLed, SetLeds, SetVolume, ShowOnLeds
 
 RED, GREEN = SetLeds("top", (32, 0, 0)), SetLeds("top", (0, 32, 0))
 
 
-class Told(Outputs):
+class OutputsUnderTest(Outputs):
     """Outputs of a machine whose variables a test writes."""
 
     def __init__(self) -> None:
         self.settings = Settings()
-        self.rules = OwnRules(target().addresses, lambda _address: True)
-        super().__init__(THYMIO, self.settings, self.rules)
+        self.indicators = Indicators(target().addresses, lambda _address: True)
+        super().__init__(THYMIO, self.settings, self.indicators)
         self.machine = VirtualMachine(target())
         self.reset(self.machine)
-        self.take(0)
+        self.pop(0)
 
     def write(self, name: str, *words: int) -> None:
         self.machine.write_variables(target().addresses[name][0], words)
 
 
 @pytest.fixture
-def outputs() -> Told:
-    return Told()
+def outputs() -> OutputsUnderTest:
+    return OutputsUnderTest()
 
 
-def test_a_variable_is_told_when_it_changed(outputs: Told) -> None:
+def test_a_variable_is_told_when_it_changed(outputs: OutputsUnderTest) -> None:
     outputs.write("motor.left.target", 100)
-    assert outputs.take_changes() == [MotorTargets(100, 0)]
-    assert outputs.take_changes() == []
+    assert outputs.pop_changes() == [MotorTargets(100, 0)]
+    assert outputs.pop_changes() == []
 
 
-def test_a_native_s_variable_is_not_told_a_second_time(outputs: Told) -> None:
+def test_a_native_s_variable_is_not_told_a_second_time(outputs: OutputsUnderTest) -> None:
     outputs.send(RED, {"leds.top": (32, 0, 0)})
-    assert (outputs.take(0), outputs.take_changes()) == ([RED], [])
+    assert (outputs.pop(0), outputs.pop_changes()) == ([RED], [])
     outputs.write("leds.top", 0, 32, 0)
-    assert outputs.take_changes() == [GREEN]
+    assert outputs.pop_changes() == [GREEN]
 
 
-def test_lights_that_are_set_to_what_they_are_are_told_once(outputs: Told) -> None:
+def test_lights_that_are_set_to_what_they_are_are_told_once(outputs: OutputsUnderTest) -> None:
     for command in (RED, RED, GREEN, GREEN, RED):
         outputs.send(command)
-    assert outputs.take(0) == [RED, GREEN, RED]
+    assert outputs.pop(0) == [RED, GREEN, RED]
 
 
-def test_and_again_after_a_while_since_somebody_else_may_have_set_them(outputs: Told) -> None:
-    told = []
+def test_and_again_after_a_while_since_somebody_else_may_have_set_them(outputs: OutputsUnderTest) -> None:
+    commands = []
     for tick in range(100):
         outputs.send(RED)
-        told += outputs.take(tick * LIT_NS // 10)
-    assert told == [RED] * 10
+        commands += outputs.pop(tick * LIGHT_REPEAT_NS // 10)
+    assert commands == [RED] * 10
     outputs.send(RED)
-    outputs.take(0)  # time went back
+    outputs.pop(0)  # time went back
     outputs.send(RED)
-    assert outputs.take(1) == [RED]
+    assert outputs.pop(1) == [RED]
 
 
-def test_what_was_set_before_a_reset_is_news_after_it(outputs: Told) -> None:
+def test_what_was_set_before_a_reset_is_news_after_it(outputs: OutputsUnderTest) -> None:
     outputs.send(RED)
     outputs.reset(outputs.machine)
-    outputs.take(0)
+    outputs.pop(0)
     outputs.send(RED)
-    assert outputs.take(0) == [RED]
+    assert outputs.pop(0) == [RED]
 
 
-def test_a_group_that_a_rule_had_lit_is_dark_for_the_robot_from_then_on(outputs: Told) -> None:
+def test_a_group_that_a_rule_had_lit_is_dark_for_the_robot_from_then_on(outputs: OutputsUnderTest) -> None:
     memory = outputs.machine.variables.words
     outputs.write("temperature", 200)
-    outputs.tell(*outputs.rules.look(memory))
-    outputs.take(0)
+    outputs.queue(*outputs.indicators.update(memory))
+    outputs.pop(0)
     outputs.send(SetLeds("temperature", (1, 2)))
-    assert outputs.take(0) == [ShowOnLeds("temperature", (0, 0)), SetLeds("temperature", (1, 2))]
+    assert outputs.pop(0) == [ShowOnLeds("temperature", (0, 0)), SetLeds("temperature", (1, 2))]
     outputs.send(SetLeds("temperature", (1, 3)))
-    assert outputs.take(0) == [SetLeds("temperature", (1, 3))]
+    assert outputs.pop(0) == [SetLeds("temperature", (1, 3))]
 
 
-def test_a_single_light_makes_its_group_news_again(outputs: Told) -> None:
+def test_a_single_light_makes_its_group_news_again(outputs: OutputsUnderTest) -> None:
     for command in (RED, SetLed(3, 7), RED):
         outputs.send(command)
-    assert outputs.take(0) == [RED, SetLed(3, 7), RED]
+    assert outputs.pop(0) == [RED, SetLed(3, 7), RED]
 
 
-def test_a_new_correction_tells_the_same_targets_again(outputs: Told) -> None:
+def test_a_new_correction_tells_the_same_targets_again(outputs: OutputsUnderTest) -> None:
     outputs.write("motor.left.target", 256)
-    outputs.take_changes()
+    outputs.pop_changes()
     outputs.settings[8] = 300
-    outputs.tell_motors_again()
-    assert outputs.take_changes() == [MotorTargets(300, 0)]
+    outputs.resend_motor_targets()
+    assert outputs.pop_changes() == [MotorTargets(300, 0)]
 
 
-def test_sound_is_used_from_its_first_command_on(outputs: Told) -> None:
+def test_sound_is_used_from_its_first_command_on(outputs: OutputsUnderTest) -> None:
     touched = PlaySystemSound(2)
     outputs.send(SetVolume(3))
     assert not outputs.has_used_sound
     outputs.write("button.left", 1)
-    assert touched in outputs.rules.look(outputs.machine.variables.words)
+    assert touched in outputs.indicators.update(outputs.machine.variables.words)
     outputs.send(PlayTone(440, None))
     assert outputs.has_used_sound
     outputs.write("button.right", 1)
-    assert touched not in outputs.rules.look(outputs.machine.variables.words)
+    assert touched not in outputs.indicators.update(outputs.machine.variables.words)
     outputs.reset(outputs.machine)
     assert not outputs.has_used_sound
 
 
-def test_a_reset_tells_every_actuator(outputs: Told) -> None:
+def test_a_reset_tells_every_actuator(outputs: OutputsUnderTest) -> None:
     outputs.reset(outputs.machine)
-    told = outputs.take(0)
-    assert len(told) == len(set(told))
-    kinds = {type(command).__name__ for command in told}
+    commands = outputs.pop(0)
+    assert len(commands) == len(set(commands))
+    kinds = {type(command).__name__ for command in commands}
     assert {"MotorTargets", "ReleaseLeds", "StopSound", "SetWave", "EnableComm", "SetSoundThreshold"} <= kinds

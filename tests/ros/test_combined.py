@@ -13,13 +13,13 @@ from thymio_sim_ros.bridge import SUBPROTOCOLS, Tokens
 from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.ros import combined
-from thymio_sim_ros.suite_config import Suite
+from thymio_sim_ros.suite_config import SuiteConfig
 
 
 def test_the_choices_of_a_start_reach_their_nodes(ros, tmp_path):
     device = DeviceOptions("playground", "playground", tmp_path / "card", tmp_path / "flash")
     models = {"motor_model": "firmware", "proximity_model": "cone"}
-    suite = Suite(playground="base", program="none", device=device, **models, web=False, foxglove=False)
+    suite = SuiteConfig(playground="base", program="none", device=device, **models, web=False, foxglove=False)
     simulator, runtime = (ros.live(life) for life in combined.lives(ros.context, suite))
     assert simulator.params.motor_model == "firmware"
     assert simulator.params.proximity_model == "cone"
@@ -33,7 +33,7 @@ def test_a_page_that_was_opened_from_elsewhere_reaches_the_bridge_if_everybody_m
     here, elsewhere = "127.0.0.1", "127.0.0.2"
     for address, hosts in (("localhost", [here]), ("0.0.0.0", [here, elsewhere])):
         ports = {"port": 0, "foxglove_port": free_port()}
-        suite = Suite(playground="base", program="none", address=address, tokens=Tokens(), **ports)
+        suite = SuiteConfig(playground="base", program="none", address=address, tokens=Tokens(), **ports)
         _, _, bridge, page = (ros.live(life) for life in combined.lives(ros.context, suite))
         for host in (here, elsewhere):
             opening = {"subprotocols": SUBPROTOCOLS, "origin": f"http://{host}:{page.port}"}
@@ -50,7 +50,7 @@ def test_a_page_that_was_opened_from_elsewhere_reaches_the_bridge_if_everybody_m
 
 def test_in_the_network_the_bridge_makes_tokens_and_the_page_knows_them(ros, monkeypatch):
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
-    suite = Suite(playground="base", program="none", address="0.0.0.0", port=0, foxglove_port=free_port())
+    suite = SuiteConfig(playground="base", program="none", address="0.0.0.0", port=0, foxglove_port=free_port())
     _, _, bridge, page = (ros.live(life) for life in combined.lives(ros.context, suite))
     assert bridge.tokens.is_required
     assert page.tokens == bridge.tokens

@@ -11,7 +11,7 @@ from rclpy.node import Node
 
 from thymio_sim_ros.ros.combined_parameters import BRIDGE, PAGE, RUNTIME, SIMULATOR, assigned, defaults
 from thymio_sim_ros.ros.rclpy_ext import parameters
-from thymio_sim_ros.suite_config import Suite
+from thymio_sim_ros.suite_config import SuiteConfig
 
 NODES = (SIMULATOR, RUNTIME, BRIDGE, PAGE)
 SHARED = {"port", "foxglove_port", "address", "robot_names"}
@@ -111,6 +111,6 @@ def test_other_arguments_stay_as_they_are(given):
 
 
 def test_no_two_nodes_have_a_parameter_of_one_name_but_the_ones_that_are_told_apart():
-    names = {node: set(parameters.by_name(values)) for node, values in defaults(Suite()).items()}
+    names = {node: set(parameters.by_name(values)) for node, values in defaults(SuiteConfig()).items()}
     shared = set().union(*(names[one] & names[other] for one, other in itertools.combinations(names, 2)))
     assert shared <= SHARED

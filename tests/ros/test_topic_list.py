@@ -7,7 +7,7 @@ import pytest
 from tests.processes import free_port
 from thymio_sim_ros.ros import combined
 from thymio_sim_ros.ros.interface.names import PROXIMITY, is_hidden
-from thymio_sim_ros.suite_config import Suite
+from thymio_sim_ros.suite_config import SuiteConfig
 
 MOST = 40
 """Topics that a student may meet at first, those of ROS itself included."""
@@ -44,7 +44,7 @@ FOR_TOOLS = {
 @pytest.fixture
 def topics(ros):
     """Names of all topics of the suite as `thymio-sim` starts it, page and bridge included."""
-    lives = combined.lives(ros.context, Suite(port=0, foxglove_port=free_port()))
+    lives = combined.lives(ros.context, SuiteConfig(port=0, foxglove_port=free_port()))
     for life in lives:
         ros.live(life)
     ros.until(lambda: set(_names(ros)) >= FOR_TOOLS | NEEDED, what="the topics of all nodes")

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from tests.sim.builders import FLOOR, make, run, send
-from thymio_sim_ros.runlog.run_log import Begun, Checked, Ended, RunLog, RunLogError, read
+from thymio_sim_ros.runlog.run_log import LogEnded, RunLog, RunLogError, TicksChecked, WorldStarted, read
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.input_recorder import Posted, Removed, Reset, Spawned, WorldOptions
 from thymio_sim_ros.sim.playground.reader import RobotStart
@@ -95,11 +95,11 @@ def written(tmp_path: Path) -> Path:
 
 def test_a_log_tells_everything_in_order(written: Path) -> None:
     lines = [line for _, line in read(written)]
-    begun = lines[0]
-    assert isinstance(begun, Begun)
-    assert begun.name == "small"
-    assert begun.options == WorldOptions(4, False, "enki", "ideal", (("proximity", 100_000_000),))
-    assert begun.playground.solids == make([FLOOR]).solids
+    start = lines[0]
+    assert isinstance(start, WorldStarted)
+    assert start.name == "small"
+    assert start.options == WorldOptions(4, False, "enki", "ideal", (("proximity", 100_000_000),))
+    assert start.playground.solids == make([FLOOR]).solids
     inputs = [line for line in lines if isinstance(line, tuple)]
     assert inputs == [
         (0, Posted("thymio", MotorTargets(100, 200))),
@@ -107,8 +107,8 @@ def test_a_log_tells_everything_in_order(written: Path) -> None:
         (150, Removed("late")),
         (150, Reset()),
     ]
-    assert [len(line.crcs) for line in lines if isinstance(line, Checked)] == [100, 50, 2]
-    assert lines[-1] == Ended()
+    assert [len(line.crcs) for line in lines if isinstance(line, TicksChecked)] == [100, 50, 2]
+    assert lines[-1] == LogEnded()
 
 
 def test_every_line_is_json_and_names_the_format_first(written: Path) -> None:
@@ -190,7 +190,7 @@ def test_and_within_a_character(tmp_path: Path) -> None:
     log.close()
     data = path.read_bytes()
     path.write_bytes(data[: data.rindex("ö".encode()) + 1])
-    assert [type(line) for _, line in read(path)] == [Begun]
+    assert [type(line) for _, line in read(path)] == [WorldStarted]
 
 
 def test_bytes_that_are_no_text_are_refused(written: Path) -> None:

@@ -79,7 +79,7 @@ def test_shows_takes_levels_and_names_of_colours() -> None:
 @pytest.mark.parametrize(
     ("group", "levels", "text"),
     [
-        ("top", "pink", "no colour 'pink': expected one of off, red"),
+        ("top", "pink", "no color 'pink': expected one of off, red"),
         ("circle", "red", "circle: 3 levels found, expected 8"),
         ("roof", (1, 2, 3), "no lights 'roof': expected one of top"),
     ],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from thymio_sim_ros.testing.failure_messages import told
+from thymio_sim_ros.testing.failure_messages import describe_condition
 
 COUNT = [3]
 
@@ -15,13 +15,13 @@ def has_come() -> bool:
 
 
 def test_a_function_is_told_by_its_name() -> None:
-    assert told(has_come) == "has_come"
-    assert told(COUNT.__len__).startswith("<")
+    assert describe_condition(has_come) == "has_come"
+    assert describe_condition(COUNT.__len__).startswith("<")
 
 
 def test_a_lambda_is_told_as_it_is_written() -> None:
-    assert told(lambda: COUNT[0] > 5) == "COUNT[0] > 5"
-    text = told(
+    assert describe_condition(lambda: COUNT[0] > 5) == "COUNT[0] > 5"
+    text = describe_condition(
         lambda: (
             sum(COUNT) > 4  # shortened to one line
         )
@@ -30,15 +30,15 @@ def test_a_lambda_is_told_as_it_is_written() -> None:
 
 
 def test_of_a_lambda_inside_a_statement_its_own_part_is_told() -> None:
-    for told_text in [told(lambda: COUNT == []) for _ in range(1)]:
+    for told_text in [describe_condition(lambda: COUNT == []) for _ in range(1)]:
         assert told_text == "COUNT == []"
-    with_block = told((lambda: COUNT[0]))  # noqa: UP034  (brackets of its own)
+    with_block = describe_condition((lambda: COUNT[0]))  # noqa: UP034  (brackets of its own)
     assert with_block == "COUNT[0]"
 
 
 def test_a_lambda_without_a_source_is_told_by_its_line() -> None:
-    assert told(eval("lambda: 1")) == "the lambda of line 1"
+    assert describe_condition(eval("lambda: 1")) == "the lambda of line 1"
 
 
 def test_anything_else_is_told_as_it_prints() -> None:
-    assert told(partial(int, "1")) == "functools.partial(<class 'int'>, '1')"
+    assert describe_condition(partial(int, "1")) == "functools.partial(<class 'int'>, '1')"

@@ -8,10 +8,10 @@ import pytest
 
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.testing import Classroom, followed_line
-from thymio_sim_ros.testing.line_following import Line
+from thymio_sim_ros.testing.line_following import TrackLine
 
-SQUARE = Line([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], closed=True)
-EIGHT = Line([(-1.0, -1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, 1.0)], closed=True)
+SQUARE = TrackLine([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], closed=True)
+EIGHT = TrackLine([(-1.0, -1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, 1.0)], closed=True)
 
 
 def test_a_point_is_located_beside_the_line() -> None:
@@ -22,9 +22,9 @@ def test_a_point_is_located_beside_the_line() -> None:
 
 
 def test_ways_on_a_closed_line_are_the_shorter_ones() -> None:
-    assert SQUARE.way(3.9, 0.1) == pytest.approx(0.2)
-    assert SQUARE.way(0.1, 3.9) == pytest.approx(-0.2)
-    assert Line([(0.0, 0.0), (4.0, 0.0)], closed=False).way(3.9, 0.1) == pytest.approx(-3.8)
+    assert SQUARE.offset(3.9, 0.1) == pytest.approx(0.2)
+    assert SQUARE.offset(0.1, 3.9) == pytest.approx(-0.2)
+    assert TrackLine([(0.0, 0.0), (4.0, 0.0)], closed=False).offset(3.9, 0.1) == pytest.approx(-3.8)
 
 
 def test_in_a_corner_the_distance_is_the_smallest_one() -> None:
@@ -98,4 +98,4 @@ def test_a_playground_without_a_track_is_refused() -> None:
     with pytest.raises(ValueError, match="playground base: 0 tracks, name one of them; found none"):
         followed_line(thymio)
     with pytest.raises(ValueError, match="playground line: no track 'x'; found "):
-        Line.of(load_playground("line")[1], "x")
+        TrackLine.of(load_playground("line")[1], "x")

@@ -44,7 +44,7 @@ def test_what_is_touched_when_the_past_is_forgotten_is_touched_anew() -> None:
 def test_moments_are_told_from_a_time_on_and_forgotten() -> None:
     (thymio,) = Classroom("base")
     thymio.run(0.1)
-    thymio.record.hear("ping", [1, 2], 150_000_000)
+    thymio.record.add_event("ping", [1, 2], 150_000_000)
     assert [round(moment.at_s, 2) for moment in thymio.record.since(0.08)] == [0.08, 0.09, 0.1]
     assert thymio.events == [Event(0.15, "ping", (1, 2))]
     thymio.record.clear()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.web.connections import KEPT_S, TIME_LIMIT_S, Connections, Phase, Place
+from thymio_sim_ros.web.connections import MIN_WAIT_S, TIME_LIMIT_S, Connections, ConnectionSlot, Phase
 
 
 class Clock:
@@ -25,8 +25,8 @@ def connections(clock: Clock) -> Connections:
     return Connections(4, clock)
 
 
-def admitted(connections: Connections, address: str, ended: list[Place] | None = None) -> Place:
-    place = connections.admit(address)
+def admitted(connections: Connections, address: str, ended: list[ConnectionSlot] | None = None) -> ConnectionSlot:
+    place = connections.add(address)
     if ended is not None:
         place.close = lambda: ended.append(place)
     return place
@@ -34,9 +34,9 @@ def admitted(connections: Connections, address: str, ended: list[Place] | None =
 
 @pytest.mark.parametrize("phase", Phase)
 def test_a_connection_is_closed_after_the_time_of_its_phase(connections, clock, phase):
-    ended: list[Place] = []
+    ended: list[ConnectionSlot] = []
     place = admitted(connections, "a", ended)
-    connections.enter(place, phase)
+    connections.set_phase(place, phase)
     clock.now_s = TIME_LIMIT_S[phase]
     assert connections.close_overdue() == 0
     clock.now_s += 0.01
@@ -47,9 +47,9 @@ def test_a_connection_is_closed_after_the_time_of_its_phase(connections, clock, 
 
 def test_a_phase_that_goes_on_keeps_its_begin(connections, clock):
     place = admitted(connections, "a")
-    connections.enter(place, Phase.READING)
+    connections.set_phase(place, Phase.READING)
     clock.now_s = 6.0
-    connections.enter(place, Phase.READING)
+    connections.set_phase(place, Phase.READING)
     clock.now_s = 10.1
     assert connections.close_overdue() == 1
 
@@ -63,56 +63,56 @@ def test_the_oldest_silent_one_of_the_address_with_the_most_gives_way(connection
         admitted(connections, "attacker")
     clock.now_s = 20.0
     assert connections.is_full
-    assert connections.longest_waiting() is first
-    connections.leave(first)
-    connections.leave(visitor)
+    assert connections.eviction_candidate() is first
+    connections.remove(first)
+    connections.remove(visitor)
     assert not connections.is_full
 
 
 def test_silent_connections_go_before_those_that_have_begun_to_ask(connections, clock):
     asking = admitted(connections, "a")
-    connections.enter(asking, Phase.READING)
+    connections.set_phase(asking, Phase.READING)
     clock.now_s = 1.0
     silent = admitted(connections, "a")
     clock.now_s = 10.0
-    assert connections.longest_waiting() is silent
+    assert connections.eviction_candidate() is silent
 
 
-@pytest.mark.parametrize("phase", KEPT_S)
+@pytest.mark.parametrize("phase", MIN_WAIT_S)
 def test_a_connection_that_has_only_begun_to_wait_is_kept(connections, clock, phase):
     place = admitted(connections, "a")
-    connections.enter(place, phase)
-    clock.now_s = KEPT_S[phase] - 0.01
-    assert connections.longest_waiting() is None
-    clock.now_s = KEPT_S[phase]
-    assert connections.longest_waiting() is place
+    connections.set_phase(place, phase)
+    clock.now_s = MIN_WAIT_S[phase] - 0.01
+    assert connections.eviction_candidate() is None
+    clock.now_s = MIN_WAIT_S[phase]
+    assert connections.eviction_candidate() is place
 
 
 def test_a_connection_that_is_answered_never_gives_way(connections, clock):
-    connections.enter(admitted(connections, "a"), Phase.ANSWERING)
+    connections.set_phase(admitted(connections, "a"), Phase.ANSWERING)
     clock.now_s = 60.0
-    assert connections.longest_waiting() is None
+    assert connections.eviction_candidate() is None
 
 
 def test_a_connection_whose_client_has_done_something_is_kept(connections, clock):
-    ended: list[Place] = []
+    ended: list[ConnectionSlot] = []
     place = admitted(connections, "a", ended)
     clock.now_s = 4.0
     since_s = place.since_s
-    assert connections.longest_waiting() is place
-    connections.enter(place, Phase.READING)  # while the event loop had its turns
-    connections.end(place, since_s)
+    assert connections.eviction_candidate() is place
+    connections.set_phase(place, Phase.READING)  # while the event loop had its turns
+    connections.evict(place, since_s)
     assert ended == []
-    place.has_news = lambda: True
+    place.has_pending_io = lambda: True
     clock.now_s = 9.0
-    assert connections.longest_waiting() is None
-    place.has_news = lambda: False
-    connections.end(place, place.since_s)
+    assert connections.eviction_candidate() is None
+    place.has_pending_io = lambda: False
+    connections.evict(place, place.since_s)
     assert ended == [place]
 
 
 def test_leaving_twice_gives_back_one_place(connections):
     places = [admitted(connections, "a") for _ in range(4)]
-    connections.leave(places[0])
-    connections.leave(places[0])
+    connections.remove(places[0])
+    connections.remove(places[0])
     assert len(connections) == 3

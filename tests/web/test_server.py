@@ -219,7 +219,7 @@ def test_who_has_been_answered_is_disconnected_after_a_while(serve, monkeypatch)
 def test_who_does_not_read_is_disconnected(serve, folder, monkeypatch):
     (folder / "large.bin").write_bytes(bytes(8_000_000))
     monkeypatch.setitem(places.TIME_LIMIT_S, Phase.STALLED, 0.2)
-    monkeypatch.delitem(places.KEPT_S, Phase.STALLED)
+    monkeypatch.delitem(places.MIN_WAIT_S, Phase.STALLED)
     port = serve(max_connections=1)
     with socket.socket() as connection:
         connection.settimeout(DEADLINE_S)

@@ -1,14 +1,14 @@
-"""A Foxglove WebSocket server for any source of data: no ROS and no robot in here.
+"""A Foxglove WebSocket server for any data source, independent of ROS and of robots.
 
-    messages, wire      what is said, and its bytes
-    channels            who wants what: all state and decisions, without sockets
-    server, thread      sockets and the event loop around them
-    transport, outlet   the way out to a client, from either thread
-    access              tokens, and what they allow
-    turn                whose turn it is to work on all that
-    events              what the source of data is told (events) and tells (commands)
+    messages, wire                 messages of the protocol and their encoding
+    switchboard                    clients, channels and subscriptions: all state and decisions, without sockets
+    server, server_thread          sockets and their event loop
+    transport, client_send_queue   writing to a client from any thread; messages for slow clients
+    access, origin_policy          tokens, roles and allowed web pages
+    fair_lock                      the lock that guards the state
+    events                         values exchanged with the data source: events to it, commands from it
 
-Why our own server on `websockets` and not one of the vendor's packages: docs/spec/foxglove.md section 1.
+docs/spec/foxglove.md section 1 explains why this is not one of the vendor's packages.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Who may do what: tokens, the roles that they give, and a limit for attempts without one. No sockets in here.
+"""Access control: tokens, their roles, and a limit for attempts with wrong tokens. Without sockets.
 
-A server without a token serves everyone whom its address reaches. Tokens travel in addresses and headers, never in
-messages, parameters or logs, which every client may read.
+A server without a token serves every client that can reach its address. Tokens travel in addresses and headers, never
+in messages, parameters or logs, which every client may read.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ __all__ = [
     "READ_ONLY_VARIABLE",
     "TOKEN",
     "TOKEN_VARIABLE",
-    "Attempts",
+    "AttemptLimiter",
     "Role",
     "Tokens",
     "given_token",
@@ -36,7 +36,7 @@ TOKEN = re.compile(r"[A-Za-z0-9._~-]{4,200}")
 
 _BURST = 30
 _PER_S = 1.0
-_MOST_ADDRESSES = 1000
+_MAX_ADDRESSES = 1000
 
 
 class Role(StrEnum):
@@ -105,7 +105,7 @@ def given_token(target: str, authorizations: Iterable[str]) -> str | None:
     return None
 
 
-class Attempts:
+class AttemptLimiter:
     """Limits how often an address may try a wrong token: `_BURST` times at once, then `_PER_S`."""
 
     def __init__(self, now_s: Callable[[], float]) -> None:
@@ -113,16 +113,16 @@ class Attempts:
         self._left: OrderedDict[str, tuple[float, float]] = OrderedDict()
         """Network → attempts that are left, and since when; the most recent last."""
 
-    def may_try(self, address: str) -> bool:
+    def is_allowed_to_try(self, address: str) -> bool:
         """Whether a token from this address is looked at."""
         return self._left_of(_network(address)) >= 1.0
 
-    def failed(self, address: str) -> None:
+    def record_failure(self, address: str) -> None:
         """A token from this address was wrong."""
         network = _network(address)
         self._left[network] = (self._left_of(network) - 1.0, self._now_s())
         self._left.move_to_end(network)
-        if len(self._left) > _MOST_ADDRESSES:
+        if len(self._left) > _MAX_ADDRESSES:
             self._left.popitem(last=False)
 
     def _left_of(self, network: str) -> float:

@@ -1,4 +1,4 @@
-"""JSON from strangers, at a bounded cost: whatever a text says, reading it takes a few milliseconds.
+"""Decoding of untrusted JSON at a bounded cost: any text takes a few milliseconds at most.
 
 Four megabytes of `[],[],…` take 0.4 s to read, during which Python does nothing else, while a string of that length
 takes 5 ms. A long text is therefore read only if nearly all of it is inside of strings, as in a playground with
@@ -12,18 +12,20 @@ from collections.abc import Callable
 from json.decoder import scanstring  # type: ignore[attr-defined]  # not in typeshed
 from typing import Any
 
+from thymio_sim_ros.errors import ThymioSimError
+
 __all__ = ["MAX_STRUCTURE", "TooMuchStructureError", "loads"]
 
 MAX_STRUCTURE = 128 << 10
 """Characters outside of strings, quotes included: some 4000 subscriptions in one message."""
 
 
-class TooMuchStructureError(ValueError):
+class TooMuchStructureError(ThymioSimError, ValueError):
     """More than `MAX_STRUCTURE` characters outside of strings."""
 
 
 def loads(text: str, parse_constant: Callable[[str], Any] | None = None) -> Any:
-    """As `json.loads`; raises ValueError or RecursionError."""
+    """Decode JSON like `json.loads`. Raises ValueError, also for too much structure, or RecursionError."""
     if len(text) > MAX_STRUCTURE:
         _check_structure(text)
     return json.loads(text, parse_constant=parse_constant)

@@ -1,4 +1,4 @@
-"""What one client has asked for: an immutable value that is replaced, never edited."""
+"""The requests of one client: an immutable value that is replaced, never modified."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from thymio_sim_ros.bridge.messages import ClientChannel
 
 @dataclass(frozen=True, slots=True)
 class ClientState:
-    """Ids are the client's own; `graph` is the connection graph it has been told, None: it did not ask."""
+    """State of a client. IDs are chosen by the client; `graph` is the last graph sent, None without a subscription."""
 
     subscriptions: Mapping[int, int] = field(default_factory=dict)
     """Subscription id → channel id."""
@@ -22,9 +22,9 @@ class ClientState:
     graph: ConnectionGraph | None = None
     calls: int = 0
     """Service calls without an answer."""
-    wishes: int = 0
+    parameter_requests: int = 0
     """Requests to get or to set parameters without an answer."""
     open_size: int = 0
     """Bytes of all these."""
     is_read_only: bool = False
-    """Whether it may watch and nothing else."""
+    """Whether it may only subscribe and read."""

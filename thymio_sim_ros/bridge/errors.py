@@ -1,11 +1,13 @@
-"""What can go wrong at the bridge's border."""
+"""Exceptions of the bridge."""
 
 from __future__ import annotations
+
+from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = ["BridgeError", "FrameError"]
 
 
-class BridgeError(Exception):
+class BridgeError(ThymioSimError):
     """Base of the bridge's errors."""
 
 

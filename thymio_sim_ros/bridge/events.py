@@ -1,6 +1,6 @@
-"""The two one-way streets between the bridge and whoever owns the data (for us: the ROS thread).
+"""Events from the bridge to the data source, and commands from the data source to the bridge.
 
-Events go out: what clients want. Commands come in: what there is. All are frozen values, so they may cross threads.
+Events report requests of clients; commands report available data. All are frozen values, so they may cross threads.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ from thymio_sim_ros.bridge.messages import (
     ServiceResponse,
 )
 
-# --- events: the bridge tells --------------------------------------------------------------------------------------
+# --- events of the bridge --------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
-class ChannelWanted:
-    """The first subscriber of a channel came."""
+class ChannelSubscribed:
+    """A channel got its first subscriber."""
 
     channel_id: int
 
 
 @dataclass(frozen=True, slots=True)
-class ChannelUnwanted:
-    """The last subscriber of a channel left."""
+class ChannelUnsubscribed:
+    """A channel lost its last subscriber."""
 
     channel_id: int
 
 
 @dataclass(frozen=True, slots=True)
 class ClientChannelOpened:
-    """A client is going to send."""
+    """A client opened a channel to publish on."""
 
     client: int
     channel: ClientChannel
@@ -47,15 +47,15 @@ class ClientChannelOpened:
 
 @dataclass(frozen=True, slots=True)
 class ClientChannelClosed:
-    """A client ended a channel, or left with it open."""
+    """A client closed a channel, or disconnected."""
 
     client: int
     channel_id: int
 
 
 @dataclass(frozen=True, slots=True)
-class ClientSent:
-    """A client's message on one of its open channels."""
+class ClientMessageReceived:
+    """A client published on one of its open channels."""
 
     client: int
     channel_id: int
@@ -64,7 +64,7 @@ class ClientSent:
 
 @dataclass(frozen=True, slots=True)
 class ServiceCalled:
-    """A client calls an existing service; answer with one `Answer`."""
+    """A client calls an existing service; answer with one `AnswerCall`."""
 
     client: int
     request: ServiceRequest
@@ -72,7 +72,7 @@ class ServiceCalled:
 
 @dataclass(frozen=True, slots=True)
 class ParametersSet:
-    """A client wants these values; answer with one `ShowParameters`."""
+    """A client sets parameters; answer with one `SendParameters`."""
 
     client: int
     parameters: tuple[Parameter, ...]
@@ -80,8 +80,8 @@ class ParametersSet:
 
 
 @dataclass(frozen=True, slots=True)
-class ParametersAsked:
-    """A client asks for the values of these names, or of all (none); answer with one `ShowParameters`."""
+class ParametersRequested:
+    """A client requests the values of these parameters (empty: of all); answer with one `SendParameters`."""
 
     client: int
     names: tuple[str, ...]
@@ -90,15 +90,15 @@ class ParametersAsked:
 
 @dataclass(frozen=True, slots=True)
 class ParametersWatched:
-    """A client wants to be told of changes of these names."""
+    """A client subscribed to changes of these parameters."""
 
     client: int
     names: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class AssetWanted:
-    """A client wants a file; answer with `Tell`."""
+class AssetRequested:
+    """A client requests a file; answer with `SendToClient`."""
 
     client: int
     uri: str
@@ -106,46 +106,46 @@ class AssetWanted:
 
 
 @dataclass(frozen=True, slots=True)
-class GraphWanted:
-    """The first client asks who talks to whom (`wanted`), or the last one stopped asking."""
+class GraphSubscriptionChanged:
+    """The first client subscribed to the connection graph (`wanted`), or the last one unsubscribed."""
 
     wanted: bool
 
 
 Event = (
-    ChannelWanted
-    | ChannelUnwanted
+    ChannelSubscribed
+    | ChannelUnsubscribed
     | ClientChannelOpened
     | ClientChannelClosed
-    | ClientSent
+    | ClientMessageReceived
     | ServiceCalled
     | ParametersSet
-    | ParametersAsked
+    | ParametersRequested
     | ParametersWatched
-    | AssetWanted
-    | GraphWanted
+    | AssetRequested
+    | GraphSubscriptionChanged
 )
 
-# --- commands: the bridge is told ----------------------------------------------------------------------------------
+# --- commands to the bridge ----------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class AddChannels:
-    """New channels; ids are never used again."""
+    """New channels; IDs are never reused."""
 
     channels: tuple[Channel, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class RemoveChannels:
-    """Channels that are gone."""
+    """Remove channels."""
 
     channel_ids: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class KeepLast:
-    """Keep the last `depth` messages of a channel for newcomers; 0: forget them, keep none."""
+class RetainLast:
+    """Retain the last `depth` messages of a channel for new subscribers; 0 drops them and retains none."""
 
     channel_id: int
     depth: int
@@ -162,29 +162,29 @@ class Data:
 
 @dataclass(frozen=True, slots=True)
 class AddServices:
-    """New services; ids are never used again."""
+    """New services; IDs are never reused."""
 
     services: tuple[Service, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class RemoveServices:
-    """Services that are gone."""
+    """Remove services."""
 
     service_ids: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class ParametersChanged:
-    """Values in force, and names that are gone."""
+    """Current values, and names of removed parameters."""
 
     parameters: tuple[Parameter, ...]
     removed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class ShowParameters:
-    """Send a client the values in force of these names (None: of all), as the answer to its request of `size` bytes."""
+class SendParameters:
+    """Send a client the current values of these parameters (None: all), in answer to a request of `size` bytes."""
 
     client: int
     names: tuple[str, ...] | None
@@ -194,33 +194,33 @@ class ShowParameters:
 
 @dataclass(frozen=True, slots=True)
 class SetGraph:
-    """Who talks to whom now."""
+    """The current connection graph."""
 
     graph: ConnectionGraph
 
 
 @dataclass(frozen=True, slots=True)
 class SetTime:
-    """Simulated time is now `time_ns`."""
+    """The current simulated time."""
 
     time_ns: int
 
 
 @dataclass(frozen=True, slots=True)
 class NewSession:
-    """Clients shall drop what they know of the past."""
+    """Start a new session: clients drop the data of the last one."""
 
     session_id: str
 
 
 @dataclass(frozen=True, slots=True)
-class RepeatKept:
-    """Give what is kept for newcomers to all subscribers once more: they have dropped it with the past."""
+class ResendRetained:
+    """Send retained messages to all subscribers again, because they dropped them with the last session."""
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
-    """The answer to a client's service call, whose request had `size` bytes; forgotten when the client has left."""
+class AnswerCall:
+    """The answer to a client's service call, whose request had `size` bytes; dropped if the client has disconnected."""
 
     client: int
     message: ServiceResponse | ServiceCallFailure
@@ -228,8 +228,8 @@ class Answer:
 
 
 @dataclass(frozen=True, slots=True)
-class Tell:
-    """A message for one client; forgotten when it has left."""
+class SendToClient:
+    """A message for one client; dropped if it has disconnected."""
 
     client: int
     message: ServerMessage
@@ -238,27 +238,27 @@ class Tell:
 Command = (
     AddChannels
     | RemoveChannels
-    | KeepLast
+    | RetainLast
     | AddServices
     | RemoveServices
     | ParametersChanged
-    | ShowParameters
+    | SendParameters
     | SetGraph
     | SetTime
     | NewSession
-    | RepeatKept
-    | Answer
-    | Tell
+    | ResendRetained
+    | AnswerCall
+    | SendToClient
 )
 
 
 _PARAMETER_SIZE = 2048
-"""What one parameter takes as a ROS message in Python, bytes."""
+"""Memory of one parameter as a ROS message in Python, bytes."""
 
 
 def size_of(event: Event) -> int:
-    """Bytes of a client's content in an event: of a payload, of parameters."""
-    if isinstance(event, ClientSent):
+    """Bytes of the client's data in an event: of a payload or of parameters."""
+    if isinstance(event, ClientMessageReceived):
         return len(event.payload)
     if isinstance(event, ServiceCalled):
         return len(event.request.payload)

@@ -1,8 +1,8 @@
-"""Whose turn it is, among several threads.
+"""A lock that waiting threads get before the thread that released it.
 
-A plain lock would starve those that wait: a thread that gives it back and takes it again at once, as one that sends
-without a pause does, is always quicker than one that has to wake up first. Here who comes back finds the door closed as
-long as somebody waits.
+With a plain lock, a thread that releases and acquires it in a loop, such as a publisher without pauses, starves all
+others, because a waiting thread has to wake up first. Here a second lock is held by the next owner while it waits: a
+thread that comes back meanwhile queues up behind it.
 """
 
 from __future__ import annotations
@@ -11,33 +11,33 @@ import threading
 from collections.abc import Callable
 from types import TracebackType
 
-__all__ = ["Turn"]
+__all__ = ["FairLock"]
 
 
-class Turn:
-    """`take` it and `give_back`, or `with turn:`; not twice in one thread."""
+class FairLock:
+    """A lock with `acquire` and `release`, or `with lock:`. Not reentrant."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._door = threading.Lock()
-        """Who waits for the lock has it; others wait for this one."""
+        self._next_lock = threading.Lock()
+        """Held by the thread that gets the lock next, while it waits; all others wait for this one."""
         self._is_awaited = False
         self._acquire = self._lock.acquire
-        self.give_back: Callable[[], None] = self._lock.release
-        """End the turn."""
+        self.release: Callable[[], None] = self._lock.release
+        """End the lock."""
 
-    def take(self) -> None:
-        """Have the turn; others end theirs first."""
+    def acquire(self) -> None:
+        """Acquire the lock; wait until no other thread holds it."""
         if self._is_awaited or not self._acquire(False):
-            with self._door:
+            with self._next_lock:
                 self._is_awaited = True
                 self._acquire()
                 self._is_awaited = False
 
     def __enter__(self) -> None:
-        self.take()
+        self.acquire()
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.give_back()
+        self.release()

@@ -1,4 +1,4 @@
-"""Who talks to whom, as a value; the protocol sends one whole and then differences."""
+"""The connection graph as a value; the protocol sends it once and then differences."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class ConnectionGraph:
     services: Names = field(default_factory=dict)
 
     def since(self, earlier: ConnectionGraph) -> ConnectionGraphUpdate | None:
-        """What a client that knows `earlier` has to be told; None: nothing."""
+        """The difference to an `earlier` graph as a message, or None if they are equal."""
         topics = self.published.keys() | self.subscribed.keys()
         update = ConnectionGraphUpdate(
             tuple(PublishedTopic(*item) for item in _changed(earlier.published, self.published, topics)),

@@ -1,9 +1,9 @@
-"""The asyncio side: sockets around the switchboard, on the current API of `websockets`.
+"""The asyncio part of the bridge: sockets around the switchboard, on the current API of `websockets`.
 
-Everything here runs in one event loop, but for commands and messages, which any thread gives to the kernel itself.
-Switchboard and outlets therefore belong to whoever has the turn, which nobody keeps while it waits for something.
-Nothing waits for a client: each has its `Outlet`; reading pauses for a client while the owner of the data is behind,
-which slows that client only.
+Everything runs in one event loop except commands and published messages, which the calling thread writes to the
+sockets itself. A fair lock therefore guards the switchboard and the send queues; no thread blocks while it holds the
+lock. No client delays another one: each has its own `ClientSendQueue`, and while the event sink is full the server
+stops reading from the client that fills it.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 from websockets.typing import Subprotocol
 
-from thymio_sim_ros.bridge.access import Attempts, Tokens, given_token
-from thymio_sim_ros.bridge.client_send_queue import Outlet, Way
+from thymio_sim_ros.bridge.access import AttemptLimiter, Tokens, given_token
+from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue, SendFunction
 from thymio_sim_ros.bridge.constants import SUBPROTOCOLS, StatusLevel
 from thymio_sim_ros.bridge.errors import FrameError
 from thymio_sim_ros.bridge.events import Command, Data, Event, RemoveChannels
-from thymio_sim_ros.bridge.fair_lock import Turn
+from thymio_sim_ros.bridge.fair_lock import FairLock
 from thymio_sim_ros.bridge.framing import framed
 from thymio_sim_ros.bridge.messages import ServerMessage, Status, Time, Unsubscribe
 from thymio_sim_ros.bridge.origin_policy import is_allowed
-from thymio_sim_ros.bridge.switchboard import Letter, Routes, Switchboard
+from thymio_sim_ros.bridge.switchboard import Delivery, Routes, Switchboard
 from thymio_sim_ros.bridge.transport import SLICE_S, SharedConnection
 from thymio_sim_ros.bridge.wire import decode_client, encode_server
 
@@ -45,7 +45,7 @@ __all__ = ["WRONG_TOKEN", "BridgeServer", "EventSink", "ServerSettings"]
 _FLUSH_PERIOD_S = 0.01
 _FULL_PAUSE_S = 0.005
 WRONG_TOKEN = 4401
-"""Close code for a page without a valid token: a browser tells its pages nothing of a refused handshake."""
+"""Close code for a page without a valid token: browsers hide the reason of a rejected handshake from pages."""
 _NO_TOKEN_TEXT = "a token is needed: open the whole address in the simulator's terminal, or append ?token=… to this one"
 _WRONG_TOKEN_TEXT = (
     "the token is wrong or of an earlier start: open the address that is in the simulator's terminal now"
@@ -53,83 +53,83 @@ _WRONG_TOKEN_TEXT = (
 _WARN_EVERY_S = 60.0
 _CLOSE_S = 0.3
 BACKLOG = 128
-"""So many clients may wait to be let in."""
+"""Connections that may wait to be accepted."""
 _ACCEPTED_AT_ONCE = 4
-"""Connections that are accepted in one turn of the loop: a handshake takes it 3 ms."""
-_NO_WAYS: tuple[Routes, tuple[Way, ...]] = ((), ())
+"""Connections accepted in one iteration of the loop: a handshake takes 3 ms."""
+_NO_SENDERS: tuple[Routes, tuple[SendFunction, ...]] = ((), ())
 _SMALL_SHARE = 0.05
-"""Of the loop's time: a client that takes less is served without a pause."""
+"""Share of the loop's time below which a client is served without a pause."""
 _TIME_SLOT = -1
-"""Where an outlet keeps the newest time; no subscription has this id."""
+"""Key of the newest time in a send queue; no subscription has this ID."""
 
 
 class EventSink(Protocol):
-    """Where events go; called in the event loop, must not block."""
+    """Receiver of events; called in the event loop, must not block."""
 
     def is_full(self, client: int) -> bool:
-        """Whether events of this client pile up, so that it should be read more slowly."""
+        """Whether too many events of this client are pending; the server then stops reading from it."""
 
     def post(self, event: Event) -> None:
-        """Take an event."""
+        """Accept an event."""
 
 
 @dataclass(frozen=True, slots=True)
 class ServerSettings:
-    """Limits and manners of a server."""
+    """Limits and options of a server."""
 
     allowed_origins: tuple[str, ...] = ()
-    """Origins of web pages beside those of `origins`; `*`: all."""
+    """Additional origins of web pages (see `origin_policy`); `*` allows all."""
     buffer_limit: int = 1 << 20
-    """Bytes that may wait for a client before data is thinned out."""
+    """Bytes that may wait for a client before data frames are dropped."""
     max_message_size: int = 4 << 20
-    """Longest frame accepted from a client, bytes."""
+    """Size of the longest frame accepted from a client, bytes."""
     max_clients: int = 128
-    """Clients at a time; more are refused. As many connections again may be on their way to become clients."""
+    """Maximum number of clients. The same number of connections may be in their handshake."""
     ping_interval_s: float = 10.0
     ping_timeout_s: float = 20.0
     tls: ssl.SSLContext | None = None
     tokens: Tokens = field(default_factory=Tokens)
-    changes_nothing: Callable[[str], bool] = lambda service: False
+    is_read_only_service: Callable[[str], bool] = lambda service: False
     """Which services a read-only client may call, by name."""
 
 
 class BridgeServer:
     """A Foxglove server on its listening sockets.
 
-    `carry_out` and `publish` may be called by any thread, as long as the event loop has not been closed before `close`;
-    the other methods belong to the event loop's.
+    `execute` and `publish` may be called from any thread until `close`; the other methods belong to the thread of the
+    event loop.
     """
 
     def __init__(self, board: Switchboard, sink: EventSink, settings: ServerSettings | None = None) -> None:
         self._board = board
-        self._routed, self._kept = board.routed, board.kept
-        self._ways: dict[int, tuple[Routes, tuple[Way, ...]]] = {}
-        """How the data of channels get to those who are routed, as long as these are the same."""
+        self._routed, self._retained = board.routed, board.retained
+        self._senders: dict[int, tuple[Routes, tuple[SendFunction, ...]]] = {}
+        """Send functions by channel, with the routes they were made for; made again when the routes change."""
         self._sink = sink
         self._settings = settings or ServerSettings()
         self._log = logging.getLogger(__name__)
-        self._outlets: dict[int, Outlet] = {}
+        self._queues: dict[int, ClientSendQueue] = {}
         self._client_ids = itertools.count(1)
-        self._attempts = Attempts(time.monotonic)
+        self._attempts = AttemptLimiter(time.monotonic)
         self._warned_s: dict[str, float] = {}
         self._flush_is_due = False
         self._loop: asyncio.AbstractEventLoop
         self._servers: list[Server] = []
-        self._turn = Turn()
-        """Of the thread that works on board and outlets."""
+        self._lock = FairLock()
+        """Guards the switchboard and the send queues."""
         self._frames: dict[type, tuple[ServerMessage, bytes]] = {}
-        """The frames of what every newcomer is told, as long as that is the same."""
-        self._rest_lock: asyncio.Lock
-        """Clients rest one after the other: see `_rest`."""
-        self._is_crowded = False
+        """Encoded frames of the first messages to new clients, by type."""
+        self._throttle_lock: asyncio.Lock
+        """Only one client is throttled at a time: see `_throttle`."""
+        self._is_limit_logged = False
         self._is_closing = False
         self._connections: set[SharedConnection] = set()
-        """Those that are no clients yet, too."""
+        """All connections, including those in their handshake."""
 
     async def start(self, listeners: Iterable[socket]) -> None:
-        """Serve on bound sockets, which become the server's own."""
+        """Serve on bound sockets; the server takes ownership of them."""
         self._loop = asyncio.get_running_loop()
-        self._rest_lock = asyncio.Lock()
+        self._throttle_lock = asyncio.Lock()
         settings = self._settings
         # Refused handshakes are answered with their reason; websockets would log each with a traceback.
         log = logging.getLogger(f"{__name__}.websockets")
@@ -155,75 +155,75 @@ class BridgeServer:
             self._servers.append(server)
 
     async def close(self) -> None:
-        """Say goodbye to all clients; those that do not listen are cut off after `_CLOSE_S`."""
+        """Close all connections; abort those that do not answer within `_CLOSE_S`."""
         self._is_closing = True
         for server in self._servers:
             server.close()
         closed = asyncio.gather(*(server.wait_closed() for server in self._servers))
         await asyncio.wait([closed], timeout=_CLOSE_S)
-        for outlet in self._outlets.values():
-            outlet.abort()
+        for queue in self._queues.values():
+            queue.abort()
         await closed
 
     @property
     def client_count(self) -> int:
         """Connected clients."""
-        return len(self._outlets)
+        return len(self._queues)
 
-    def carry_out(self, command: Command) -> None:
-        """Do what the owner of the data wants; in any thread."""
-        with self._turn:
+    def execute(self, command: Command) -> None:
+        """Execute a command of the data source; from any thread."""
+        with self._lock:
             try:
                 self._deliver(self._board.apply(command))
             except Exception:
-                # Our own mistake must not end the owner's thread: what clients have not been told of it is lost.
-                self._log.exception("%s failed", type(command).__name__)
+                # An internal error must not end the calling thread; deliveries not made yet are lost.
+                self._log.exception("internal error (please report): %s failed", type(command).__name__)
             if isinstance(command, RemoveChannels):
-                self._ways.clear()
+                self._senders.clear()
 
     def publish(self, channel_id: int, time_ns: int, payload: bytes) -> None:
-        """Send a message to everybody who gets the channel; in any thread. Hot path."""
-        self._turn.take()
+        """Send a message to all subscribers of a channel; from any thread. Hot path."""
+        self._lock.acquire()
         try:
             routes = self._routed.get(channel_id)
             if routes is None:
-                return  # nothing is kept either: it would be old when somebody comes
-            if channel_id in self._kept:
-                self._board.keep(Data(channel_id, time_ns, payload))
-            known, ways = self._ways.get(channel_id, _NO_WAYS)
+                return  # not retained either: it would be outdated for the next subscriber
+            if channel_id in self._retained:
+                self._board.retain(Data(channel_id, time_ns, payload))
+            known, senders = self._senders.get(channel_id, _NO_SENDERS)
             if known is not routes:
-                ways = tuple(self._outlets[client].way(subscription_id) for client, subscription_id in routes)
-                self._ways[channel_id] = (routes, ways)
-            for send in ways:
+                senders = tuple(self._queues[client].sender(subscription_id) for client, subscription_id in routes)
+                self._senders[channel_id] = (routes, senders)
+            for send in senders:
                 if not send(time_ns, payload):
-                    self._see_to_flushing()
+                    self._schedule_flush()
         except Exception:
-            self._log.exception("a message of channel %d failed", channel_id)
+            self._log.exception("internal error (please report): a message of channel %d failed", channel_id)
         finally:
-            self._turn.give_back()
+            self._lock.release()
 
-    def _see_to_flushing(self) -> None:
+    def _schedule_flush(self) -> None:
         if not self._flush_is_due:
             self._flush_is_due = True
             self._loop.call_soon_threadsafe(self._flush_soon)
 
-    def _deliver(self, letters: Sequence[Letter]) -> None:
-        for letter in letters:
-            frame = framed(encode_server(letter.message))
-            for client in letter.clients:
-                if not isinstance(letter.message, Time):
-                    self._outlets[client].control(frame)
-                elif not self._outlets[client].data(_TIME_SLOT, frame):
-                    self._see_to_flushing()
+    def _deliver(self, deliveries: Sequence[Delivery]) -> None:
+        for delivery in deliveries:
+            frame = framed(encode_server(delivery.message))
+            for client in delivery.clients:
+                if not isinstance(delivery.message, Time):
+                    self._queues[client].send_control(frame)
+                elif not self._queues[client].send_data(_TIME_SLOT, frame):
+                    self._schedule_flush()
 
     def _flush_soon(self) -> None:
         self._loop.call_later(_FLUSH_PERIOD_S, self._flush)
 
     def _flush(self) -> None:
-        with self._turn:
-            for outlet in self._outlets.values():
-                outlet.flush()
-            self._flush_is_due = any(outlet.is_behind for outlet in self._outlets.values())
+        with self._lock:
+            for queue in self._queues.values():
+                queue.flush()
+            self._flush_is_due = any(queue.has_backlog for queue in self._queues.values())
         if self._flush_is_due:
             self._flush_soon()
 
@@ -234,37 +234,37 @@ class BridgeServer:
             connection.on_lost = lambda: self._connections.discard(connection)
         else:
             connection.is_refused = True
-            self._refuse_crowd()
+            self._log_client_limit()
         return connection
 
     async def _serve_client(self, connection: ServerConnection) -> None:
         assert isinstance(connection, SharedConnection)
-        if len(self._outlets) >= self._settings.max_clients:
-            self._refuse_crowd()
+        if len(self._queues) >= self._settings.max_clients:
+            self._log_client_limit()
             await connection.close(CloseCode.TRY_AGAIN_LATER, "too many clients")
             return
         if connection.role is None:
-            await self._turn_away(connection)
+            await self._reject(connection)
             return
         client = next(self._client_ids)
-        outlet = Outlet(connection, self._settings.buffer_limit)
+        queue = ClientSendQueue(connection, self._settings.buffer_limit)
         began_s = time.thread_time()
-        with self._turn:
-            self._outlets[client] = outlet
+        with self._lock:
+            self._queues[client] = queue
             for message in self._board.join(client, connection.role):
-                outlet.control(self._greeting_frame(message))
-        self._is_crowded = self._is_crowded and len(self._outlets) >= self._settings.max_clients
+                queue.send_control(self._handshake_frame(message))
+        self._is_limit_logged = self._is_limit_logged and len(self._queues) >= self._settings.max_clients
         try:
-            await self._rest(time.thread_time() - began_s)
+            await self._throttle(time.thread_time() - began_s)
             await self._read(client, connection)
         except ConnectionClosed:
             pass  # a lost connection ends like a closed one
         finally:
-            with self._turn:
-                del self._outlets[client]
-                self._ways.clear()  # they would keep what is gone
+            with self._lock:
+                del self._queues[client]
+                self._senders.clear()  # they refer to the removed queue
                 events = self._board.leave(client)
-            self._tell(events)
+            self._post_events(events)
 
     async def _read(self, client: int, connection: SharedConnection) -> None:
         """Receive a client's messages until it leaves."""
@@ -278,68 +278,68 @@ class BridgeServer:
             while self._sink.is_full(client) and not self._is_closing:
                 await asyncio.sleep(_FULL_PAUSE_S)
             if spent_s >= SLICE_S:
-                # A client that takes little of the loop's time does not queue behind those that rest.
+                # A client that uses little of the loop's time does not queue behind the busy ones.
                 if spent_s > _SMALL_SHARE * (time.monotonic() - since_s):
-                    await self._rest(spent_s)
+                    await self._throttle(spent_s)
                 spent_s, since_s = 0.0, time.monotonic()
 
-    async def _rest(self, spent_s: float) -> None:
-        """Pause a client that took so much of the loop's time for as long, while no other client rests.
+    async def _throttle(self, spent_s: float) -> None:
+        """Pause a client for the processor time that it used; only one client is paused at a time.
 
-        So all busy clients together take half of the loop's time, and between two of their turns others are served,
-        however many are busy.
+        All busy clients together therefore use at most half of the loop's time, and other clients are served between
+        two of them, regardless of their number.
         """
-        async with self._rest_lock:
+        async with self._throttle_lock:
             if not self._is_closing:
                 await asyncio.sleep(spent_s)
 
-    def _greeting_frame(self, message: ServerMessage) -> bytes:
-        """The frame of a message of the greeting; those of 1500 topics are 2 MB and the same for every newcomer."""
+    def _handshake_frame(self, message: ServerMessage) -> bytes:
+        """Encode one of the first messages to a client, cached: 1500 topics are 2 MB, the same for all clients."""
         known = self._frames.get(type(message))
         if known is None or known[0] is not message:
             known = self._frames[type(message)] = message, framed(encode_server(message))
         return known[1]
 
-    def _refuse_crowd(self) -> None:
-        """Log that there are too many clients, once until there are fewer."""
-        if not self._is_crowded:
-            self._is_crowded = True
-            self._log.warning("%d clients are connected: more are refused", self._settings.max_clients)
+    def _log_client_limit(self) -> None:
+        """Log that the limit of clients is reached, once until there are fewer."""
+        if not self._is_limit_logged:
+            self._is_limit_logged = True
+            self._log.warning("%d clients are connected: more are rejected", self._settings.max_clients)
 
     def _receive(self, client: int, frame: str | bytes) -> None:
         try:
             message = decode_client(frame)
         except FrameError as error:
-            with self._turn:
-                self._outlets[client].control(framed(encode_server(Status(StatusLevel.ERROR, str(error)))))
+            with self._lock:
+                self._queues[client].send_control(framed(encode_server(Status(StatusLevel.ERROR, str(error)))))
             return
-        with self._turn:
+        with self._lock:
             outcome = self._board.receive(client, message)
             if isinstance(message, Unsubscribe):
                 for subscription_id in message.subscription_ids:
-                    self._outlets[client].forget(subscription_id)
-            self._deliver(outcome.letters)
-        self._tell(outcome.events)
+                    self._queues[client].discard(subscription_id)
+            self._deliver(outcome.deliveries)
+        self._post_events(outcome.events)
 
-    def _tell(self, events: Iterable[Event]) -> None:
+    def _post_events(self, events: Iterable[Event]) -> None:
         for event in events:
             self._sink.post(event)
 
     def _check_access(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Refuse a handshake without a valid token or from a foreign page; a valid token vouches for its page."""
+        """Reject a handshake without a valid token or from a foreign page; with a valid token any page is accepted."""
         assert isinstance(connection, SharedConnection)
         tokens, address = self._settings.tokens, _address(connection)
         token = given_token(request.path, request.headers.get_all("Authorization"))
-        if tokens.is_required and not self._attempts.may_try(address):
+        if tokens.is_required and not self._attempts.is_allowed_to_try(address):
             self._warn("attempts", f"too many connections from {address} with a wrong token; its others have to wait")
             return connection.respond(HTTPStatus.TOO_MANY_REQUESTS, "Too many wrong tokens; wait some seconds.\n")
         connection.role = tokens.role(token)
         origin, host = _header(request.headers, "Origin"), _header(request.headers, "Host")
         if connection.role is None:
-            self._attempts.failed(address)
+            self._attempts.record_failure(address)
             self._warn("token", f"refused a connection from {address}: its token is wrong or missing")
             if origin is not None:
-                return None  # it is told once it is connected
+                return None  # the reason is sent once it is connected
             response = connection.respond(HTTPStatus.UNAUTHORIZED, f"{_token_text(request)}\n")
             response.headers["WWW-Authenticate"] = "Bearer"
             return response
@@ -348,8 +348,8 @@ class BridgeServer:
         self._warn("origin", f"refused a web page from {origin:.100}: add it to allowed_origins if it is yours")
         return connection.respond(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.\n")
 
-    async def _turn_away(self, connection: SharedConnection) -> None:
-        """Say why in the words of the protocol, and close."""
+    async def _reject(self, connection: SharedConnection) -> None:
+        """Send a status with the reason, and close the connection."""
         assert connection.request is not None
         text = _token_text(connection.request)
         with contextlib.suppress(ConnectionClosed):
@@ -357,7 +357,7 @@ class BridgeServer:
             await connection.close(WRONG_TOKEN, "wrong or missing token")
 
     def _warn(self, about: str, text: str) -> None:
-        """Log a warning, about each thing at most once in `_WARN_EVERY_S`: strangers can cause it at will."""
+        """Log a warning, at most once in `_WARN_EVERY_S` per topic: any client can cause it."""
         now_s = time.monotonic()
         if now_s - self._warned_s.get(about, -_WARN_EVERY_S) >= _WARN_EVERY_S:
             self._warned_s[about] = now_s

@@ -1,4 +1,4 @@
-"""The event loop's thread. Whoever has a command or a message takes it to the sockets itself."""
+"""The thread of the event loop. Commands and messages are written to the sockets by the thread that calls."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from thymio_sim_ros.bridge.switchboard import Switchboard
 __all__ = ["ServerThread", "check_free", "listen"]
 
 _LOOPBACK = ("127.0.0.1", "::1")
-"""What `localhost` means: a browser may try either first."""
+"""Addresses of `localhost`: a browser may try either first."""
 
 _NOT_HERE = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
-"""What a machine without IPv6 says; the other loopback is enough then."""
+"""Errors on a machine without IPv6; the other loopback address is enough then."""
 
 _TRIES = 20
-"""Free ports tried before giving up, where one must be free on two addresses."""
+"""Attempts to find a port that is free on two addresses."""
 
 
 def listen(address: str, port: int) -> list[socket.socket]:
-    """Listening sockets, all on one port; port 0: any free one. `localhost` is the loopback of IPv4 and of IPv6.
+    """Open listening sockets, all on one port; port 0 selects a free one. `localhost` means IPv4 and IPv6 loopback.
 
-    Raises OSError that names address and port.
+    Raises OSError with address and port.
     """
     return _sockets(address, port, do_listen=True)
 
 
 def check_free(address: str, port: int) -> None:
-    """Raise what `listen` would raise now. Nobody is let in meanwhile, who would then find nobody."""
+    """Raise the OSError that `listen` would raise. The sockets do not listen, so that no client connects meanwhile."""
     for bound in _sockets(address, port, do_listen=False):
         bound.close()
 
@@ -91,7 +91,7 @@ def _named(error: OSError, address: str, port: int) -> OSError:
 
 
 class ServerThread:
-    """A running bridge. The port is bound when the constructor returns; `close` leaves nothing behind."""
+    """A running bridge. The port is bound when the constructor returns; `close` releases everything."""
 
     def __init__(
         self,
@@ -104,7 +104,7 @@ class ServerThread:
     ) -> None:
         self._listeners = listen(address, port)
         settings = settings or ServerSettings()
-        board = Switchboard(info, changes_nothing=settings.changes_nothing)
+        board = Switchboard(info, is_read_only_service=settings.is_read_only_service)
         self._server = BridgeServer(board, sink, settings)
         self.publish: Callable[[int, int, bytes], None] = self._server.publish
         """Send a message of a channel: its id, time in ns and payload; from any thread."""
@@ -123,11 +123,11 @@ class ServerThread:
         return self._server.client_count
 
     def post(self, command: Command) -> None:
-        """Carry out a command; from any thread."""
-        self._server.carry_out(command)
+        """Execute a command; from any thread."""
+        self._server.execute(command)
 
     def close(self) -> None:
-        """End the server, its connections and the thread."""
+        """Stop the server, its connections and the thread."""
         if self._is_closed:
             return
         self._is_closed = True

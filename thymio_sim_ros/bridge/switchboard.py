@@ -1,7 +1,7 @@
-"""The switchboard: all state of the bridge and every decision, without sockets, clocks or threads.
+"""The switchboard: the state and all decisions of the bridge, without sockets, clocks or threads.
 
-Clients' messages and the owner's commands go in; letters for clients and events for the owner come out. The server
-delivers both. Unknown ids and refused wishes become a status for the client concerned; nobody else notices.
+Inputs are messages of clients and commands of the data source; outputs are deliveries to clients and events for the
+data source, which the server passes on. Unknown IDs and rejected requests result in a status for that client only.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from thymio_sim_ros.bridge.constants import Capability, StatusLevel
 from thymio_sim_ros.bridge.graph import ConnectionGraph
 
 MAX_CLIENT_CHANNELS = 256
-"""Channels that one client may open: each may cost a publisher."""
+"""Channels that one client may open: each may need a publisher."""
 
 MAX_ALL_CLIENT_CHANNELS = 512
 """Channels that all clients together may open."""
@@ -27,7 +27,7 @@ MAX_ALL_CLIENT_CHANNELS = 512
 MAX_CALLS = 64
 """Service calls of one client that may wait for their answers."""
 
-MAX_WISHES = 64
+MAX_PARAMETER_REQUESTS = 64
 """Requests of one client to get or to set parameters that may wait for their answers."""
 
 MAX_OPEN_SIZE = 16 << 20
@@ -40,18 +40,18 @@ MAX_ENDED = 1000
 """Subscriptions of vanished channels that are remembered for each client."""
 
 MAX_REFUSALS = 8
-"""Refusals told for one frame: a frame full of nonsense must not cost the others their time."""
+"""Rejections reported for one frame: a frame with many errors must not delay other clients."""
 
 
-READ_ONLY = "this connection is read-only: it may watch, but change nothing"
+READ_ONLY = "this connection is read-only: it may subscribe and read, but not change anything"
 
 Routes = tuple[tuple[int, int], ...]
-"""Clients, and their numbers for what they get."""
+"""Pairs of client and its subscription ID."""
 
 
 @dataclass(frozen=True, slots=True)
-class Letter:
-    """A message and the clients that get it."""
+class Delivery:
+    """A message and the clients that receive it."""
 
     clients: tuple[int, ...]
     message: ms.ServerMessage
@@ -59,30 +59,32 @@ class Letter:
 
 @dataclass(slots=True)
 class Outcome:
-    """What follows from one step, in order."""
+    """The results of one step, in order."""
 
-    letters: list[Letter] = field(default_factory=list)
+    deliveries: list[Delivery] = field(default_factory=list)
     events: list[ev.Event] = field(default_factory=list)
     refusals: int = 0
 
-    def tell(self, client: int, message: ms.ServerMessage) -> None:
-        """Add a letter to one client."""
-        self.letters.append(Letter((client,), message))
+    def send(self, client: int, message: ms.ServerMessage) -> None:
+        """Add a delivery to one client."""
+        self.deliveries.append(Delivery((client,), message))
 
     def refuse(self, client: int, text: str, level: StatusLevel = StatusLevel.ERROR) -> None:
-        """Add a status that says why something was not done; the first `MAX_REFUSALS` only."""
+        """Add a status with the reason of a rejection; only the first `MAX_REFUSALS` are sent."""
         self.refusals += 1
         if self.refusals <= MAX_REFUSALS:
-            self.tell(client, ms.Status(level, text))
+            self.send(client, ms.Status(level, text))
 
 
 class Switchboard:
     """State of one server. Invariant: `routes` lists exactly the subscriptions found in the clients' states."""
 
-    def __init__(self, info: ms.ServerInfo, *, changes_nothing: Callable[[str], bool] = lambda service: False) -> None:
-        """`changes_nothing` says which services a read-only client may call, by name."""
+    def __init__(
+        self, info: ms.ServerInfo, *, is_read_only_service: Callable[[str], bool] = lambda service: False
+    ) -> None:
+        """`is_read_only_service` says which services a read-only client may call, by name."""
         self._info = info
-        self._changes_nothing = changes_nothing
+        self._changes_nothing = is_read_only_service
         self._clients: dict[int, ClientState] = {}
         self._channels: dict[int, ms.Channel] = {}
         self._services: dict[int, ms.Service] = {}
@@ -90,47 +92,46 @@ class Switchboard:
         self._graph = ConnectionGraph()
         self._client_channels = 0
         """Open channels of all clients."""
-        self._greeting: list[ms.ServerMessage] | None = None
-        """What a newcomer is told of channels and services, as long as these are the same."""
-        self.kept: dict[int, deque[ev.Data]] = {}
-        """What newcomers get of each channel of which something is kept."""
+        self._advertisements: list[ms.ServerMessage] | None = None
+        """Advertisements of channels and services for new clients; None after a change."""
+        self.retained: dict[int, deque[ev.Data]] = {}
+        """Retained messages for new subscribers, by channel."""
         self.routed: dict[int, Routes] = {}
-        """As `routes`, without channels that nobody gets; a new tuple at every change. Not to be changed from outside.
-        """
+        """Routes of all channels with subscribers; each change creates a new tuple. Read-only for others."""
         self._time_ns = 0
 
-    # --- what the server asks ---
+    # --- interface of the server ---
 
     def routes(self, channel_id: int) -> Routes:
-        """(client, subscription id) of everybody who gets the channel's messages."""
+        """(client, subscription ID) of all subscriptions to a channel."""
         return self.routed.get(channel_id, ())
 
-    def keep(self, data: ev.Data) -> None:
-        """Remember a message for newcomers where its channel is kept; repetitions once, as the latest."""
-        kept = self.kept.get(data.channel_id)
-        if kept is None:
+    def retain(self, data: ev.Data) -> None:
+        """Retain a message if its channel is retained; a repeated payload is kept once, as the latest."""
+        retained = self.retained.get(data.channel_id)
+        if retained is None:
             return
-        repeated = next((old for old in kept if old.payload == data.payload), None)
+        repeated = next((old for old in retained if old.payload == data.payload), None)
         if repeated is not None:
-            kept.remove(repeated)
-        kept.append(data)
+            retained.remove(repeated)
+        retained.append(data)
 
     def join(self, client: int, role: Role = Role.FULL) -> list[ms.ServerMessage]:
-        """A new client; returns its greeting."""
+        """Add a client; return the messages that it receives first."""
         self._clients[client] = ClientState(is_read_only=role is Role.READ_ONLY)
         greeting: list[ms.ServerMessage] = [self._info_for(client)]
         if Capability.TIME in self._info.capabilities:
             greeting.append(ms.Time(self._time_ns))
-        if self._greeting is None:
-            self._greeting = []
+        if self._advertisements is None:
+            self._advertisements = []
             if self._channels:
-                self._greeting.append(ms.Advertise(tuple(self._channels.values())))
+                self._advertisements.append(ms.Advertise(tuple(self._channels.values())))
             if self._services:
-                self._greeting.append(ms.AdvertiseServices(tuple(self._services.values())))
-        return greeting + self._greeting
+                self._advertisements.append(ms.AdvertiseServices(tuple(self._services.values())))
+        return greeting + self._advertisements
 
     def leave(self, client: int) -> list[ev.Event]:
-        """A client is gone with all it had."""
+        """Remove a client with its subscriptions and channels; return the resulting events."""
         state = self._clients.pop(client)
         outcome = Outcome()
         for channel_id in state.subscriptions.values():
@@ -142,7 +143,7 @@ class Switchboard:
         return outcome.events
 
     def receive(self, client: int, message: ms.ClientMessage) -> Outcome:
-        """What follows from a client's message."""
+        """Process a message of a client."""
         outcome = Outcome()
         capability, handle = _FROM_CLIENT[type(message)]
         if capability is not None and capability not in self._info.capabilities:
@@ -153,11 +154,11 @@ class Switchboard:
             handle(self, client, message, outcome)
         return outcome
 
-    def apply(self, command: ev.Command) -> list[Letter]:
-        """What follows from a command."""
-        letters: list[Letter] = []
-        _FROM_OWNER[type(command)](self, command, letters)
-        return letters
+    def apply(self, command: ev.Command) -> list[Delivery]:
+        """Process a command of the data source."""
+        deliveries: list[Delivery] = []
+        _FROM_OWNER[type(command)](self, command, deliveries)
+        return deliveries
 
     # --- clients' messages ---
 
@@ -178,8 +179,8 @@ class Switchboard:
                 subscriptions[item.id] = item.channel_id
                 subscribed.add(item.channel_id)
                 self._route(item.channel_id, (*self.routes(item.channel_id), (client, item.id)), outcome)
-                for data in self.kept.get(item.channel_id, ()):
-                    outcome.tell(client, ms.MessageData(item.id, data.time_ns, data.payload))
+                for data in self.retained.get(item.channel_id, ()):
+                    outcome.send(client, ms.MessageData(item.id, data.time_ns, data.payload))
         self._clients[client] = replace(state, subscriptions=subscriptions)
 
     def _unsubscribe(self, client: int, message: ms.Unsubscribe, outcome: Outcome) -> None:
@@ -189,7 +190,7 @@ class Switchboard:
             channel_id = subscriptions.pop(subscription_id, None)
             if channel_id is not None:
                 self._unroute(client, channel_id, outcome)
-            elif subscription_id not in state.ended:  # else it went with its channel, as some clients say once more
+            elif subscription_id not in state.ended:  # some clients unsubscribe from removed channels
                 outcome.refuse(client, f"no subscription {subscription_id}", StatusLevel.WARNING)
         self._clients[client] = replace(state, subscriptions=subscriptions)
 
@@ -226,7 +227,7 @@ class Switchboard:
 
     def _client_data(self, client: int, message: ms.ClientMessageData, outcome: Outcome) -> None:
         if message.channel_id in self._clients[client].channels:
-            outcome.events.append(ev.ClientSent(client, message.channel_id, message.payload))
+            outcome.events.append(ev.ClientMessageReceived(client, message.channel_id, message.payload))
         else:
             outcome.refuse(client, f"message on client channel {message.channel_id}, which is not advertised")
 
@@ -243,33 +244,35 @@ class Switchboard:
             outcome.events.append(event)
             self._clients[client] = replace(state, calls=state.calls + 1, open_size=state.open_size + size)
             return
-        outcome.tell(client, ms.ServiceCallFailure(message.service_id, message.call_id, text))
+        outcome.send(client, ms.ServiceCallFailure(message.service_id, message.call_id, text))
         outcome.refuse(client, text)
 
     def _get_parameters(self, client: int, message: ms.GetParameters, outcome: Outcome) -> None:
-        self._wish(ev.ParametersAsked(client, message.parameter_names, message.id), outcome)
+        self._request_parameters(ev.ParametersRequested(client, message.parameter_names, message.id), outcome)
 
     def _set_parameters(self, client: int, message: ms.SetParameters, outcome: Outcome) -> None:
-        self._wish(ev.ParametersSet(client, message.parameters, message.id), outcome)
+        self._request_parameters(ev.ParametersSet(client, message.parameters, message.id), outcome)
 
-    def _wish(self, event: ev.ParametersAsked | ev.ParametersSet, outcome: Outcome) -> None:
+    def _request_parameters(self, event: ev.ParametersRequested | ev.ParametersSet, outcome: Outcome) -> None:
         state, size = self._clients[event.client], ev.size_of(event)
-        if state.wishes >= MAX_WISHES:
-            text = f"{MAX_WISHES} requests of this client wait already"
+        if state.parameter_requests >= MAX_PARAMETER_REQUESTS:
+            text = f"{MAX_PARAMETER_REQUESTS} requests of this client wait already"
         elif not _has_room(state, size):
             text = _TOO_MUCH
         else:
             outcome.events.append(event)
-            self._clients[event.client] = replace(state, wishes=state.wishes + 1, open_size=state.open_size + size)
+            self._clients[event.client] = replace(
+                state, parameter_requests=state.parameter_requests + 1, open_size=state.open_size + size
+            )
             return
-        if isinstance(event, ev.ParametersAsked):
+        if isinstance(event, ev.ParametersRequested):
             outcome.refuse(event.client, f"parameters (request {event.request_id!r:.40}): {text}")
             return
         names = tuple(item.name for item in event.parameters)
         for name in names[:MAX_REFUSALS]:
-            outcome.tell(event.client, ms.Status(StatusLevel.ERROR, f"{name}: {text}", ms.parameter_status(name)))
+            outcome.send(event.client, ms.Status(StatusLevel.ERROR, f"{name}: {text}", ms.parameter_status(name)))
         if event.request_id is not None:
-            outcome.tell(event.client, self._values(names, event.request_id))
+            outcome.send(event.client, self._values(names, event.request_id))
 
     def _watch_parameters(self, client: int, message: ms.SubscribeParameterUpdates, outcome: Outcome) -> None:
         state = self._clients[client]
@@ -289,10 +292,10 @@ class Switchboard:
         if state.graph is not None:
             return
         if all(other.graph is None for other in self._clients.values()):
-            outcome.events.append(ev.GraphWanted(True))
+            outcome.events.append(ev.GraphSubscriptionChanged(True))
         update = self._graph.since(ConnectionGraph())
         if update is not None:
-            outcome.tell(client, update)
+            outcome.send(client, update)
         self._clients[client] = replace(state, graph=self._graph)
 
     def _unwatch_graph(self, client: int, message: ms.UnsubscribeConnectionGraph, outcome: Outcome) -> None:
@@ -302,21 +305,21 @@ class Switchboard:
             self._graph_left(outcome)
 
     def _fetch_asset(self, client: int, message: ms.FetchAsset, outcome: Outcome) -> None:
-        outcome.events.append(ev.AssetWanted(client, message.uri, message.request_id))
+        outcome.events.append(ev.AssetRequested(client, message.uri, message.request_id))
 
-    # --- the owner's commands ---
+    # --- commands of the data source ---
 
-    def _add_channels(self, command: ev.AddChannels, letters: list[Letter]) -> None:
-        self._greeting = None
+    def _add_channels(self, command: ev.AddChannels, deliveries: list[Delivery]) -> None:
+        self._advertisements = None
         self._channels.update((channel.id, channel) for channel in command.channels)
-        self._tell_all(ms.Advertise(command.channels), letters)
+        self._send_all(ms.Advertise(command.channels), deliveries)
 
-    def _remove_channels(self, command: ev.RemoveChannels, letters: list[Letter]) -> None:
-        self._greeting = None
+    def _remove_channels(self, command: ev.RemoveChannels, deliveries: list[Delivery]) -> None:
+        self._advertisements = None
         ended: dict[int, dict[int, None]] = {}
         for channel_id in command.channel_ids:
             self._channels.pop(channel_id, None)
-            self.kept.pop(channel_id, None)
+            self.retained.pop(channel_id, None)
             for client, subscription_id in self.routed.pop(channel_id, ()):
                 ended.setdefault(client, {})[subscription_id] = None
         for client, gone in ended.items():
@@ -324,27 +327,27 @@ class Switchboard:
             left = {key: value for key, value in state.subscriptions.items() if key not in gone}
             latest = [*state.ended, *gone][-MAX_ENDED:]
             self._clients[client] = replace(state, subscriptions=left, ended=dict.fromkeys(latest))
-        self._tell_all(ms.Unadvertise(command.channel_ids), letters)
+        self._send_all(ms.Unadvertise(command.channel_ids), deliveries)
 
-    def _keep_last(self, command: ev.KeepLast, letters: list[Letter]) -> None:
+    def _retain_last(self, command: ev.RetainLast, deliveries: list[Delivery]) -> None:
         if command.depth and command.channel_id in self.routed:
-            kept = self.kept.get(command.channel_id, ())
-            self.kept[command.channel_id] = deque(kept, maxlen=command.depth)
+            retained = self.retained.get(command.channel_id, ())
+            self.retained[command.channel_id] = deque(retained, maxlen=command.depth)
         else:
-            self.kept.pop(command.channel_id, None)
+            self.retained.pop(command.channel_id, None)
 
-    def _add_services(self, command: ev.AddServices, letters: list[Letter]) -> None:
-        self._greeting = None
+    def _add_services(self, command: ev.AddServices, deliveries: list[Delivery]) -> None:
+        self._advertisements = None
         self._services.update((service.id, service) for service in command.services)
-        self._tell_all(ms.AdvertiseServices(command.services), letters)
+        self._send_all(ms.AdvertiseServices(command.services), deliveries)
 
-    def _remove_services(self, command: ev.RemoveServices, letters: list[Letter]) -> None:
-        self._greeting = None
+    def _remove_services(self, command: ev.RemoveServices, deliveries: list[Delivery]) -> None:
+        self._advertisements = None
         for service_id in command.service_ids:
             self._services.pop(service_id, None)
-        self._tell_all(ms.UnadvertiseServices(command.service_ids), letters)
+        self._send_all(ms.UnadvertiseServices(command.service_ids), deliveries)
 
-    def _parameters_changed(self, command: ev.ParametersChanged, letters: list[Letter]) -> None:
+    def _parameters_changed(self, command: ev.ParametersChanged, deliveries: list[Delivery]) -> None:
         changed = {item.name: item for item in command.parameters if self._parameters.get(item.name) != item}
         self._parameters.update(changed)
         for name in command.removed:
@@ -353,18 +356,20 @@ class Switchboard:
         for client, state in self._clients.items():
             wanted = tuple(item for name, item in changed.items() if name in state.parameters)
             if wanted:
-                letters.append(Letter((client,), ms.ParameterValues(wanted)))
+                deliveries.append(Delivery((client,), ms.ParameterValues(wanted)))
 
-    def _show_parameters(self, command: ev.ShowParameters, letters: list[Letter]) -> None:
+    def _send_parameters(self, command: ev.SendParameters, deliveries: list[Delivery]) -> None:
         state = self._clients.get(command.client)
         if state is not None:
             self._clients[command.client] = replace(
-                state, wishes=max(0, state.wishes - 1), open_size=max(0, state.open_size - command.size)
+                state,
+                parameter_requests=max(0, state.parameter_requests - 1),
+                open_size=max(0, state.open_size - command.size),
             )
             names = self._parameters if command.names is None else command.names
-            letters.append(Letter((command.client,), self._values(names, command.request_id)))
+            deliveries.append(Delivery((command.client,), self._values(names, command.request_id)))
 
-    def _set_graph(self, command: ev.SetGraph, letters: list[Letter]) -> None:
+    def _set_graph(self, command: ev.SetGraph, deliveries: list[Delivery]) -> None:
         self._graph = command.graph
         updates: dict[int, ms.ConnectionGraphUpdate | None] = {}
         for client, state in list(self._clients.items()):
@@ -374,49 +379,49 @@ class Switchboard:
             update = updates[known] = updates[known] if known in updates else command.graph.since(state.graph)
             if update is not None:
                 self._clients[client] = replace(state, graph=command.graph)
-                letters.append(Letter((client,), update))
+                deliveries.append(Delivery((client,), update))
 
-    def _set_time(self, command: ev.SetTime, letters: list[Letter]) -> None:
+    def _set_time(self, command: ev.SetTime, deliveries: list[Delivery]) -> None:
         self._time_ns = command.time_ns
-        self._tell_all(ms.Time(command.time_ns), letters)
+        self._send_all(ms.Time(command.time_ns), deliveries)
 
-    def _new_session(self, command: ev.NewSession, letters: list[Letter]) -> None:
+    def _new_session(self, command: ev.NewSession, deliveries: list[Delivery]) -> None:
         self._info = replace(self._info, session_id=command.session_id)
         for is_read_only in (False, True):
             clients = tuple(key for key, state in self._clients.items() if state.is_read_only is is_read_only)
             if clients:
-                letters.append(Letter(clients, self._info_for(clients[0])))
-        # Nothing new, but a reason to look at the types again, which Lichtblick forgets and needs to publish.
-        self._tell_all(ms.Advertise(()), letters)
+                deliveries.append(Delivery(clients, self._info_for(clients[0])))
+        # An empty advertisement makes Lichtblick read the types again, which it forgets and needs for publishing.
+        self._send_all(ms.Advertise(()), deliveries)
         for client, state in list(self._clients.items()):
             if state.graph is not None:  # the client forgot it: the next update is complete again
                 self._clients[client] = replace(state, graph=ConnectionGraph())
-        self._set_graph(ev.SetGraph(self._graph), letters)
+        self._set_graph(ev.SetGraph(self._graph), deliveries)
 
-    def _repeat_kept(self, command: ev.RepeatKept, letters: list[Letter]) -> None:
-        for channel_id, kept in self.kept.items():
-            letters += (
-                Letter((client,), ms.MessageData(subscription_id, self._time_ns, data.payload))
+    def _resend_retained(self, command: ev.ResendRetained, deliveries: list[Delivery]) -> None:
+        for channel_id, retained in self.retained.items():
+            deliveries += (
+                Delivery((client,), ms.MessageData(subscription_id, self._time_ns, data.payload))
                 for client, subscription_id in self.routes(channel_id)
-                for data in kept
+                for data in retained
             )
 
-    def _answer(self, command: ev.Answer, letters: list[Letter]) -> None:
+    def _answer_call(self, command: ev.AnswerCall, deliveries: list[Delivery]) -> None:
         state = self._clients.get(command.client)
         if state is not None:
             self._clients[command.client] = replace(
                 state, calls=max(0, state.calls - 1), open_size=max(0, state.open_size - command.size)
             )
-            letters.append(Letter((command.client,), command.message))
+            deliveries.append(Delivery((command.client,), command.message))
 
-    def _tell(self, command: ev.Tell, letters: list[Letter]) -> None:
+    def _send_to_client(self, command: ev.SendToClient, deliveries: list[Delivery]) -> None:
         if command.client in self._clients:
-            letters.append(Letter((command.client,), command.message))
+            deliveries.append(Delivery((command.client,), command.message))
 
     # --- read-only clients ---
 
     def _info_for(self, client: int) -> ms.ServerInfo:
-        """What the server says of itself to a client: to a read-only one not that it may publish."""
+        """The server info for a client: without the capability to publish for a read-only one."""
         if not self._clients[client].is_read_only:
             return self._info
         offered = tuple(item for item in self._info.capabilities if item != Capability.CLIENT_PUBLISH)
@@ -430,45 +435,45 @@ class Switchboard:
         return isinstance(message, ms.ClientAdvertise | ms.ClientMessageData | ms.SetParameters)
 
     def _refuse_change(self, client: int, message: ms.ClientMessage, outcome: Outcome) -> None:
-        """Say so, and answer what waits for an answer."""
+        """Report the rejection, and answer requests that expect an answer."""
         if isinstance(message, ms.ServiceRequest):
-            outcome.tell(client, ms.ServiceCallFailure(message.service_id, message.call_id, READ_ONLY))
+            outcome.send(client, ms.ServiceCallFailure(message.service_id, message.call_id, READ_ONLY))
         if isinstance(message, ms.SetParameters):
             names = [item.name for item in message.parameters]
             for name in names[:MAX_REFUSALS]:
-                outcome.tell(client, ms.Status(StatusLevel.ERROR, f"{name}: {READ_ONLY}", f"parameter:{name}"))
-            outcome.tell(client, self._values(names, message.id))
+                outcome.send(client, ms.Status(StatusLevel.ERROR, f"{name}: {READ_ONLY}", f"parameter:{name}"))
+            outcome.send(client, self._values(names, message.id))
         else:
             outcome.refuse(client, READ_ONLY)
 
     # --- helpers ---
 
-    def _tell_all(self, message: ms.ServerMessage, letters: list[Letter]) -> None:
+    def _send_all(self, message: ms.ServerMessage, deliveries: list[Delivery]) -> None:
         if self._clients:
-            letters.append(Letter(tuple(self._clients), message))
+            deliveries.append(Delivery(tuple(self._clients), message))
 
     def _values(self, names: Iterable[str], request_id: str | None) -> ms.ParameterValues:
         known = (self._parameters[name] for name in names if name in self._parameters)
         return ms.ParameterValues(tuple(known), request_id)
 
     def _route(self, channel_id: int, routes: Routes, outcome: Outcome) -> None:
-        """Set who gets a channel; tells the owner of its first and of its last subscriber."""
+        """Set the routes of a channel; add an event for its first and its last subscriber."""
         was_wanted = channel_id in self.routed
         if routes:
             self.routed[channel_id] = routes
             if not was_wanted:
-                outcome.events.append(ev.ChannelWanted(channel_id))
+                outcome.events.append(ev.ChannelSubscribed(channel_id))
         elif was_wanted:
             del self.routed[channel_id]
-            self.kept.pop(channel_id, None)
-            outcome.events.append(ev.ChannelUnwanted(channel_id))
+            self.retained.pop(channel_id, None)
+            outcome.events.append(ev.ChannelUnsubscribed(channel_id))
 
     def _unroute(self, client: int, channel_id: int, outcome: Outcome) -> None:
         self._route(channel_id, tuple(route for route in self.routes(channel_id) if route[0] != client), outcome)
 
     def _graph_left(self, outcome: Outcome) -> None:
         if all(state.graph is None for state in self._clients.values()):
-            outcome.events.append(ev.GraphWanted(False))
+            outcome.events.append(ev.GraphSubscriptionChanged(False))
 
 
 _TOO_MUCH = f"more than {MAX_OPEN_SIZE >> 20} MiB of this client's requests wait already"
@@ -494,18 +499,18 @@ _FROM_CLIENT: dict[type, tuple[Capability | None, Callable[[Switchboard, int, An
     ms.FetchAsset: (Capability.ASSETS, Switchboard._fetch_asset),
 }
 
-_FROM_OWNER: dict[type, Callable[[Switchboard, Any, list[Letter]], None]] = {
+_FROM_OWNER: dict[type, Callable[[Switchboard, Any, list[Delivery]], None]] = {
     ev.AddChannels: Switchboard._add_channels,
     ev.RemoveChannels: Switchboard._remove_channels,
-    ev.KeepLast: Switchboard._keep_last,
+    ev.RetainLast: Switchboard._retain_last,
     ev.AddServices: Switchboard._add_services,
     ev.RemoveServices: Switchboard._remove_services,
     ev.ParametersChanged: Switchboard._parameters_changed,
-    ev.ShowParameters: Switchboard._show_parameters,
+    ev.SendParameters: Switchboard._send_parameters,
     ev.SetGraph: Switchboard._set_graph,
     ev.SetTime: Switchboard._set_time,
     ev.NewSession: Switchboard._new_session,
-    ev.RepeatKept: Switchboard._repeat_kept,
-    ev.Answer: Switchboard._answer,
-    ev.Tell: Switchboard._tell,
+    ev.ResendRetained: Switchboard._resend_retained,
+    ev.AnswerCall: Switchboard._answer_call,
+    ev.SendToClient: Switchboard._send_to_client,
 }

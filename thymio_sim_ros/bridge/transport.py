@@ -1,8 +1,8 @@
 """Connections to which any thread may write.
 
-A message that crosses to the event loop's thread wakes it, and each of the two threads waits for the interpreter the
-other one holds: that costs more than sending (docs/decisions.md). So whoever has a message gives it to the kernel at
-once; only what the kernel does not take is left to the loop.
+Passing a message to the thread of the event loop costs more than sending it, because both threads wait for the
+interpreter lock (docs/decisions.md). The calling thread therefore writes to the socket itself; only bytes that the
+kernel does not accept are left to the loop.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _PIECE = 1 << 13
 
 
 class SharedTransport(asyncio.Transport):
-    """A transport of the event loop; `offer`, `write`, `abort` and `get_write_buffer_size` are open to all threads.
+    """A transport of the event loop; `try_write`, `write`, `abort` and `get_write_buffer_size` are open to all threads.
 
     Invariant: bytes leave in the order of the calls. What the kernel does not take waits here; whoever writes next, or
     the loop when there is room, tries again. With TLS what waits goes to the loop's transport.
@@ -42,7 +42,7 @@ class SharedTransport(asyncio.Transport):
         self._lock = threading.Lock()
         self._waiting = bytearray()
         self._is_ended = False
-        self._is_loop_told = False
+        self._is_flush_scheduled = False
         """Whether the loop sees to what waits."""
         # With TLS only the loop's transport can make the bytes; else a descriptor of our own, valid until `release`.
         is_plain = inner.get_extra_info("sslcontext") is None
@@ -50,20 +50,20 @@ class SharedTransport(asyncio.Transport):
         self._is_plain = is_plain
         self.is_paused = False
         """Whether its protocol wants to read nothing."""
-        self._is_held = False
+        self._is_suspended = False
         self.on_resume: Callable[[], None] = lambda: None
         """Called in the loop's thread when the protocol wants to read again."""
 
     def write(self, data: bytes | bytearray | memoryview) -> None:
         """Send; what cannot be sent at once waits. Does nothing when the connection is ending."""
-        self.offer(bytes(data), sys.maxsize)
+        self.try_write(bytes(data), sys.maxsize)
 
-    def offer(self, data: bytes, limit: int) -> bool:
+    def try_write(self, data: bytes, limit: int) -> bool:
         """The same unless more than `limit` bytes wait already; returns whether they did not."""
         with self._lock:
             if self._is_ended:
                 return True
-            if self._is_plain and (not self._waiting or self._push()):
+            if self._is_plain and (not self._waiting or self._flush_waiting()):
                 sent = self._send(data)
                 if sent == len(data):
                     return True
@@ -71,9 +71,9 @@ class SharedTransport(asyncio.Transport):
             elif self.get_write_buffer_size() > limit:
                 return False
             self._waiting += data
-            if not self._is_loop_told:
-                self._is_loop_told = True
-                self._loop.call_soon_threadsafe(self._see_to_it)
+            if not self._is_flush_scheduled:
+                self._is_flush_scheduled = True
+                self._loop.call_soon_threadsafe(self._schedule_flush)
             return True
 
     def get_write_buffer_size(self) -> int:
@@ -109,28 +109,28 @@ class SharedTransport(asyncio.Transport):
         except OSError:
             return len(data)  # the connection is lost: the loop finds out by reading and ends it
 
-    def _push(self) -> bool:
+    def _flush_waiting(self) -> bool:
         """Try to send what waits; whether nothing does any more."""
         del self._waiting[: self._send(self._waiting)]
         return not self._waiting
 
-    def _see_to_it(self) -> None:
+    def _schedule_flush(self) -> None:
         """Let the loop send what waits."""
         with self._lock:
             if self._socket is not None:
-                self._loop.add_writer(self._socket, self._go_on)
+                self._loop.add_writer(self._socket, self._flush_when_writable)
             else:
-                self._is_loop_told = False
-                self._hand_over()
+                self._is_flush_scheduled = False
+                self._move_to_inner()
 
-    def _go_on(self) -> None:
+    def _flush_when_writable(self) -> None:
         """There is room."""
         with self._lock:
-            if self._socket is not None and self._push():
-                self._is_loop_told = False
+            if self._socket is not None and self._flush_waiting():
+                self._is_flush_scheduled = False
                 self._loop.remove_writer(self._socket)
 
-    def _hand_over(self) -> None:
+    def _move_to_inner(self) -> None:
         """Leave what waits to the loop's transport."""
         if self._waiting and not self._inner.is_closing():
             self._inner.write(bytes(self._waiting))
@@ -148,17 +148,17 @@ class SharedTransport(asyncio.Transport):
 
     def write_eof(self) -> None:
         """Say that nothing follows what was written."""
-        self._finish()
+        self._end_after_flush()
         self._inner.write_eof()
 
     def close(self) -> None:
         """End the connection after what was written."""
-        self._finish()
+        self._end_after_flush()
         self._inner.close()
 
-    def _finish(self) -> None:
+    def _end_after_flush(self) -> None:
         with self._lock:
-            self._hand_over()
+            self._move_to_inner()
             self._end()
 
     def is_closing(self) -> bool:
@@ -177,14 +177,14 @@ class SharedTransport(asyncio.Transport):
     def resume_reading(self) -> None:
         """Read again."""
         self.is_paused = False
-        if not self._is_held:
+        if not self._is_suspended:
             self._inner.resume_reading()
         self.on_resume()
 
-    def hold_reading(self, is_held: bool) -> None:
+    def suspend_reading(self, is_suspended: bool) -> None:
         """The same for a second party: data is received while neither of them minds."""
-        self._is_held = is_held
-        if is_held:
+        self._is_suspended = is_suspended
+        if is_suspended:
             self._inner.pause_reading()
         elif not self.is_paused:
             self._inner.resume_reading()
@@ -263,7 +263,7 @@ class SharedConnection(ServerConnection):
             del self._unread[:_PIECE]
             super().data_received(piece)
             spent_s = time.thread_time() - began_s
-        self.transport.hold_reading(bool(self._unread))
+        self.transport.suspend_reading(bool(self._unread))
         if self._unread and not self.transport.is_paused:
             self._feed_later(spent_s)
 

@@ -1,4 +1,4 @@
-"""The command `thymio-sim convert`: playgrounds of other simulators as our JSON."""
+"""The command `thymio-sim convert`: convert playgrounds of other simulators to JSON."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ REFUSED, INCOMPLETE = 2, 1
 
 EXAMPLE = """\
 reads: Aseba .playground files (XML, or a zip with world.xml and its pictures), the JSON of the Thymio web simulation,
-and our own JSON. Pictures become part of the result. What cannot be expressed is told on stderr.
+and the JSON of this project. Images become part of the result. What cannot be converted is reported on stderr.
 
-exit code: 0 converted; 1 something cannot be expressed (with --strict only, nothing is written); 2 refused
+exit code: 0 converted; 1 something cannot be converted (with --strict only, nothing is written); 2 rejected input
 
 example:
   thymio-sim convert thymio-maze.playground -o maze.json && thymio-sim --playground maze.json
@@ -29,16 +29,16 @@ example:
 
 
 def run(argv: Sequence[str]) -> int:
-    """Convert one file; the exit code."""
+    """Convert one file; return the exit code."""
     options = _parser().parse_args(argv)
     if options.schema:
         return _write(json.dumps(schema(), indent=1) + "\n", options.output)
     try:
         _, playground = load_playground(options.file)
     except (PlaygroundError, resources.ResourceError, OSError) as error:
-        return _say(str(error), REFUSED)
+        return _print_error(str(error), REFUSED)
     for note in playground.notes:
-        _say(f"{options.file}: {note}", 0)
+        _print_error(f"{options.file}: {note}", 0)
     if options.strict and playground.notes:
         return INCOMPLETE
     return _write(dumps(playground), options.output)
@@ -47,18 +47,20 @@ def run(argv: Sequence[str]) -> int:
 def _write(text: str, output: Path | None) -> int:
     try:
         if output is None:
-            sys.stdout.buffer.write(text.encode("utf-8"))  # whatever the terminal has
+            sys.stdout.buffer.write(text.encode("utf-8"))  # whatever the encoding of the terminal
             sys.stdout.buffer.flush()
         else:
             output.write_text(text, encoding="utf-8")
     except BrokenPipeError:
         raise
     except OSError as error:
-        return _say(f"{output or 'standard output'}: {error.strerror}; expected a file that can be written", REFUSED)
+        return _print_error(
+            f"{output or 'standard output'}: {error.strerror}; expected a file that can be written", REFUSED
+        )
     return 0
 
 
-def _say(text: str, code: int) -> int:
+def _print_error(text: str, code: int) -> int:
     print(f"thymio-sim convert: {text}", file=sys.stderr)
     return code
 
@@ -74,8 +76,8 @@ def _parser() -> argparse.ArgumentParser:
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("file", metavar="FILE", nargs="?", help="the playground to convert")
     source.add_argument(
-        "--schema", action="store_true", help="write the JSON schema of our format instead, plug-ins included"
+        "--schema", action="store_true", help="write the JSON schema of the format instead, including plug-ins"
     )
     parser.add_argument("-o", "--output", type=Path, metavar="OUT", help="file to write (default: standard output)")
-    parser.add_argument("--strict", action="store_true", help="write nothing unless everything can be expressed")
+    parser.add_argument("--strict", action="store_true", help="write nothing unless everything can be converted")
     return parser

@@ -1,6 +1,6 @@
 """The command `thymio-sim`: start the whole suite, run a program without ROS, replay a run, or convert a playground.
 
-Everything a user can get wrong is checked before anything starts: one line on stderr, exit code 2.
+All input is checked before anything starts; an error is one line on stderr, with exit code 2.
 """
 
 from __future__ import annotations
@@ -21,36 +21,37 @@ from pathlib import Path
 import thymio_sim_ros
 from aseba_vm.cli.output import STANDARD_OUTPUT, end_by, standard_output
 from thymio_sim_ros import resources
-from thymio_sim_ros.banner import greeting, patience, qr_code
+from thymio_sim_ros.banner import banner, qr_code, startup_notice
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
 from thymio_sim_ros.bridge.server_thread import check_free
 from thymio_sim_ros.cli import convert, foxglove_layout
 from thymio_sim_ros.device.events import FIRMWARE, POLICIES
-from thymio_sim_ros.device.firmware.sd_card import Card, CardError
+from thymio_sim_ros.device.firmware.sd_card import SdCard, SdCardError
 from thymio_sim_ros.device.firmware.settings import Settings, SettingsError
 from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import ProgramError
-from thymio_sim_ros.device.programs.program_assignment import Share
-from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_shares
+from thymio_sim_ros.device.programs.program_assignment import Assignment
+from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.loading import NO_PROGRAM, check_behaviour, load_playground, read_assignments
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
-from thymio_sim_ros.suite_config import ADDRESS, Suite
+from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig
 
 EXAMPLE = """\
 example:
   thymio-sim --playground obstacle --program my_robot.aesl
-  thymio-sim --behaviour menu                                (the arrows choose, the centre button starts)
-  thymio-sim runner --program my_robot.aesl --seconds 60     (no ROS, as fast as possible)
-  thymio-sim runner --log run.jsonl; thymio-sim replay run.jsonl   (the same again, bit for bit)
-  thymio-sim convert maze.playground -o maze.json            (from Aseba and others; no ROS)
+  thymio-sim --behaviour menu                                (arrows choose, the center button starts)
+  thymio-sim runner --program my_robot.aesl --seconds 60     (without ROS, as fast as possible)
+  thymio-sim runner --log run.jsonl; thymio-sim replay run.jsonl   (repeats the run, bit for bit)
+  thymio-sim convert maze.playground -o maze.json            (from Aseba and others; without ROS)
   thymio-sim foxglove-layout -o thymio.json                  (panels for Foxglove and Lichtblick)
-  thymio-sim --ros-args -r __ns:=/lab1                       (arguments of ROS come last; here a namespace)
+  thymio-sim --ros-args -r __ns:=/lab1                       (ROS arguments come last; here a namespace)
 """
 
 RUNNER_CODES = """\
-exit code: 0 done; 1 a program stopped with a fault, which is told on stderr and in the result; 2 refused
+exit code: 0 done; 1 a program stopped with a fault (reported on stderr and in the result); 2 rejected input
 """
 
 USAGE_ERROR, DIFFERENT, FAULTY = 2, 1, 1
@@ -58,8 +59,8 @@ USAGE_ERROR, DIFFERENT, FAULTY = 2, 1, 1
 ROS_ARGS = "--ros-args"
 
 
-class UsageError(Exception):
-    """Something the user asked for cannot be done; the text is one line."""
+class UsageError(ThymioSimError):
+    """A request that cannot be executed; the text is one line."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -76,7 +77,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments = arguments[1:]
     try:
         return command(arguments)
-    except BrokenPipeError:  # who reads has enough, as `head` has
+    except BrokenPipeError:  # the reader has closed the pipe, as `head` does
         return 0
     except OSError as error:
         if error.filename != STANDARD_OUTPUT:
@@ -90,10 +91,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def start_suite(argv: Sequence[str]) -> int:
-    """Simulator, Aseba runtime, Foxglove bridge and page, until Ctrl-C."""
+    """Run simulator, Aseba runtime, Foxglove bridge and page until Ctrl-C."""
     own, of_ros = _split_ros_args(argv)
     options = _suite_parser().parse_args(own)
-    suite = Suite(
+    suite = SuiteConfig(
         playground=options.playground,
         program=_program(options),
         behaviour=options.behaviour,
@@ -119,9 +120,9 @@ def start_suite(argv: Sequence[str]) -> int:
     if suite.foxglove:
         _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
     _check_ros()
-    if (wait := patience(len(robots))) is not None:
+    if (wait := startup_notice(len(robots))) is not None:
         _tell(wait)
-    # A class room's robots stay apart, unless somebody has chosen otherwise (docs/spec/ros-packaging.md section 4).
+    # Robots of a classroom stay separate unless the environment says otherwise (docs/spec/ros-packaging.md section 4).
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     from thymio_sim_ros.ros.compat import shm_cleanup
 
@@ -129,26 +130,26 @@ def start_suite(argv: Sequence[str]) -> int:
     from thymio_sim_ros.ros import combined
 
     try:
-        return combined.run(suite, of_ros, on_ready=lambda: _greet(suite, robots))
+        return combined.run(suite, of_ros, on_ready=lambda: _print_banner(suite, robots))
     finally:
         shm_cleanup.remove_new(before)
 
 
 def _split_ros_args(argv: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Our own arguments, and those of ROS: from `--ros-args` on."""
+    """Split the arguments into those of this command and those of ROS, from `--ros-args` on."""
     words = list(argv)
     place = words.index(ROS_ARGS) if ROS_ARGS in words else len(words)
     return words[:place], words[place:]
 
 
 def run_without_ros(argv: Sequence[str]) -> int:
-    """World and program in lock-step, as fast as possible; prints where the robots are."""
+    """Run world and programs in lock-step, as fast as possible; print the final poses."""
     options = _runner_parser().parse_args(argv)
     device = _device(options)
     playground, shares = _check_files(options.playground, _program(options), options.behaviour, device.layout)
-    from thymio_sim_ros.cli.runner_faults import Faults
+    from thymio_sim_ros.cli.runner_faults import RunnerFaults
     from thymio_sim_ros.cli.runner_sound import run_with_sound
-    from thymio_sim_ros.cli.signal_handling import Interruption
+    from thymio_sim_ros.cli.signal_handling import StopSignal
     from thymio_sim_ros.runlog.run_log import RunLog
     from thymio_sim_ros.runner import Runner
 
@@ -169,10 +170,10 @@ def run_without_ros(argv: Sequence[str]) -> int:
             seed=options.seed,
             log=log,
         )
-        faults = Faults(runner, lambda text: print(f"thymio-sim: {text}", file=sys.stderr))
+        faults = RunnerFaults(runner, lambda text: print(f"thymio-sim: {text}", file=sys.stderr))
         started = time.perf_counter()
-        with Interruption() as interruption:
-            steps = faults.watched(interruption.heeded(runner.steps(options.seconds)))
+        with StopSignal() as stop:
+            steps = faults.checked(stop.until_signal(runner.steps(options.seconds)))
             if options.sound is None:
                 deque(steps, maxlen=0)
             else:
@@ -191,14 +192,14 @@ def run_without_ros(argv: Sequence[str]) -> int:
     for name, fault in faults.first.items():
         robots[name]["fault"] = fault
     _report({"seconds": seconds, "real_time_factor": round(factor, 1), "robots": robots})
-    if interruption.number is not None:
+    if stop.number is not None:
         print(f"thymio-sim: stopped after {seconds:g} of {options.seconds:g} seconds", file=sys.stderr)
-        end_by(interruption.number)
+        end_by(stop.number)
     return FAULTY if faults.first else 0
 
 
 def replay_run(argv: Sequence[str]) -> int:
-    """Replay a run log; 1 when something differs."""
+    """ReplayResult a run log; 1 when something differs."""
     options = _replay_parser().parse_args(argv)
     from thymio_sim_ros.cli.replay import replay
     from thymio_sim_ros.runlog.run_log import RunLogError, made_by
@@ -233,8 +234,8 @@ def _tell(text: str) -> None:
         print(text)
 
 
-def _greet(suite: Suite, robots: Sequence[str]) -> None:
-    _tell(greeting(suite, robots))
+def _print_banner(suite: SuiteConfig, robots: Sequence[str]) -> None:
+    _tell(banner(suite, robots))
     if sys.stdout is not None and sys.stdout.isatty():
         with contextlib.suppress(UnicodeEncodeError):  # a terminal without these characters
             if drawn := qr_code(suite):
@@ -263,7 +264,7 @@ def _suite_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--address",
         type=_address,
-        default=Suite.address,
+        default=SuiteConfig.address,
         metavar="IPV4",
         help="where page and bridge listen; 0.0.0.0 is the whole network, which then needs the address with the token "
         "that is printed (default: %(default)s)",
@@ -284,16 +285,19 @@ def _suite_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--no-token", action="store_true", help="let everyone whom the address reaches do everything, without a token"
     )
-    parser.add_argument("--port", type=_port, default=Suite.port, help="port of the page (default: %(default)s)")
+    parser.add_argument("--port", type=_port, default=SuiteConfig.port, help="port of the page (default: %(default)s)")
     parser.add_argument(
-        "--foxglove-port", type=_port, default=Suite.foxglove_port, help="port of the bridge (default: %(default)s)"
+        "--foxglove-port",
+        type=_port,
+        default=SuiteConfig.foxglove_port,
+        help="port of the bridge (default: %(default)s)",
     )
     parser.add_argument("--no-web", action="store_true", help="no web page; Foxglove can still connect")
     parser.add_argument("--headless", action="store_true", help="only the ROS nodes: no page, no Foxglove bridge")
     parser.add_argument(
         "--real-time-factor",
         type=_factor,
-        default=Suite.real_time_factor,
+        default=SuiteConfig.real_time_factor,
         metavar="F",
         help="simulated seconds per second, 0 is as fast as possible (default: %(default)g)",
     )
@@ -319,22 +323,23 @@ def _add_world_options(parser: argparse.ArgumentParser) -> None:
     shipped, behaviours = ", ".join(resources.playgrounds()), ", ".join(resources.behaviours())
     parser.add_argument(
         "--playground",
-        default=Suite.playground,
+        default=SuiteConfig.playground,
         metavar="NAME|FILE",
         help=f"{shipped}, or a file (default: %(default)s)",
     )
     parser.add_argument(
         "--program",
         metavar="FILE.aesl",
-        help=f"{behaviours}, {NO_PROGRAM}, or a file (default: {Suite.program}, or {NO_PROGRAM} with --behaviour)",
+        help=f"{behaviours}, {NO_PROGRAM}, or a file"
+        f" (default: {SuiteConfig.program}, or {NO_PROGRAM} with --behaviour)",
     )
     parser.add_argument(
         "--behaviour",
-        default=Suite.behaviour,
+        default=SuiteConfig.behaviour,
         metavar="NAME",
         help="what the robot is switched on with, such as menu; the program then waits in the menu",
     )
-    parser.add_argument("--seed", type=int, default=Suite.seed, help="seed of all noise (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=SuiteConfig.seed, help="seed of all noise (default: %(default)s)")
     parser.add_argument("--log", type=_path, metavar="FILE", help="write a run log that `thymio-sim replay` does again")
     robot = parser.add_argument_group("the robot")
     robot.add_argument(
@@ -359,13 +364,13 @@ def _add_world_options(parser: argparse.ArgumentParser) -> None:
     robot.add_argument(
         "--motors",
         choices=MOTOR_MODELS,
-        default=Suite.motor_model,
+        default=SuiteConfig.motor_model,
         help="whether motors follow at once, or as the robot's control loop moves them (default: %(default)s)",
     )
     robot.add_argument(
         "--proximity",
         choices=PROXIMITY_MODELS,
-        default=Suite.proximity_model,
+        default=SuiteConfig.proximity_model,
         help="how proximity sensors see thin things: see docs/robot.md (default: %(default)s)",
     )
 
@@ -375,9 +380,9 @@ def _device(options: argparse.Namespace) -> DeviceOptions:
     device = DeviceOptions(options.layout, options.events, options.card, options.settings)
     try:
         if device.card is not None:
-            Card(device.card)
+            SdCard(device.card)
         Settings(device.settings_file)
-    except (CardError, SettingsError) as error:
+    except (SdCardError, SettingsError) as error:
         raise UsageError(str(error)) from error
     return device
 
@@ -389,7 +394,7 @@ def _path(text: str) -> Path:
 def _program(options: argparse.Namespace) -> str:
     if options.program is not None:
         return str(options.program)
-    return NO_PROGRAM if options.behaviour else Suite.program
+    return NO_PROGRAM if options.behaviour else SuiteConfig.program
 
 
 def _address(text: str) -> str:
@@ -452,12 +457,14 @@ def _number(text: str, low: float, high: float) -> float:
     return value
 
 
-def _check_files(playground: str, program: str, behaviour: str, layout: str) -> tuple[Playground, dict[str, Share]]:
+def _check_files(
+    playground: str, program: str, behaviour: str, layout: str
+) -> tuple[Playground, dict[str, Assignment]]:
     """Playground and its robots' programs, checked; UsageError says where, what was found, what was expected."""
     try:
         check_behaviour(behaviour, layout)
         loaded = load_playground(playground)[1]
-        return loaded, read_shares(program, [robot.name for robot in loaded.robots], layout)
+        return loaded, read_assignments(program, [robot.name for robot in loaded.robots], layout)
     except (PlaygroundError, ProgramError, resources.ResourceError, OSError) as error:
         raise UsageError(str(error)) from error
 

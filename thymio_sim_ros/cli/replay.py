@@ -6,16 +6,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from thymio_sim_ros.runlog.run_log import Begun, Checked, Ended, Line, RunLogError, digest, read
+from thymio_sim_ros.runlog.run_log import LogEnded, LogEntry, RunLogError, TicksChecked, WorldStarted, digest, read
 from thymio_sim_ros.sim.input_recorder import Input, Posted, Removed, Reset, Spawned
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.world import World
 
-__all__ = ["Replay", "replay"]
+__all__ = ["ReplayResult", "replay"]
 
 
 @dataclass(frozen=True, slots=True)
-class Replay:
+class ReplayResult:
     """How a replay went: worlds, ticks that were compared, the first that differs, whether the log has its end.
 
     `differs` is (number of the world or reset from 1, tick of it from 1).
@@ -36,7 +36,7 @@ class Replay:
 class _Run:
     """A world from its start or a reset: inputs by the tick after which they came, and what each tick gave."""
 
-    begun: Begun
+    start: WorldStarted
     line: int
     inputs: dict[int, list[Input]] = field(default_factory=dict)
     last: int = 0
@@ -44,41 +44,41 @@ class _Run:
     crcs: list[str] = field(default_factory=list)
 
 
-def replay(path: Path) -> Replay:
-    """Replay a log as far as it goes the same; OSError, RunLogError."""
+def replay(path: Path) -> ReplayResult:
+    """ReplayResult a log as far as it goes the same; OSError, RunLogError."""
     lines = list(read(path))
-    is_complete = bool(lines) and isinstance(lines[-1][1], Ended)
+    is_complete = bool(lines) and isinstance(lines[-1][1], LogEnded)
     ticks = number = 0
     for number, run in enumerate(_runs(str(path), lines), start=1):
         differs = _first_difference(str(path), run)
         if differs is not None:
-            return Replay(number, ticks + differs, (number, differs), is_complete)
+            return ReplayResult(number, ticks + differs, (number, differs), is_complete)
         ticks += len(run.crcs)
-    return Replay(number, ticks, None, is_complete)
+    return ReplayResult(number, ticks, None, is_complete)
 
 
-def _runs(path: str, lines: list[tuple[int, Line]]) -> Iterator[_Run]:
+def _runs(path: str, lines: list[tuple[int, LogEntry]]) -> Iterator[_Run]:
     run: _Run | None = None
     has_ended = False
     for number, line in lines:
         if has_ended:
             raise RunLogError(path, number, "found a line after the end, expected nothing")
-        if isinstance(line, Begun):
+        if isinstance(line, WorldStarted):
             if run is not None:
                 yield run
             run = _Run(line, number)
-        elif isinstance(line, Ended):
+        elif isinstance(line, LogEnded):
             has_ended = True
         elif run is None:
             raise RunLogError(path, number, "found what happened to no world, expected a world first")
-        elif isinstance(line, Checked):
+        elif isinstance(line, TicksChecked):
             run.crcs.extend(line.crcs)
             if run.last > len(run.crcs):
                 found = f"found the first {len(run.crcs)} ticks after an input at tick {run.last}"
                 raise RunLogError(path, number, f"{found}, expected that many")
         elif isinstance(line[1], Reset):
             yield run
-            run = _Run(run.begun, run.line)
+            run = _Run(run.start, run.line)
         elif line[0] < max(len(run.crcs), run.last):
             raise RunLogError(path, number, f"found tick {line[0]}, expected {max(len(run.crcs), run.last)} or later")
         else:
@@ -90,11 +90,11 @@ def _runs(path: str, lines: list[tuple[int, Line]]) -> Iterator[_Run]:
 
 def _first_difference(path: str, run: _Run) -> int | None:
     """The first tick, counted from 1, that gives something else than it gave then."""
-    options = run.begun.options
+    options = run.start.options
     periods = None if options.periods_ns is None else dict(options.periods_ns)
     try:
         world = World(
-            run.begun.playground,
+            run.start.playground,
             seed=options.seed,
             noise=options.noise,
             proximity_model=options.proximity_model,

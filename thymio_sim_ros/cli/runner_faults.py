@@ -1,4 +1,4 @@
-"""What programs of a batch run have to say: faults and notices, each told once, as soon as it is there."""
+"""Faults and notices of programs in a headless run; each is reported once, as soon as it occurs."""
 
 from __future__ import annotations
 
@@ -8,39 +8,39 @@ from thymio_sim_ros.device.programs.status import FAULT
 from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.world import StepResult
 
-__all__ = ["Faults"]
+__all__ = ["RunnerFaults"]
 
 
-class Faults:
-    """Looks at the robots of a runner after each step, and tells lines of text.
+class RunnerFaults:
+    """Checks the robots of a runner after each step and reports faults and notices as lines of text.
 
     `first` holds the first fault of each robot whose program failed.
     """
 
-    def __init__(self, runner: Runner, tell: Callable[[str], None]) -> None:
+    def __init__(self, runner: Runner, report: Callable[[str], None]) -> None:
         self.first: dict[str, str] = {}
-        self._runner, self._tell = runner, tell
-        self._told: set[tuple[str, str]] = set()
+        self._runner, self._report = runner, report
+        self._reported: set[tuple[str, str]] = set()
 
-    def watched(self, steps: Iterable[StepResult]) -> Iterator[StepResult]:
-        """These steps, with a look before the first, for initialisations, and after each."""
-        self._look()
+    def checked(self, steps: Iterable[StepResult]) -> Iterator[StepResult]:
+        """Yield these steps; check before the first one, for faults of initializations, and after each."""
+        self._check()
         for step in steps:
-            self._look()
+            self._check()
             yield step
 
-    def _look(self) -> None:
+    def _check(self) -> None:
         for robot, host in self._runner.hosts.items():
-            for notice in host.take_notices():
-                self._say(robot, notice)
+            for notice in host.pop_notices():
+                self._report_once(robot, notice)
             status = host.device.status
             if status.state == FAULT:
                 place = "" if status.line is None else f", line {status.line}"
                 fault = f"{host.program.name}: fault in {status.event}{place}: {status.fault}"
                 self.first.setdefault(robot, fault)
-                self._say(robot, fault)
+                self._report_once(robot, fault)
 
-    def _say(self, robot: str, text: str) -> None:
-        if (robot, text) not in self._told:
-            self._told.add((robot, text))
-            self._tell(f"{robot}, at {self._runner.now_ns / 1e9:.2f} s: {text}")
+    def _report_once(self, robot: str, text: str) -> None:
+        if (robot, text) not in self._reported:
+            self._reported.add((robot, text))
+            self._report(f"{robot}, at {self._runner.now_ns / 1e9:.2f} s: {text}")

@@ -1,4 +1,4 @@
-"""What the loudspeakers of a run said, all together, as a sound file: `thymio-sim runner --sound FILE.wav`."""
+"""The mixed sound of all loudspeakers of a run as a file: `thymio-sim runner --sound FILE.wav`."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ __all__ = ["run_with_sound"]
 
 
 def run_with_sound(runner: Runner, steps: Iterable[StepResult], file: Path) -> None:
-    """Go through these steps of the runner and store what was to be heard meanwhile; OSError."""
+    """Run these steps and write the sound of all loudspeakers to a file. Raises OSError."""
     with file.open("ab"):
-        pass  # refused before the run, not after it
+        pass  # fails before the run, not after it
     first = runner.now_ns // SAMPLE_NS
     streams: dict[str, SoundStream] = {}
     for step in steps:

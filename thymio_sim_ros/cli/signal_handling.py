@@ -1,4 +1,4 @@
-"""Ctrl-C, or the end of a batch job's time, while a run goes on: what was made so far is kept."""
+"""Handling of SIGINT and SIGTERM during a headless run: the results so far are kept."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ from collections.abc import Iterable, Iterator
 from types import FrameType, TracebackType
 from typing import Self, TypeVar
 
-__all__ = ["Interruption"]
+__all__ = ["StopSignal"]
 
 Step = TypeVar("Step")
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-class Interruption:
-    """Meanwhile the first SIGINT or SIGTERM is noted and does nothing else; the next one does what it did before."""
+class StopSignal:
+    """Context in which the first SIGINT or SIGTERM only sets `number`; a second one has its previous effect."""
 
     def __init__(self) -> None:
         self.number: int | None = None
-        """The signal that came."""
+        """The signal received, or None."""
 
-    def heeded(self, steps: Iterable[Step]) -> Iterator[Step]:
-        """These steps, as far as the one during which a signal came."""
+    def until_signal(self, steps: Iterable[Step]) -> Iterator[Step]:
+        """Yield these steps, up to the one during which a signal arrived."""
         for step in steps:
             yield step
             if self.number is not None:

@@ -1,1 +1,4 @@
-"""An Aseba Thymio: firmware layout, bindings to sensors and actuators, timers, behaviours. No ROS, no world."""
+"""The Aseba side of a robot: memory layout, bindings to sensors and actuators, events, firmware and programs.
+
+It depends neither on ROS nor on the world.
+"""

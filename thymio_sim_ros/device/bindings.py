@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
 
-from thymio_sim_ros.device.layout import THYMIO, fitting, target
+from thymio_sim_ros.device.layout import THYMIO, compatible_plugins, target
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.plugin_api.aseba_binding import Native
 
@@ -64,7 +64,7 @@ def sensors(layout: str = THYMIO) -> dict[str, SensorBinding]:
     """Every sensor that Aseba sees, by name; variables that the layout lacks are left out."""
     addresses = target(layout).addresses
     found = {}
-    for sensor in fitting()[0]:
+    for sensor in compatible_plugins()[0]:
         if not (sensor.aseba.variables or sensor.aseba.event):
             continue
         slots = tuple(_slots(sensor.aseba.variables, layout, has_edges=sensor.aseba.edge_events))
@@ -89,7 +89,7 @@ def outputs(layout: str = THYMIO) -> tuple[OutputBinding, ...]:
     """Every group of variables that makes a command; groups that the layout lacks are left out."""
     addresses = target(layout).addresses
     found = []
-    for actuator in fitting()[1]:
+    for actuator in compatible_plugins()[1]:
         for output in actuator.aseba.outputs:
             if all(name in addresses for name, _ in output.variables):
                 slots = tuple(_slots(output.variables, layout))
@@ -100,13 +100,13 @@ def outputs(layout: str = THYMIO) -> tuple[OutputBinding, ...]:
 @cache
 def natives() -> dict[str, Native]:
     """Every native function that reaches an actuator, by name."""
-    return {native.name: native for actuator in fitting()[1] for native in actuator.aseba.natives}
+    return {native.name: native for actuator in compatible_plugins()[1] for native in actuator.aseba.natives}
 
 
 @cache
 def at_reset() -> tuple[Command, ...]:
     """What a reset of the robot tells its actuators."""
-    return tuple(command for actuator in fitting()[1] for command in actuator.aseba.at_reset)
+    return tuple(command for actuator in compatible_plugins()[1] for command in actuator.aseba.at_reset)
 
 
 def _slots(variables: Sequence[tuple[str, int]], layout: str, *, has_edges: bool = False) -> Iterator[Slot]:

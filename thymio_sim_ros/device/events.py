@@ -1,8 +1,8 @@
-"""Events that wait for the machine, and the order in which it hears them (docs/spec/thymio-robot.md section 3).
+"""Pending events of a machine and their order (docs/spec/thymio-robot.md section 3).
 
-As the firmware does: one flag for each local event, the lowest number first, nothing interrupts a handler; global
-events wait in line. As the reference playground does: events come one by one as they happened, each ends the handler
-that still runs. What is fed belongs to the present: timers that fired before come first.
+Firmware policy: one flag per local event, the lowest number first; handlers are not interrupted; global events are
+queued. Policy of the reference playground: events are handled in the order in which they occurred, and each one ends
+the running handler. Readings belong to the current time, so earlier timer events are handled first.
 """
 
 from __future__ import annotations
@@ -13,30 +13,30 @@ from dataclasses import dataclass, field
 
 from thymio_sim_ros.device.firmware.timers import Timers
 
-__all__ = ["FIRMWARE", "MOST_WAITING", "POLICIES", "EventQueue", "GlobalEvent", "Policy"]
+__all__ = ["FIRMWARE", "MAX_PENDING", "POLICIES", "EventQueue", "GlobalEvent", "Policy"]
 
-MOST_WAITING = 100
-"""Global events that may wait for a machine, and local ones where each counts; more are lost."""
+MAX_PENDING = 100
+"""Limit of pending global events, and of pending local events without coalescing; further ones are dropped."""
 
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """How local events meet: whether those that wait are one, whether they end a handler that runs.
+    """Whether pending local events of one kind coalesce, and whether an event interrupts the running handler.
 
     `turn`: instructions of a handler before something else may happen. `periods_ns`: sensors that are heard less often
     than they measure.
     """
 
     coalesces: bool
-    kills: bool
-    turn: int
+    interrupts: bool
+    handler_budget: int
     periods_ns: Mapping[str, int] = field(default_factory=dict)
 
 
 FIRMWARE, PLAYGROUND = "firmware", "playground"
 POLICIES: Mapping[str, Policy] = {
-    FIRMWARE: Policy(coalesces=True, kills=False, turn=65535),
-    PLAYGROUND: Policy(coalesces=False, kills=True, turn=1000, periods_ns={"buttons": 50_000_000}),
+    FIRMWARE: Policy(coalesces=True, interrupts=False, handler_budget=65535),
+    PLAYGROUND: Policy(coalesces=False, interrupts=True, handler_budget=1000, periods_ns={"buttons": 50_000_000}),
 }
 """The robot, and the reference playground."""
 
@@ -51,7 +51,7 @@ class GlobalEvent:
 
 
 class EventQueue:
-    """What waits for one machine. Invariant: with a coalescing policy each local event waits at most once."""
+    """Pending events of one machine. Invariant: with a coalescing policy each local event is pending at most once."""
 
     def __init__(self, policy: Policy, timer_events: Sequence[int]) -> None:
         """`timer_events`: indexes of the events of the two timers."""
@@ -59,75 +59,75 @@ class EventQueue:
         self._timer_events = timer_events
         self._timers = Timers()
         self._pending: list[int] = []
-        self._arrived: list[int] = []
-        self._incoming: deque[GlobalEvent] = deque()
+        self._local_now: list[int] = []
+        self._global: deque[GlobalEvent] = deque()
 
     @property
-    def waits(self) -> bool:
-        """Whether an event waits for the machine."""
-        return bool(self._pending or self._arrived or self._incoming) or self._timers.are_due
+    def has_events(self) -> bool:
+        """Whether an event is pending."""
+        return bool(self._pending or self._local_now or self._global) or self._timers.are_due
 
     @property
-    def has_incoming(self) -> bool:
-        """Whether a global event waits."""
-        return bool(self._incoming)
+    def has_global(self) -> bool:
+        """Whether a global event is pending."""
+        return bool(self._global)
 
-    def arrive(self, index: int) -> None:
-        """A local event happened now."""
-        self._add(self._arrived, index)
+    def add_local(self, index: int) -> None:
+        """Add a local event that occurs now."""
+        self._add(self._local_now, index)
 
-    def receive(self, event: GlobalEvent) -> bool:
-        """A global event arrived; False when there is no more room."""
-        if len(self._incoming) >= MOST_WAITING:
+    def add_global(self, event: GlobalEvent) -> bool:
+        """Add a global event; return False if the queue is full."""
+        if len(self._global) >= MAX_PENDING:
             return False
-        self._incoming.append(event)
+        self._global.append(event)
         return True
 
     def advance(self, now_ns: int) -> None:
-        """Simulated time has come so far."""
+        """Advance simulated time."""
         for timer in self._timers.set_clock(now_ns):
             self._add(self._pending, self._timer_events[timer])
 
-    def notice(self, periods: Sequence[int]) -> None:
-        """Take over changed periods of the timers; no handler may run."""
-        self._timers.notice(periods)
+    def set_timer_periods(self, periods: Sequence[int]) -> None:
+        """Set the periods of the timers; only allowed while no handler runs."""
+        self._timers.set_periods(periods)
 
-    def take(self) -> int | GlobalEvent | None:
-        """The next event, or None: time was counted to its end. What happens now comes after all timers before."""
+    def pop(self) -> int | GlobalEvent | None:
+        """Remove and return the next event, or None. Events of the current time follow all earlier timer events."""
         is_now = not self._timers.lag_ms
         if not self._pending and not is_now:
             fired = self._timers.next_firing()
             for timer in fired:
                 self._add(self._pending, self._timer_events[timer])
             is_now = not fired
-        if is_now and (self._arrived or self._incoming):
-            for index in self._arrived:
+        if is_now and (self._local_now or self._global):
+            for index in self._local_now:
                 self._add(self._pending, index)
-            self._arrived.clear()
-            if self._incoming:
-                return self._incoming.popleft()
+            self._local_now.clear()
+            if self._global:
+                return self._global.popleft()
         if not self._pending:
             return None
         index = min(self._pending) if self.policy.coalesces else self._pending[0]
         self._pending.remove(index)
         return index
 
-    def take_incoming(self) -> GlobalEvent:
-        """The next global event, before all others."""
-        return self._incoming.popleft()
+    def pop_global(self) -> GlobalEvent:
+        """Remove and return the next global event, ahead of all others."""
+        return self._global.popleft()
 
     def clear(self) -> None:
-        """Forget all events that wait."""
+        """Drop all pending events."""
         self._pending.clear()
-        self._arrived.clear()
-        self._incoming.clear()
+        self._local_now.clear()
+        self._global.clear()
 
     def reset(self) -> None:
-        """Forget all events, stop all timers."""
+        """Drop all pending events and stop all timers."""
         self.clear()
         self._timers.reset()
 
     def _add(self, events: list[int], index: int) -> None:
         is_flagged = self.policy.coalesces and index in events
-        if not is_flagged and len(events) < MOST_WAITING:
+        if not is_flagged and len(events) < MAX_PENDING:
             events.append(index)

@@ -18,7 +18,7 @@ from thymio_sim_ros.sim import actuators, sensors
 from thymio_sim_ros.sim.actuators import Actuator, all_actuators
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 
-__all__ = ["LAYOUTS", "PLAYGROUND", "THYMIO", "Layout", "extend", "fitting", "target"]
+__all__ = ["LAYOUTS", "PLAYGROUND", "THYMIO", "Layout", "compatible_plugins", "extend", "target"]
 
 THYMIO, PLAYGROUND = "thymio", "playground"
 
@@ -59,7 +59,7 @@ class Layout:
     """One way to lay a Thymio out: its description, and what its variables hold at the start."""
 
     base: TargetDescription
-    first_values: Mapping[str, tuple[int, ...]]
+    initial_values: Mapping[str, tuple[int, ...]]
 
 
 LAYOUTS: Mapping[str, Layout] = {
@@ -72,11 +72,11 @@ LAYOUTS: Mapping[str, Layout] = {
 @cache
 def target(layout: str = THYMIO) -> TargetDescription:
     """The target of this installation in one of LAYOUTS."""
-    return extend(LAYOUTS[layout].base, *fitting())
+    return extend(LAYOUTS[layout].base, *compatible_plugins())
 
 
 @cache
-def fitting() -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
+def compatible_plugins() -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
     """All sensors and actuators, but for those of other packages that do not fit: they stay unknown to programs.
 
     One does not fit when it gives a variable or native that exists, of the robot or of another one, another size.
@@ -84,28 +84,28 @@ def fitting() -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
     try:
         extend(THYMIO_II, all_sensors(), all_actuators())
     except ValueError:
-        return _one_by_one()
+        return _compatible_one_by_one()
     return all_sensors(), all_actuators()
 
 
-def _one_by_one() -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
+def _compatible_one_by_one() -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
     """Ours, then those of others that fit what is there."""
     all_of_them: tuple[Sensor | Actuator, ...] = (*all_sensors(), *all_actuators())
     ours = {*registry.own_names(sensors), *registry.own_names(actuators)}
     kept: list[Sensor | Actuator] = []
     for plugin in sorted(all_of_them, key=lambda plugin: plugin.name not in ours):
         try:
-            extend(THYMIO_II, *_parted([*kept, plugin]))
+            extend(THYMIO_II, *_partitioned([*kept, plugin]))
         except ValueError as error:
             if plugin.name in ours:
                 raise
             logging.getLogger(__name__).warning("programs see nothing of the plug-in '%s': %s", plugin.name, error)
         else:
             kept.append(plugin)
-    return _parted([plugin for plugin in all_of_them if plugin in kept])
+    return _partitioned([plugin for plugin in all_of_them if plugin in kept])
 
 
-def _parted(plugins: Sequence[Sensor | Actuator]) -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
+def _partitioned(plugins: Sequence[Sensor | Actuator]) -> tuple[tuple[Sensor, ...], tuple[Actuator, ...]]:
     return (
         tuple(plugin for plugin in plugins if isinstance(plugin, Sensor)),
         tuple(plugin for plugin in plugins if isinstance(plugin, Actuator)),
@@ -121,15 +121,15 @@ def extend(base: TargetDescription, sensing: Sequence[Sensor], acting: Sequence[
     variables = {variable.name: variable for variable in (*THYMIO_II.variables, *base.variables)}
     events = {event.name: event for event in base.local_events}
     natives = {native.name: native for native in (*THYMIO_II.natives, *base.natives)}
-    faces = [sensor.aseba for sensor in sensing]
-    declared = [variable for face in faces for variable in face.variables]
+    bindings = [sensor.aseba for sensor in sensing]
+    declared = [variable for binding in bindings for variable in binding.variables]
     declared += [pair for actuator in acting for output in actuator.aseba.outputs for pair in output.variables]
     for name, size in declared:
         if variables.setdefault(name, Variable(name, size)).size != size:
             raise ValueError(f"variable {name}: a plug-in declares {size} words, expected {variables[name].size}")
-    for face in faces:
-        edges = [name for name, _ in face.variables] if face.edge_events else []
-        for name in [*edges, *([face.event] if face.event else [])]:
+    for binding in bindings:
+        edges = [name for name, _ in binding.variables] if binding.edge_events else []
+        for name in [*edges, *([binding.event] if binding.event else [])]:
             events.setdefault(name, LocalEvent(name))
     for native in (native for actuator in acting for native in actuator.aseba.natives):
         parameters = tuple(Parameter(name, size) for name, size in native.signature)

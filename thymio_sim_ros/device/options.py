@@ -7,11 +7,12 @@ from pathlib import Path
 
 from thymio_sim_ros.device.events import FIRMWARE, POLICIES
 from thymio_sim_ros.device.layout import LAYOUTS, THYMIO
+from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = ["DEFAULTS", "DeviceOptions", "OptionError"]
 
 
-class OptionError(ValueError):
+class OptionError(ThymioSimError, ValueError):
     """A choice that does not exist; the text is one line."""
 
 

@@ -1,4 +1,4 @@
-"""What the actuators are told: by natives at once, by variables that a program wrote when they differ from before."""
+"""Commands for the actuators: from native calls at once, from variables when their values change."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from aseba_vm import VirtualMachine
 from thymio_sim_ros.device import bindings
-from thymio_sim_ros.device.firmware.indicators import OwnRules
+from thymio_sim_ros.device.firmware.indicators import Indicators
 from thymio_sim_ros.device.firmware.settings import Settings
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.sim.commands import (
@@ -29,104 +29,105 @@ __all__ = ["Outputs"]
 
 _SOUNDS = frozenset({PlayTone, PlaySystemSound, PlaySamples, StopSound})
 """Commands with which a program uses sound."""
-LIT_NS = 500_000_000
-"""For so long lights that a program sets to the same again are not told again."""
+LIGHT_REPEAT_NS = 500_000_000
+"""Time after which a repeated setting of lights to the same levels is sent again."""
 _NOTHING: Mapping[str, Sequence[int]] = MappingProxyType({})
 
 
 class Outputs:
-    """Commands of one device that wait to be taken. Invariant: `_sent` is what the variables told last."""
+    """Queued commands of one device. Invariant: `_sent` has the words of the last command of each output."""
 
-    def __init__(self, layout: str, settings: Settings, rules: OwnRules) -> None:
-        """`settings` correct the wheels; `rules` lose the lights and the sounds that a program uses."""
+    def __init__(self, layout: str, settings: Settings, indicators: Indicators) -> None:
+        """`settings` calibrate the motors; `indicators` release the lights and sounds that a program uses."""
         self.has_used_sound = False
         """Whether the program has used sound since the reset."""
         self._addresses = target(layout).addresses
         self._outputs = bindings.outputs(layout)
         self._by_address = {output.slots[0].address: number for number, output in enumerate(self._outputs)}
-        """Output by where its first variable lies."""
+        """Index of each output by the address of its first variable."""
         self._settings = settings
-        self._rules = rules
+        self._indicators = indicators
         self._vm: VirtualMachine | None = None
-        self._waiting: list[Command] = []
+        self._queued: list[Command] = []
         self._sent: list[list[int]] = []
-        self._lit: dict[str, tuple[int, ...]] = {}
-        self._lit_ns = 0
+        self._light_levels: dict[str, tuple[int, ...]] = {}
+        self._lights_cleared_ns = 0
 
     def reset(self, vm: VirtualMachine) -> None:
-        """All variables are 0: tell what that means, and what a reset tells every actuator."""
+        """Queue the commands of a reset: those of variables that are 0, and those of all actuators."""
         self._vm = vm
-        self._lit.clear()
+        self._light_levels.clear()
         self.has_used_sound = False
         self._sent = [self._words(output) for output in self._outputs]
         at_rest = [output.command(words) for output, words in zip(self._outputs, self._sent, strict=True)]
-        self._waiting = at_rest + [command for command in bindings.at_reset() if command not in at_rest]
+        self._queued = at_rest + [command for command in bindings.at_reset() if command not in at_rest]
 
-    def tell(self, *commands: Command) -> None:
-        """Commands of the robot itself."""
-        self._waiting += commands
+    def queue(self, *commands: Command) -> None:
+        """Queue commands of the firmware."""
+        self._queued += commands
 
     def send(self, command: Command, writes: Mapping[str, Sequence[int]] = _NOTHING) -> None:
-        """A native's command and the variables that it sets; what they mean is told by the command already.
+        """Queue the command of a native call and write the variables that the call sets.
 
-        Lights that a program sets again and again to the same are told every `LIT_NS`: somebody else may have set them.
+        The variables cause no command of their own. A program that keeps setting lights to the same levels causes a
+        command every `LIGHT_REPEAT_NS` only; it is repeated because a ROS topic may have set the lights meanwhile.
         """
         if isinstance(command, SetLeds):
-            if self._lit.get(command.group) != command.levels:
-                self._waiting.append(self._taken_over(command))
+            if self._light_levels.get(command.group) != command.levels:
+                self._queued.append(self._claim_lights(command))
         else:
-            self._waiting.append(command)
+            self._queued.append(command)
             if type(command) in _SOUNDS:
                 self.has_used_sound = True
-                self._rules.silence()
+                self._indicators.mute_buttons()
             elif isinstance(command, SetLed):
-                self._lit.clear()
+                self._light_levels.clear()
         for variable, words in writes.items():
             self._write(variable, words)
 
-    def take(self, now_ns: int) -> list[Command]:
-        """What was sent since the last time."""
-        if not 0 <= now_ns - self._lit_ns < LIT_NS:
-            self._lit_ns = now_ns
-            self._lit.clear()
-        commands, self._waiting = self._waiting, []
+    def pop(self, now_ns: int) -> list[Command]:
+        """Return and clear the queued commands."""
+        if not 0 <= now_ns - self._lights_cleared_ns < LIGHT_REPEAT_NS:
+            self._lights_cleared_ns = now_ns
+            self._light_levels.clear()
+        commands, self._queued = self._queued, []
         return commands
 
-    def darken(self) -> None:
-        """The robot is switched off: tell what variables say now, then that lights and radio rest."""
-        self._waiting += self.take_changes()
-        self._waiting += (EnableComm(False), *LEDS_GIVEN_BACK)
+    def switch_off_lights(self) -> None:
+        """Queue the commands of switching off: pending changes of variables, then lights and radio off."""
+        self._queued += self.pop_changes()
+        self._queued += (EnableComm(False), *LEDS_GIVEN_BACK)
 
-    def take_changes(self) -> list[Command]:
-        """What variables say that changed since the last time."""
+    def pop_changes(self) -> list[Command]:
+        """Return the commands of variables that changed since the last call."""
         commands: list[Command] = []
         for number, output in enumerate(self._outputs):
             words = self._words(output)
             if words != self._sent[number]:
                 self._sent[number] = words
-                commands.append(self._meant(output.command(words)))
+                commands.append(self._adjusted(output.command(words)))
         return commands
 
-    def tell_motors_again(self) -> None:
-        """The same targets are another command now."""
+    def resend_motor_targets(self) -> None:
+        """Send the motor targets again, because their calibration has changed."""
         for output, sent in zip(self._outputs, self._sent, strict=True):
             if isinstance(output.command(self._words(output)), MotorTargets):
                 sent.clear()
 
-    def _meant(self, command: Command) -> Command:
-        """What a command of variables comes to: wheels are corrected, lights taken over."""
+    def _adjusted(self, command: Command) -> Command:
+        """Calibrate a command for motors; claim the lights of a command for lights."""
         if isinstance(command, MotorTargets):
             return self._settings.calibrate(command)
-        return self._taken_over(command) if isinstance(command, SetLeds) else command
+        return self._claim_lights(command) if isinstance(command, SetLeds) else command
 
-    def _taken_over(self, command: SetLeds) -> SetLeds:
-        self._lit[command.group] = command.levels
-        for group in self._rules.take(command.group):
-            self._waiting.append(ShowOnLeds(group, (0,) * LED_GROUPS[group]))
+    def _claim_lights(self, command: SetLeds) -> SetLeds:
+        self._light_levels[command.group] = command.levels
+        for group in self._indicators.claim(command.group):
+            self._queued.append(ShowOnLeds(group, (0,) * LED_GROUPS[group]))
         return command
 
     def _write(self, variable: str, words: Sequence[int]) -> None:
-        """Set a variable of the machine, if its layout has it, as if it had been told."""
+        """Write a variable of the machine, if its layout has it, without causing a command."""
         assert self._vm is not None
         if variable not in self._addresses:
             return
@@ -137,7 +138,7 @@ class Outputs:
             self._sent[number] = self._words(self._outputs[number])
 
     def _words(self, output: bindings.OutputBinding) -> list[int]:
-        """What the variables of an output hold."""
+        """Words of the variables of an output."""
         assert self._vm is not None
         memory = self._vm.variables.words
         words: list[int] = []

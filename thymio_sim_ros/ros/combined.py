@@ -15,12 +15,12 @@ from thymio_sim_ros.ros.aseba.node import AsebaRuntime
 from thymio_sim_ros.ros.combined_parameters import BRIDGE, PAGE, RUNTIME, SIMULATOR, SUITE, assigned, defaults
 from thymio_sim_ros.ros.rclpy_ext.node_runner import Host, Life, StartError, greeted, run_main
 from thymio_sim_ros.ros.simulator.node import Simulator
-from thymio_sim_ros.suite_config import Suite
+from thymio_sim_ros.suite_config import SuiteConfig
 
 REFUSED = 2
 
 
-def lives(context: Context, suite: Suite, warnings: Sequence[str] = ()) -> Iterator[Host]:
+def lives(context: Context, suite: SuiteConfig, warnings: Sequence[str] = ()) -> Iterator[Host]:
     """Simulator, Aseba runtime and, as wanted, bridge and page, in the order of their start.
 
     `warnings` about the arguments are logged by the first.
@@ -45,18 +45,18 @@ def lives(context: Context, suite: Suite, warnings: Sequence[str] = ()) -> Itera
         yield WebPage(context, replace(given[PAGE], foxglove_port=foxglove_port), tokens)
 
 
-def run(suite: Suite, args: Sequence[str] | None = None, *, on_ready: Callable[[], None] = lambda: None) -> int:
+def run(suite: SuiteConfig, args: Sequence[str] | None = None, *, on_ready: Callable[[], None] = lambda: None) -> int:
     """Run the suite until SIGINT or SIGTERM; the exit code. `args`: those of ROS, else those of the process."""
     return _run(suite, args, lambda hosts: hosts, on_ready)
 
 
 def main(args: Sequence[str] | None = None) -> int:
     """The executable `thymio`: the suite with its defaults, ROS arguments for everything else."""
-    return _run(Suite(), args, greeted)
+    return _run(SuiteConfig(), args, greeted)
 
 
 def _run(
-    suite: Suite,
+    suite: SuiteConfig,
     args: Sequence[str] | None,
     dressed: Callable[[Iterator[Host]], Iterator[Life]],
     on_ready: Callable[[], None] = lambda: None,

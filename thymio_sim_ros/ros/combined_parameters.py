@@ -17,7 +17,7 @@ from thymio_sim_ros.ros.aseba.parameters import RuntimeParams, is_free
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
-from thymio_sim_ros.suite_config import Suite
+from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = ["BRIDGE", "PAGE", "RUNTIME", "SIMULATOR", "SUITE", "Place", "assigned", "defaults", "places"]
 
@@ -46,7 +46,7 @@ _PARAMETER = ("-p", "--param")
 _QUOTED = ('"', "'", "[", "{")
 
 
-def defaults(suite: Suite) -> dict[str, Any]:
+def defaults(suite: SuiteConfig) -> dict[str, Any]:
     """The parameters of each node by its name, with the values of this suite; of bridge and page if it has them."""
     device = suite.device
     values: dict[str, Any] = {
@@ -89,7 +89,7 @@ def places(name: str) -> tuple[Place, ...]:
         return ((SIMULATOR, name),)
     if is_free(name):
         return ((RUNTIME, name),)
-    return tuple((node, name) for node, values in defaults(Suite()).items() if name in parameters.by_name(values))
+    return tuple((node, name) for node, values in defaults(SuiteConfig()).items() if name in parameters.by_name(values))
 
 
 @contextmanager
@@ -136,7 +136,7 @@ def _sections(given: Sequence[str]) -> tuple[dict[str, dict[str, str]], list[str
     for node, name, value in sorted(rules, key=lambda rule: rule[0] not in ("", SUITE)):
         found = places(name) if node in ("", SUITE) else ((node, name),)
         if not found:
-            known = [one for values in defaults(Suite()).values() for one in parameters.by_name(values)]
+            known = [one for values in defaults(SuiteConfig()).values() for one in parameters.by_name(values)]
             warnings.append(f"parameter {name} is none of the suite and does nothing{parameters.meant(name, known)}")
         for place, own_name in found:
             if place in sections:

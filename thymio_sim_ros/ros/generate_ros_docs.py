@@ -29,7 +29,7 @@ from thymio_sim_ros.ros.simulator.simulation_interfaces.services import OFFERS, 
 from thymio_sim_ros.ros.simulator.urdf import fixed_frames, wheel_position
 from thymio_sim_ros.sim import sensors
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
-from thymio_sim_ros.suite_config import Suite
+from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = ["own_sensors", "published", "table", "text", "type_name"]
 
@@ -239,7 +239,7 @@ def _grouped(values: object) -> Iterator[tuple[parameters.Declared, str]]:
 
 def _of_all_nodes() -> Iterator[tuple[str, str, str]]:
     """Each parameter of the combined process, its nodes and its default; those of a group share a line."""
-    values = combined_parameters.defaults(Suite())
+    values = combined_parameters.defaults(SuiteConfig())
     suite = ["port", "foxglove_port", "address"]
     for name in suite:
         nodes = combined_parameters.places(name)

@@ -10,13 +10,14 @@ import typing
 from collections.abc import Mapping
 from typing import Any
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.commands import Command, MoveObject
 
 __all__ = ["CommandJsonError", "decode", "encode", "kinds"]
 
 
-class CommandJsonError(ValueError):
+class CommandJsonError(ThymioSimError, ValueError):
     """A command that cannot be read: what was found, what was expected."""
 
 

@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 import thymio_sim_ros
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.runlog import command_codec
 from thymio_sim_ros.runlog.command_codec import CommandJsonError
 from thymio_sim_ros.sim.input_recorder import Input, Posted, Removed, Reset, Spawned, WorldOptions
@@ -37,7 +38,7 @@ from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError, Ro
 from thymio_sim_ros.sim.playground.writer import dumps
 from thymio_sim_ros.sim.world import World
 
-__all__ = ["Begun", "Checked", "Ended", "Line", "RunLog", "RunLogError", "digest", "made_by", "read"]
+__all__ = ["LogEnded", "LogEntry", "RunLog", "RunLogError", "TicksChecked", "WorldStarted", "digest", "made_by", "read"]
 
 FORMAT = "thymio-sim run log"
 VERSION = 1
@@ -47,7 +48,7 @@ _WRONG = (ValueError, KeyError, TypeError, RecursionError, FieldError, Playgroun
 _DIGITS = 8
 
 
-class RunLogError(Exception):
+class RunLogError(ThymioSimError):
     """A log that cannot be read: file and line, what was found there, what was expected."""
 
     def __init__(self, path: str, line: int, problem: str) -> None:
@@ -56,7 +57,7 @@ class RunLogError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Begun:
+class WorldStarted:
     """A world begins."""
 
     name: str
@@ -65,18 +66,18 @@ class Begun:
 
 
 @dataclass(frozen=True, slots=True)
-class Checked:
+class TicksChecked:
     """So many ticks passed; `crcs` is what each of them gave."""
 
     crcs: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Ended:
+class LogEnded:
     """The log is complete."""
 
 
-Line = Begun | Checked | Ended | tuple[int, Input]
+LogEntry = WorldStarted | TicksChecked | LogEnded | tuple[int, Input]
 """What a line says; inputs with the tick after which they came."""
 
 
@@ -161,7 +162,7 @@ class RunLog:
             self._on_error(error)
 
 
-def read(path: Path) -> Iterator[tuple[int, Line]]:
+def read(path: Path) -> Iterator[tuple[int, LogEntry]]:
     """The lines of a log after its first, with their numbers; OSError, RunLogError."""
     number = 0
     with path.open("rb") as file:
@@ -193,14 +194,14 @@ def _check_head(data: object) -> None:
         raise ValueError(f"found version {data.get('version')!r}, expected {VERSION}")
 
 
-def _line(data: object) -> Line:
+def _line(data: object) -> LogEntry:
     match data:
         case {"world": dict(head)}:
-            return _begun(head)
+            return _world_started(head)
         case {"ticks": int(ticks), "crc": str(crc)} if len(crc) == ticks * _DIGITS:
-            return Checked(tuple(crc[start : start + _DIGITS] for start in range(0, len(crc), _DIGITS)))
+            return TicksChecked(tuple(crc[start : start + _DIGITS] for start in range(0, len(crc), _DIGITS)))
         case {"end": True}:
-            return Ended()
+            return LogEnded()
         case {"tick": int(tick), "to": str(name), "do": kind, "with": values}:
             return tick, Posted(name, command_codec.decode(kind, values))
         case {"tick": int(tick), "spawn": start}:
@@ -212,12 +213,12 @@ def _line(data: object) -> Line:
     raise ValueError(f"found {fields.describe(data)}, expected a line of a {FORMAT}")
 
 
-def _begun(head: dict[str, Any]) -> Begun:
+def _world_started(head: dict[str, Any]) -> WorldStarted:
     name, text, periods = head.pop("name"), head.pop("playground"), head.pop("periods_ns")
     if not isinstance(name, str) or not isinstance(text, str):
         raise ValueError("found a world whose name or playground is no text, expected both")
     pairs = None if periods is None else tuple((str(sensor), int(period_ns)) for sensor, period_ns in periods)
-    return Begun(name, playgrounds.loads(text, name), WorldOptions(**head, periods_ns=pairs))
+    return WorldStarted(name, playgrounds.loads(text, name), WorldOptions(**head, periods_ns=pairs))
 
 
 def _explained(error: Exception) -> str:

@@ -1,6 +1,6 @@
-"""What teachers' tests are made of: robots in a simulated world, what they did, and checks of it (docs/testing.md).
+"""Building blocks of tests for grading: robots in a simulated world, records and checks (docs/grading.md).
 
-The fixtures are in `thymio_sim_ros.pytest_plugin`; what needs ROS is in `thymio_sim_ros.testing.ros`.
+The fixtures are in `thymio_sim_ros.pytest_plugin`; parts that need ROS are in `thymio_sim_ros.testing.ros`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Statements about a robot that a test asserts or waits for; each tells what it saw, and they combine by &, | and ~.
+"""Checks of a robot, to assert or to wait for; each describes the observed values. They combine with &, | and ~.
 
 assert reached(thymio, (0.5, 0.0), tolerance=0.02)
 thymio.until(reached(thymio, (0.5, 0.0)) & shows(thymio, "top", "green"), seconds=20)
@@ -28,21 +28,21 @@ COLORS: dict[str, tuple[int, int, int]] = {
         "white": (1, 1, 1),
     }.items()
 }
-"""Colours of the body by name: brightness of red, green, blue."""
+"""Colors of the body by name: brightness of red, green, blue."""
 
 
 class Check:
-    """A statement that is judged anew whenever it is asked: by `assert`, as a condition of `until`, or as text."""
+    """A condition that is evaluated at each use: by `assert`, as a condition of `until`, or as text."""
 
     def __init__(self, judge: Callable[[], tuple[bool, str]]) -> None:
-        """`judge` tells whether the statement is true now, and what was seen and expected."""
+        """`judge` returns whether the condition is true now, and a text with the observed and expected values."""
         self._judge = judge
 
     def __bool__(self) -> bool:
         return self._judge()[0]
 
     def __call__(self) -> bool:
-        """Whether it is true now."""
+        """Whether the condition is true now."""
         return self._judge()[0]
 
     def __repr__(self) -> str:
@@ -65,33 +65,33 @@ def reached(
     *,
     yaw_tolerance: float = math.radians(15),
 ) -> Check:
-    """The robot is now within a tolerance in m of (x, y), and with (x, y, yaw) turned that way within rad."""
+    """The robot is now within `tolerance` (m) of (x, y); with (x, y, yaw) also within `yaw_tolerance` (rad) of yaw."""
     x, y, *yaw = (pose.x_m, pose.y_m, pose.yaw_rad) if isinstance(pose, Pose) else pose
 
     def judge() -> tuple[bool, str]:
         here = thymio.pose
         distance = math.hypot(here.x_m - x, here.y_m - y)
-        said = f"{thymio.name} is at ({here.x_m:.3f}, {here.y_m:.3f}), {distance:.3f} m from ({x:g}, {y:g})"
+        text = f"{thymio.name} is at ({here.x_m:.3f}, {here.y_m:.3f}), {distance:.3f} m from ({x:g}, {y:g})"
         holds, wanted = distance <= tolerance, f"expected at most {tolerance:g} m"
         if yaw:
             turn = abs(wrap_angle(here.yaw_rad - yaw[0]))
-            said += f", and turned {math.degrees(turn):.0f}° away from {math.degrees(yaw[0]):.0f}°"
+            text += f", and turned {math.degrees(turn):.0f}° away from {math.degrees(yaw[0]):.0f}°"
             holds, wanted = holds and turn <= yaw_tolerance, f"{wanted} and {math.degrees(yaw_tolerance):.0f}°"
-        return holds, f"{said}: {wanted}"
+        return holds, f"{text}: {wanted}"
 
     return Check(judge)
 
 
 def no_contact(thymio: Thymio, *, since: float = 0.0) -> Check:
-    """The robot has touched nothing from a simulated time in s on."""
+    """The robot has had no contact since a simulated time in s."""
 
     def judge() -> tuple[bool, str]:
         touches = [touch for touch in thymio.touches if touch.at_s >= since]
         if not touches:
             return True, f"{thymio.name} touched nothing"
-        told = ", ".join(f"{touch.other} at {touch.at_s:.2f} s" for touch in touches[:3])
+        text = ", ".join(f"{touch.other} at {touch.at_s:.2f} s" for touch in touches[:3])
         more = f" and {len(touches) - 3} times more" if len(touches) > 3 else ""
-        return False, f"{thymio.name} touched {told}{more}: expected no contact"
+        return False, f"{thymio.name} touched {text}{more}: expected no contact"
 
     return Check(judge)
 
@@ -99,7 +99,7 @@ def no_contact(thymio: Thymio, *, since: float = 0.0) -> Check:
 def emitted(
     thymio: Thymio, event: str, args: Sequence[int] | None = None, *, times: int | None = None, since: float = 0.0
 ) -> Check:
-    """The robot's program emitted an event: with these arguments if given; so many times, or at least once."""
+    """The program emitted an event, with these arguments if given; exactly `times` times, or at least once."""
 
     def judge() -> tuple[bool, str]:
         events = [seen for seen in thymio.events if seen.at_s >= since]
@@ -107,19 +107,19 @@ def emitted(
         wanted = "at least once" if times is None else f"{times} times"
         what = event if args is None else f"{event} {list(args)}"
         last = ", ".join(f"{seen.name} {list(seen.args)} at {seen.at_s:.2f} s" for seen in events[-3:])
-        told = f"{thymio.name} emitted {what} {count} times; last of {len(events)} events: {last or 'none'}"
-        return (count > 0 if times is None else count == times), f"{told}: expected {wanted}"
+        text = f"{thymio.name} emitted {what} {count} times; last of {len(events)} events: {last or 'none'}"
+        return (count > 0 if times is None else count == times), f"{text}: expected {wanted}"
 
     return Check(judge)
 
 
 def shows(thymio: Thymio, group: str, levels: str | Sequence[int], *, tolerance: int = 4) -> Check:
-    """The lights of a group ("top", "circle", …) shine now as given, 0…32 each, or in a colour's name for the body.
+    """The lights of a group ("top", "circle", …) have these levels now, 0…32 each, or a color name for the body.
 
-    ValueError: no such colour or group, or another number of lights.
+    Raises ValueError for an unknown color or group, or a wrong number of levels.
     """
     if isinstance(levels, str) and levels not in COLORS:
-        raise ValueError(f"no colour '{levels}': expected one of {', '.join(COLORS)}")
+        raise ValueError(f"no color '{levels}': expected one of {', '.join(COLORS)}")
     wanted = COLORS[levels] if isinstance(levels, str) else tuple(levels)
     if group not in LED_GROUPS:
         raise ValueError(f"no lights '{group}': expected one of {', '.join(LED_GROUPS)}")
@@ -135,13 +135,13 @@ def shows(thymio: Thymio, group: str, levels: str | Sequence[int], *, tolerance:
 
 
 def slower_than(thymio: Thymio, speed_m_s: float, *, since: float = 0.0) -> Check:
-    """The robot has never been faster than this, forwards or backwards, from a simulated time in s on."""
+    """The robot has never exceeded this speed, forward or backward, since a simulated time in s."""
 
     def judge() -> tuple[bool, str]:
         fastest = max(thymio.record.since(since), key=lambda moment: abs(moment.speed_m_s), default=None)
         if fastest is None:
             return True, f"{thymio.name} has not been seen"
-        told = f"{thymio.name} drove {fastest.speed_m_s:.3f} m/s at {fastest.at_s:.2f} s"
-        return abs(fastest.speed_m_s) <= speed_m_s, f"{told}: expected at most {speed_m_s:g} m/s"
+        text = f"{thymio.name} drove {fastest.speed_m_s:.3f} m/s at {fastest.at_s:.2f} s"
+        return abs(fastest.speed_m_s) <= speed_m_s, f"{text}: expected at most {speed_m_s:g} m/s"
 
     return Check(judge)

@@ -1,4 +1,4 @@
-"""Robots and programs in lock-step in a simulated world, without ROS: far faster than real time, and repeatable."""
+"""Robots and programs in lock-step in a simulated world, without ROS: faster than real time and repeatable."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from thymio_sim_ros.runner import Runner
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.world import World
-from thymio_sim_ros.testing.failure_messages import told
+from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.report import robot_lines
 from thymio_sim_ros.testing.sources import playground_of, program_of
-from thymio_sim_ros.testing.thymio import Machine, Thymio
+from thymio_sim_ros.testing.thymio import RobotMachine, Thymio
 
 __all__ = ["Classroom"]
 
 
 @dataclass(frozen=True, slots=True)
-class _Machine:
+class _ClassroomMachine:
     device: AsebaDevice
     program: ThymioProgram
 
@@ -45,8 +45,8 @@ class Classroom:
     ) -> None:
         """A playground by name, path or text; one program for all robots, or one by robot's name.
 
-        Relative paths begin in `folder`. PlaygroundError, ProgramError: what a file says is wrong; ResourceError: it is
-        not there; KeyError: there is no such robot.
+        Relative paths start in `folder`. Raises PlaygroundError or ProgramError for invalid content, ResourceError for
+        a missing file, KeyError for an unknown robot.
         """
         self._folder = folder
         loaded = playground_of(playground, folder)
@@ -60,10 +60,10 @@ class Classroom:
             own = dict.fromkeys(names, program_of(programs, folder))
         self.runner = Runner(loaded, own, seed=seed, noise=noise)
         self.robots: Mapping[str, Thymio] = {name: Thymio(name, self) for name in names}
-        self._hear()
+        self._record_events()
 
     def __getitem__(self, robot: str) -> Thymio:
-        """A robot by its name; KeyError names those there are."""
+        """A robot by name. Raises KeyError with the known names."""
         _check_robot(robot, list(self.robots))
         return self.robots[robot]
 
@@ -76,7 +76,7 @@ class Classroom:
 
     @property
     def world(self) -> World:
-        """The world itself, for everything else."""
+        """The simulated world."""
         return self.runner.world
 
     @property
@@ -85,52 +85,52 @@ class Classroom:
         return self.runner.now_ns / SECOND_NS
 
     def run(self, seconds: float) -> None:
-        """Let so many simulated seconds pass."""
+        """Advance simulated time by this many seconds."""
         for _ in range(round(seconds * SECOND_NS / TICK_NS)):
             self.tick()
 
     def tick(self) -> None:
-        """Let 10 ms pass."""
+        """Advance simulated time by one tick of 10 ms."""
         self.runner.step()
-        self._hear()
+        self._record_events()
         for name, thymio in self.robots.items():
             robot = self.world.robots.get(name)
             if robot is not None:
-                thymio.record.look(robot, self.runner.now_ns)
+                thymio.record.add_tick(robot, self.runner.now_ns)
 
     def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
-        """Let time pass until the condition is true, at most so many simulated seconds; returns its value.
+        """Advance time until the condition is true, at most this many simulated seconds; return its value.
 
-        Fails the test otherwise, and tells how the robots are.
+        Otherwise the test fails with a report of the robots.
         """
         __tracebackhide__ = True
         end_ns = self.runner.now_ns + round(seconds * SECOND_NS)
         while not (value := condition()):
             if self.runner.now_ns >= end_ns:
-                head = f"not within {seconds:g} simulated s: {what or told(condition)}"
+                head = f"not within {seconds:g} simulated s: {what or describe_condition(condition)}"
                 pytest.fail("\n".join([head, *robot_lines(self)]))
             self.tick()
         return value
 
     def reset(self) -> None:
-        """World, noise and programs as at the start; the past is forgotten."""
+        """Reset world, noise, programs and records to the start."""
         self.runner.reset()
         for thymio in self:
             thymio.record.clear()
-        self._hear()
+        self._record_events()
 
-    def machine(self, robot: str) -> Machine:
+    def machine(self, robot: str) -> RobotMachine:
         """The machine of a robot."""
         host = self.runner.hosts[robot]
-        return _Machine(host.device, host.program)
+        return _ClassroomMachine(host.device, host.program)
 
     def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
-        """Give a robot a program, which begins at once."""
+        """Load a program, which starts at once."""
         self.runner.load(robot, program_of(program, self._folder))
-        self._hear()
+        self._record_events()
 
     def emit(self, event: str, args: Sequence[int]) -> None:
-        """Let every robot whose program declares the event hear it in the next tick; LookupError when there is none."""
+        """Send an event to all robots that declare it, in the next tick. Raises LookupError if there is none."""
         listeners = [device for device in self.runner.devices.values() if device.declares(event)]
         if not listeners:
             known = sorted({name for host in self.runner.hosts.values() for name, _ in host.program.events})
@@ -138,9 +138,9 @@ class Classroom:
         for device in listeners:
             device.receive_event(event, args)
 
-    def _hear(self) -> None:
+    def _record_events(self) -> None:
         for name, event in self.runner.emitted:
-            self.robots[name].record.hear(event.name, event.args, self.runner.now_ns)
+            self.robots[name].record.add_event(event.name, event.args, self.runner.now_ns)
 
 
 def _check_robot(name: str, names: Sequence[str]) -> None:

@@ -1,4 +1,4 @@
-"""How a test's condition, and numbers, are told to a person who reads that it did not come true."""
+"""Texts of conditions and counts for failure messages."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import textwrap
 from collections.abc import Callable
 from typing import Any
 
-__all__ = ["counted", "told"]
+__all__ = ["describe_condition", "pluralized"]
 
 _LONGEST = 160
 
 
-def told(condition: Callable[[], Any]) -> str:
-    """A check in its own words, a lambda as it is written, any other function by its name."""
+def describe_condition(condition: Callable[[], Any]) -> str:
+    """Describe a condition: a check by its text, a lambda by its source, another function by its name."""
     code = getattr(condition, "__code__", None)
     if code is None:
         return repr(condition)
@@ -24,8 +24,8 @@ def told(condition: Callable[[], Any]) -> str:
     return textwrap.shorten(_lambda(condition, line) or f"the lambda of line {line}", _LONGEST)
 
 
-def counted(number: int, noun: str) -> str:
-    """So many of them, in words."""
+def pluralized(number: int, noun: str) -> str:
+    """A count with its noun in singular or plural."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 

@@ -13,24 +13,24 @@ from thymio_sim_ros.sim.shapes.track import Track
 from thymio_sim_ros.testing.checks import Check
 from thymio_sim_ros.testing.thymio import Thymio
 
-__all__ = ["Line", "followed_line"]
+__all__ = ["TrackLine", "followed_line"]
 
-EYES: Point = (robot_constants.GROUND_SENSORS[0][0], 0.0)
+SENSOR_CENTER: Point = (robot_constants.GROUND_SENSORS[0][0], 0.0)
 """The middle between the ground sensors, in the robot's frame."""
 
-_BESIDE_M = robot_constants.GROUND_SENSORS[0][1]
+_SENSOR_OFFSET_M = robot_constants.GROUND_SENSORS[0][1]
 """How far each of them is from there."""
 
 EVERY = 5
 """Ticks from one look at the robot to the next: at full speed 1 cm."""
 
-_AS_NEAR_M = 0.01
-_LEAP_M = 0.1
-"""Where pieces of a track cross, those that are as near as this are told apart by what was driven before: a robot does
+_TIE_M = 0.01
+_MAX_JUMP_M = 0.1
+"""Where pieces of a track cross, those that are as near as this are text apart by what was driven before: a robot does
 not leap so far."""
 
 
-class Line:
+class TrackLine:
     """The middle of a track, as pieces from point to point."""
 
     def __init__(self, points: Sequence[Point], *, closed: bool) -> None:
@@ -42,7 +42,7 @@ class Line:
         self.length_m = math.fsum(math.dist(a, b) for a, b in pieces)
 
     @classmethod
-    def of(cls, playground: Playground, name: str = "") -> tuple[Line, Track]:
+    def of(cls, playground: Playground, name: str = "") -> tuple[TrackLine, Track]:
         """The only track of a playground, or the one of a name; ValueError with the tracks there are."""
         tracks = {shape.name: shape.shape for shape in playground.shapes if isinstance(shape.shape, Track)}
         if name not in tracks and (name or len(tracks) != 1):
@@ -59,12 +59,12 @@ class Line:
         """Distance in m from a point, and how far along the line that is, near where it was last."""
         found = [(math.dist(point, on), along) for on, along in self._nearest(point)]
         nearest = min(found)
-        if last_m is None or abs(self.way(last_m, nearest[1])) < _LEAP_M:
+        if last_m is None or abs(self.offset(last_m, nearest[1])) < _MAX_JUMP_M:
             return nearest
-        near = [along for distance, along in found if distance <= nearest[0] + _AS_NEAR_M]
-        return nearest[0], min(near, key=lambda along: abs(self.way(last_m, along)))
+        near = [along for distance, along in found if distance <= nearest[0] + _TIE_M]
+        return nearest[0], min(near, key=lambda along: abs(self.offset(last_m, along)))
 
-    def way(self, from_m: float, to_m: float) -> float:
+    def offset(self, from_m: float, to_m: float) -> float:
         """The way from a place on the line to another, the shorter one where it is closed."""
         return math.remainder(to_m - from_m, self.length_m) if self.closed else to_m - from_m
 
@@ -80,10 +80,10 @@ class Line:
         return found
 
 
-class _Follower:
+class _Progress:
     """A robot's way along a line, looked at once for each moment of its past."""
 
-    def __init__(self, thymio: Thymio, line: Line, since: float) -> None:
+    def __init__(self, thymio: Thymio, line: TrackLine, since: float) -> None:
         self._thymio, self._line, self._since = thymio, line, since
         self._forget()
 
@@ -103,11 +103,11 @@ class _Follower:
             moment = path[index]
             if moment.at_s < self._since:
                 continue
-            distance, along = self._line.locate(moment.pose.place(EYES), self._last_m)
+            distance, along = self._line.locate(moment.pose.place(SENSOR_CENTER), self._last_m)
             if distance > self.farthest_m:
                 self.farthest_m, self.farthest_s = distance, moment.at_s
             if self._last_m is not None:
-                self.driven_m += self._line.way(self._last_m, along)
+                self.driven_m += self._line.offset(self._last_m, along)
             self._last_m = along
 
 
@@ -119,15 +119,15 @@ def followed_line(
     `within`: how far in m the middle between the ground sensors may be from the middle of the track, where that is not
     to follow from its width. `track`: its name, where the playground has several. ValueError: there is no such track.
     """
-    line, shape = Line.of(thymio.stage.world.playground, track)
-    limit = shape.width_m / 2 + _BESIDE_M if within is None else within
-    follower = _Follower(thymio, line, since)
+    line, shape = TrackLine.of(thymio.stage.world.playground, track)
+    limit = shape.width_m / 2 + _SENSOR_OFFSET_M if within is None else within
+    progress = _Progress(thymio, line, since)
 
     def judge() -> tuple[bool, str]:
-        follower.catch_up()
-        driven = abs(follower.driven_m) / line.length_m
-        told = f"{thymio.name} drove {driven:.2f} of {laps:g} laps, at most {follower.farthest_m * 1000:.0f} mm"
-        told += f" from the line (at {follower.farthest_s:.2f} s): expected at most {limit * 1000:.0f} mm"
-        return driven >= laps and follower.farthest_m <= limit, told
+        progress.catch_up()
+        driven = abs(progress.driven_m) / line.length_m
+        text = f"{thymio.name} drove {driven:.2f} of {laps:g} laps, at most {progress.farthest_m * 1000:.0f} mm"
+        text += f" from the line (at {progress.farthest_s:.2f} s): expected at most {limit * 1000:.0f} mm"
+        return driven >= laps and progress.farthest_m <= limit, text
 
     return Check(judge)

@@ -1,4 +1,4 @@
-"""What one robot did while the test let time pass: where it was after each tick, what it touched, what it emitted."""
+"""The record of one robot during a test: poses after each tick, contacts and emitted events."""
 
 from __future__ import annotations
 
@@ -41,18 +41,18 @@ class Event:
 
 
 class Record:
-    """The past of one robot, oldest first; time that goes back begins it anew."""
+    """The record of one robot, oldest first; cleared when time jumps back."""
 
     def __init__(self) -> None:
         self.moments: list[Moment] = []
         self.touches: list[Touch] = []
         self.events: list[Event] = []
         self.cleared = 0
-        """How many times the past was forgotten."""
+        """Number of times the record was cleared."""
         self._touching: frozenset[str] = frozenset()
 
-    def look(self, robot: Robot, now_ns: int) -> None:
-        """Note how the robot is now, after a tick."""
+    def add_tick(self, robot: Robot, now_ns: int) -> None:
+        """Record the state of the robot after a tick."""
         at_s, twist = self._at_s(now_ns), robot.twist
         self.moments.append(Moment(at_s, robot.pose, twist.linear_m_s, twist.angular_rad_s))
         if robot.body.touching or self._touching:
@@ -60,16 +60,16 @@ class Record:
             self.touches += [Touch(at_s, other) for other in sorted(touching - self._touching)]
             self._touching = touching
 
-    def hear(self, name: str, args: Sequence[int], now_ns: int) -> None:
-        """Note an event that the program emitted."""
+    def add_event(self, name: str, args: Sequence[int], now_ns: int) -> None:
+        """Record an event emitted by the program."""
         self.events.append(Event(self._at_s(now_ns), name, tuple(args)))
 
     def since(self, seconds: float) -> list[Moment]:
-        """The moments from a simulated time on."""
+        """The moments since a simulated time in s."""
         return [moment for moment in self.moments if moment.at_s >= seconds]
 
     def clear(self) -> None:
-        """Forget the past."""
+        """Clear the record."""
         self.moments.clear()
         self.touches.clear()
         self.events.clear()

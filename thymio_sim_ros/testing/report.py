@@ -1,4 +1,4 @@
-"""How robots and their programs are, in lines that a person reads after a failure."""
+"""State of robots and programs as lines of failure messages."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from thymio_sim_ros.device.programs.status import FAULT
-from thymio_sim_ros.testing.failure_messages import counted
+from thymio_sim_ros.testing.failure_messages import pluralized
 from thymio_sim_ros.testing.thymio import Thymio
 
 __all__ = ["robot_lines"]
@@ -45,5 +45,5 @@ def _program(thymio: Thymio) -> list[str]:
     last = thymio.events[-_LAST_EVENTS:]
     if last:
         said = ", ".join(f"{event.name} {list(event.args)} at {event.at_s:.2f} s" for event in last)
-        lines.append(f"  emitted {counted(len(thymio.events), 'event')}, last {said}")
+        lines.append(f"  emitted {pluralized(len(thymio.events), 'event')}, last {said}")
     return lines

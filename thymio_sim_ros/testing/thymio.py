@@ -1,4 +1,4 @@
-"""One robot in a test's hands: what it does can be seen, what people do to it can be done, its program can be asked."""
+"""A robot in a test: its observed state, the actions of an operator, and its program."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ from thymio_sim_ros.sim.model.primitives import Stroke
 from thymio_sim_ros.sim.world import World
 from thymio_sim_ros.testing.record import Event, Moment, Record, Touch
 
-__all__ = ["Machine", "Stage", "Thymio"]
+__all__ = ["RobotMachine", "Stage", "Thymio"]
 
 
-class Machine(Protocol):
+class RobotMachine(Protocol):
     """A robot's Aseba machine and the program that it runs."""
 
     @property
@@ -46,7 +46,7 @@ class Machine(Protocol):
 
 
 class Stage(Protocol):
-    """Where robots are: a classroom without ROS, or a simulator node."""
+    """The environment of robots: a classroom without ROS, or a simulator node."""
 
     @property
     def world(self) -> World:
@@ -58,14 +58,14 @@ class Stage(Protocol):
     def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
         """Let simulated time pass until a condition is true."""
 
-    def machine(self, robot: str) -> Machine | None:
+    def machine(self, robot: str) -> RobotMachine | None:
         """The machine of a robot, or None where it has none."""
 
     def load(self, robot: str, program: str | Path | ThymioProgram) -> None:
         """Give a robot a program."""
 
     def emit(self, event: str, args: Sequence[int]) -> None:
-        """Let every robot that knows an event hear it."""
+        """Send an event to all robots that declare it."""
 
 
 class Thymio:
@@ -94,12 +94,12 @@ class Thymio:
 
     @property
     def pose(self) -> Pose:
-        """Where it really is."""
+        """Its true pose."""
         return self.stage.world.robots[self.name].pose
 
     @property
     def speed(self) -> float:
-        """How fast it really moves along its heading, m/s."""
+        """Its true speed along its heading, m/s."""
         return self.stage.world.robots[self.name].twist.linear_m_s
 
     @property
@@ -176,15 +176,15 @@ class Thymio:
     # --- what people do to it ---
 
     def press(self, button: str) -> None:
-        """Put a finger on "forward", "backward", "left", "right" or "center" and leave it there."""
+        """Press and hold a button: "forward", "backward", "left", "right" or "center"."""
         self._press(button, pressed=True)
 
     def release(self, button: str) -> None:
-        """Take the finger off."""
+        """Release a button."""
         self._press(button, pressed=False)
 
     def touch(self, *buttons: str, seconds: float = 0.1) -> None:
-        """Press buttons together, let time pass, take the fingers off, and let it feel that."""
+        """Press buttons together, advance time, release them, and advance time again."""
         for pressed in (True, False):
             for button in buttons:
                 self._press(button, pressed=pressed)
@@ -199,7 +199,7 @@ class Thymio:
         self.post(Tap())
 
     def tilt(self, roll_rad: float = 0.0, pitch_rad: float = 0.0) -> None:
-        """Hold it at an angle until told otherwise; roll lifts its left side, pitch lowers its front."""
+        """Tilt it until the next `tilt`; positive roll lifts the left side, positive pitch lowers the front."""
         self.post(Tilt(roll_rad, pitch_rad))
 
     def key(self, command: int, address: int = 0) -> None:
@@ -207,7 +207,7 @@ class Thymio:
         self.post(RemoteKey(address, command))
 
     def place(self, x_m: float, y_m: float, yaw_rad: float = 0.0) -> None:
-        """Put it somewhere."""
+        """Move it to a pose."""
         self.post(MoveRobot(x_m, y_m, yaw_rad))
 
     def draw(self, color: str = "#000000", width_m: float = 0.003) -> None:
@@ -215,11 +215,11 @@ class Thymio:
         self.post(SetPen(down=True, color=as_color(color), width_m=width_m, erase=False))
 
     def lift_pen(self) -> None:
-        """It draws no more."""
+        """Lift the pen."""
         self.post(SetPen(down=False))
 
     def post(self, command: Command) -> None:
-        """Anything else of `thymio_sim_ros.sim.commands`; it takes effect in the next tick."""
+        """Post a command of `thymio_sim_ros.sim.commands`; it takes effect in the next tick."""
         self.stage.world.post(self.name, command)
 
     def level(self, group: str) -> tuple[int, ...]:
@@ -233,7 +233,7 @@ class Thymio:
             raise ValueError(f"no button '{button}': expected one of {', '.join(BUTTONS)}")
         self.post(PressButton(button, pressed))
 
-    def _machine(self) -> Machine:
+    def _machine(self) -> RobotMachine:
         machine = self.stage.machine(self.name)
         if machine is None:
             raise LookupError(f"no Aseba machine runs for {self.name}: start one with the fixture `runtime`")

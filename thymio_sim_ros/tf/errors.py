@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from thymio_sim_ros.errors import ThymioSimError
+
 __all__ = [
     "ConnectivityException",
     "ExtrapolationException",
@@ -13,7 +15,7 @@ __all__ = [
 ]
 
 
-class TransformException(Exception):  # noqa: N818  # as tf2 has it
+class TransformException(ThymioSimError):  # noqa: N818  # as tf2 has it
     """Any of them."""
 
 
@@ -37,5 +39,5 @@ class TimeoutException(TransformException):
     """Nothing came in time."""
 
 
-class TypeException(Exception):  # noqa: N818  # as tf2 has it
+class TypeException(ThymioSimError):  # noqa: N818  # as tf2 has it
     """A message that cannot be transformed."""

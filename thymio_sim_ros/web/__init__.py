@@ -1,9 +1,9 @@
-"""The HTTP server of the page: static files with limits on what clients may take; no ROS in here.
+"""The HTTP server of the page: static files with connection limits, independent of ROS.
 
 content       files, playgrounds and configuration as documents: bytes, type, entity tag
-connections   which connections are open, and which one is closed next
+connections   open connections and their limits
 server        HTTP itself, on aiohttp (imported only in the server's thread: that takes a third of a second)
-thread        the event loop's thread
+thread        the thread of the event loop
 """
 
 from __future__ import annotations

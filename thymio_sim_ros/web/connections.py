@@ -1,9 +1,10 @@
-"""The open connections of a server: how many there may be, how long each may wait, which one goes when all are taken.
+"""The open connections of a server: their maximum number, their time limits, and which one is evicted at the limit.
 
-Bookkeeping only: no socket and no clock of its own. A connection that waits for nothing but its client is closed after
-the time of its phase. When all places are taken, a newcomer gets that of one that has waited for a while, of the
-address that has the most, the oldest first: so no address can keep the others out, and of one address the connections
-that ask for something win. Until there is such a place, newcomers wait in the kernel's queue.
+Bookkeeping only, without sockets and clock. A connection that waits for its client is closed when the time limit of its
+phase is over. When all slots are in use, a new connection gets the slot of one that has waited for some time: first of
+the address with the most connections, then by phase, the oldest first. No single address can therefore block others,
+and among connections of one address those with requests win. Until a slot can be freed, new connections wait in the
+queue of the kernel.
 """
 
 from __future__ import annotations
@@ -13,14 +14,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
 
-__all__ = ["KEPT_S", "TIME_LIMIT_S", "Connections", "Phase", "Place"]
+__all__ = ["MIN_WAIT_S", "TIME_LIMIT_S", "ConnectionSlot", "Connections", "Phase"]
 
 
 class Phase(IntEnum):
-    """What a connection does; those that may lose their place to a newcomer first, in the order in which they do."""
+    """What a connection does; those that may lose their slot to a newcomer first, in the order in which they do."""
 
     SILENT = 0
-    """It has sent nothing yet."""
+    """Its client has sent nothing yet."""
     IDLE = 1
     """Its last request has been answered."""
     READING = 2
@@ -38,83 +39,83 @@ TIME_LIMIT_S = {
     Phase.STALLED: 20.0,
     Phase.ANSWERING: 120.0,
 }
-"""How long a connection may stay in a phase."""
+"""Time limit of each phase."""
 
-KEPT_S = {Phase.SILENT: 1.5, Phase.IDLE: 0.2, Phase.READING: 1.5, Phase.STALLED: 2.0}
-"""How long a connection has been in its phase, at least, when a newcomer gets its place."""
+MIN_WAIT_S = {Phase.SILENT: 1.5, Phase.IDLE: 0.2, Phase.READING: 1.5, Phase.STALLED: 2.0}
+"""Time after which a connection in this phase may be evicted."""
 
 
 @dataclass(slots=True, eq=False)
-class Place:
-    """A connection's place. The connection itself sets the two functions: `close` ends it at once, `has_news` says
-    whether its client has done something that the server has not got round to."""
+class ConnectionSlot:
+    """The slot of a connection, which sets both functions: `close` closes it at once; `has_pending_io` returns whether
+    its socket has input or room that the server has not processed yet."""
 
     address: str
     since_s: float
     phase: Phase = Phase.SILENT
     close: Callable[[], None] = lambda: None
-    has_news: Callable[[], bool] = lambda: False
+    has_pending_io: Callable[[], bool] = lambda: False
 
 
 class Connections:
-    """At most `most` places. Belongs to one thread."""
+    """At most `max_connections` slots. Not thread-safe."""
 
-    def __init__(self, most: int, now_s: Callable[[], float]) -> None:
-        self._most = most
+    def __init__(self, max_connections: int, now_s: Callable[[], float]) -> None:
+        self._max_connections = max_connections
         self._now_s = now_s
-        self._places: dict[Place, None] = {}
+        self._slots: dict[ConnectionSlot, None] = {}
         self._by_address: Counter[str] = Counter()
 
     def __len__(self) -> int:
-        return len(self._places)
+        return len(self._slots)
 
     @property
     def is_full(self) -> bool:
-        """Whether a newcomer needs the place of another."""
-        return len(self._places) >= self._most
+        """Whether all slots are in use, so that a new connection needs the slot of another."""
+        return len(self._slots) >= self._max_connections
 
-    def admit(self, address: str) -> Place:
-        """A place for a new connection; there must be one."""
+    def add(self, address: str) -> ConnectionSlot:
+        """Add a connection; only allowed while `is_full` is false."""
         assert not self.is_full
-        place = Place(address, self._now_s())
-        self._places[place] = None
+        slot = ConnectionSlot(address, self._now_s())
+        self._slots[slot] = None
         self._by_address[address] += 1
-        return place
+        return slot
 
-    def leave(self, place: Place) -> None:
-        """The connection is gone; twice does no harm."""
-        if place in self._places:
-            del self._places[place]
-            self._by_address[place.address] -= 1
-            if not self._by_address[place.address]:
-                del self._by_address[place.address]
+    def remove(self, slot: ConnectionSlot) -> None:
+        """Remove a connection; a second call has no effect."""
+        if slot in self._slots:
+            del self._slots[slot]
+            self._by_address[slot.address] -= 1
+            if not self._by_address[slot.address]:
+                del self._by_address[slot.address]
 
-    def enter(self, place: Place, phase: Phase) -> None:
-        """The connection is in another phase now; the time of a phase that goes on goes on."""
-        if place.phase is not phase:
-            place.phase = phase
-            place.since_s = self._now_s()
+    def set_phase(self, slot: ConnectionSlot, phase: Phase) -> None:
+        """Set the phase of a connection; its time restarts only if the phase changes."""
+        if slot.phase is not phase:
+            slot.phase = phase
+            slot.since_s = self._now_s()
 
     def close_overdue(self) -> int:
-        """End what has waited for too long; how many these were."""
+        """Close connections over their time limit; return their number."""
         now_s = self._now_s()
-        overdue = [place for place in self._places if now_s - place.since_s > TIME_LIMIT_S[place.phase]]
-        for place in overdue:
-            self.leave(place)
-            place.close()
+        overdue = [slot for slot in self._slots if now_s - slot.since_s > TIME_LIMIT_S[slot.phase]]
+        for slot in overdue:
+            self.remove(slot)
+            slot.close()
         return len(overdue)
 
-    def longest_waiting(self) -> Place | None:
-        """The place that a newcomer may have, if its connection goes on waiting; None: there is none at the moment."""
+    def eviction_candidate(self) -> ConnectionSlot | None:
+        """The connection to close for a new one if it stays idle, or None if there is none at the moment."""
         now_s = self._now_s()
         waiting = [
-            place for place in self._places if place.phase in KEPT_S and now_s - place.since_s >= KEPT_S[place.phase]
+            slot for slot in self._slots if slot.phase in MIN_WAIT_S and now_s - slot.since_s >= MIN_WAIT_S[slot.phase]
         ]
-        waiting.sort(key=lambda place: (-self._by_address[place.address], place.phase, place.since_s))
-        return next((place for place in waiting if not place.has_news()), None)
+        waiting.sort(key=lambda slot: (-self._by_address[slot.address], slot.phase, slot.since_s))
+        return next((slot for slot in waiting if not slot.has_pending_io()), None)
 
-    def end(self, place: Place, since_s: float) -> None:
-        """End a connection that has done nothing since then."""
-        if place in self._places and place.since_s == since_s and not place.has_news():
-            self.leave(place)
-            place.close()
+    def evict(self, slot: ConnectionSlot, since_s: float) -> None:
+        """Close a connection if it has done nothing since then."""
+        if slot in self._slots and slot.since_s == since_s and not slot.has_pending_io():
+            self.remove(slot)
+            slot.close()

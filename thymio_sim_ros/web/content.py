@@ -1,6 +1,6 @@
-"""What the page's server has to give: a request's path → a document, or nothing.
+"""The documents of the page's server: a request path → a document, or None.
 
-Each document is read and compressed once for each version of its file. Several threads may ask.
+Each document is read and compressed once for each version of its file. Thread-safe.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import urllib.parse
 from dataclasses import dataclass
 from pathlib import Path
 
-from thymio_sim_ros.playground_index import Gallery
+from thymio_sim_ros.playground_index import PlaygroundIndex
 
 __all__ = ["TYPES", "Content", "Document"]
 
@@ -55,13 +55,13 @@ class Content:
         """`folder` is None where the page has not been built."""
         self._folder = None if folder is None else folder.resolve()
         self._config = _document(config, ".json")
-        self._gallery = Gallery()
+        self._index = PlaygroundIndex()
         self._files: dict[Path, tuple[tuple[int, int], Document]] = {}
         self._playgrounds: dict[str, tuple[bytes, Document]] = {}
 
     @property
     def is_built(self) -> bool:
-        """Whether there is a page."""
+        """Whether the page has been built."""
         return self._folder is not None
 
     def find(self, path: str) -> Document | None:
@@ -79,7 +79,7 @@ class Content:
         return self._file(names or ("index.html",))
 
     def _playground(self, name: str) -> Document | None:
-        text = self._gallery.text(name)
+        text = self._index.text(name)
         if text is None:
             return None
         known = self._playgrounds.get(name)

@@ -20,7 +20,7 @@ from aiohttp import web
 
 from thymio_sim_ros.resources import PAGE_BUILD_HINT
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
-from thymio_sim_ros.web.connections import Connections, Phase, Place
+from thymio_sim_ros.web.connections import Connections, ConnectionSlot, Phase
 from thymio_sim_ros.web.content import TYPES, Content, Document
 from thymio_sim_ros.web.settings import Settings
 
@@ -34,7 +34,7 @@ BACKLOG = 1024
 SEND_BUFFER = 131_072
 """Bytes that the kernel keeps for a client that does not read; by default these are megabytes."""
 MAX_AHEAD = 65_536
-"""Bytes that a client may send while its request is answered: more requests, or a body nobody reads."""
+"""Bytes that a client may send while its request is answered: further requests, or an unread body."""
 _CLOSE_S = 0.3
 _SWEEP_S = 0.5
 _RETRY_S = 0.02
@@ -58,14 +58,14 @@ _COMMON = {
 
 
 class _Connection(web.RequestHandler):
-    """A connection that knows its place among the others; aiohttp has no limit for a first or a slow request."""
+    """A connection with a slot; aiohttp itself has no limits for missing or slow requests."""
 
     def __init__(
-        self, server: web.Server, connections: Connections, place: Place, report: Report, **options: Any
+        self, server: web.Server, connections: Connections, slot: ConnectionSlot, report: Report, **options: Any
     ) -> None:
         super().__init__(server, **options)
         self._connections = connections
-        self._place = place
+        self._slot = slot
         self._report = report
         self._ahead = 0
 
@@ -73,47 +73,47 @@ class _Connection(web.RequestHandler):
         """The connection is there."""
         plain = cast(asyncio.Transport, transport)
         descriptor = plain.get_extra_info("socket").fileno()
-        self._place.close = plain.abort
-        self._place.has_news = lambda: _is_ready(
-            descriptor, select.POLLOUT if self._place.phase is Phase.STALLED else select.POLLIN
+        self._slot.close = plain.abort
+        self._slot.has_pending_io = lambda: _is_ready(
+            descriptor, select.POLLOUT if self._slot.phase is Phase.STALLED else select.POLLIN
         )
         super().connection_made(transport)
 
     def connection_lost(self, exc: BaseException | None) -> None:
-        """Give the place back."""
-        self._connections.leave(self._place)
+        """Free the slot."""
+        self._connections.remove(self._slot)
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
         """Pass bytes on, unless there are too many before the answer."""
-        place = self._place
-        if place.phase in (Phase.SILENT, Phase.IDLE):
-            self._connections.enter(place, Phase.READING)
-        elif place.phase is not Phase.READING:
+        slot = self._slot
+        if slot.phase in (Phase.SILENT, Phase.IDLE):
+            self._connections.set_phase(slot, Phase.READING)
+        elif slot.phase is not Phase.READING:
             self._ahead += len(data)
             if self._ahead > MAX_AHEAD:
-                place.close()
+                slot.close()
                 return
         super().data_received(data)
 
     def eof_received(self) -> None:
         """The client sends nothing more: end what waits for it."""
-        if self._place.phase < Phase.STALLED:
+        if self._slot.phase < Phase.STALLED:
             self.force_close()
 
     def pause_writing(self) -> None:
         """The client reads more slowly than it is answered."""
         super().pause_writing()
-        self._connections.enter(self._place, Phase.STALLED)
+        self._connections.set_phase(self._slot, Phase.STALLED)
 
     def resume_writing(self) -> None:
-        """The client has read."""
+        """The client reads again."""
         super().resume_writing()
-        self._connections.enter(self._place, Phase.ANSWERING)
+        self._connections.set_phase(self._slot, Phase.ANSWERING)
 
-    def begin_answer(self) -> None:
+    def start_answer(self) -> None:
         """A request is complete."""
-        self._connections.enter(self._place, Phase.ANSWERING)
+        self._connections.set_phase(self._slot, Phase.ANSWERING)
 
     async def finish_response(self, *arguments: Any, **options: Any) -> Any:
         """Send an answer; afterwards the client may ask again."""
@@ -121,7 +121,7 @@ class _Connection(web.RequestHandler):
             return await super().finish_response(*arguments, **options)
         finally:
             self._ahead = 0
-            self._connections.enter(self._place, Phase.IDLE)
+            self._connections.set_phase(self._slot, Phase.IDLE)
 
     def handle_error(
         self,
@@ -130,7 +130,7 @@ class _Connection(web.RequestHandler):
         exc: BaseException | None = None,
         message: str | None = None,
     ) -> web.StreamResponse:
-        """The answer to what is no request, or to a fault of ours; it repeats nothing of what came."""
+        """The response to an invalid request or an internal error; it quotes nothing of the request."""
         if status >= 500:
             self._report("fault", f"internal error (please report): {exc!r}")
         response = _text(status, "This is not a request that can be answered.")
@@ -149,7 +149,7 @@ class _Page:
 
     async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
         """The response to a request."""
-        cast(_Connection, request.protocol).begin_answer()
+        cast(_Connection, request.protocol).start_answer()
         host = request.headers.get("Host")
         if host is not None and not self._settings.is_allowed_host(_host_name(host)):
             self._report("host", "refused a page under another name of this computer; see allowed_hosts of web_ui")
@@ -197,8 +197,8 @@ class _Page:
         return response
 
 
-class _Door:
-    """Lets connections in, as long as there are places."""
+class _Acceptor:
+    """Accepts connections while there are slots."""
 
     def __init__(self, server: web.Server, connections: Connections, report: Report, log: logging.Logger) -> None:
         self._server = server
@@ -206,7 +206,7 @@ class _Door:
         self._report = report
         self._log = log
 
-    async def keep_open(self, listener: socket) -> None:
+    async def accept_forever(self, listener: socket) -> None:
         """Accept the connections of a listening socket, until it is cancelled."""
         loop = asyncio.get_running_loop()
         listener.setblocking(False)
@@ -215,36 +215,36 @@ class _Door:
         while True:
             try:
                 accepted, peer = await loop.sock_accept(listener)
-            except OSError as error:  # no more files; or a client that has left already
+            except OSError as error:  # out of file descriptors, or the client has disconnected
                 self._report("accept", f"connections cannot be accepted: {error.strerror}")
                 await asyncio.sleep(_SWEEP_S)
                 continue
             while self._connections.is_full:
                 self._report("full", "there are as many connections as there may be; more have to wait")
                 await self._make_room()
-            place = self._connections.admit(str(peer[0]))
+            slot = self._connections.add(str(peer[0]))
             try:
-                await loop.connect_accepted_socket(partial(self._connection, place), accepted)
-            except OSError:  # it has left
-                self._connections.leave(place)
+                await loop.connect_accepted_socket(partial(self._connection, slot), accepted)
+            except OSError:  # the client has disconnected
+                self._connections.remove(slot)
                 accepted.close()
 
     async def _make_room(self) -> None:
-        """End the connection that waits for the longest time, unless the event loop has only not got round to it."""
-        place = self._connections.longest_waiting()
-        if place is None:
+        """Close the best candidate for eviction, unless it becomes active in the next iterations of the event loop."""
+        slot = self._connections.eviction_candidate()
+        if slot is None:
             await asyncio.sleep(_RETRY_S)
             return
-        since_s = place.since_s
+        since_s = slot.since_s
         for _ in range(_TURNS):
             await asyncio.sleep(0)
-        self._connections.end(place, since_s)
+        self._connections.evict(slot, since_s)
 
-    def _connection(self, place: Place) -> _Connection:
+    def _connection(self, slot: ConnectionSlot) -> _Connection:
         return _Connection(
             self._server,
             self._connections,
-            place,
+            slot,
             self._report,
             loop=asyncio.get_running_loop(),
             keepalive_timeout=_NEVER_S,  # `connections` closes what is idle
@@ -257,25 +257,25 @@ class _Door:
 async def serve(
     listeners: Iterable[socket], content: Content, settings: Settings, report: Report, stop: asyncio.Event
 ) -> None:
-    """Serve on listening sockets, which become the server's own, until `stop` is set."""
+    """Serve on listening sockets, owned by the server from now on, until `stop` is set."""
     loop = asyncio.get_running_loop()
     loop.set_exception_handler(lambda _loop, context: report(_kind(context), _sentence(context)))
     connections = Connections(settings.max_connections, loop.time)
     log = logging.getLogger(__name__)
-    log.setLevel(logging.CRITICAL)  # what strangers send is no news; faults of ours come by `report`
+    log.setLevel(logging.CRITICAL)  # invalid requests are not logged; internal errors go to `report`
     with ThreadPoolExecutor(2, "page") as pool:
         page = _Page(content, settings, report, pool)
         server = web.Server(page.answer)
 
-        door = _Door(server, connections, report, log)
-        doors = [loop.create_task(door.keep_open(listener)) for listener in listeners]
+        acceptor = _Acceptor(server, connections, report, log)
+        tasks = [loop.create_task(acceptor.accept_forever(listener)) for listener in listeners]
         while not stop.is_set():
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(stop.wait(), _SWEEP_S)
             connections.close_overdue()
-        for one in doors:
+        for one in tasks:
             one.cancel()
-        await asyncio.gather(*doors, return_exceptions=True)
+        await asyncio.gather(*tasks, return_exceptions=True)
         await server.shutdown(_CLOSE_S)
 
 

@@ -3,7 +3,7 @@
 import { programOf } from "../state/index.js";
 import { h, lock, setAttribute } from "./dom.js";
 
-/** The colors that the robot shows in each behavior (docs/behaviours.md). */
+/** The colors that the robot shows in each behavior (docs/behaviors.md). */
 export const COLORS = /** @type {Record<string, string>} */ ({
   friendly: "#12c22f",
   explorer: "#f2d600",

@@ -32,12 +32,12 @@ CROWD = """
 import sys
 from dataclasses import replace
 from aseba_vm.jit import wasm_runtime
-from thymio_sim_ros.loading import load_playground, read_shares
+from thymio_sim_ros.loading import load_playground, read_assignments
 from thymio_sim_ros.runner import Runner
 playground = load_playground("borderless")[1]
 start = playground.robots[0]
 robots = tuple(replace(start, name=f"r{n}", x_m=0.3 * (n % 5) - 0.6, y_m=0.3 * (n // 5) - 0.6) for n in range(20))
-shares = read_shares("line_follower", [robot.name for robot in robots], "thymio")
+shares = read_assignments("line_follower", [robot.name for robot in robots], "thymio")
 runner = Runner(replace(playground, robots=robots), {name: share.program for name, share in shares.items()})
 for _ in runner.steps(1.0):
     pass

@@ -9,7 +9,7 @@ import pytest
 
 from tests.device.handheld import HandheldRobot
 from thymio_sim_ros.device.device import AsebaDevice, DeviceOptions
-from thymio_sim_ros.device.firmware.behavior_host import ENTRIES, MENU, BehaviourHost, built_in, is_internal
+from thymio_sim_ros.device.firmware.behavior_host import ENTRIES, MENU, BehaviorHost, built_in, is_internal
 from thymio_sim_ros.device.programs.program import ProgramError, load_program
 
 OWN = load_program("motor.left.target = 100\nonevent button.center\ncall leds.top(1, 2, 3)", "own.aesl")
@@ -150,9 +150,9 @@ def test_what_is_not_flashed_is_lost_when_a_robot_is_switched_on_in_a_behaviour(
     robot = HandheldRobot.switched_on(MENU)
     robot.tick(100)
     robot.touch("center")
-    robot.device.body.settings[0] = 5
+    robot.device.services.settings[0] = 5
     begun_anew(robot, "switched on")
-    assert robot.device.body.settings[0] == 0
+    assert robot.device.services.settings[0] == 0
 
 
 def test_a_program_from_a_computer_ends_a_behaviour_with_its_wheels_stopped():
@@ -207,7 +207,7 @@ def test_an_entry_that_does_not_exist_is_told():
     robot = HandheldRobot()
     robot.host.load(asking("x.aesl", "menu.start", 1, "emit menu.start 42"))
     robot.tick()
-    assert robot.host.take_notices() == ["menu.start 42: the robot has no such program"]
+    assert robot.host.pop_notices() == ["menu.start 42: the robot has no such program"]
     assert robot.running == "x"
 
 
@@ -264,7 +264,7 @@ def test_lights_go_out_before_another_behaviour_begins(behaviour):
 
 
 def test_a_robot_of_the_playground_s_layout_says_which_behaviour_it_cannot_run():
-    host = BehaviourHost(AsebaDevice(options=DeviceOptions(layout="playground")))
+    host = BehaviorHost(AsebaDevice(options=DeviceOptions(layout="playground")))
     host.start("obedient")
     with pytest.raises(ProgramError, match=r"menu\.aesl: line \d+"):
         host.start(MENU)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from thymio_sim_ros.device.firmware.indicators import OwnRules
+from thymio_sim_ros.device.firmware.indicators import Indicators
 from thymio_sim_ros.device.layout import PLAYGROUND, THYMIO, target
 from thymio_sim_ros.sim.commands import Command, PlaySystemSound, ShowOnLeds
 
@@ -19,19 +19,19 @@ class Robot:
     def __init__(self, layout: str = THYMIO) -> None:
         self.addresses = target(layout).addresses
         self.memory = [0] * target(layout).variables_size
-        self.told: set[int] = set()
-        self.rules = OwnRules(self.addresses, self.told.__contains__)
+        self.measured: set[int] = set()
+        self.indicators = Indicators(self.addresses, self.measured.__contains__)
         self.lights: dict[str, tuple[int, ...]] = {}
         self.sounds: list[int] = []
 
-    def look(self, senses: Mapping[str, tuple[int, ...]] | None = None, looks: int = 1) -> list[Command]:
-        """The commands of so many looks after these variables changed."""
-        for name, words in (senses or {}).items():
+    def update(self, values: Mapping[str, tuple[int, ...]] | None = None, updates: int = 1) -> list[Command]:
+        """The commands of so many updates after these variables changed."""
+        for name, words in (values or {}).items():
             address, size = self.addresses[name]
             assert len(words) == size
             self.memory[address : address + size] = words
-            self.told.add(address)
-        commands = [command for _ in range(looks) for command in self.rules.look(self.memory)]
+            self.measured.add(address)
+        commands = [command for _ in range(updates) for command in self.indicators.update(self.memory)]
         for command in commands:
             if isinstance(command, ShowOnLeds):
                 self.lights[command.group] = command.levels
@@ -46,36 +46,36 @@ def robot() -> Robot:
 
 
 def test_a_robot_that_was_told_nothing_shows_nothing(robot: Robot) -> None:
-    assert robot.look(looks=100) == []
+    assert robot.update(updates=100) == []
 
 
 @pytest.mark.parametrize(
     ("reading", "level"), [(0, 0), (1199, 0), (1200, 0), (1288, 1), (2600, 16), (4000, 32), (4505, 32)]
 )
 def test_a_proximity_light_shows_the_reading_between_its_limits(robot: Robot, reading: int, level: int) -> None:
-    robot.look({"prox.horizontal": (1, 0, 0, 0, 0, 0, 0)})
-    robot.look({"prox.horizontal": (0, reading, 0, 0, 0, 0, 0)})
+    robot.update({"prox.horizontal": (1, 0, 0, 0, 0, 0, 0)})
+    robot.update({"prox.horizontal": (0, reading, 0, 0, 0, 0, 0)})
     assert robot.lights.get("proximity", (0,) * 8)[1] == level
 
 
 def test_each_sensor_has_its_light_and_the_middle_one_has_two(robot: Robot) -> None:
     for sensor, lights in enumerate(((0,), (1,), (2, 3), (4,), (5,), (6,), (7,))):
-        robot.look({"prox.horizontal": tuple(4000 if index == sensor else 0 for index in range(7))})
+        robot.update({"prox.horizontal": tuple(4000 if index == sensor else 0 for index in range(7))})
         assert [index for index, level in enumerate(robot.lights["proximity"]) if level] == list(lights)
 
 
 def test_the_limits_follow_smaller_and_larger_readings(robot: Robot) -> None:
-    robot.look({"prox.horizontal": (1000, 0, 0, 0, 0, 0, 0)})
-    robot.look({"prox.horizontal": (1100, 0, 0, 0, 0, 0, 0)})
+    robot.update({"prox.horizontal": (1000, 0, 0, 0, 0, 0, 0)})
+    robot.update({"prox.horizontal": (1100, 0, 0, 0, 0, 0, 0)})
     assert robot.lights["proximity"][0] == 32 * 100 // 3000
-    robot.look({"prox.horizontal": (5000, 0, 0, 0, 0, 0, 0)})
-    robot.look({"prox.horizontal": (3000, 0, 0, 0, 0, 0, 0)})
+    robot.update({"prox.horizontal": (5000, 0, 0, 0, 0, 0, 0)})
+    robot.update({"prox.horizontal": (3000, 0, 0, 0, 0, 0, 0)})
     assert robot.lights["proximity"][0] == 16
 
 
 @pytest.mark.parametrize(("reading", "level"), [(0, 0), (28, 0), (29, 1), (450, 16), (900, 32)])
 def test_a_ground_light_shows_the_reading_from_zero(robot: Robot, reading: int, level: int) -> None:
-    robot.look({"prox.ground.delta": (reading, 1)})
+    robot.update({"prox.ground.delta": (reading, 1)})
     assert robot.lights.get("ground", (0, 0))[0] == level
 
 
@@ -99,23 +99,23 @@ def test_a_ground_light_shows_the_reading_from_zero(robot: Robot, reading: int, 
 def test_the_circle_lights_the_lowest_side_once_the_robot_leans(
     robot: Robot, acc: tuple[int, int, int], light: int | None, level: int
 ) -> None:
-    robot.look({"acc": acc})
+    robot.update({"acc": acc})
     circle = robot.lights.get("circle", (0,) * 8)
     assert circle == tuple(level if index == light else 0 for index in range(8))
 
 
 def test_a_touched_button_lights_up_step_by_step_and_goes_out_at_once(robot: Robot) -> None:
-    robot.look({"button.right": (1,)})
+    robot.update({"button.right": (1,)})
     assert robot.lights["buttons"] == (0, 3, 0, 0)
-    robot.look(looks=10)
+    robot.update(updates=10)
     assert robot.lights["buttons"] == (0, 32, 0, 0)
-    assert robot.look(looks=10) == []
-    robot.look({"button.right": (0,)})
+    assert robot.update(updates=10) == []
+    robot.update({"button.right": (0,)})
     assert robot.lights["buttons"] == (0, 0, 0, 0)
 
 
 def test_the_centre_lights_all_four(robot: Robot) -> None:
-    robot.look({"button.center": (1,)}, looks=2)
+    robot.update({"button.center": (1,)}, updates=2)
     assert robot.lights["buttons"] == (6, 6, 6, 6)
 
 
@@ -123,17 +123,17 @@ def test_the_centre_lights_all_four(robot: Robot) -> None:
     ("button", "sound"), [("forward", 2), ("left", 2), ("right", 2), ("backward", 2), ("center", 3)]
 )
 def test_a_button_sounds_once_when_it_is_touched(robot: Robot, button: str, sound: int) -> None:
-    robot.look({f"button.{button}": (1,)}, looks=20)
-    robot.look({f"button.{button}": (0,)}, looks=20)
+    robot.update({f"button.{button}": (1,)}, updates=20)
+    robot.update({f"button.{button}": (0,)}, updates=20)
     assert robot.sounds == [sound]
 
 
 def test_a_program_that_uses_sound_ends_the_sounds_of_buttons(robot: Robot) -> None:
-    robot.rules.silence()
-    robot.look({"button.center": (1,)})
+    robot.indicators.mute_buttons()
+    robot.update({"button.center": (1,)})
     assert robot.sounds == []
-    robot.rules.reset()
-    robot.look({"button.left": (1,)})
+    robot.indicators.reset()
+    robot.update({"button.left": (1,)})
     assert robot.sounds == [2]
 
 
@@ -141,54 +141,54 @@ def test_a_program_that_uses_sound_ends_the_sounds_of_buttons(robot: Robot) -> N
     ("tenths", "red", "blue"), [(-50, 0, 32), (149, 0, 32), (150, 0, 32), (215, 16, 16), (280, 32, 0), (281, 32, 0)]
 )
 def test_warm_is_red_and_cold_is_blue(robot: Robot, tenths: int, red: int, blue: int) -> None:
-    robot.look({"temperature": (tenths,)})
+    robot.update({"temperature": (tenths,)})
     assert robot.lights["temperature"] == (red, blue)
 
 
 def test_zero_is_a_reading_too(robot: Robot) -> None:
-    robot.look()
-    robot.look({"temperature": (0,), "_vbat": (0, 0)})
+    robot.update()
+    robot.update({"temperature": (0,), "_vbat": (0, 0)})
     assert robot.lights == {"temperature": (0, 32), "battery": (32, 0, 0)}
 
 
 def test_the_sound_light_shows_the_peak_and_fades_while_a_program_listens(robot: Robot) -> None:
-    robot.look({"mic.intensity": (200,)})
+    robot.update({"mic.intensity": (200,)})
     assert "microphone" not in robot.lights
-    robot.look({"mic.threshold": (10,)})
+    robot.update({"mic.threshold": (10,)})
     assert robot.lights["microphone"] == (25,)
-    robot.look({"mic.intensity": (0,)}, looks=5)
+    robot.update({"mic.intensity": (0,)}, updates=5)
     assert robot.lights["microphone"] == (20,)
-    robot.look(looks=20)
+    robot.update(updates=20)
     assert robot.lights["microphone"] == (0,)
-    assert robot.look(looks=20) == []
+    assert robot.update(updates=20) == []
 
 
 def test_a_remote_control_flashes_its_light(robot: Robot) -> None:
-    robot.look()
-    robot.rules.flash_remote()
-    robot.look()
+    robot.update()
+    robot.indicators.flash_remote()
+    robot.update()
     assert robot.lights["remote"] == (32,)
-    robot.look(looks=10)
+    robot.update(updates=10)
     assert robot.lights["remote"] == (0,)
 
 
 @pytest.mark.parametrize(("each", "lights"), [(796, 3), (776, 3), (775, 2), (720, 2), (715, 1), (680, 1)])
 def test_the_battery_shows_up_to_three_lights(robot: Robot, each: int, lights: int) -> None:
-    robot.look({"_vbat": (each, each)})
+    robot.update({"_vbat": (each, each)})
     assert robot.lights["battery"] == (32,) * lights + (0,) * (3 - lights)
 
 
 def test_a_battery_that_is_not_empty_does_not_blink_however_its_voltage_changes(robot: Robot) -> None:
     for each in range(780, 880):
-        robot.look({"_vbat": (each, each)})
+        robot.update({"_vbat": (each, each)})
         assert robot.lights["battery"] == (32, 32, 32)
 
 
 def test_an_empty_battery_blinks(robot: Robot) -> None:
     shown = []
-    robot.look({"_vbat": (600, 600)})
+    robot.update({"_vbat": (600, 600)})
     for _ in range(100):
-        robot.look()
+        robot.update()
         shown.append(robot.lights["battery"])
     assert set(shown) == {(32, 0, 0), (0, 0, 0)}
     assert 20 <= shown.count((0, 0, 0)) <= 75
@@ -196,58 +196,58 @@ def test_an_empty_battery_blinks(robot: Robot) -> None:
 
 def test_the_lights_of_a_battery_fill_again_and_again_while_it_is_charged(robot: Robot) -> None:
     shown: list[tuple[int, ...]] = []
-    robot.look({"_vbat": (600, 600)})
-    robot.rules.charge(is_charging=True)
+    robot.update({"_vbat": (600, 600)})
+    robot.indicators.set_charging(is_charging=True)
     for _ in range(2 * 100):
-        robot.look()
+        robot.update()
         if shown[-1:] != [robot.lights["battery"]]:
             shown.append(robot.lights["battery"])
     once = [(0, 0, 0), (32, 0, 0), (32, 32, 0), (32, 32, 32)]
     assert shown[:4] in (once, [*once[1:], once[0]])
     assert shown[4:8] == shown[:4]
-    robot.look({"_vbat": (720, 720)}, looks=40)
-    robot.rules.charge(is_charging=False)
-    robot.look()
+    robot.update({"_vbat": (720, 720)}, updates=40)
+    robot.indicators.set_charging(is_charging=False)
+    robot.update()
     assert robot.lights["battery"] == (32, 32, 0)
-    assert robot.look(looks=100) == []
+    assert robot.update(updates=100) == []
 
 
 def test_a_rule_ends_when_its_lights_are_taken_over(robot: Robot) -> None:
-    robot.rules.take("temperature")
-    commands = robot.look({"temperature": (200,), "prox.ground.delta": (900, 900)})
+    robot.indicators.claim("temperature")
+    commands = robot.update({"temperature": (200,), "prox.ground.delta": (900, 900)})
     assert commands == [ShowOnLeds("ground", (32, 32))]
 
 
 @pytest.mark.parametrize("group", ["proximity", "ground"])
 def test_one_rule_shows_proximity_and_ground_and_ends_for_both(robot: Robot, group: str) -> None:
-    robot.look({"prox.horizontal": (4000,) * 7, "prox.ground.delta": (450, 450)})
-    assert sorted(robot.rules.take(group)) == ["ground", "proximity"]
-    assert robot.look({"prox.horizontal": (2000,) * 7, "prox.ground.delta": (100, 100)}) == []
+    robot.update({"prox.horizontal": (4000,) * 7, "prox.ground.delta": (450, 450)})
+    assert sorted(robot.indicators.claim(group)) == ["ground", "proximity"]
+    assert robot.update({"prox.horizontal": (2000,) * 7, "prox.ground.delta": (100, 100)}) == []
 
 
 def test_a_clap_between_two_looks_is_shown(robot: Robot) -> None:
-    robot.look({"mic.threshold": (50,), "mic.intensity": (9,)})
-    robot.look(looks=5)
-    robot.rules.hear(200)
-    robot.look()
+    robot.update({"mic.threshold": (50,), "mic.intensity": (9,)})
+    robot.update(updates=5)
+    robot.indicators.record_intensity(200)
+    robot.update()
     assert robot.lights["microphone"] == (25,)
-    robot.look(looks=30)
+    robot.update(updates=30)
     assert robot.lights["microphone"] == (1,)  # 9 is still there
 
 
 def test_after_a_reset_all_rules_begin_again(robot: Robot) -> None:
-    robot.rules.take("ground")
-    robot.look({"prox.ground.delta": (900, 900)})
-    robot.rules.reset()
-    assert robot.look() == [ShowOnLeds("ground", (32, 32))]
+    robot.indicators.claim("ground")
+    robot.update({"prox.ground.delta": (900, 900)})
+    robot.indicators.reset()
+    assert robot.update() == [ShowOnLeds("ground", (32, 32))]
 
 
 def test_nothing_is_told_twice(robot: Robot) -> None:
-    assert robot.look({"prox.ground.delta": (900, 900)}) != []
-    assert robot.look({"prox.ground.delta": (901, 902)}) == []
+    assert robot.update({"prox.ground.delta": (900, 900)}) != []
+    assert robot.update({"prox.ground.delta": (901, 902)}) == []
 
 
 def test_a_layout_without_a_variable_does_without_its_rule() -> None:
     robot = Robot(PLAYGROUND)
-    robot.look({"prox.ground.delta": (900, 900), "temperature": (300,)})
+    robot.update({"prox.ground.delta": (900, 900), "temperature": (300,)})
     assert robot.lights == {"ground": (32, 32), "temperature": (32, 0)}

@@ -44,7 +44,7 @@ def test_a_new_robot_has_what_the_file_says_or_the_first_values(tmp_path: Path) 
         settings[0] = 2
         settings.flash()
         settings[0] = 3
-        settings.renew()
+        settings.reload()
         assert settings[0] == kept
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.device.firmware.timers import LONGEST_LAG_MS, MILLISECOND_NS, Timers
+from thymio_sim_ros.device.firmware.timers import MAX_LAG_MS, MILLISECOND_NS, Timers
 
 MINUTE_MS = 60_000
 
@@ -12,7 +12,7 @@ MINUTE_MS = 60_000
 def started(*periods):
     timers = Timers()
     timers.set_clock(0)
-    timers.notice(periods)
+    timers.set_periods(periods)
     return timers
 
 
@@ -39,7 +39,7 @@ def test_timers_fire_in_the_order_of_their_moments():
 def test_a_changed_period_starts_the_count_again():
     timers = started(100, 0)
     assert heard(timers, 90) == []
-    timers.notice((50, 0))
+    timers.set_periods((50, 0))
     assert heard(timers, 139) == []
     assert heard(timers, 140) == [0]
 
@@ -52,7 +52,7 @@ def test_after_a_reset_the_count_begins_with_the_present(is_counted):
     else:
         timers.set_clock(90 * MILLISECOND_NS)
     timers.reset()
-    timers.notice((50, 0))
+    timers.set_periods((50, 0))
     assert heard(timers, 139) == []
     assert heard(timers, 140) == [0]
 
@@ -60,7 +60,7 @@ def test_after_a_reset_the_count_begins_with_the_present(is_counted):
 def test_a_period_begins_where_the_machine_has_counted_to_not_at_the_clock():
     timers = started(100, 0)
     timers.set_clock(50 * MILLISECOND_NS)
-    timers.notice((100, 20))
+    timers.set_periods((100, 20))
     assert [timers.next_firing() for _ in range(3)] == [(1,), (1,), ()]
     assert timers.lag_ms == 0
 
@@ -78,7 +78,7 @@ def test_what_fires_unheard_is_told_once():
 
 
 def test_a_long_jump_is_made_up_for_in_part():
-    assert len(heard(started(1, 0), 3_600_000)) == LONGEST_LAG_MS + 1
+    assert len(heard(started(1, 0), 3_600_000)) == MAX_LAG_MS + 1
 
 
 @pytest.mark.parametrize("period_ms", [0, -5])

@@ -124,10 +124,10 @@ def test_watched_local_events_are_told_also_without_a_handler(device):
     for now_ns in (10_000_000, 60_000_000):
         device.advance(now_ns)
         device.run(1000)
-    assert device.take_local_events() == ["acc", "button.left", "prox", "timer0", "timer0"]
-    assert device.take_local_events() == []
+    assert device.pop_local_events() == ["acc", "button.left", "prox", "timer0", "timer0"]
+    assert device.pop_local_events() == []
 
 
 def test_nothing_is_remembered_of_events_that_nobody_watches(device):
     device.feed("accelerometer", [0, 0, 23])
-    assert device.take_local_events() == []
+    assert device.pop_local_events() == []

@@ -162,8 +162,8 @@ def test_a_token_given_as_a_parameter_is_no_parameter_that_can_be_read(ros, monk
 
 
 def test_services_that_change_nothing_are_those_of_ours_that_only_read():
-    changes_nothing = allow_list(FoxgloveParams().read_only_services)
+    is_read_only_service = allow_list(FoxgloveParams().read_only_services)
     reading = ("/aseba/get_variables", "/a/aseba/list_variables", "/aseba_runtime/check", "/simulator/get_playground")
     changing = ("/aseba/set_variables", "/aseba/stop", "/simulator/reset", "/simulator/set_poses", "/x/get_coffee")
-    assert all(map(changes_nothing, reading))
-    assert not any(map(changes_nothing, changing))
+    assert all(map(is_read_only_service, reading))
+    assert not any(map(is_read_only_service, changing))

@@ -155,7 +155,7 @@ def test_a_flood_of_changing_wishes_costs_a_share_of_time_and_the_last_wish_coun
             topics.unwant(channel_id)
     topics.want(ids[3])
     assert woken
-    subscribed = [command for command in commands if isinstance(command, ev.KeepLast)]
+    subscribed = [command for command in commands if isinstance(command, ev.RetainLast)]
     assert len(subscribed) < 200 * 20 / 4
     while topics.poll():
         pass

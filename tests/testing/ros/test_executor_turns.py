@@ -1,4 +1,4 @@
-"""Turns and threads of nodes under test: what `rclpy.spin` does elsewhere, in simulated time and in order."""
+"""ExecutorTurns and threads of nodes under test: what `rclpy.spin` does elsewhere, in simulated time and in order."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from std_srvs.srv import Trigger
 
 from tests.testing.ros.test_graph import Echo
 from thymio_sim_ros.testing.ros import Ros
-from thymio_sim_ros.testing.ros.student import StudentError, nobody_spins
+from thymio_sim_ros.testing.ros.student import StudentError, spinning_forbidden
 
 
 class TwoTimers(Node):
@@ -145,7 +145,7 @@ def test_a_spin_that_was_imported_by_its_name_is_told_too(ros, tmp_path):
 
 def test_a_spin_with_a_time_limit_or_in_a_thread_is_its_own_affair(ros):
     node = ros.start(Echo)
-    with nobody_spins():
+    with spinning_forbidden():
         rclpy.spin_once(node, timeout_sec=0)
         rclpy.spin_until_future_complete(node, rclpy.Future(), None, 0)
         thread = threading.Thread(target=rclpy.spin_once, args=(node,), daemon=True)

@@ -21,7 +21,14 @@ from thymio_sim_ros.device.editor.help import help_of
 from thymio_sim_ros.device.editor.help_order import rank
 from thymio_sim_ros.device.editor.symbol_outline import outline
 from thymio_sim_ros.device.layout import THYMIO, target
-from thymio_sim_ros.device.programs.program import ThymioProgram, is_left_out, made_for, memory_use, parse, select
+from thymio_sim_ros.device.programs.program import (
+    ThymioProgram,
+    is_skipped,
+    memory_use,
+    other_device_note,
+    parse,
+    select,
+)
 
 __all__ = [
     "ENGLISH",
@@ -73,7 +80,7 @@ def check(question: Question) -> dict[str, Any]:
     )
     for node in selection.nodes:
         errors, warnings, told = _check_node(node, network, question)
-        if errors and is_left_out(node, selection):
+        if errors and is_skipped(node, selection):
             answer["notes"].append(_note("note-left-out-node", node, question, errors[0]["message"]))
             continue
         if node in selection.guessed:
@@ -184,7 +191,7 @@ def _check_node(
         program = compile(node.code, target(question.layout), events=network.events, constants=network.constants)
     except CompileError as error:
         sentence = _sentence(error.kind, error.arguments, question.language)
-        sentence += made_for(node, LANGUAGES.get(question.language, MESSAGES))
+        sentence += other_device_note(node, LANGUAGES.get(question.language, MESSAGES))
         finding = _placed(node, error.kind, sentence, error.pos)
         errors.append(finding | {"hint": _hint(node, error.hint, question.language)})
     else:

@@ -1,4 +1,4 @@
-"""Which program a robot runs: the menu, a behaviour chosen in it, or what a computer has loaded.
+"""Selects the program of a robot: the menu, a behavior chosen in it, or a program loaded by a user.
 
 The firmware's menu and behaviours (docs/spec/thymio-behaviors.md section 1) are programs of the folder `behaviours`
 here. One asks for another by an event that stays inside the robot, so that neither other robots nor ROS hear it:
@@ -21,7 +21,7 @@ from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram, load_program
 from thymio_sim_ros.device.programs.status import OFF
 
-__all__ = ["ENTRIES", "MENU", "BehaviourHost", "built_in", "is_internal"]
+__all__ = ["ENTRIES", "MENU", "BehaviorHost", "built_in", "is_internal"]
 
 MENU = "menu"
 
@@ -42,7 +42,7 @@ ENTRIES = {
 """Entry → built-in program: the firmware's numbers up to 8, then what the menu does not show."""
 
 POWER_ON_TICKS = 100
-"""For so long after the robot is switched on, the centre button is not heard."""
+"""Ticks of 20 ms after switching on in which the center button is ignored."""
 
 _PREFIX = "menu."
 _START, _BACK, _OPEN = "menu.start", "menu.back", "menu.open"
@@ -65,37 +65,37 @@ def built_in(name: str, layout: str = THYMIO) -> ThymioProgram:
     return load_program(path.read_text(encoding="utf-8"), path.name, layout)
 
 
-class BehaviourHost:
-    """A device and what decides about its program. Invariant: `program` is what the device runs."""
+class BehaviorHost:
+    """A device and the selection of its program. Invariant: the device runs `program`."""
 
     def __init__(self, device: AsebaDevice) -> None:
         self.device = device
         self.program = load_program("", "none", device.layout)
-        self._own: ThymioProgram | None = None
+        self._user_program: ThymioProgram | None = None
         self._first: ThymioProgram | str = self.program
         self._entry = PROGRAM_ENTRY
         self._notices: list[str] = []
 
     def load(self, program: ThymioProgram) -> None:
-        """A computer gives a program: whatever runs ends with its wheels stopped, and the program begins."""
+        """Load a user program: stop the current one and the wheels, and start it."""
         self._first = program
-        self._own = _unless_empty(program)
+        self._user_program = _unless_empty(program)
         self._entry = PROGRAM_ENTRY
         self._run(program, warm=False)
 
-    def start(self, name: str, own: ThymioProgram | None = None) -> None:
+    def start(self, name: str, user_program: ThymioProgram | None = None) -> None:
         """Switch the robot on with a built-in program, such as the menu; `own` is a program that waits in its menu.
 
         Errors are those of `built_in`; the old program goes on.
         """
         program = built_in(name, self.device.layout)
-        self._first, self._own = name, _unless_empty(own)
+        self._first, self._user_program = name, _unless_empty(user_program)
         self._entry = next((entry for entry, known in ENTRIES.items() if known == name), PROGRAM_ENTRY)
         self._run(program, warm=False, wait=POWER_ON_TICKS)
 
     def restart(self) -> None:
-        """As `load` or `start` did it, by a robot that is new again."""
-        self.device.renew()
+        """Reset the device to a new robot and repeat the last `load` or `start`."""
+        self.device.reinitialize()
         self._begin()
 
     def resume(self) -> None:
@@ -103,24 +103,24 @@ class BehaviourHost:
         if self.device.status.state != OFF or self.program is self._first:
             self.device.resume()
         else:
-            self.device.body.settings.restart()
+            self.device.services.settings.restart()
             self._begin()
 
-    def take_events(self) -> list[EmittedEvent]:
-        """What the program emitted since the last time, for others to hear; what it asks of the robot is done."""
-        events = self.device.take_events()
-        asked = next((event for event in events if is_internal(event.name)), None)
-        if asked is None:
+    def pop_events(self) -> list[EmittedEvent]:
+        """Return and clear the emitted events for other robots; execute requests to change the program."""
+        events = self.device.pop_events()
+        request = next((event for event in events if is_internal(event.name)), None)
+        if request is None:
             return events
-        self._obey(asked)
+        self._handle_request(request)
         return [event for event in events if not is_internal(event.name)]
 
-    def take_notices(self) -> list[str]:
-        """What the user should know, the device's notices among it."""
+    def pop_notices(self) -> list[str]:
+        """Return and clear the notices for the user, including those of the device."""
         notices, self._notices = self._notices, []
-        return self.device.take_notices() + notices
+        return self.device.pop_notices() + notices
 
-    def _obey(self, event: EmittedEvent) -> None:
+    def _handle_request(self, event: EmittedEvent) -> None:
         try:
             if event.name == _BACK:
                 self._run(built_in(MENU, self.device.layout), warm=True)
@@ -130,8 +130,8 @@ class BehaviourHost:
             self._notices.append(f"{event.name}: {error}")
 
     def _start_entry(self, entry: int) -> None:
-        if entry == PROGRAM_ENTRY and self._own is not None:
-            program = self._own
+        if entry == PROGRAM_ENTRY and self._user_program is not None:
+            program = self._user_program
         elif entry in ENTRIES:
             program = built_in(ENTRIES[entry], self.device.layout)
         else:
@@ -142,14 +142,14 @@ class BehaviourHost:
 
     def _begin(self) -> None:
         if isinstance(self._first, str):
-            self.start(self._first, self._own)
+            self.start(self._first, self._user_program)
         else:
             self.load(self._first)
 
     def _run(self, program: ThymioProgram, *, warm: bool, wait: int = 0) -> None:
         self.program = program
-        greeting = EmittedEvent(_OPEN, (self._entry, int(self._own is not None), wait))
-        self.device.load(program, warm=warm, greeting=greeting)
+        initial_event = EmittedEvent(_OPEN, (self._entry, int(self._user_program is not None), wait))
+        self.device.load(program, warm=warm, initial_event=initial_event)
 
 
 def _unless_empty(program: ThymioProgram | None) -> ThymioProgram | None:

@@ -1,7 +1,7 @@
-"""What the robot itself shows while a program runs: its sensors on its lights, a sound for each button.
+"""Indicators of the firmware while a program runs: sensor values on the lights, and a sound for each button.
 
-Rules and numbers: docs/spec/thymio-robot.md section 8.4. They run 50 times a second. A rule ends when a program
-takes its lights over, and the sounds end when a program uses sound itself; after a reset all begin again.
+Rules and numbers: docs/spec/thymio-robot.md section 8.4. They are updated 50 times per second. An indicator ends when
+a program sets its lights, button sounds end when a program uses sound; a reset starts all of them again.
 """
 
 from __future__ import annotations
@@ -12,18 +12,18 @@ from typing import Protocol
 
 from thymio_sim_ros.sim.commands import LED_FULL, Command, PlaySystemSound, ShowOnLeds
 
-__all__ = ["PERIOD_NS", "OwnRules"]
+__all__ = ["PERIOD_NS", "Indicators"]
 
 PERIOD_NS = 20_000_000
-"""Time between two looks."""
+"""Time between two updates."""
 ARROW_SOUND, CENTER_SOUND = 2, 3
 """System sounds of the buttons (section 9)."""
 
 Levels = Mapping[str, tuple[int, ...]]
 
 
-class _Rule(Protocol):
-    """One rule: the variables that it looks at, and what it shows."""
+class _Indicator(Protocol):
+    """One indicator: the variables that it looks at, and what it shows."""
 
     @property
     def variables(self) -> tuple[str, ...]:
@@ -31,22 +31,22 @@ class _Rule(Protocol):
         ...
 
     @property
-    def is_moving(self) -> bool:
+    def is_animated(self) -> bool:
         """Whether it shows something else at the next look though nothing that it sees changes."""
         ...
 
-    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+    def levels(self, words: Sequence[Sequence[int]]) -> Levels:
         """Levels by group for the words of its variables."""
         ...
 
 
-class _Still:
-    """A rule without time."""
+class _Static:
+    """A indicator without time."""
 
-    is_moving = False
+    is_animated = False
 
 
-class _Proximity(_Still):
+class _Proximity(_Static):
     """Brightness between the smallest and the largest reading so far."""
 
     variables = ("prox.horizontal", "prox.ground.delta")
@@ -54,7 +54,7 @@ class _Proximity(_Still):
     def __init__(self) -> None:
         self._low, self._high = [1200] * 7 + [0] * 2, [4000] * 7 + [900] * 2
 
-    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+    def levels(self, words: Sequence[Sequence[int]]) -> Levels:
         levels = list(map(self._level, range(9), (*words[0], *words[1])))
         left, center_left, center, center_right, right, rear_left, rear_right, *ground = levels
         front = (left, center_left, center, center, center_right, right)
@@ -69,12 +69,12 @@ class _Proximity(_Still):
         return max(0, LED_FULL * (value - low[number]) // (high[number] - low[number]))
 
 
-class _Inclination(_Still):
+class _Inclination(_Static):
     """The light of the circle on the lowest side, once the robot is no longer level."""
 
     variables = ("acc",)
 
-    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+    def levels(self, words: Sequence[Sequence[int]]) -> Levels:
         right, forward, up = words[0]
         levels = [0] * 8
         if up < 21 and abs(right) + abs(forward) > 10:
@@ -96,24 +96,24 @@ class _Buttons:
 
     def __init__(self) -> None:
         self._levels = [0] * 4
-        self.is_moving = False
+        self.is_animated = False
 
-    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+    def levels(self, words: Sequence[Sequence[int]]) -> Levels:
         *arrows, center = (word[0] for word in words)
         self._levels = [
             min(LED_FULL, level + 3) if touched or center else 0
             for level, touched in zip(self._levels, arrows, strict=True)
         ]
-        self.is_moving = any(0 < level < LED_FULL for level in self._levels)
+        self.is_animated = any(0 < level < LED_FULL for level in self._levels)
         return {"buttons": tuple(self._levels)}
 
 
-class _Temperature(_Still):
+class _Temperature(_Static):
     """Blue is cold, red is warm."""
 
     variables = ("temperature",)
 
-    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+    def levels(self, words: Sequence[Sequence[int]]) -> Levels:
         ((tenths,),) = words
         red = max(0, min(LED_FULL, LED_FULL * (tenths - 150) // 130))
         return {"temperature": (red, LED_FULL - red)}
@@ -127,15 +127,15 @@ class _Sound:
     def __init__(self) -> None:
         self._level = self._peak = 0
 
-    def hear(self, intensity: int) -> None:
+    def record_intensity(self, intensity: int) -> None:
         """What was heard between two looks, and may be gone at the next."""
         self._peak = max(self._peak, intensity)
 
     @property
-    def is_moving(self) -> bool:
+    def is_animated(self) -> bool:
         return self._level > 0 or self._peak // 8 > 0
 
-    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+    def levels(self, words: Sequence[Sequence[int]]) -> Levels:
         (intensity,), (threshold,) = words
         peak, self._peak = max(self._peak, intensity), 0
         self._level = max(self._level - 1, peak // 8, 0) if threshold else 0
@@ -146,21 +146,21 @@ class _Remote:
     """A short flash for each command of a remote control."""
 
     variables = ()
-    LOOKS = 5
+    FLASH_UPDATES = 5
     """Looks that a flash lasts, a tenth of a second. Own choice."""
 
     def __init__(self) -> None:
         self._left = 0
 
     @property
-    def is_moving(self) -> bool:
+    def is_animated(self) -> bool:
         return self._left > 0
 
     def flash(self) -> None:
         """A command arrived."""
-        self._left = self.LOOKS + 1
+        self._left = self.FLASH_UPDATES + 1
 
-    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+    def levels(self, words: Sequence[Sequence[int]]) -> Levels:
         self._left = max(0, self._left - 1)
         return {"remote": (LED_FULL if self._left else 0,)}
 
@@ -169,38 +169,40 @@ class _Battery:
     """One to three lights; a single one blinks before the robot goes out. They fill while a charger is connected."""
 
     variables = ("_vbat",)
-    BLINK = 25
+    BLINK_UPDATES = 25
     """Looks between on and off, and from one light to the next, half a second. Own choice."""
 
     def __init__(self) -> None:
         self.is_charging = self._was_charging = self._is_low = False
-        self._looks = 0
+        self._updates = 0
 
     @property
-    def is_moving(self) -> bool:
+    def is_animated(self) -> bool:
         return self.is_charging or self._was_charging or self._is_low
 
-    def show(self, words: Sequence[Sequence[int]]) -> Levels:
+    def levels(self, words: Sequence[Sequence[int]]) -> Levels:
         volts = sum(words[0]) * 1000 / 3978 / 100
         lights = 3 if volts >= 3.9 else 2 if volts > 3.6 else 1
         self._is_low, self._was_charging = volts <= 3.4, self.is_charging
-        self._looks = self._looks + 1 if self.is_moving else 0
+        self._updates = self._updates + 1 if self.is_animated else 0
         if self.is_charging:
-            lights = self._looks // self.BLINK % 4
-        elif self._looks // self.BLINK % 2:
+            lights = self._updates // self.BLINK_UPDATES % 4
+        elif self._updates // self.BLINK_UPDATES % 2:
             lights = 0
         return {"battery": tuple(LED_FULL if number < lights else 0 for number in range(3))}
 
 
-_TOGETHER = ("proximity", "ground")
-"""One rule shows both, and a program that sets either ends it (section 6.3)."""
-_RULES: tuple[Callable[[], _Rule], ...] = (_Proximity, _Inclination, _Buttons, _Temperature, _Sound, _Battery)
+_PROXIMITY_GROUPS = ("proximity", "ground")
+"""One indicator shows both, and a program that sets either ends it (section 6.3)."""
+_INDICATORS: tuple[Callable[[], _Indicator], ...] = (_Proximity, _Inclination, _Buttons, _Temperature, _Sound, _Battery)
 
 
-def _spans(addresses: Mapping[str, tuple[int, int]]) -> list[tuple[int, int]]:
-    """Begin and end of the parts of the memory that rules look at."""
+def _memory_spans(addresses: Mapping[str, tuple[int, int]]) -> list[tuple[int, int]]:
+    """Begin and end of the parts of the memory that indicators look at."""
     spans: list[tuple[int, int]] = []
-    for address, size in sorted(addresses[name] for make in _RULES for name in make().variables if name in addresses):
+    for address, size in sorted(
+        addresses[name] for make in _INDICATORS for name in make().variables if name in addresses
+    ):
         if spans and spans[-1][1] == address:
             spans[-1] = (spans[-1][0], address + size)
         else:
@@ -208,100 +210,102 @@ def _spans(addresses: Mapping[str, tuple[int, int]]) -> list[tuple[int, int]]:
     return spans
 
 
-def _place(spans: Sequence[tuple[int, int]], address: int, size: int) -> tuple[int, int, int]:
+def _locate(spans: Sequence[tuple[int, int]], address: int, size: int) -> tuple[int, int, int]:
     """Number of the part that holds a variable, and its begin and end there."""
     number = next(number for number, (begin, end) in enumerate(spans) if begin <= address < end)
     offset = address - spans[number][0]
     return number, offset, offset + size
 
 
-class OwnRules:
-    """The rules of one robot. Invariant: each tells a group only when it looks different from the last time."""
+class Indicators:
+    """The indicators of one robot. Invariant: each tells a group only when it looks different from the last time."""
 
-    def __init__(self, addresses: Mapping[str, tuple[int, int]], knows: Callable[[int], bool]) -> None:
-        """`addresses`: where the variables lie; a rule that misses one of its variables is left out.
+    def __init__(self, addresses: Mapping[str, tuple[int, int]], is_measured: Callable[[int], bool]) -> None:
+        """`addresses`: where the variables lie; a indicator that misses one of its variables is left out.
 
-        `knows` tells whether something was measured for an address since the reset.
+        `is_measured` tells whether something was measured for an address since the reset.
         """
-        self._addresses, self._knows = addresses, knows
+        self._addresses, self._is_measured = addresses, is_measured
         self._buttons = [addresses[name][0] for name in _Buttons.variables]
-        self._spans = _spans(addresses)
+        self._spans = _memory_spans(addresses)
         self._pressed = [0] * len(self._buttons)
         self.reset()
 
     def reset(self) -> None:
         """Begin anew, all lights dark; a button that is still held is not touched again."""
         self._remote = _Remote()
-        rules: list[_Rule] = [*(make() for make in _RULES), self._remote]
-        self._sound = next(rule for rule in rules if isinstance(rule, _Sound))
-        self._battery = next(rule for rule in rules if isinstance(rule, _Battery))
-        self._rules = [
-            (rule, [_place(self._spans, *self._addresses[name]) for name in rule.variables])
-            for rule in rules
-            if all(name in self._addresses for name in rule.variables)
+        indicators: list[_Indicator] = [*(make() for make in _INDICATORS), self._remote]
+        self._sound = next(indicator for indicator in indicators if isinstance(indicator, _Sound))
+        self._battery = next(indicator for indicator in indicators if isinstance(indicator, _Battery))
+        self._indicators = [
+            (indicator, [_locate(self._spans, *self._addresses[name]) for name in indicator.variables])
+            for indicator in indicators
+            if all(name in self._addresses for name in indicator.variables)
         ]
-        self._blind = {rule for rule, _ in self._rules}
+        self._without_data = {indicator for indicator, _ in self._indicators}
         """Rules that have not shown anything."""
         self._shown: dict[str, tuple[int, ...]] = {}
-        self._taken: set[str] = set()
+        self._claimed_groups: set[str] = set()
         self._last: list[Sequence[int]] | None = None
-        self.is_moving = True
+        self.is_animated = True
         """Whether the next look may show something else though the variables stay as they are."""
-        self._is_silent = False
+        self._is_muted = False
 
-    def take(self, group: str) -> list[str]:
-        """A program has taken these lights over; the groups that a rule had lit and shows no more."""
-        groups = _TOGETHER if group in _TOGETHER else (group,)
-        self._taken.update(groups)
+    def claim(self, group: str) -> list[str]:
+        """A program has taken these lights over; the groups that a indicator had lit and shows no more."""
+        groups = _PROXIMITY_GROUPS if group in _PROXIMITY_GROUPS else (group,)
+        self._claimed_groups.update(groups)
         return [one for one in groups if self._shown.pop(one, None) is not None]
 
-    def silence(self) -> None:
+    def mute_buttons(self) -> None:
         """A program has used sound."""
-        self._is_silent = True
+        self._is_muted = True
 
-    def hear(self, intensity: int) -> None:
+    def record_intensity(self, intensity: int) -> None:
         """The microphone heard this."""
-        self._sound.hear(intensity)
-        self.is_moving = self.is_moving or self._sound.is_moving
+        self._sound.record_intensity(intensity)
+        self.is_animated = self.is_animated or self._sound.is_animated
 
-    def charge(self, *, is_charging: bool) -> None:
+    def set_charging(self, *, is_charging: bool) -> None:
         """The battery tells whether a charger is connected."""
         self._battery.is_charging = is_charging
-        self.is_moving = self.is_moving or is_charging
+        self.is_animated = self.is_animated or is_charging
 
     def flash_remote(self) -> None:
         """A remote control was heard."""
         self._remote.flash()
-        self.is_moving = True
+        self.is_animated = True
 
-    def look(self, memory: Sequence[int]) -> Iterable[Command]:
+    def update(self, memory: Sequence[int]) -> Iterable[Command]:
         """One look at the variables: what changes on lights and loudspeaker."""
         parts = [memory[begin:end] for begin, end in self._spans]
         changed = {number for number, part in enumerate(parts) if self._last is None or part != self._last[number]}
-        if not changed and not self.is_moving and not self._blind:
+        if not changed and not self.is_animated and not self._without_data:
             return ()
         self._last = parts
-        commands = [*self._lights(parts, changed), *self._sounds(memory)]
-        self.is_moving = any(rule.is_moving for rule, _ in self._rules)
+        commands = [*self._lights(parts, changed), *self._button_sounds(memory)]
+        self.is_animated = any(indicator.is_animated for indicator, _ in self._indicators)
         return commands
 
     def _lights(self, parts: Sequence[Sequence[int]], changed: set[int]) -> Iterator[Command]:
-        for rule, places in self._rules:
-            if rule in self._blind:
-                if rule.variables and not any(self._knows(self._addresses[name][0]) for name in rule.variables):
+        for indicator, places in self._indicators:
+            if indicator in self._without_data:
+                if indicator.variables and not any(
+                    self._is_measured(self._addresses[name][0]) for name in indicator.variables
+                ):
                     continue  # nothing was measured since the reset
-                self._blind.discard(rule)
-            elif not rule.is_moving and not any(part in changed for part, _, _ in places):
+                self._without_data.discard(indicator)
+            elif not indicator.is_animated and not any(part in changed for part, _, _ in places):
                 continue
             words = [parts[part][begin:end] for part, begin, end in places]
-            for group, levels in rule.show(words).items():
-                if group not in self._taken and levels != self._shown.get(group, (0,) * len(levels)):
+            for group, levels in indicator.levels(words).items():
+                if group not in self._claimed_groups and levels != self._shown.get(group, (0,) * len(levels)):
                     self._shown[group] = levels
                     yield ShowOnLeds(group, levels)
 
-    def _sounds(self, memory: Sequence[int]) -> Iterator[Command]:
+    def _button_sounds(self, memory: Sequence[int]) -> Iterator[Command]:
         before, self._pressed = self._pressed, [memory[address] for address in self._buttons]
-        if self._is_silent:
+        if self._is_muted:
             return
         *arrows, center = (new and not old for new, old in zip(self._pressed, before, strict=True))
         if any(arrows):

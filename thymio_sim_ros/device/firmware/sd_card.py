@@ -1,9 +1,9 @@
-"""The memory card: a folder that stands for it (docs/spec/thymio-robot.md sections 6.3, 9 and 10).
+"""The memory card, represented by a folder (docs/spec/thymio-robot.md sections 6.3, 9 and 10).
 
 Programs name files by number only: data `uN.dat`; sounds `pN.wav` to play, `rN.wav` recorded, `sN.wav` in place of
 missing system sounds. Names are found in any case, as on the card's file system. Nothing outside the folder is
-read or written, not even where a link in it points. What a program may store is limited, so that one without an end
-cannot fill a disk: beyond `MOST_FILES` and `MOST_BYTES` of the whole folder it gets the robot's answer for a failure.
+read or written, not even where a link in it points. What a program may store is limited, so that an
+endless program cannot fill a disk: beyond `MAX_FILES` and `MAX_BYTES` of the whole folder calls fail as on the robot.
 
 The folder is listed when something but this card has added or removed files (its modification time tells), not for
 every name. No file is open between calls.
@@ -19,34 +19,35 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from thymio_sim_ros.device.firmware import wav
+from thymio_sim_ros.errors import ThymioSimError
 
-__all__ = ["Card", "CardError", "SoundFile"]
+__all__ = ["SdCard", "SdCardError", "SoundFile"]
 
-MOST_BYTES = 64_000_000
-"""Bytes of all files on the card; nothing grows beyond."""
-MOST_FILES = 256
-"""Files on the card; no more are made."""
-MOST_SAMPLES = 10 * 60 * 7813
+MAX_BYTES = 64_000_000
+"""Limit of bytes of all files on the card."""
+MAX_FILES = 256
+"""Limit of files on the card."""
+MAX_SAMPLES = 10 * 60 * 7813
 """Longest sound that is read: ten minutes."""
 
 SoundFile = tuple[bytes, str]
 """Unsigned 8 bit samples, and what is wrong with the file's format, if anything."""
 
 
-class CardError(Exception):
-    """A folder that cannot stand for a card; the text is one line."""
+class SdCardError(ThymioSimError):
+    """A folder that cannot be used as a card; the text is one line."""
 
 
-class Card:
-    """A card in its slot: at most one data file is open, as a place in the folder; nothing is held between calls."""
+class SdCard:
+    """A card in its slot: at most one data file is selected; no file is open between calls."""
 
     def __init__(self, folder: Path) -> None:
-        """CardError when the folder cannot be made or is none."""
+        """SdCardError when the folder cannot be made or is none."""
         try:
             folder.mkdir(parents=True, exist_ok=True)
             self.folder = folder.resolve(strict=True)
         except OSError as error:
-            raise CardError(f"card {folder}: {error.strerror}; expected a folder, or a place for one") from error
+            raise SdCardError(f"card {folder}: {error.strerror}; expected a folder, or a place for one") from error
         self.refusal = ""
         """Why the last `open`, `write` or `write_sound` was refused, if the card was full."""
         self._file: Path | None = None
@@ -69,7 +70,7 @@ class Card:
                 self._file = path
         except OSError:
             return False
-        self._note(path)
+        self._register(path)
         return True
 
     def close(self) -> None:
@@ -84,9 +85,9 @@ class Card:
         try:
             with self._file.open("r+b") as file:
                 size = os.fstat(file.fileno()).st_size
-                room = max(0, size + MOST_BYTES - self._bytes - self._at) // 2
+                room = max(0, size + MAX_BYTES - self._bytes - self._at) // 2
                 if room < len(words):
-                    self.refusal = f"the card is full: it holds {MOST_BYTES} bytes"
+                    self.refusal = f"the card is full: it holds {MAX_BYTES} bytes"
                 file.seek(self._at)
                 written = file.write(_as_bytes(words[:room]))
         except OSError:
@@ -123,16 +124,16 @@ class Card:
             if path is None or not path.is_file():
                 return None
             with path.open("rb") as file:
-                data = file.read(wav.HEADER_BYTES + MOST_SAMPLES)
+                data = file.read(wav.HEADER_BYTES + MAX_SAMPLES)
         except OSError:
             return None
-        return data[wav.HEADER_BYTES :], wav.complaint(path)
+        return data[wav.HEADER_BYTES :], wav.format_problem(path)
 
     def sound_bytes(self, name: str) -> int:
         """Samples in the sound of a name such as r1; 0 when it is not there."""
         path = self._path(f"{name}.wav")
         size = 0 if path is None else _size(path)
-        return min(MOST_SAMPLES, max(0, size - wav.HEADER_BYTES))
+        return min(MAX_SAMPLES, max(0, size - wav.HEADER_BYTES))
 
     def write_sound(self, name: str, samples: bytes) -> bool:
         """Store unsigned 8 bit samples under a name such as r1; whether that worked."""
@@ -141,8 +142,8 @@ class Card:
         if path is None or not self._has_room(path):
             return False
         grown = wav.HEADER_BYTES + len(samples) - _size(path)
-        if self._bytes + grown > MOST_BYTES:
-            self.refusal = f"the card is full: it holds {MOST_BYTES} bytes"
+        if self._bytes + grown > MAX_BYTES:
+            self.refusal = f"the card is full: it holds {MAX_BYTES} bytes"
             return False
         try:
             wav.write(path, [samples])
@@ -150,21 +151,21 @@ class Card:
             self._listed_ns = None
             return False
         self._bytes += grown
-        self._note(path)
+        self._register(path)
         return True
 
     def _has_room(self, path: Path) -> bool:
         """Whether a file is there, or may be made."""
-        if path.name.lower() in self._names or len(self._names) < MOST_FILES:
+        if path.name.lower() in self._names or len(self._names) < MAX_FILES:
             return True
-        self.refusal = f"the card is full: it holds {MOST_FILES} files"
+        self.refusal = f"the card is full: it holds {MAX_FILES} files"
         return False
 
-    def _note(self, path: Path) -> None:
+    def _register(self, path: Path) -> None:
         """Remember a file that may be new."""
         if path.name.lower() not in self._names:
             self._names[path.name.lower()] = path.name
-            self._listed_ns = _changed_ns(self.folder)
+            self._listed_ns = _modified_ns(self.folder)
 
     def _list(self) -> None:
         """List the folder if something else has added or removed files; OSError."""
@@ -202,7 +203,7 @@ def _size(path: Path) -> int:
     return found.st_size if stat.S_ISREG(found.st_mode) else 0
 
 
-def _changed_ns(folder: Path) -> int | None:
+def _modified_ns(folder: Path) -> int | None:
     try:
         return folder.stat().st_mtime_ns
     except OSError:

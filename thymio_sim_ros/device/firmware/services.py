@@ -1,15 +1,15 @@
-"""The parts of a robot that its firmware itself serves: card, settings, radio, records, the switch.
+"""Services of the firmware: card, settings, radio, sound recording, power switch.
 
-They live as long as the device; a reset of the program closes files, a restart also forgets unsaved settings.
+They exist as long as the device. A reset of the program closes files; a restart also drops unsaved settings.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from thymio_sim_ros.device.firmware.sd_card import Card
+from thymio_sim_ros.device.firmware.sd_card import SdCard
 from thymio_sim_ros.device.firmware.settings import Settings
-from thymio_sim_ros.device.firmware.sound_recorder import Recorder
+from thymio_sim_ros.device.firmware.sound_recorder import SoundRecorder
 from thymio_sim_ros.sim.audio.synthesis import SYSTEM_SOUNDS
 from thymio_sim_ros.sim.commands import (
     Command,
@@ -19,78 +19,78 @@ from thymio_sim_ros.sim.commands import (
     StopSound,
 )
 
-__all__ = ["RESTART", "SWITCH_OFF", "Body"]
+__all__ = ["RESTART", "SWITCH_OFF", "FirmwareServices"]
 
 RESTART, SWITCH_OFF = "restart", "off"
-"""What a program may ask of the whole robot."""
+"""Requests of a program that concern the whole robot."""
 
 Send = Callable[[Command], None]
-Tell = Callable[[str], None]
+Notify = Callable[[str], None]
 
 
-class Body:
-    """One robot's parts.
+class FirmwareServices:
+    """The services of one robot.
 
-    `send` takes what they tell the actuators, `tell` sentences for the user; `recalibrate` is called when the motors'
-    targets may mean something else.
+    `send` receives commands for actuators, `notify` sentences for the user; `recalibrate` is called when the
+    calibration of the motors may have changed.
     """
 
     def __init__(
         self,
         node_id: int,
         *,
-        card: Card | None,
+        card: SdCard | None,
         settings: Settings,
         send: Send,
-        tell: Tell,
+        notify: Notify,
         recalibrate: Callable[[], None],
     ) -> None:
         self._first_id = node_id
         self.node_id = node_id
         self.network = (0, 0)
-        """Channel and network of the radio: robots of different ones do not hear each other."""
+        """Channel and network of the radio: robots receive events of their own network only."""
         self.card = card
         self.settings = settings
-        self.wanted = ""
+        self.requested = ""
         """RESTART or SWITCH_OFF, until the device has done it."""
-        self.tell = tell
+        self.notify = notify
         self._send = send
         self._recalibrate = recalibrate
-        self._recorder: Recorder | None = None
+        self._recorder: SoundRecorder | None = None
         self._now_ns = 0
 
     def reset(self) -> None:
-        """The program begins anew."""
+        """Reset the services when the program restarts."""
         self.stop_recording()
         if self.card is not None:
             self.card.close()
         self._send(SetVolume(self.settings.volume_shift))
 
-    def renew(self) -> None:
-        """As for a new robot: unsaved settings and the radio's are forgotten."""
-        self.settings.renew()
+    def reinitialize(self) -> None:
+        """Return to the state of a new robot: drop unsaved settings and those of the radio."""
+        self.settings.reload()
         self.node_id, self.network = self._first_id, (0, 0)
 
     def advance(self, now_ns: int, intensity: int) -> None:
-        """Time has come so far, and the microphone tells this intensity."""
+        """Advance simulated time; `intensity` is the current reading of the microphone."""
         self._now_ns = now_ns
         if self._recorder is not None:
-            self._recorder.listen(now_ns, intensity)
+            self._recorder.record_until(now_ns, intensity)
 
     def change_setting(self, address: int, value: int) -> None:
-        """Put a word into the settings; what it means holds at once."""
+        """Change a word of the settings; it takes effect at once."""
         self.settings[address] = value
         self._send(SetVolume(self.settings.volume_shift))
         self._recalibrate()
 
     def flash_settings(self) -> None:
         """Keep the settings for the next restart."""
-        complaint = self.settings.flash()
-        if complaint:
-            self.tell(complaint)
+        problem = self.settings.flash()
+        if problem:
+            self.notify(problem)
 
     def play_system_sound(self, number: int) -> int:
-        """One of the robot's own sounds, or the card's in place of a number that is none; −1 stops. Bytes read."""
+        """Play a system sound, or a sound of the card for an unknown number; −1 stops. Returns the bytes read."""
         if number == -1:
             self._send(StopSound())
             return 0
@@ -100,7 +100,7 @@ class Body:
         return found or 0
 
     def play(self, name: str, number: int) -> int:
-        """A sound of the card, by the letter of its kind and its number; −1 stops, and so does one that is missing.
+        """Play a sound of the card, by the letter of its kind and its number; −1 or a missing sound stops.
 
         Returns the bytes read.
         """
@@ -108,34 +108,34 @@ class Body:
         if found is None:
             self._send(StopSound())
         if found is None and number != -1:
-            self.tell(f"there is no {name}{number}.wav on the card" if self.card else f"no card: {name}{number}.wav")
+            self.notify(f"there is no {name}{number}.wav on the card" if self.card else f"no card: {name}{number}.wav")
         return found or 0
 
     def record(self, number: int) -> int:
-        """Begin to record; −1 stops and stores. Returns the bytes written."""
+        """Start recording; −1 stops and stores. Returns the bytes written."""
         written = self.stop_recording()
         if number >= 0 and self.card is not None:
-            self._recorder = Recorder(number, self._now_ns)
+            self._recorder = SoundRecorder(number, self._now_ns)
         return written
 
     def stop_recording(self) -> int:
-        """Store what was recorded, if something is being recorded; returns the bytes written."""
+        """Stop and store the current recording, if any; return the bytes written."""
         recorder, self._recorder = self._recorder, None
         if recorder is None or self.card is None:
             return 0
         samples = recorder.samples
         if not self.card.write_sound(f"r{recorder.number}", samples):
-            self.tell(f"r{recorder.number}.wav cannot be stored on the card")
-            self.tell_full_card()
+            self.notify(f"r{recorder.number}.wav cannot be stored on the card")
+            self.notify_card_full()
         return len(samples)
 
-    def tell_full_card(self) -> None:
-        """Tell the user if the card has refused a program something as it is full."""
+    def notify_card_full(self) -> None:
+        """Notify the user if the last operation failed because the card is full."""
         if self.card is not None and self.card.refusal:
-            self.tell(self.card.refusal)
+            self.notify(self.card.refusal)
 
     def recorded_bytes(self, number: int) -> int:
-        """Samples of a record; 0 when there is none."""
+        """Samples of a recording; 0 if there is none."""
         return 0 if self.card is None else self.card.sound_bytes(f"r{number}")
 
     def _play_file(self, name: str) -> int | None:
@@ -143,8 +143,8 @@ class Body:
         found = self.card.read_sound(name) if self.card is not None else None
         if found is None:
             return None
-        samples, complaint = found
-        if complaint:
-            self.tell(complaint)
+        samples, problem = found
+        if problem:
+            self.notify(problem)
         self._send(PlaySamples(samples))
         return len(samples)

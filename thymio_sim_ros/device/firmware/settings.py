@@ -9,6 +9,7 @@ import json
 from pathlib import Path
 
 from aseba_vm.cli.output import rewrite_file
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.audio.synthesis import VOLUME_OFF
 from thymio_sim_ros.sim.commands import MotorTargets
 
@@ -25,13 +26,13 @@ PARTS: tuple[tuple[str, int, int], ...] = (
 _MOTORS = 8
 """Address of the first motor's calibration."""
 _FULL = 256
-_MOST_CORRECTION = 50
-_MOST_TARGET = 1000
+_MAX_CORRECTION = 50
+_MAX_TARGET = 1000
 """Limits of calibrations, and of targets before them (section 2)."""
 INT16 = range(-0x8000, 0x8000)
 
 
-class SettingsError(Exception):
+class SettingsError(ThymioSimError):
     """A file that cannot hold settings; the text is one line."""
 
 
@@ -43,7 +44,7 @@ class Settings:
         self._file = file
         self._flashed: list[int] = []
         self._words: list[int] = []
-        self.renew()
+        self.reload()
 
     def __len__(self) -> int:
         return len(self._words)
@@ -81,7 +82,7 @@ class Settings:
             return f"settings are not stored: {self._file}: {error.strerror}"
         return ""
 
-    def renew(self) -> None:
+    def reload(self) -> None:
         """As for a new robot: what the file says, or the first values."""
         self._flashed = _first_values() if self._file is None else _read(self._file)
         self._words = list(self._flashed)
@@ -96,8 +97,8 @@ def _first_values() -> list[int]:
 
 
 def _calibrate(target: int, factor: int) -> int:
-    factor = max(_FULL - _MOST_CORRECTION, min(_FULL + _MOST_CORRECTION, factor))
-    return max(-_MOST_TARGET, min(_MOST_TARGET, target)) * factor >> 8
+    factor = max(_FULL - _MAX_CORRECTION, min(_FULL + _MAX_CORRECTION, factor))
+    return max(-_MAX_TARGET, min(_MAX_TARGET, target)) * factor >> 8
 
 
 def _read(file: Path) -> list[int]:

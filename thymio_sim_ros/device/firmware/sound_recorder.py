@@ -1,22 +1,22 @@
-"""What `sound.record` stores: the loudness that the microphone told, since a simulated robot has nothing finer.
+"""Recordings of `sound.record`: the intensity of the microphone, because the simulation has no waveform.
 
-For each tick of the sound (128 samples) the record holds a square wave whose swing is `mic.intensity`.
+For each block (128 samples) the recording has a square wave with the amplitude `mic.intensity`.
 """
 
 from __future__ import annotations
 
 from thymio_sim_ros.sim.audio.synthesis import BLOCK_NS, BLOCK_SAMPLES, SILENCE
 
-__all__ = ["Recorder"]
+__all__ = ["SoundRecorder"]
 
 _HALF_PERIOD = 8
 """Samples above and then below the middle: a tone of 488 Hz."""
-MOST_BLOCKS = 10 * 60 * 61
+MAX_BLOCKS = 10 * 60 * 61
 """Ticks in a record, ten minutes; what comes later is lost."""
 
 
-class Recorder:
-    """A record that is being made. Invariant: it holds every whole tick since the beginning."""
+class SoundRecorder:
+    """A recording in progress. Invariant: it contains every whole block since its start."""
 
     def __init__(self, number: int, now_ns: int) -> None:
         self.number = number
@@ -25,14 +25,14 @@ class Recorder:
 
     @property
     def samples(self) -> bytes:
-        """The record so far, unsigned 8 bit."""
+        """The samples so far, unsigned 8 bit."""
         return b"".join(_block(intensity) for intensity in self._blocks)
 
-    def listen(self, now_ns: int, intensity: int) -> None:
-        """Time has come so far, and the microphone tells this intensity."""
+    def record_until(self, now_ns: int, intensity: int) -> None:
+        """Record blocks up to this time with the current intensity of the microphone."""
         while now_ns >= self._next_ns:
             self._next_ns += BLOCK_NS
-            if len(self._blocks) < MOST_BLOCKS:
+            if len(self._blocks) < MAX_BLOCKS:
                 self._blocks.append(max(0, min(255, intensity)))
 
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 MILLISECOND_NS = 1_000_000
 
-LONGEST_LAG_MS = 1000
+MAX_LAG_MS = 1000
 """After a longer jump of the clock each timer fires once for all that lies before."""
 
 
@@ -52,10 +52,10 @@ class Timers:
             return ()
         missed = self._count(self._clock_ms - self._at_ms)
         self._clock_ms = now_ms
-        early = self._count(max(0, self.lag_ms - LONGEST_LAG_MS))
+        early = self._count(max(0, self.lag_ms - MAX_LAG_MS))
         return tuple(sorted({*missed, *early})) if missed or early else ()
 
-    def notice(self, periods: Sequence[int]) -> None:
+    def set_periods(self, periods: Sequence[int]) -> None:
         """Take over changed periods in ms; one of 0 or less stops its timer."""
         if periods == self._periods:
             return

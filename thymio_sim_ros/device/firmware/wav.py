@@ -6,7 +6,7 @@ import wave
 from collections.abc import Iterable
 from pathlib import Path
 
-__all__ = ["HEADER_BYTES", "complaint", "write"]
+__all__ = ["HEADER_BYTES", "format_problem", "write"]
 
 HEADER_BYTES = 44
 """What the robot skips at the beginning of a sound."""
@@ -26,7 +26,7 @@ def write(path: Path, parts: Iterable[bytes]) -> None:
             file.writeframes(part)
 
 
-def complaint(path: Path) -> str:
+def format_problem(path: Path) -> str:
     """Why a file will not sound as its maker meant it, or nothing: the robot plays the bytes of any file."""
     try:
         with wave.open(str(path), "rb") as file:

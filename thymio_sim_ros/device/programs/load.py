@@ -8,15 +8,15 @@ from dataclasses import dataclass, field
 
 from thymio_sim_ros.device.costs import COSTS
 
-__all__ = ["Load", "Meter"]
+__all__ = ["Load", "LoadMeter"]
 
-FEWEST_CUTS = 3
+MIN_CUTS = 3
 """Runs in a period of observation that calls use up, before the program counts as too fast; or two of three, where
 many robots share the machine."""
-FEWEST_REPLACED = 10
+MIN_REPLACED = 10
 """Commands of the same period that were replaced, before that is said."""
-MOST_NAMED = 3
-"""Natives or events that a sentence names."""
+MAX_NAMED = 3
+"""Natives or events that a warning names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,17 +35,17 @@ class Load:
     replaced: int = 0
 
     @property
-    def sentence(self) -> str:
+    def warning(self) -> str:
         """What is too fast, what became of it and what to do; empty if all could be served."""
         parts = []
-        if self.cuts >= FEWEST_CUTS or (self.cuts and self.cuts * 3 >= self.runs * 2):
-            asked = Counter({f"emit {name}": count for name, count in self.emitted.items()})
-            asked.update({f"call {name}": count for name, count in self.calls.items()})
+        if self.cuts >= MIN_CUTS or (self.cuts and self.cuts * 3 >= self.runs * 2):
+            demand = Counter({f"emit {name}": count for name, count in self.emitted.items()})
+            demand.update({f"call {name}": count for name, count in self.calls.items()})
             parts.append(
-                f"the program does more than the robot can carry out ({_listed(asked)}) and is slowed down; "
+                f"the program does more than the robot can carry out ({_listed(demand)}) and is slowed down; "
                 "do it less often, for example in a timer event"
             )
-        if self.replaced >= FEWEST_REPLACED:
+        if self.replaced >= MIN_REPLACED:
             parts.append(f"commands replaced by later ones before they were sent: {self.replaced}")
         if self.lost:
             parts.append(
@@ -55,7 +55,7 @@ class Load:
         return "; ".join(parts)
 
 
-class Meter:
+class LoadMeter:
     """Counts calls and events of one device. `charged` never goes back; the rest is taken by `take`."""
 
     def __init__(self) -> None:
@@ -85,7 +85,7 @@ class Meter:
         self._runs += 1
         self._cuts += is_cut
 
-    def take(self) -> Load:
+    def pop(self) -> Load:
         """Return what was counted since the last time."""
         load = Load(self._cuts, self._runs, dict(self._calls), dict(self._emitted), dict(self._lost))
         self._cuts = self._runs = 0
@@ -95,5 +95,5 @@ class Meter:
 
 
 def _listed(counts: Counter[str]) -> str:
-    named = [f"{name}: {count}" for name, count in counts.most_common(MOST_NAMED)]
-    return ", ".join([*named, *(["…"] if len(counts) > MOST_NAMED else [])])
+    named = [f"{name}: {count}" for name, count in counts.most_common(MAX_NAMED)]
+    return ", ".join([*named, *(["…"] if len(counts) > MAX_NAMED else [])])

@@ -11,16 +11,17 @@ from aseba_vm.aesl.network import Selection, is_other_device, with_vpl_events
 from aseba_vm.aesl.network import select as select_nodes
 from aseba_vm.messages import MESSAGES, wording
 from thymio_sim_ros.device.layout import THYMIO, target
+from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = [
     "ProgramError",
     "ThymioFile",
     "ThymioProgram",
-    "is_left_out",
+    "is_skipped",
     "load_file",
     "load_program",
-    "made_for",
     "memory_use",
+    "other_device_note",
     "parse",
     "select",
 ]
@@ -28,7 +29,7 @@ __all__ = [
 NO_CONSTANTS: Mapping[str, int] = MappingProxyType({})
 
 
-class ProgramError(Exception):
+class ProgramError(ThymioSimError):
     """A program that is refused: file, line and column from 1 (None where there is no place), message."""
 
     def __init__(self, name: str, line: int | None, column: int | None, message: str) -> None:
@@ -109,7 +110,7 @@ def load_file(
         try:
             programs.append(_compile(name, text, node, network, layout, is_one=is_one))
         except ProgramError as error:
-            if not is_left_out(node, selection):
+            if not is_skipped(node, selection):
                 raise
             notes.append(wording("note-left-out-node", (node.name, str(error))))
     others = tuple(dict.fromkeys(node.name for node in selection.others))
@@ -129,12 +130,12 @@ def select(network: aesl.Network, robots: Collection[str] = ()) -> Selection:
     return select_nodes(network, {"", target().name, *robots})
 
 
-def is_left_out(node: aesl.Node, selection: Selection) -> bool:
+def is_skipped(node: aesl.Node, selection: Selection) -> bool:
     """Whether a file is accepted without this node if it does not compile."""
     return bool(selection.named) and node in selection.guessed
 
 
-def made_for(node: aesl.Node, messages: Mapping[str, str] = MESSAGES) -> str:
+def other_device_note(node: aesl.Node, messages: Mapping[str, str] = MESSAGES) -> str:
     """What is added to the error of a node that is named after another kind of device; else nothing."""
     return f"; {wording('note-made-for', (node.name,), messages)}" if is_other_device(node) else ""
 
@@ -149,7 +150,7 @@ def memory_use(program: Program, layout: str = THYMIO) -> dict[str, tuple[int, i
     }
 
 
-def called(node: aesl.Node) -> str:
+def node_label(node: aesl.Node) -> str:
     """A node as it is called in sentences."""
     return f"node '{node.name}' {node.node_id}" if node.node_id else f"node '{node.name}'"
 
@@ -160,7 +161,7 @@ def _compile(
     try:
         program = compile(node.code, target(layout), events=network.events, constants=network.constants)
     except CompileError as error:
-        message = (str(error) if is_one else f"{called(node)}: {error}") + made_for(node)
+        message = (str(error) if is_one else f"{node_label(node)}: {error}") + other_device_note(node)
         if error.hint is not None:
             message += f" ({error.hint.worded(rows=node.rows_in_file())})"
         if error.pos is None:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 from aseba_vm.messages import wording
 from thymio_sim_ros.device.layout import target
-from thymio_sim_ros.device.programs.program import ThymioFile, ThymioProgram, called
+from thymio_sim_ros.device.programs.program import ThymioFile, ThymioProgram, node_label
 
-__all__ = ["Member", "Share", "share_out"]
+__all__ = ["Assignment", "RobotId", "assign_programs"]
 
 
 @dataclass(frozen=True, slots=True)
-class Member:
+class RobotId:
     """A robot: its name (empty if it is alone) and its number on the network."""
 
     name: str
@@ -21,14 +21,14 @@ class Member:
 
 
 @dataclass(frozen=True, slots=True)
-class Share:
+class Assignment:
     """What a robot gets of a file: a program or None, and what does not fit, for people."""
 
     program: ThymioProgram | None
     notes: tuple[str, ...] = ()
 
 
-def share_out(file: ThymioFile, robots: Sequence[Member]) -> dict[str, Share]:
+def assign_programs(file: ThymioFile, robots: Sequence[RobotId]) -> dict[str, Assignment]:
     """Robot's name → its share. The only program of a file is for all, unless it names one of them."""
     common = [*file.notes, *(f"not for a Thymio, left out: node '{other}'" for other in file.others)]
     names = {robot.name for robot in robots}
@@ -36,10 +36,10 @@ def share_out(file: ThymioFile, robots: Sequence[Member]) -> dict[str, Share]:
     if len(file.programs) == 1 and (only.node.name not in names or _is_general(only)):
         if not _is_general(only):
             common.insert(0, wording("note-only-node", (only.node.name,)))
-        return {robot.name: Share(only, tuple(common)) for robot in robots}
-    given, left = _match(file.programs, robots)
-    common += [f"no robot is left for {called(program.node)}" for program in left]
-    return {robot.name: _share(robot, given.get(robot.name), common) for robot in robots}
+        return {robot.name: Assignment(only, tuple(common)) for robot in robots}
+    assigned, left = _match(file.programs, robots)
+    common += [f"no robot is left for {node_label(program.node)}" for program in left]
+    return {robot.name: _share(robot, assigned.get(robot.name), common) for robot in robots}
 
 
 def _is_general(program: ThymioProgram) -> bool:
@@ -48,32 +48,34 @@ def _is_general(program: ThymioProgram) -> bool:
 
 
 def _match(
-    programs: Sequence[ThymioProgram], robots: Sequence[Member]
+    programs: Sequence[ThymioProgram], robots: Sequence[RobotId]
 ) -> tuple[dict[str, ThymioProgram], list[ThymioProgram]]:
     left = list(programs)
-    given: dict[str, ThymioProgram] = {}
+    assigned: dict[str, ThymioProgram] = {}
     names = {robot.name for robot in robots}
 
-    def give(robot: Member, fits: list[ThymioProgram]) -> None:
-        if robot.name not in given and fits:
-            given[robot.name] = fits[0]
+    def assign(robot: RobotId, fits: list[ThymioProgram]) -> None:
+        if robot.name not in assigned and fits:
+            assigned[robot.name] = fits[0]
             left.remove(fits[0])
 
     for robot in robots:
-        give(robot, [program for program in left if program.node.name == robot.name])
+        assign(robot, [program for program in left if program.node.name == robot.name])
     for robot in robots:
-        give(robot, [program for program in left if program.node.node_id == robot.number])
+        assign(robot, [program for program in left if program.node.node_id == robot.number])
     for robot in robots:
-        give(robot, [program for program in left if program.node.name not in names])
-    return given, left
+        assign(robot, [program for program in left if program.node.name not in names])
+    return assigned, left
 
 
-def _share(robot: Member, program: ThymioProgram | None, common: Sequence[str]) -> Share:
+def _share(robot: RobotId, program: ThymioProgram | None, common: Sequence[str]) -> Assignment:
     if program is None:
-        return Share(None, (*common, "the file has no program left for this robot: it runs nothing"))
+        return Assignment(None, (*common, "the file has no program left for this robot: it runs nothing"))
     node = program.node
     if node.name != robot.name and not _is_general(program):
-        return Share(program, (wording("note-next-node", (node.name,)), *common))
+        return Assignment(program, (wording("note-next-node", (node.name,)), *common))
     if node.name != robot.name and node.node_id not in (0, robot.number):
-        return Share(program, (*common, f"{called(node)} runs here, on number {robot.number}, as it was next in order"))
-    return Share(program, tuple(common))
+        return Assignment(
+            program, (*common, f"{node_label(node)} runs here, on number {robot.number}, as it was next in order")
+        )
+    return Assignment(program, tuple(common))

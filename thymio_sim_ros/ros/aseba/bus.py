@@ -88,14 +88,16 @@ class Bus:
         """Robots of one runtime hear each other directly, others by the network's topic; nobody hears himself."""
         source = sender.device.node_id
         for ports in self._robots():
-            if ports is not sender and ports.device.hears(sender.device):
+            if ports is not sender and ports.device.receives_from(sender.device):
                 self._let_hear(ports, event, args, source)
-        self._network.send(Telegram(event, source, sender.device.body.network, tuple(args)))
+        self._network.send(Telegram(event, source, sender.device.services.network, tuple(args)))
 
     def emit(self, ports: DevicePorts, event: str, args: Sequence[int]) -> None:
         """An event from ROS reaches every robot that declares it, or only this one; too much data is refused."""
         robots = (
-            [robot for robot in self._robots() if robot.device.hears(ports.device)] if self.reaches_all else [ports]
+            [robot for robot in self._robots() if robot.device.receives_from(ports.device)]
+            if self.reaches_all
+            else [ports]
         )
         sizes = {robot: _size(robot, event) for robot in robots}
         fits = {robot: size for robot, size in sizes.items() if size is not None and len(args) <= size}
@@ -113,7 +115,7 @@ class Bus:
             for robot in fits:
                 self.settle(robot)
             if self.reaches_all:
-                self._network.send(Telegram(event, COMPUTER, ports.device.body.network, tuple(args)))
+                self._network.send(Telegram(event, COMPUTER, ports.device.services.network, tuple(args)))
 
     def told(self, ports: DevicePorts) -> None:
         """The status of a robot is another."""
@@ -122,7 +124,7 @@ class Bus:
     def _hear_others(self, telegram: Telegram) -> None:
         for ports in self._robots():
             size = _size(ports, telegram.event)
-            if size is None or ports.device.body.network != telegram.radio:
+            if size is None or ports.device.services.network != telegram.radio:
                 continue
             args = telegram.args[:size] + (0,) * (size - len(telegram.args))
             self._let_hear(ports, telegram.event, args, telegram.source)

@@ -18,6 +18,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from thymio_sim_ros.device.editor.language_service import Question, check, describe_target, refusal
+from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = ["CheckService"]
 
@@ -31,7 +32,7 @@ _TYPES = {
 }
 
 
-class _RequestError(ValueError):
+class _RequestError(ThymioSimError, ValueError):
     """A request that cannot be understood; the text says why."""
 
 

@@ -17,11 +17,11 @@ from std_srvs.srv import Trigger
 
 from thymio_sim_ros.device.bindings import sensor_names
 from thymio_sim_ros.device.device import AsebaDevice
-from thymio_sim_ros.device.firmware.behavior_host import BehaviourHost
+from thymio_sim_ros.device.firmware.behavior_host import BehaviorHost
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
-from thymio_sim_ros.device.programs.program_assignment import Share
+from thymio_sim_ros.device.programs.program_assignment import Assignment
 from thymio_sim_ros.device.programs.status import OFF, RUNNING
 from thymio_sim_ros.ros.aseba import driver_input
 from thymio_sim_ros.ros.aseba.event_endpoints import EventPorts
@@ -94,8 +94,8 @@ class DevicePorts:
         self.names = names
         self.number = number
         self.device = AsebaDevice(node_id=number, options=options)
-        self.share: Share | None = None
-        self._host = BehaviourHost(self.device)
+        self.share: Assignment | None = None
+        self._host = BehaviorHost(self.device)
         self._node = node
         self._around = around
         self._wishes = wishes or Wishes()
@@ -155,13 +155,13 @@ class DevicePorts:
 
     def load(self, program: ThymioProgram | None, notes: Sequence[str] = ()) -> None:
         """Load a program, or nothing, and run its beginning; `notes` are for people."""
-        self.share = Share(program, tuple(notes))
+        self.share = Assignment(program, tuple(notes))
         self._own = program or load_program("", "none", self.device.layout)
         self._host.load(self._own)
         self._begin()
         self.run()
 
-    def start(self, behaviour: str, share: Share | None) -> None:
+    def start(self, behaviour: str, share: Assignment | None) -> None:
         """Switch the robot on with a built-in behaviour; a program of one's own waits in its menu."""
         self.share = share
         own = share.program if share is not None else None
@@ -215,26 +215,26 @@ class DevicePorts:
         self.device.advance(now_ns)
         self.device.run(RUN_BUDGET)
         is_cut = self.device.is_busy
-        events = self._host.take_events()
-        commands = self.device.take_commands()
+        events = self._host.pop_events()
+        commands = self.device.pop_commands()
         self._replaced += self._outputs.send_all(commands, latest=is_cut or len(commands) > MOST_COMMANDS)
-        for name in self.device.take_local_events():
+        for name in self.device.pop_local_events():
             self._events.publish(name, ())
         for event in events:
             self._events.publish(event.name, event.args)
             self._around.pass_on(self, event.name, event.args)
         if self._host.program is not self._program:
             self._begin()
-        for notice in self._host.take_notices():
+        for notice in self._host.pop_notices():
             self._node.get_logger().warning(f"{self.names.name or 'robot'}: {notice}")
         self._tell()
         self._turned_s = time.monotonic()
 
     def observe_load(self) -> None:
         """Tell whether the program has done more than can be served since the last time."""
-        load = replace(self.device.take_load(), replaced=self._replaced)
+        load = replace(self.device.pop_load(), replaced=self._replaced)
         self._replaced = 0
-        overload = load.sentence if self.device.status.state == RUNNING else ""
+        overload = load.warning if self.device.status.state == RUNNING else ""
         if overload and not self._overload:
             self.warn(f"{self.names.name or 'robot'}:", overload)
         self._overload = overload
@@ -258,7 +258,7 @@ class DevicePorts:
             self._is_closed = True
             self._around.forget(self)
             self.device.stop()
-            self._outputs.send_all(self.device.take_commands(), latest=True)
+            self._outputs.send_all(self.device.pop_commands(), latest=True)
 
     def close(self) -> None:
         """`halt` it; its topics and services go."""

@@ -28,12 +28,12 @@ from std_msgs.msg import Int16MultiArray, String
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.bindings import sensor_names
 from thymio_sim_ros.device.firmware.behavior_host import MENU
-from thymio_sim_ros.device.firmware.sd_card import CardError
+from thymio_sim_ros.device.firmware.sd_card import SdCardError
 from thymio_sim_ros.device.firmware.settings import SettingsError
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.device.options import OptionError
 from thymio_sim_ros.device.programs.program import ProgramError
-from thymio_sim_ros.device.programs.program_assignment import Member, Share
+from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId
 from thymio_sim_ros.loading import check_behaviour, shipped_behaviours
 from thymio_sim_ros.ros.aseba import parameters as aseba_params
 from thymio_sim_ros.ros.aseba import script_parameters
@@ -69,7 +69,7 @@ class _Accepted:
 
     values: dict[str, Any]
     changes: dict[str, Any]
-    shares: dict[str, Share | None]
+    shares: dict[str, Assignment | None]
 
 
 class AsebaRuntime:
@@ -100,7 +100,7 @@ class AsebaRuntime:
         self._decoder, self._warn = Decoder(), Warner(self.node)
         try:
             self._start(defaults or RuntimeParams())
-        except (OptionError, WrongValueError, CardError, SettingsError, *PROGRAM_ERRORS) as error:
+        except (OptionError, WrongValueError, SdCardError, SettingsError, *PROGRAM_ERRORS) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
 
@@ -235,19 +235,19 @@ class AsebaRuntime:
             if ports.names.name in new or _program(share) != _program(ports.share):
                 self._begin(ports, share)
 
-    def _begin(self, ports: DevicePorts, share: Share | None) -> None:
+    def _begin(self, ports: DevicePorts, share: Assignment | None) -> None:
         """Let a robot begin with its program, or with the behaviour that it is to be switched on with."""
         for note in share.notes if share is not None else ():
             self.node.get_logger().warning(f"{ports.names.name or 'robot'}: {note}")
         if share is None and self.params.layout != THYMIO:  # the reference playground has no menu
-            share = Share(None)
+            share = Assignment(None)
         if share is None or self._behaviour:
             ports.start(self._behaviour or MENU, share)
         else:
             ports.load(share.program, share.notes)
 
-    def _members(self) -> list[Member]:
-        return [Member(ports.names.name, ports.number) for ports in self.robots]
+    def _members(self) -> list[RobotId]:
+        return [RobotId(ports.names.name, ports.number) for ports in self.robots]
 
     def _on_simulator_state(self, message: String) -> None:
         """Another playground may have other robots; they come and go while it runs."""
@@ -261,7 +261,7 @@ class AsebaRuntime:
         if names != [ports.names.name for ports in self.robots]:
             try:
                 self._set_robots(names)
-            except (CardError, SettingsError, *PROGRAM_ERRORS) as error:
+            except (SdCardError, SettingsError, *PROGRAM_ERRORS) as error:
                 self.node.get_logger().error(f"robots {', '.join(names)}: {error}")
 
     def _listen_to(self, topic: str) -> None:
@@ -352,13 +352,13 @@ class AsebaRuntime:
         """A text parameter as it was set last; empty if it never was."""
         return str(self.node.get_parameter_or(name, Parameter(name, value="")).value)
 
-    def _checked_shares(self, values: dict[str, Any], changes: dict[str, Any]) -> dict[str, Share | None]:
+    def _checked_shares(self, values: dict[str, Any], changes: dict[str, Any]) -> dict[str, Assignment | None]:
         """Each robot's program by the new values, if a script changes; those of absent robots must compile too."""
         if not any(".script." in f".{name}" for name in changes):
             return {}
         absent = set(script_parameters.named_robots(changes)) - {ports.names.name for ports in self.robots}
         for name in sorted(absent):
-            script_parameters.shares(values, [Member(name, self.params.first_id)], self.params.layout)
+            script_parameters.shares(values, [RobotId(name, self.params.first_id)], self.params.layout)
         return script_parameters.shares(values, self._members(), self.params.layout)
 
     def _apply_parameters(self, parameters: list[Parameter]) -> None:
@@ -386,7 +386,7 @@ class AsebaRuntime:
         if is_other or _program(share) != _program(ports.share):
             if "behaviour" not in accepted.changes:
                 self._behaviour = ""
-            self._begin(ports, share or Share(None))
+            self._begin(ports, share or Assignment(None))
         elif is_switched:
             self._begin(ports, share)
 
@@ -402,7 +402,7 @@ class AsebaRuntime:
         )
 
 
-def _program(share: Share | None) -> object:
+def _program(share: Assignment | None) -> object:
     return None if share is None else share.program
 
 

@@ -16,6 +16,7 @@ from aseba_vm.frontend.lexer import is_name
 from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.options import DeviceOptions
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
 from thymio_sim_ros.ros.rclpy_ext.parameters import param
 
@@ -52,7 +53,7 @@ _FREE = re.compile(
 )
 
 
-class WrongValueError(ValueError):
+class WrongValueError(ThymioSimError, ValueError):
     """A value that a parameter cannot have; the text says why."""
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from thymio_sim_ros.device.programs.program import load_file
-from thymio_sim_ros.device.programs.program_assignment import Member, Share, share_out
+from thymio_sim_ros.device.programs.program_assignment import Assignment, RobotId, assign_programs
 from thymio_sim_ros.loading import read_text
 
 __all__ = ["Script", "named", "named_robots", "script_of", "shares"]
@@ -47,15 +47,15 @@ def script_of(values: Mapping[str, Any], robot: str) -> Script:
     )
 
 
-def shares(values: Mapping[str, Any], robots: Sequence[Member], layout: str) -> dict[str, Share | None]:
+def shares(values: Mapping[str, Any], robots: Sequence[RobotId], layout: str) -> dict[str, Assignment | None]:
     """Robot's name → its program; None for a robot that no script is for.
 
     Raises ProgramError, ResourceError, OSError.
     """
     scripts = {robot.name: script_of(values, robot.name) for robot in robots}
     pool = [robot for robot in robots if not scripts[robot.name].is_own]
-    found: dict[Script, dict[str, Share]] = {}
-    result: dict[str, Share | None] = {}
+    found: dict[Script, dict[str, Assignment]] = {}
+    result: dict[str, Assignment | None] = {}
     for robot in robots:
         script = scripts[robot.name]
         if script.is_empty:
@@ -92,9 +92,9 @@ def _constants(values: Mapping[str, Any], prefix: str) -> dict[str, int]:
     }
 
 
-def _load(script: Script, robots: Sequence[Member], layout: str) -> dict[str, Share]:
+def _load(script: Script, robots: Sequence[RobotId], layout: str) -> dict[str, Assignment]:
     text, name = (script.source, script.name or "program") if script.source else read_text(script.path)
     file = load_file(
         text, name, layout, constants=dict(script.constants), robots=[robot.name for robot in robots if robot.name]
     )
-    return share_out(file, robots)
+    return assign_programs(file, robots)

@@ -13,6 +13,7 @@ import struct
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat import typesupport
 
 __all__ = [
@@ -51,7 +52,7 @@ class Transform(NamedTuple):
     rotation: tuple[float, float, float, float]
 
 
-class TransformDataError(ValueError):
+class TransformDataError(ThymioSimError, ValueError):
     """Bytes that are no TFMessage; the text says at which offset."""
 
 

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat import rosidl_structs
 
 __all__ = ["SequenceType", "TypeSupportError", "build", "check_layouts", "release_of", "type_hash_of"]
@@ -33,7 +34,7 @@ _HASH_PREFIX = "RIHS01_"
 _KNOWN_RMW = "rmw_fastrtps_cpp"
 
 
-class TypeSupportError(RuntimeError):
+class TypeSupportError(ThymioSimError, RuntimeError):
     """The installed ROS is not one whose structures this module knows; the text says what differs."""
 
 

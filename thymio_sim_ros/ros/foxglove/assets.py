@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from urllib.parse import unquote
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.foxglove.graph import allow_list
 from thymio_sim_ros.ros.foxglove.schemas import share_folders
 
@@ -18,7 +19,7 @@ ASSETS = r"(?i)package://[^?#]+\.(dae|fbx|glb|gltf|jpeg|jpg|mtl|obj|png|stl|tif|
 _MAX_SIZE = 64 << 20
 
 
-class AssetError(Exception):
+class AssetError(ThymioSimError):
     """Why a file is not given; the text is for the client."""
 
 

@@ -13,6 +13,7 @@ import struct
 from collections.abc import Callable
 from typing import Any
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, full_name, load_type
 
 __all__ = ["MAX_PARTS", "UNCHECKED_BYTES", "TooManyPartsError", "check_parts"]
@@ -37,7 +38,7 @@ _ARRAY = re.compile(r"^(.+)\[(\d+)\]$")
 _STRING = re.compile(r"^string(?:<\d+>)?$")
 
 
-class TooManyPartsError(ValueError):
+class TooManyPartsError(ThymioSimError, ValueError):
     """A message that would take too long to read."""
 
     def __init__(self) -> None:

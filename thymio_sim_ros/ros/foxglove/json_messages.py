@@ -14,6 +14,7 @@ import sys
 from typing import Any
 
 from thymio_sim_ros.bridge import bounded_json
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.foxglove.types import full_name, load_type
 
 __all__ = ["JsonMessageError", "from_json", "to_json"]
@@ -27,7 +28,7 @@ MAX_MESSAGES = 2000
 """Messages in one message."""
 
 
-class JsonMessageError(ValueError):
+class JsonMessageError(ThymioSimError, ValueError):
     """JSON that does not fit the message type; the text says where."""
 
 

@@ -175,7 +175,7 @@ class FoxgloveBridge:
                     max_message_size=values.max_message_size,
                     tls=tls_context(values),
                     tokens=self.tokens,
-                    changes_nothing=allow_list(values.read_only_services),
+                    is_read_only_service=allow_list(values.read_only_services),
                 ),
             )
         except OSError as error:
@@ -242,7 +242,7 @@ class FoxgloveBridge:
 
     def _repeat_kept(self) -> None:
         self._repeat.cancel()
-        self._server.post(ev.RepeatKept())
+        self._server.post(ev.ResendRetained())
 
     def _discover(self) -> None:
         """Follow the graph."""
@@ -305,35 +305,37 @@ class FoxgloveBridge:
             self.node.get_logger().error(f"{type(event).__name__} failed:\n{traceback.format_exc()}")
             if isinstance(event, ev.ServiceCalled):
                 self._services.fail(event.client, event.request, "internal error (please report), see the log")
-            elif isinstance(event, (ev.ParametersSet, ev.ParametersAsked)):
-                self._server.post(ev.ShowParameters(event.client, (), event.request_id, ev.size_of(event)))
+            elif isinstance(event, (ev.ParametersSet, ev.ParametersRequested)):
+                self._server.post(ev.SendParameters(event.client, (), event.request_id, ev.size_of(event)))
 
-    def _want_graph(self, event: ev.GraphWanted) -> None:
+    def _want_graph(self, event: ev.GraphSubscriptionChanged) -> None:
         self._wants_graph = event.wanted
         self._is_graph_old = True
         if event.wanted:
             self._tell_graph()
 
-    def _give_asset(self, event: ev.AssetWanted) -> None:
+    def _give_asset(self, event: ev.AssetRequested) -> None:
         try:
             answer = AssetResponse(event.request_id, load_asset(event.uri, self.params.asset_uri_allowlist))
         except AssetError as error:
             answer = AssetResponse(event.request_id, b"", str(error))
-        self._server.post(ev.Tell(event.client, answer))
+        self._server.post(ev.SendToClient(event.client, answer))
 
 
 _HANDLERS: dict[type, Callable[[FoxgloveBridge, Any], None]] = {
-    ev.ChannelWanted: lambda self, event: self._topics.want(event.channel_id),
-    ev.ChannelUnwanted: lambda self, event: self._topics.unwant(event.channel_id),
+    ev.ChannelSubscribed: lambda self, event: self._topics.want(event.channel_id),
+    ev.ChannelUnsubscribed: lambda self, event: self._topics.unwant(event.channel_id),
     ev.ClientChannelOpened: lambda self, event: self._publishers.open(event.client, event.channel),
     ev.ClientChannelClosed: lambda self, event: self._publishers.close(event.client, event.channel_id),
-    ev.ClientSent: lambda self, event: self._publishers.publish(event.client, event.channel_id, event.payload),
+    ev.ClientMessageReceived: lambda self, event: self._publishers.publish(
+        event.client, event.channel_id, event.payload
+    ),
     ev.ServiceCalled: lambda self, event: self._services.call(event.client, event.request),
     ev.ParametersSet: lambda self, event: self._parameters.set(event),
-    ev.ParametersAsked: lambda self, event: self._parameters.get(event),
+    ev.ParametersRequested: lambda self, event: self._parameters.get(event),
     ev.ParametersWatched: lambda self, event: self._parameters.watch(event),
-    ev.GraphWanted: FoxgloveBridge._want_graph,
-    ev.AssetWanted: FoxgloveBridge._give_asset,
+    ev.GraphSubscriptionChanged: FoxgloveBridge._want_graph,
+    ev.AssetRequested: FoxgloveBridge._give_asset,
 }
 
 

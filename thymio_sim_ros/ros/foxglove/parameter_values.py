@@ -9,6 +9,7 @@ from typing import Any
 from rcl_interfaces.msg import ParameterType, ParameterValue
 
 from thymio_sim_ros.bridge.messages import Parameter
+from thymio_sim_ros.errors import ThymioSimError
 
 __all__ = ["UnfitValueError", "from_ros", "to_ros"]
 
@@ -43,7 +44,7 @@ _HINTS = {
 _TYPES = {code: hint for hint, code in _HINTS.items()}
 
 
-class UnfitValueError(ValueError):
+class UnfitValueError(ThymioSimError, ValueError):
     """A value that no ROS parameter can have; the text says why."""
 
 

@@ -23,12 +23,12 @@ from rclpy.qos import qos_profile_parameter_events
 from thymio_sim_ros.bridge.constants import StatusLevel
 from thymio_sim_ros.bridge.events import (
     Command,
-    ParametersAsked,
     ParametersChanged,
+    ParametersRequested,
     ParametersSet,
     ParametersWatched,
-    ShowParameters,
-    Tell,
+    SendParameters,
+    SendToClient,
     size_of,
 )
 from thymio_sim_ros.bridge.messages import Parameter, RemoveStatus, Status, parameter_status
@@ -131,12 +131,12 @@ class Parameters:
             wait.then()
         return bool(self._waits)
 
-    def get(self, wish: ParametersAsked) -> None:
+    def get(self, wish: ParametersRequested) -> None:
         """Answer with the values in force, once the nodes have been asked for them."""
         names = wish.names or None
         self._wants_all = self._wants_all or names is None
         nodes = self._present if names is None else _nodes_of(names) & self._present
-        self._after(nodes, lambda: self._post(ShowParameters(wish.client, names, wish.request_id)))
+        self._after(nodes, lambda: self._post(SendParameters(wish.client, names, wish.request_id)))
 
     def watch(self, wish: ParametersWatched) -> None:
         """A client wants to be told of changes."""
@@ -236,13 +236,15 @@ class Parameters:
         wish = change.wish
         accepted = tuple(parameter_status(name) for name in change.names if name not in change.refused)
         if accepted:
-            self._post(Tell(wish.client, RemoveStatus(accepted)))
+            self._post(SendToClient(wish.client, RemoveStatus(accepted)))
         refused = list(change.refused.items())
         for name, reason in refused[:MAX_REFUSALS]:
-            self._post(Tell(wish.client, Status(StatusLevel.ERROR, f"{name}: {reason}", parameter_status(name))))
+            self._post(
+                SendToClient(wish.client, Status(StatusLevel.ERROR, f"{name}: {reason}", parameter_status(name)))
+            )
         if more := len(refused[MAX_REFUSALS:]):
-            self._post(Tell(wish.client, Status(StatusLevel.ERROR, f"{more} more parameters were refused")))
-        self._post(ShowParameters(wish.client, change.names, wish.request_id, size_of(wish)))
+            self._post(SendToClient(wish.client, Status(StatusLevel.ERROR, f"{more} more parameters were refused")))
+        self._post(SendParameters(wish.client, change.names, wish.request_id, size_of(wish)))
 
     def _read_all(self, node: str) -> None:
         self._reading.add(node)

@@ -18,8 +18,9 @@ from rclpy.serialization import deserialize_message
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
 from thymio_sim_ros.bridge.constants import JSON, StatusLevel
-from thymio_sim_ros.bridge.events import Command, Tell
+from thymio_sim_ros.bridge.events import Command, SendToClient
 from thymio_sim_ros.bridge.messages import ClientChannel, Status
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.foxglove import json_messages
 from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_parts
@@ -45,7 +46,7 @@ _NO_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
 _MOTION_TYPES = frozenset(f"geometry_msgs/msg/{name}" for name in ("Twist", "TwistStamped"))
 
 
-class _RefusalError(Exception):
+class _RefusalError(ThymioSimError):
     """Why a client's channel or message is not accepted; the text is for its user."""
 
 
@@ -211,7 +212,7 @@ class ClientPublishers:
         return port
 
     def _refuse(self, client: int, text: str) -> None:
-        self._post(Tell(client, Status(StatusLevel.ERROR, text)))
+        self._post(SendToClient(client, Status(StatusLevel.ERROR, text)))
 
 
 def _decode(payload: bytes, encoding: str, port: _Port) -> Any:

@@ -12,7 +12,7 @@ from rclpy.node import Node
 from rclpy.serialization import deserialize_message, serialize_message
 
 from thymio_sim_ros.bridge.constants import CDR, JSON, StatusLevel
-from thymio_sim_ros.bridge.events import AddServices, Answer, Command, RemoveServices, Tell
+from thymio_sim_ros.bridge.events import AddServices, AnswerCall, Command, RemoveServices, SendToClient
 from thymio_sim_ros.bridge.messages import (
     Service,
     ServiceCallFailure,
@@ -93,7 +93,7 @@ class Services:
                 self.fail(client, request, f"{offer.service.name}: unreadable response: {_first_line(error)}")
                 return
             answer = ServiceResponse(request.service_id, request.call_id, request.encoding, payload)
-            self._post(Answer(client, answer, len(request.payload)))
+            self._post(AnswerCall(client, answer, len(request.payload)))
 
         self._calls.call(offer.service_type, offer.service.name, message, done, sender=client)
 
@@ -119,8 +119,8 @@ class Services:
         """Answer a call with the reason why it failed."""
         # Some clients handle one, some the other (docs/spec/foxglove.md section 2).
         failure = ServiceCallFailure(request.service_id, request.call_id, text)
-        self._post(Answer(client, failure, len(request.payload)))
-        self._post(Tell(client, Status(StatusLevel.ERROR, text)))
+        self._post(AnswerCall(client, failure, len(request.payload)))
+        self._post(SendToClient(client, Status(StatusLevel.ERROR, text)))
 
 
 def _decode(request: ServiceRequest, message_type: Any) -> Any:

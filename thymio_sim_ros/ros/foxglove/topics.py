@@ -12,7 +12,7 @@ from rclpy.node import Node
 from rclpy.subscription import Subscription
 
 from thymio_sim_ros.bridge.constants import CDR
-from thymio_sim_ros.bridge.events import AddChannels, Command, KeepLast, RemoveChannels
+from thymio_sim_ros.bridge.events import AddChannels, Command, RemoveChannels, RetainLast
 from thymio_sim_ros.bridge.messages import Channel
 from thymio_sim_ros.ros.foxglove.qos import Reception, reception
 from thymio_sim_ros.ros.foxglove.schemas import message_definition
@@ -203,7 +203,7 @@ class Topics:
         def forward(payload: bytes) -> None:
             publish(channel_id, now_ns(), payload)
 
-        self._post(KeepLast(channel_id, fitting.kept))
+        self._post(RetainLast(channel_id, fitting.kept))
         try:
             topic.subscription = self._node.create_subscription(
                 topic.message_type, topic.channel.topic, forward, fitting.profile, raw=True

@@ -9,12 +9,13 @@ from typing import Any
 
 from rclpy.type_support import check_for_type_support
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat import tf2_messages
 
 __all__ = ["MissingTypeError", "full_name", "load_type"]
 
 
-class MissingTypeError(Exception):
+class MissingTypeError(ThymioSimError):
     """A type that is not installed here."""
 
     def __init__(self, name: str, reason: str) -> None:

@@ -7,10 +7,11 @@ from typing import Any
 
 from geometry_msgs.msg import Twist as TwistMsg
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim import commands
 
 
-class CommandError(ValueError):
+class CommandError(ThymioSimError, ValueError):
     """A message that is refused; the text says what was found and what was expected."""
 
 

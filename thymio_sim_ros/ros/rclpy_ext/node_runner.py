@@ -29,6 +29,7 @@ from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat.shm_cleanup import remove_half_made_ports
 from thymio_sim_ros.ros.rclpy_ext import log_directory
 
@@ -62,7 +63,7 @@ STUCK = 1
 """Exit code of a process with a thread that did not stop."""
 
 
-class StartError(Exception):
+class StartError(ThymioSimError):
     """A node cannot start for a reason that the user can mend; the text is one line."""
 
 

@@ -21,7 +21,7 @@ from rclpy.executors import Executor
 from rclpy.parameter import Parameter
 
 from thymio_sim_ros import resources
-from thymio_sim_ros.domain import described
+from thymio_sim_ros.domain import describe_domain
 from thymio_sim_ros.loading import load_playground
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.interface import driver_topics, qos
@@ -152,7 +152,7 @@ class Simulator:
     def greeting(self) -> str:
         """What there is now, for a person."""
         robots = ", ".join(full_name(self.node, names.name).rstrip("/") or "/" for names in self.names.values())
-        where = described(os.environ, self.node.context.get_domain_id())
+        where = describe_domain(os.environ, self.node.context.get_domain_id())
         return f"Playground {self.playground_name}, robots in {robots or 'none'}; {where}"
 
     def turn(self, executor: Executor) -> None:

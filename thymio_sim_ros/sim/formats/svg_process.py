@@ -15,6 +15,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.formats import svg_worker
 
 __all__ = ["MAX_MEMORY", "MAX_SECONDS", "DrawError", "draw"]
@@ -28,7 +29,7 @@ _PYTHON = re.compile(r"(?:python|pypy)[0-9a-z.]*(?:-[a-z]+)?(?:\.exe)?", re.IGNO
 """Names of interpreters: `sys.executable` of a program that embeds Python is that program."""
 
 
-class DrawError(Exception):
+class DrawError(ThymioSimError):
     """An SVG that is not drawn: what was found, and what was expected."""
 
     def __init__(self, found: str, expected: str) -> None:

@@ -10,6 +10,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
+from thymio_sim_ros.errors import ThymioSimError
+
 __all__ = ["Element", "XmlError", "parse"]
 
 MAX_DEPTH = 200
@@ -22,7 +24,7 @@ _KNOWN = {f"http://www.w3.org/1999/xlink{_SPACE}href": "xlink:href"}
 _SVG = f"http://www.w3.org/2000/svg{_SPACE}"
 
 
-class XmlError(Exception):
+class XmlError(ThymioSimError):
     """XML that is refused: its line (1 is the first), what was found, what was expected."""
 
     def __init__(self, line: int, found: str, expected: str) -> None:

@@ -16,6 +16,8 @@ import textwrap
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from thymio_sim_ros.errors import ThymioSimError
+
 __all__ = ["Floats", "Ints", "KernelError", "Words", "parameters", "translate"]
 
 Floats = Any
@@ -38,7 +40,7 @@ Typed = tuple[str, str]
 """An expression's text and type."""
 
 
-class KernelError(Exception):
+class KernelError(ThymioSimError):
     """A function uses what kernels have not; says where."""
 
 

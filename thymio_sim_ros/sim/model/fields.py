@@ -20,6 +20,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeVar, cast
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.model.primitives import Color
 
 __all__ = [
@@ -66,7 +67,7 @@ def _clipped(text: str) -> str:
     return text if len(text) <= _LONGEST_PART else f"{text[: _LONGEST_PART - 3]}..."
 
 
-class FieldError(Exception):
+class FieldError(ThymioSimError):
     """A value that a field refuses: the key's path, what was found, what was expected."""
 
     def __init__(self, key: str, found: str, expected: str) -> None:

@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import NoReturn
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.formats import xml_tree
 from thymio_sim_ros.sim.formats.html_entities import without_html_entities
 from thymio_sim_ros.sim.formats.image_io import MAX_PICTURE_BYTES
@@ -234,7 +235,7 @@ def _parse_json(text: str) -> object:
         raise FieldError(_line_and_column(text, place), f"the key {describe(key)} twice", "every key once") from error
 
 
-class _TwiceError(Exception):
+class _TwiceError(ThymioSimError):
     """An object has a key twice."""
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.model.fields import Angle, Coordinate, Name, PenWidth, Shade, Text
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.primitives import Floor, Mark, Solid, Trigger
@@ -12,7 +13,7 @@ from thymio_sim_ros.sim.shapes import Shape
 __all__ = ["Headline", "NamedShape", "PenStart", "Playground", "PlaygroundError", "RobotStart", "Translation"]
 
 
-class PlaygroundError(Exception):
+class PlaygroundError(ThymioSimError):
     """A playground that is refused: file, path of the key, what was found there, what was expected."""
 
     def __init__(self, path: str, key: str, found: str, expected: str) -> None:

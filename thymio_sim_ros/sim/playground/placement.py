@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Point, Pose, convex_hulls_overlap, disc_overlaps_hull
 from thymio_sim_ros.sim.model.primitives import Disc, Solid
@@ -16,7 +17,7 @@ __all__ = ["Footprint", "Occupied", "PlacementError", "footprint_of", "footprint
 _HULL = robot_constants.hull()
 
 
-class PlacementError(ValueError):
+class PlacementError(ThymioSimError, ValueError):
     """A thing that cannot stand where it is wanted: its name, and the name of what is there."""
 
     def __init__(self, thing: str, pose: Pose, blocker: str) -> None:

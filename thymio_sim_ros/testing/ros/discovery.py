@@ -1,4 +1,4 @@
-"""Who has found whom in the graph: discovery takes some milliseconds even inside one process."""
+"""State of discovery: which endpoints are matched. Discovery takes some milliseconds even inside one process."""
 
 from __future__ import annotations
 
@@ -8,39 +8,39 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
 
-from thymio_sim_ros.testing.failure_messages import counted
+from thymio_sim_ros.testing.failure_messages import pluralized
 
-__all__ = ["as_published", "has_met", "is_settled", "topic_lines"]
+__all__ = ["all_matched", "as_published", "is_matched", "topic_lines"]
 
 _EVERYWHERE = ("/clock", "/parameter_events", "/rosout")
-"""Topics of every node, which tell nothing."""
+"""Topics of every node; not listed in failure messages."""
 
 
-def is_settled(nodes: Sequence[Node]) -> bool:
-    """Whether the publishers and subscriptions of these nodes have found those of the others that fit them.
+def all_matched(nodes: Sequence[Node]) -> bool:
+    """Whether all compatible publishers and subscriptions of these nodes are matched.
 
-    A simulator has thousands that nobody uses: only topics with both sides among these nodes are looked at.
+    Only topics with a publisher and a subscription among these nodes are checked: a simulator has thousands of others.
     """
     published = {publisher.topic_name for node in nodes for publisher in node.publishers}
     wanted = {subscription.topic_name for node in nodes for subscription in node.subscriptions}
     used = (published & wanted).difference(_EVERYWHERE[1:])
-    return all(_is_met(node, used) for node in nodes)
+    return all(_node_is_matched(node, used) for node in nodes)
 
 
-def _is_met(node: Node, topics: Set[str]) -> bool:
-    return all(_has_met_all(node, one) for one in node.publishers if one.topic_name in topics) and all(
-        has_met(node, one) for one in node.subscriptions if one.topic_name in topics
+def _node_is_matched(node: Node, topics: Set[str]) -> bool:
+    return all(_publisher_is_matched(node, one) for one in node.publishers if one.topic_name in topics) and all(
+        is_matched(node, one) for one in node.subscriptions if one.topic_name in topics
     )
 
 
-def _has_met_all(node: Node, publisher: Any) -> bool:
+def _publisher_is_matched(node: Node, publisher: Any) -> bool:
     infos = node.get_subscriptions_info_by_topic(publisher.topic_name)
     fits = sum(_fit(publisher.qos_profile, info.qos_profile) for info in infos)
     return bool(publisher.get_subscription_count() >= fits)
 
 
-def has_met(node: Node, subscription: Any) -> bool:
-    """Whether a subscription has found all publishers that fit it, those of other processes too."""
+def is_matched(node: Node, subscription: Any) -> bool:
+    """Whether a subscription is matched with all compatible publishers, including those of other processes."""
     infos = node.get_publishers_info_by_topic(subscription.topic_name)
     fits = sum(_fit(info.qos_profile, subscription.qos_profile) for info in infos)
     return bool(subscription.get_publisher_count() >= fits)
@@ -52,7 +52,7 @@ def _fit(published: QoSProfile, wanted: QoSProfile) -> bool:
 
 
 def as_published(node: Node, topic: str, depth: int, *, latched: bool | None) -> QoSProfile:
-    """A profile that hears all publishers of a topic: as reliable and as latched as the least of them."""
+    """A profile compatible with all publishers of a topic: the weakest reliability and durability among them."""
     profiles = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
     reliable = all(profile.reliability == ReliabilityPolicy.RELIABLE for profile in profiles)
     if latched is None:
@@ -65,9 +65,9 @@ def as_published(node: Node, topic: str, depth: int, *, latched: bool | None) ->
 
 
 def topic_lines(node: Node, ours: Sequence[str]) -> list[str]:
-    """The topics of the graph for a person: those of nodes that are not `ours` one by one, the others as a number.
+    """The topics of the graph as text: one line for each topic of nodes other than `ours`, and the number of the rest.
 
-    A topic that lacks its other side is marked: often its name is misspelt.
+    A topic without publisher or without subscriber is marked: often its name is misspelled.
     """
     lines, others = [], 0
     for topic, kinds in node.get_topic_names_and_types():
@@ -76,14 +76,14 @@ def topic_lines(node: Node, ours: Sequence[str]) -> list[str]:
         if topic in _EVERYWHERE or all(_name(info) in ours for info in (*publishers, *subscribers)):
             others += 1
             continue
-        sides = f"{counted(len(publishers), 'publisher')}, {counted(len(subscribers), 'subscriber')}"
-        lonely = "" if publishers and subscribers else " (nobody " + ("listens)" if publishers else "publishes)")
+        sides = f"{pluralized(len(publishers), 'publisher')}, {pluralized(len(subscribers), 'subscriber')}"
+        unmatched = "" if publishers and subscribers else " (no subscriber)" if publishers else " (no publisher)"
         unfit = [
             (one, other) for one in publishers for other in subscribers if not _fit(one.qos_profile, other.qos_profile)
         ]
-        quality = f" ({_name(unfit[0][0])} and {_name(unfit[0][1])} do not fit in QoS)" if unfit else ""
-        lines.append(f"{topic} {' '.join(kinds)}: {sides}{lonely}{quality}")
-    return [*lines, f"and {counted(others, 'other topic')}"] if others else lines
+        quality = f" ({_name(unfit[0][0])} and {_name(unfit[0][1])} have incompatible QoS)" if unfit else ""
+        lines.append(f"{topic} {' '.join(kinds)}: {sides}{unmatched}{quality}")
+    return [*lines, f"and {pluralized(others, 'other topic')}"] if others else lines
 
 
 def _name(info: Any) -> str:

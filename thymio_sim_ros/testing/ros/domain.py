@@ -8,6 +8,7 @@ import os
 import socket
 from collections.abc import Iterator
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.compat.shm_cleanup import remove_half_made_ports
 
 __all__ = ["NoDomainError", "reserved"]
@@ -32,7 +33,7 @@ Source: docs/spec/ros-packaging.md section 4.
 _turns = itertools.count(os.getpid())
 
 
-class NoDomainError(Exception):
+class NoDomainError(ThymioSimError):
     """All domains of this machine are in use."""
 
 

@@ -1,4 +1,4 @@
-"""Turns of a node under test, on rclpy's standard executor: the one that `rclpy.spin(node)` gives it elsewhere.
+"""ExecutorTurns of a node under test, on rclpy's standard executor: the one that `rclpy.spin(node)` gives it elsewhere.
 
 The events executor is quicker, but runs no callbacks that are coroutines, and calls timers of simulated time when they
 are not due (measured with rclpy 7.1.5: one of 30 ms beside one of 50 ms twice at 60 ms and not at 90 ms; which of two
@@ -14,25 +14,25 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor, T
 from rclpy.node import Node
 from rclpy.timer import Timer
 
-from thymio_sim_ros.testing.ros.student import nobody_spins
+from thymio_sim_ros.testing.ros.student import spinning_forbidden
 
-__all__ = ["Turns"]
+__all__ = ["ExecutorTurns"]
 
-MOST_ROUNDS = 10
+MAX_ROUNDS = 10
 """Messages of one topic that a node may handle in one turn; more wait for its next, so that time passes anyway."""
 
 
-class Turns:
-    """The executor of one node. One each: a node's turn comes when it was started, not in the order of a set."""
+class ExecutorTurns:
+    """The executor of one node. Each node has its own, so that nodes run in the order in which they were started."""
 
     def __init__(self, node: Node, context: Context) -> None:
         self._node = node
         self._executor = SingleThreadedExecutor(context=context)
         self._executor.add_node(node)
 
-    def take(self) -> None:
-        """Handle what is there for the node, waiting for nothing; what a callback raises is raised here."""
-        for _ in range(MOST_ROUNDS):
+    def run(self) -> None:
+        """Handle all waiting messages and timers without blocking; exceptions of callbacks are raised here."""
+        for _ in range(MAX_ROUNDS):
             may_be_more = self._round()
             if not may_be_more and not any(timer.is_ready() for timer in self._node.timers):
                 return
@@ -52,11 +52,11 @@ class Turns:
             except TimeoutException:
                 return may_be_more
             may_be_more |= not isinstance(entity, Timer) and getattr(entity, "topic_name", "") != "/clock"
-            with nobody_spins():
+            with spinning_forbidden():
                 handler()
             handler.result()
 
-    def end(self) -> None:
-        """Take leave of the node, which may wait for something that never comes."""
+    def shutdown(self) -> None:
+        """Shut the executor down without waiting for unfinished callbacks of the node."""
         self._executor.remove_node(self._node)
         self._executor.shutdown(timeout_sec=0)

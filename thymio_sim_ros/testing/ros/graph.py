@@ -21,9 +21,9 @@ from rclpy.utilities import get_default_context, try_shutdown
 
 from thymio_sim_ros.ros.rclpy_ext import log_directory
 from thymio_sim_ros.ros.rclpy_ext.node_runner import deliver, make_executor
-from thymio_sim_ros.testing.failure_messages import told
+from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.ros import discovery, student
-from thymio_sim_ros.testing.ros.executor_turns import Turns
+from thymio_sim_ros.testing.ros.executor_turns import ExecutorTurns
 from thymio_sim_ros.testing.ros.recorder import Recorder
 from thymio_sim_ros.testing.sources import beside
 
@@ -80,7 +80,7 @@ class Ros:
             self._executor = make_executor(self.context)
         self._lives: list[Any] = []
         self._nodes: list[Node] = []
-        self._turns: dict[Node, Turns] = {}
+        self._turns: dict[Node, ExecutorTurns] = {}
         """Of the nodes under test, in the order in which they were started."""
         self._recorders: list[Recorder] = []
         self.node = self.make_node(TEST_NODE)
@@ -100,7 +100,7 @@ class Ros:
         """Give a node under test its turns; it is destroyed with the test."""
         self._nodes.append(node)
         with self._alive():
-            self._turns[node] = Turns(node, self.context)
+            self._turns[node] = ExecutorTurns(node, self.context)
         return node
 
     def live(self, life: Any) -> Any:
@@ -151,7 +151,7 @@ class Ros:
     def _forget(self, node: Node) -> None:
         """Let its executor do all that waits for a node, and then take its leave of it."""
         if node in self._turns:
-            self._turns.pop(node).end()
+            self._turns.pop(node).shutdown()
         else:
             self._executor.remove_node(node)
             self.deliver()
@@ -161,18 +161,18 @@ class Ros:
     def deliver(self) -> None:
         """Handle the messages that are there, waiting for none: first a turn of each node under test."""
         with self._alive():
-            self._take_turns()
+            self._run_turns()
             deliver(self._executor)
 
     def spin(self) -> None:
         """One short turn of all executors."""
         with self._alive():
-            self._take_turns()
+            self._run_turns()
             self._executor.spin_once(timeout_sec=SLICE_S)
 
-    def _take_turns(self) -> None:
+    def _run_turns(self) -> None:
         for turns in tuple(self._turns.values()):
-            turns.take()
+            turns.run()
 
     def until(
         self,
@@ -191,7 +191,9 @@ class Ros:
         if sim_time is not None:
             return self._simulated().until(condition, sim_time, what=what)
         hint = "" if self.simulation is None else "\n(simulated time stood still meanwhile: sim_time= lets it pass)"
-        return self.spin_until(condition, timeout, lambda: f"not within {timeout:g} s: {what or told(condition)}{hint}")
+        return self.spin_until(
+            condition, timeout, lambda: f"not within {timeout:g} s: {what or describe_condition(condition)}{hint}"
+        )
 
     def spin_until(self, condition: Callable[[], Any], timeout: float, head: Callable[[], str]) -> Any:
         """Spin until the condition is true, at most so many seconds of real time; the failure begins with `head()`."""
@@ -210,7 +212,7 @@ class Ros:
         """
         __tracebackhide__ = True
         nodes = [*self._nodes, *(life.node for life in self._lives)]
-        self.until(lambda: discovery.is_settled(nodes), what="all publishers and subscriptions found each other")
+        self.until(lambda: discovery.all_matched(nodes), what="all publishers and subscriptions found each other")
         for _ in range(NOTICE):
             self.deliver()
 
@@ -236,9 +238,9 @@ class Ros:
         if qos is None:
             self.until(lambda: self.node.count_publishers(name), what=f"a publisher of {name}")
             qos = discovery.as_published(self.node, name, DEPTH, latched=latched)
-        subscription = self.node.create_subscription(kind, name, recorder.take, qos)
+        subscription = self.node.create_subscription(kind, name, recorder.add, qos)
         self._recorders.append(recorder)
-        self.until(lambda: discovery.has_met(self.node, subscription), what=f"the publishers of {name}")
+        self.until(lambda: discovery.is_matched(self.node, subscription), what=f"the publishers of {name}")
         self.settle()
         return recorder
 
@@ -283,7 +285,7 @@ class Ros:
             for node in self._nodes:
                 end.callback(node.destroy_node)
                 if node in self._turns:
-                    end.callback(self._turns[node].end)
+                    end.callback(self._turns[node].shutdown)
                 else:
                     end.callback(self._executor.remove_node, node)
             end.callback(self._end_threads)

@@ -1,4 +1,4 @@
-"""The messages of one topic, as they arrive during a test."""
+"""The messages received on one topic during a test."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Callable, Sequence
 from typing import Any, overload
 
-from thymio_sim_ros.testing.failure_messages import counted
+from thymio_sim_ros.testing.failure_messages import pluralized
 
 __all__ = ["Recorder"]
 
@@ -34,15 +34,15 @@ class Recorder(Sequence[Any]):
         self._messages: list[Any] = []
         self._last = ""
 
-    def take(self, message: Any) -> None:
-        """A message arrives."""
+    def add(self, message: Any) -> None:
+        """Add a received message."""
         self._last = self._now()
         if self._where is None or self._where(message):
             self._messages.append(message)
 
     @property
     def latest(self) -> Any:
-        """The last message; LookupError while there is none."""
+        """The last message. Raises LookupError if there is none."""
         if not self._messages:
             raise LookupError(f"nothing arrived on {self.topic} yet")
         return self._messages[-1]
@@ -77,7 +77,7 @@ class Recorder(Sequence[Any]):
             return f"{self.topic}: nothing arrived"
         last = textwrap.shorten(_PACKAGE.sub("", str(self._messages[-1])), _LONGEST, placeholder=" …")
         when = f" {self._last}" if self._last else ""
-        return f"{self.topic}: {counted(len(self), 'message')}, last{when}: {last}"
+        return f"{self.topic}: {pluralized(len(self), 'message')}, last{when}: {last}"
 
     def __len__(self) -> int:
         return len(self._messages)

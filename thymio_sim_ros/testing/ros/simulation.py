@@ -17,7 +17,7 @@ from thymio_sim_ros.ros.interface.names import full_name
 from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.world import World
-from thymio_sim_ros.testing.failure_messages import told
+from thymio_sim_ros.testing.failure_messages import describe_condition
 from thymio_sim_ros.testing.record import SECOND_NS
 from thymio_sim_ros.testing.report import robot_lines
 from thymio_sim_ros.testing.ros.graph import Ros
@@ -44,7 +44,7 @@ class Simulation:
         self.simulator = simulator
         self._folder = folder
         self._runtimes: list[AsebaRuntime] = []
-        self._heard: dict[str, Any] = {}
+        self._event_subscriptions: dict[str, Any] = {}
         """Subscriptions to what the program of each robot emits."""
         self._robots = {name: Thymio(name, self) for name in self.world.robots}
         ros.simulation = self
@@ -94,7 +94,7 @@ class Simulation:
                 lambda: [ports.names.name for ports in runtime.robots] == wanted, what="the runtime knows the robots"
             )
         self._runtimes.append(runtime)
-        self._listen()
+        self._subscribe_to_events()
 
     # --- time ---
 
@@ -110,7 +110,7 @@ class Simulation:
     def tick(self) -> None:
         """One tick of 10 ms, then whatever messages are there; long handlers of programs go on."""
         self.simulator.advance(1)
-        self._listen()
+        self._subscribe_to_events()
         for _ in range(HOPS):
             self.ros.deliver()
         for runtime in self._runtimes:
@@ -120,7 +120,7 @@ class Simulation:
         for name, thymio in self.robots.items():
             robot = self.world.robots.get(name)
             if robot is not None:
-                thymio.record.look(robot, self.world.now_ns)
+                thymio.record.add_tick(robot, self.world.now_ns)
 
     def until(self, condition: Callable[[], Any], seconds: float = 60.0, *, what: str = "") -> Any:
         """Step until the condition is true, at most so many simulated seconds; returns its value.
@@ -133,7 +133,7 @@ class Simulation:
                 return value
             self.tick()
         return self.ros.spin_until(
-            condition, ANSWER_S, lambda: f"not within {seconds:g} simulated s: {what or told(condition)}"
+            condition, ANSWER_S, lambda: f"not within {seconds:g} simulated s: {what or describe_condition(condition)}"
         )
 
     def lines(self) -> list[str]:
@@ -166,18 +166,18 @@ class Simulation:
         publisher = self.ros.publisher(Int16MultiArray, full_name(runtime.node, ports.names.topic("_aseba/emit")))
         publisher.publish(Int16MultiArray(layout=layout, data=list(args)))
 
-    def _listen(self) -> None:
+    def _subscribe_to_events(self) -> None:
         """Hear what the programs of all robots emit, of those too that have just come."""
-        if not self._runtimes or len(self._heard) == len(self.world.robots):
+        if not self._runtimes or len(self._event_subscriptions) == len(self.world.robots):
             return
         for name, names in self.simulator.names.items():
-            if name not in self._heard:
+            if name not in self._event_subscriptions:
                 topic = full_name(self.simulator.node, names.topic("_aseba/events"))
-                self._heard[name] = self.ros.node.create_subscription(
-                    Int16MultiArray, topic, partial(self._hear, name), qos.EVENTS
+                self._event_subscriptions[name] = self.ros.node.create_subscription(
+                    Int16MultiArray, topic, partial(self._record_event, name), qos.EVENTS
                 )
-        for name in self._heard.keys() - self.simulator.names.keys():
-            self.ros.node.destroy_subscription(self._heard.pop(name))
+        for name in self._event_subscriptions.keys() - self.simulator.names.keys():
+            self.ros.node.destroy_subscription(self._event_subscriptions.pop(name))
 
-    def _hear(self, robot: str, message: Int16MultiArray) -> None:
-        self.robots[robot].record.hear(message.layout.dim[0].label, message.data, self.world.now_ns)
+    def _record_event(self, robot: str, message: Int16MultiArray) -> None:
+        self.robots[robot].record.add_event(message.layout.dim[0].label, message.data, self.world.now_ns)

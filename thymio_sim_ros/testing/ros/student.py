@@ -23,7 +23,9 @@ from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecu
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-__all__ = ["StudentError", "load_class", "nobody_spins", "remap_arguments", "start"]
+from thymio_sim_ros.errors import ThymioSimError
+
+__all__ = ["StudentError", "load_class", "remap_arguments", "spinning_forbidden", "start"]
 
 _SPINS = ("spin", "spin_once", "spin_until_future_complete")
 _SPUN = (
@@ -33,7 +35,7 @@ _SPUN = (
 _TURNS = (*_SPINS, "spin_once_until_future_complete")
 
 
-class StudentError(Exception):
+class StudentError(ThymioSimError):
     """What was handed in is no node that can be started; the text says what is missing."""
 
 
@@ -44,7 +46,7 @@ def load_class(source: str | Path, class_name: str = "") -> type[Node]:
     file itself raises. A file whose last lines start the node is understood: nothing spins while it is loaded.
     """
     path = Path(source)
-    with _nothing_spins():
+    with _spinning_disabled():
         module = _run_file(path) if path.suffix == ".py" else importlib.import_module(str(source))
     classes = _classes(module)
     if class_name:
@@ -95,7 +97,7 @@ def start(
             super().__init__(*args, **kwargs)
 
     placed = type(kind.__name__, (kind, Placed), {"__module__": kind.__module__, "__doc__": kind.__doc__})
-    with nobody_spins():
+    with spinning_forbidden():
         node: Node = placed(**arguments)
     if not reached:
         node.destroy_node()
@@ -167,7 +169,7 @@ def _lies_in(module: ModuleType, folder: Path) -> bool:
 
 
 @contextlib.contextmanager
-def _nothing_spins() -> Iterator[None]:
+def _spinning_disabled() -> Iterator[None]:
     """Lines such as `rclpy.init(); rclpy.spin(Wanderer())` do nothing while a file is loaded."""
 
     loading = True
@@ -201,7 +203,7 @@ def _nothing_spins() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def nobody_spins() -> Iterator[None]:
+def spinning_forbidden() -> Iterator[None]:
     """Who spins in this thread without a time limit is told so: the middleware would wait out of reach of signals."""
     here = threading.get_ident()
 

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.interface.names import MAP_FRAME
 
 __all__ = [
@@ -43,7 +44,7 @@ class Offer:
     about: str
 
 
-class RefusedError(Exception):
+class RefusedError(ThymioSimError):
     """A request that is not done: the code and the reason."""
 
     def __init__(self, code: int, reason: str) -> None:

@@ -1,4 +1,4 @@
-"""docs/testing.md is true: its examples pass, and those that fail say what the page says."""
+"""docs/grading.md is true: its examples pass, and those that fail say what the page says."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "testing.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "grading.md").read_text(encoding="utf-8")
 FILE = re.compile(r"`([\w./]+)`[^`]*:\n\n```\w+\n(.*?)```", re.DOTALL)
 FAILURE = re.compile(r"`(test_\w+\.py)`[^`]*:\n\n```python\n[^`]*```\n[^`]*:\n\n```text\n(.*?)```", re.DOTALL)
 FILES = dict(FILE.findall(PAGE))

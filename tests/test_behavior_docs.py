@@ -1,4 +1,4 @@
-"""The example of docs/behaviours.md does what its text says."""
+"""The example of docs/behaviors.md does what its text says."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from tests.device.handheld import HandheldRobot
 from thymio_sim_ros.device.programs.program import load_program
 
-GUIDE = (Path(__file__).parent.parent / "docs" / "behaviours.md").read_text(encoding="utf-8")
+GUIDE = (Path(__file__).parent.parent / "docs" / "behaviors.md").read_text(encoding="utf-8")
 
 
 def test_the_example_turns_away_and_goes_back_to_the_menu() -> None:

@@ -1,0 +1,50 @@
+"""All exceptions of the package have one base: `thymio_sim_ros.errors.ThymioSimError`."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+from importlib.util import find_spec
+
+import pytest
+
+import thymio_sim_ros
+from thymio_sim_ros.errors import ThymioSimError
+
+NEEDS_ROS = tuple(f"thymio_sim_ros.{name}" for name in ("ros", "testing.ros", "tf", "launch"))
+
+
+MODULES = [
+    module.name
+    for module in pkgutil.walk_packages(thymio_sim_ros.__path__, "thymio_sim_ros.")
+    if not module.name.endswith("__main__")
+]
+
+
+def _exceptions(module: str) -> list[type[BaseException]]:
+    """Exception classes that a module defines."""
+    classes = inspect.getmembers(importlib.import_module(module), inspect.isclass)
+    return [kind for _, kind in classes if issubclass(kind, BaseException) and kind.__module__ == module]
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_every_exception_of_a_module_has_the_common_base(module: str) -> None:
+    if module.startswith(NEEDS_ROS) and (find_spec("rclpy") is None or find_spec("launch_ros") is None):
+        pytest.skip("needs ROS")
+    assert [kind.__name__ for kind in _exceptions(module) if not issubclass(kind, ThymioSimError)] == []
+
+
+def test_the_walk_finds_exceptions_that_exist() -> None:
+    found = {
+        kind.__name__ for module in ("registry", "sim.model.fields") for kind in _exceptions(f"thymio_sim_ros.{module}")
+    }
+    assert found == {"FieldError", "RegistryError"}
+
+
+def test_built_in_bases_that_callers_rely_on_are_kept() -> None:
+    from thymio_sim_ros.device.options import OptionError
+    from thymio_sim_ros.runlog.command_codec import CommandJsonError
+
+    assert issubclass(OptionError, ValueError)
+    assert issubclass(CommandJsonError, ValueError)
