@@ -1,9 +1,9 @@
 """Collects plug-ins: what the modules of a folder of ours export, and what other packages offer by entry points.
 
-A package of plug-ins is its own registry (docs/plugins.md): putting a file into the folder adds the plug-in,
-and nothing else has to know. Another package adds to `thymio_sim_ros.sensors`, `.actuators` or `.shapes` by an entry
-point of a group of that name, and whole folders to `.behaviours` and `.playgrounds`. Ours must be whole; one of
-others that is broken is named in the log and left out. Name order makes every walk over a registry repeatable.
+A package of plug-ins is its own registry (docs/plugins.md): a file in the folder is a plug-in. Another package adds
+plug-ins by entry points of the groups `thymio_sim_ros.sensors`, `.actuators`, `.stimuli` and `.shapes`, and whole
+folders by `.behaviours` and `.playgrounds`. A broken module of this package raises RegistryError; a broken plug-in of
+another package is logged and left out. Name order makes every walk over a registry repeatable.
 """
 
 from __future__ import annotations

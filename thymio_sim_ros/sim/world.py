@@ -34,6 +34,7 @@ from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.playground.scene import ObjectSnapshot, Scene, Snapshot
 from thymio_sim_ros.sim.robot.robot import Robot, Shared
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
+from thymio_sim_ros.sim.stimuli import all_stimuli
 
 __all__ = ["TICK_NS", "StepResult", "World"]
 
@@ -96,7 +97,7 @@ class World:
         self._physics = Physics(self.playground.solids, self.playground.triggers)
         self._robots: dict[str, Robot] = {}
         self._shared = Shared(self._clock, self._ground, self._physics, self.options.proximity_model, self._robots)
-        self._actuators = all_actuators()
+        self._plugins = sorted((*all_actuators(), *all_stimuli()), key=lambda plugin: plugin.name)
         self._schedule = Schedule((sensor.period_ns, sensor.phase_ns) for sensor in self._sensors)
         for start in self.playground.robots:
             self._add(start)
@@ -192,7 +193,7 @@ class World:
 
     def _add(self, start: RobotStart) -> None:
         robot = Robot(
-            start, self._shared, self._actuators, self._sensors, seed=self.options.seed, noise=self.options.noise
+            start, self._shared, self._plugins, self._sensors, seed=self.options.seed, noise=self.options.noise
         )
         self._robots[start.name] = robot
         robot.apply(self._motor_model)

@@ -8,20 +8,20 @@ import pytest
 
 from tests.sim.builders import FLOOR, ROBOT, make, sense
 from tests.sim.fake_view import FakeView
-from thymio_sim_ros.sim.actuators.room import RoomState
 from thymio_sim_ros.sim.batch.robot_batch import CROWD
 from thymio_sim_ros.sim.commands import SetAmbientLight
 from thymio_sim_ros.sim.ground.sampling import GroundSample
 from thymio_sim_ros.sim.model.noise import Noise
 from thymio_sim_ros.sim.model.readings import GroundReading
 from thymio_sim_ros.sim.sensors.ground import SENSOR
+from thymio_sim_ros.sim.stimuli.environment import EnvironmentState
 from thymio_sim_ros.sim.world import World
 
 WHITE, BLACK = GroundSample(1.0, 1.0), GroundSample(0.0, 1.0)
 
 
 def measure(left: GroundSample, right: GroundSample, noise: Noise | None = None, light: int = 0) -> GroundReading:
-    view = FakeView(grounds={0.0115: left, -0.0115: right}, states=(RoomState(ambient_light=light),))
+    view = FakeView(grounds={0.0115: left, -0.0115: right}, states=(EnvironmentState(ambient_light=light),))
     if noise is not None:
         view.noise = noise
     reading = SENSOR.measure(view)

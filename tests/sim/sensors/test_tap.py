@@ -6,10 +6,10 @@ import pytest
 
 from tests.sim.builders import FLOOR, make, post_wall, readings, run, send
 from tests.sim.fake_view import FakeView
-from thymio_sim_ros.sim.actuators.hand import HandState
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot, Tap
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.sensors import tap
+from thymio_sim_ros.sim.stimuli.handling import HandlingState
 from thymio_sim_ros.sim.world import World
 
 
@@ -19,7 +19,7 @@ from thymio_sim_ros.sim.world import World
 def test_a_contact_that_begins_faster_than_two_centimetres_per_second_is_a_tap(
     speed_m_s: float, is_new: bool, taps: int
 ) -> None:
-    view = FakeView(states=(HandState(),), contacts=(Contact("thymio", "wall", 0.08, 0.0, speed_m_s, is_new),))
+    view = FakeView(states=(HandlingState(),), contacts=(Contact("thymio", "wall", 0.08, 0.0, speed_m_s, is_new),))
     reading = tap.SENSOR.measure(view)
     assert (0 if reading is None else reading.words[0]) == taps
 

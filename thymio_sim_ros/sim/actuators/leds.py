@@ -185,6 +185,7 @@ ACTUATOR = Actuator(
     apply=_apply,
     update=_update,
     is_idle=lambda state: state.gesture is None,
+    shows=lambda state: {"leds": tuple(state.levels.items())},
     aseba=ActuatorFace(
         outputs=tuple(
             Output(((name, LED_GROUPS[group]),), _setter(group))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol, TypeVar
 
-from thymio_sim_ros.sim.actuators.hand import HandState
 from thymio_sim_ros.sim.audio.propagation import Sound
 from thymio_sim_ros.sim.mechanics.wheels import WheelArrays
 from thymio_sim_ros.sim.model.geometry import Tilt
@@ -120,7 +119,7 @@ class Group:
 
     @property
     def tilts(self) -> Sequence[Tilt]:
-        tilts = [hand.tilt for hand in self.states(HandState)]
+        tilts = [robot.held_tilt for robot in self._robots]
         for robot in self.fallen:
             tilts[robot] = self._robots[robot].tilt
         return tilts

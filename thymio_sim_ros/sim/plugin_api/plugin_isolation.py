@@ -6,7 +6,7 @@ Ours have no such guard: an error of theirs is a defect, and stops the world wit
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 __all__ = ["Broken", "Guard", "quiet_sensor"]
@@ -21,10 +21,10 @@ class Broken:
 
 
 class Guard:
-    """The functions of one actuator on all robots of a world: each robot's stops with its first error."""
+    """Runs the functions of one actuator or stimulus; on each robot it is switched off by its first error."""
 
-    def __init__(self, name: str) -> None:
-        self._name = name
+    def __init__(self, kind: str, name: str) -> None:
+        self._kind, self._name = kind, name
         self._broken: dict[int, Any] = {}
         """States by their identity; held, so that no other takes it over."""
 
@@ -33,7 +33,7 @@ class Guard:
         try:
             return make()
         except Exception:
-            _tell("actuator", self._name)
+            _log(self._kind, self._name)
             return Broken()
 
     def run(self, act: Callable[..., None], state: Any, *arguments: Any) -> None:
@@ -44,7 +44,13 @@ class Guard:
             act(state, *arguments)
         except Exception:
             self._broken[id(state)] = state
-            _tell("actuator", self._name)
+            _log(self._kind, self._name)
+
+    def show(self, shows: Callable[[Any], Mapping[str, Any]], state: Any) -> Mapping[str, Any]:
+        """What `shows` returns for a state; nothing once the plug-in is switched off."""
+        shown: dict[str, Any] = {}
+        self.run(lambda state: shown.update(shows(state)), state)
+        return shown
 
 
 def quiet_sensor(name: str, measure: Callable[[Any], R]) -> Callable[[Any], R | None]:
@@ -57,11 +63,11 @@ def quiet_sensor(name: str, measure: Callable[[Any], R]) -> Callable[[Any], R | 
             return measure(view)
         except Exception:
             view.memory[_BROKEN] = True
-            _tell("sensor", name)
+            _log("sensor", name)
             return None
 
     return guarded
 
 
-def _tell(kind: str, name: str) -> None:
+def _log(kind: str, name: str) -> None:
     logging.getLogger(__name__).exception("the %s '%s' of another package is switched off on a robot", kind, name)

@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
-from thymio_sim_ros.sim.actuators import Actuator
-from thymio_sim_ros.sim.actuators.buttons import ButtonState
-from thymio_sim_ros.sim.actuators.hand import HandState
-from thymio_sim_ros.sim.actuators.leds import LedState
-from thymio_sim_ros.sim.actuators.pen import PenState
-from thymio_sim_ros.sim.actuators.room import RoomState
-from thymio_sim_ros.sim.audio.propagation import SPEAKER_SHARE, Sound, Sounding
+from thymio_sim_ros.sim.audio.propagation import Sound, SoundSource
 from thymio_sim_ros.sim.ground.sampling import NO_FLOOR, Ground, GroundSample
 from thymio_sim_ros.sim.mechanics.edge_fall import Balance
 from thymio_sim_ros.sim.mechanics.wheels import WheelArrays, Wheels
 from thymio_sim_ros.sim.model.clock import SimClock
-from thymio_sim_ros.sim.model.geometry import Point, Pose, Tilt, Twist
+from thymio_sim_ros.sim.model.geometry import LEVEL, Point, Pose, Tilt, Twist
 from thymio_sim_ros.sim.model.noise import Noise
 from thymio_sim_ros.sim.model.primitives import Color
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.physics import Contact, Physics, RobotBody
 from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.playground.scene import RobotSnapshot
+from thymio_sim_ros.sim.plugin_api.command_plugin import CommandPlugin, Tilting
 from thymio_sim_ros.sim.raycast.scalar import Surroundings
 from thymio_sim_ros.sim.robot.actuator_instance import Task
 from thymio_sim_ros.sim.sensors import Sensor
@@ -148,7 +143,7 @@ class Robot:
         self,
         start: RobotStart,
         shared: Shared,
-        actuators: Iterable[Actuator],
+        plugins: Iterable[CommandPlugin],
         sensors: Iterable[Sensor],
         *,
         seed: int,
@@ -164,21 +159,24 @@ class Robot:
         """Whether it stands."""
         self.states: dict[type[Any], Any] = {}
         """The state of every actuator, by its type."""
-        self._accepting: dict[type[Any], tuple[Actuator, Any]] = {}
+        self._accepting: dict[type[Any], tuple[CommandPlugin, Any]] = {}
+        self._shown: list[tuple[Callable[[Any], Mapping[str, Any]], Any]] = []
         self._shared = shared
         self.tasks: list[Task] = []
         """What acts in a tick, in name order."""
-        for actuator in actuators:
-            state = actuator.begin()
+        for plugin in plugins:
+            state = plugin.begin()
             self.states[type(state)] = state
-            for kind in actuator.accepts:
-                self._accepting[kind] = (actuator, state)
-            if actuator.update is not None:
-                view = _View(self, shared, Noise(seed, self.name, actuator.name, enabled=noise))
-                self.tasks.append(Task(actuator, state, view))
+            for kind in plugin.accepts:
+                self._accepting[kind] = (plugin, state)
+            if plugin.shows is not None:
+                self._shown.append((plugin.shows, state))
+            if plugin.update is not None:
+                view = _View(self, shared, Noise(seed, self.name, plugin.name, enabled=noise))
+                self.tasks.append(Task(plugin, state, view))
         self._list_busy()
-        self._hand, self._room = self.state(HandState), self.state(RoomState)
-        self._speakers = [state for state in self.states.values() if isinstance(state, Sounding)]
+        self._tilting = [state for state in self.states.values() if isinstance(state, Tilting)]
+        self._sound_sources = [state for state in self.states.values() if isinstance(state, SoundSource)]
         self.sensors = [
             (sensor, _View(self, shared, Noise(seed, self.name, sensor.name, enabled=noise))) for sensor in sensors
         ]
@@ -208,7 +206,15 @@ class Robot:
     @property
     def tilt(self) -> Tilt:
         """How it leans: as the operator's hand holds it, or as it falls off an edge and lies there."""
-        return self.balance.tilt or self._hand.tilt
+        return self.balance.tilt or self.held_tilt
+
+    @property
+    def held_tilt(self) -> Tilt:
+        """The angle at which a plug-in holds the robot; level if none does."""
+        for state in self._tilting:
+            if state.tilt != LEVEL:
+                return state.tilt
+        return LEVEL
 
     @property
     def is_falling(self) -> bool:
@@ -222,10 +228,8 @@ class Robot:
 
     def levels(self, now_ns: int) -> list[float]:
         """How loud is what sounds on it."""
-        levels = [SPEAKER_SHARE * speaker.sounding_level for speaker in self._speakers if speaker.sounding_level]
-        if now_ns <= self._room.clap_ends_ns:
-            levels.append(self._room.clap_level)
-        return levels
+        levels = (source.sound_level(now_ns) for source in self._sound_sources)
+        return [level for level in levels if level]
 
     def accepts(self, command: object) -> bool:
         """Whether an actuator takes this type of command."""
@@ -233,8 +237,8 @@ class Robot:
 
     def apply(self, command: object) -> None:
         """Hand a command to its actuator."""
-        actuator, state = self._accepting[type(command)]
-        actuator.apply(state, command, self._clock.now_ns)
+        plugin, state = self._accepting[type(command)]
+        plugin.apply(state, command, self._clock.now_ns)
         self.wake(type(command))
         for task in self.tasks:
             if task.state is state and not task.is_busy:
@@ -318,7 +322,5 @@ class Robot:
             pose=self.body.pose,
             tilt=self.tilt,
             wheel_angles_rad=self.wheels.angles_rad,
-            leds=tuple(self.state(LedState).levels.items()),
-            strokes=self.state(PenState).strokes,
-            pressed=tuple(button for button, held in self.state(ButtonState).pressed.items() if held),
+            shown={name: value for shows, state in self._shown for name, value in shows(state).items()},
         )

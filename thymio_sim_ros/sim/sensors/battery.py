@@ -6,13 +6,13 @@ the last light goes out, to 4.1 V of a full lithium cell (own choice of the uppe
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.actuators.power import PowerState
 from thymio_sim_ros.sim.commands import ConnectCharger, SetBattery
 from thymio_sim_ros.sim.model import units
 from thymio_sim_ros.sim.model.readings import BatteryReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.stimuli.battery import BatteryState
 
 __all__ = ["SENSOR"]
 
@@ -20,7 +20,7 @@ _EMPTY_V, _FULL_V = 3.4, 4.1
 
 
 def _measure(view: SensorView) -> BatteryReading:
-    power = view.state(PowerState)
+    power = view.state(BatteryState)
     word = units.volts_to_units(power.volts)
     charge = max(0.0, min(1.0, (power.volts - _EMPTY_V) / (_FULL_V - _EMPTY_V)))
     return BatteryReading(view.now_ns, (word, word, int(power.is_charging)), power.volts, charge, power.is_charging)

@@ -9,12 +9,12 @@ firmware's wait for a fourth scan is left out: an operator's finger does not bou
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.actuators.buttons import ButtonState
 from thymio_sim_ros.sim.commands import BUTTONS, PressButton
 from thymio_sim_ros.sim.model.readings import ButtonCountsReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.stimuli.buttons import ButtonState
 
 __all__ = ["SENSOR", "is_touched"]
 

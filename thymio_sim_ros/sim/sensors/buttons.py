@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.actuators.buttons import ButtonState
 from thymio_sim_ros.sim.commands import BUTTONS
 from thymio_sim_ros.sim.model.readings import ButtonsReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.reading_table import Later
 from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.stimuli.buttons import ButtonState
 
 __all__ = ["SENSOR"]
 

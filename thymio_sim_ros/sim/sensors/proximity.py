@@ -10,7 +10,7 @@ hits; a thin post straight ahead is invisible. The subtracted term ends at 13.5 
 of a slanted wall jumps there.
 Model "cone": nine rays, the mean of F(d cos a); it has no jumps, and an object that fills a part of the cone gives that
 part of F.
-An operator can say what a sensor counts instead (`actuators/cover.py`).
+An operator can say what a sensor counts instead (`actuators/override.py`).
 `ranges_m` is the distance of a wall across the axis that would give the same count, as the robot's driver has it.
 """
 
@@ -22,7 +22,6 @@ from functools import reduce
 
 import numpy as np
 
-from thymio_sim_ros.sim.actuators.cover import CoverState, covered
 from thymio_sim_ros.sim.kernel.memory import is_available
 from thymio_sim_ros.sim.model import robot_constants, units
 from thymio_sim_ros.sim.model.readings import ProximityReading
@@ -39,6 +38,7 @@ from thymio_sim_ros.sim.raycast.batch import Fan, Values
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.sensors._proximity_binding import ProximityCounts
 from thymio_sim_ros.sim.sensors._proximity_kernel import COS_CONE
+from thymio_sim_ros.sim.stimuli.sensor_override import SensorOverrideState, overridden
 
 __all__ = ["SENSOR", "response", "responses"]
 
@@ -100,8 +100,8 @@ def _within_range(distance_m: float, straight_m: float) -> float:
 def _measure(view: SensorView) -> ProximityReading:
     model = view.proximity_model
     around = view.surroundings(_FANS[model].reach_m, PROXIMITY_HEIGHT_M)
-    cover = view.state(CoverState).proximity
-    if around.is_empty and not cover:
+    override = view.state(SensorOverrideState).proximity
+    if around.is_empty and not override:
         return ProximityReading(view.now_ns, *_NOTHING)
     pose, noise = view.pose, view.noise
     x, y, cos, sin = pose.x_m, pose.y_m, math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
@@ -117,7 +117,7 @@ def _measure(view: SensorView) -> ProximityReading:
                 value = response(distances, model) + noise.gauss(PROXIMITY_NOISE)
                 count = round(max(0.0, min(float(units.PROXIMITY_FULL), value)))
         counts.append(count)
-    counts = covered(counts, cover)
+    counts = overridden(counts, override)
     return ProximityReading(view.now_ns, tuple(counts), _ranges(counts))
 
 
@@ -139,10 +139,10 @@ def _measure_all(group: GroupView) -> Later:
         counts = np.zeros((len(group), _COUNT), dtype=np.int32)
         values = responses(distances, model) + noise
         counts.ravel()[sensors] = np.rint(np.minimum(np.maximum(values, 0.0), units.PROXIMITY_FULL))
-    covers = [state.proximity for state in group.states(CoverState)]
+    overrides = [state.proximity for state in group.states(SensorOverrideState)]
 
     def make(robot: int) -> ProximityReading:
-        words = covered(counts[robot].tolist(), covers[robot])
+        words = overridden(counts[robot].tolist(), overrides[robot])
         return ProximityReading(now_ns, tuple(words), _ranges(words))
 
     return Later(len(group), make)

@@ -14,13 +14,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from thymio_sim_ros.sim.actuators.microphone import MicrophoneState
-from thymio_sim_ros.sim.actuators.room import RoomState
-from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL, heard
+from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL, level_at
 from thymio_sim_ros.sim.model.readings import SoundReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.sensors._publish_on_change import are_news, is_news
+from thymio_sim_ros.sim.stimuli.environment import EnvironmentState
 
 __all__ = ["BLOCK_NS", "SENSOR"]
 
@@ -32,9 +32,9 @@ _SILENCE = 128
 
 
 def _measure(view: SensorView) -> SoundReading | None:
-    level = float(view.state(RoomState).noise_level)
+    level = float(view.state(EnvironmentState).noise_level)
     if sounds := view.sounds:
-        level = math.hypot(level, heard(sounds, view.pose.x_m, view.pose.y_m))
+        level = math.hypot(level, level_at(sounds, view.pose.x_m, view.pose.y_m))
     intensity = min(FULL_LEVEL, round(level))
     is_loud = view.state(MicrophoneState).is_exceeded(intensity)
     if not is_news(view, intensity) and not is_loud:
@@ -48,10 +48,10 @@ def _reading(now_ns: int, intensity: int, *, is_loud: bool) -> SoundReading:
 
 
 def _measure_all(group: GroupView) -> Sequence[SoundReading | None]:
-    levels = [float(room.noise_level) for room in group.states(RoomState)]
+    levels = [float(environment.noise_level) for environment in group.states(EnvironmentState)]
     if sounds := group.sounds:
         places = zip(levels, group.poses.tolist(), strict=True)
-        levels = [math.hypot(level, heard(sounds, x, y)) for level, (x, y, _) in places]
+        levels = [math.hypot(level, level_at(sounds, x, y)) for level, (x, y, _) in places]
     intensities = [min(FULL_LEVEL, round(level)) for level in levels]
     microphones = zip(group.states(MicrophoneState), intensities, strict=True)
     loud = [microphone.is_exceeded(intensity) for microphone, intensity in microphones]

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from thymio_sim_ros.sim.actuators.hand import HandState
 from thymio_sim_ros.sim.commands import Tap
 from thymio_sim_ros.sim.model.readings import TapReading
 from thymio_sim_ros.sim.model.robot_constants import TAP_SPEED_M_S
@@ -18,12 +17,13 @@ from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.stimuli.handling import HandlingState
 
 __all__ = ["SENSOR"]
 
 
 def _measure(view: SensorView) -> TapReading | None:
-    memory, taps, is_falling = view.memory, view.state(HandState).taps, view.is_falling
+    memory, taps, is_falling = view.memory, view.state(HandlingState).taps, view.is_falling
     has_landed = memory.get("is_falling", False) and not is_falling and view.is_fallen
     is_knocked = taps != memory.get("taps", 0)
     memory["taps"], memory["is_falling"] = taps, is_falling
@@ -38,7 +38,7 @@ def _is_knock(contact: Contact) -> bool:
 
 def _measure_all(group: GroupView) -> Sequence[TapReading | None]:
     told, was_falling = group.notes.column("taps", 0), group.notes.column("is_falling", first=False)
-    taps, is_falling = [hand.taps for hand in group.states(HandState)], np.zeros(len(group), dtype=bool)
+    taps, is_falling = [handling.taps for handling in group.states(HandlingState)], np.zeros(len(group), dtype=bool)
     is_falling[group.falling] = True
     is_tapped = told != taps
     for robot in group.fallen:
