@@ -49,7 +49,7 @@ SENSOR = Sensor(
     period_ns=100_000_000,
     measure=lambda view: ButtonsReading(view.now_ns, (view.memory["felt"],)),
     wakes_on=(MotorTargets,),
-    feel=lambda view: view.memory.update(felt=view.memory.get("felt", 0) + 1),
+    on_wake=lambda view: view.memory.update(felt=view.memory.get("felt", 0) + 1),
 )
 """
 

@@ -11,7 +11,7 @@ from typing import Protocol
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.playground.reader import RobotStart
 
-__all__ = ["Input", "Journal", "Posted", "Removed", "Reset", "Spawned", "WorldOptions"]
+__all__ = ["Input", "InputRecorder", "Posted", "Removed", "Reset", "Spawned", "WorldOptions"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,13 +55,13 @@ class Reset:
 Input = Posted | Spawned | Removed | Reset
 
 
-class Journal(Protocol):
+class InputRecorder(Protocol):
     """Who writes down what happens to a world."""
 
-    def note(self, tick: int, happened: Input) -> None:
+    def record(self, tick: int, event: Input) -> None:
         """Something came in after so many ticks."""
         ...
 
-    def stepped(self, result: object) -> None:
+    def record_step(self, result: object) -> None:
         """A step gave this; its `repr` tells it bit for bit."""
         ...

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from thymio_sim_ros.sim.actuators import all_actuators
-from thymio_sim_ros.sim.batch.robot_batch import CROWD, Crowd
+from thymio_sim_ros.sim.batch.robot_batch import MIN_BATCH_ROBOTS, RobotBatch
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, MoveObject, MoveRobot, SetMotorModel, SetPen
-from thymio_sim_ros.sim.ground.floor_support import Footing
+from thymio_sim_ros.sim.ground.floor_support import FloorSupport
 from thymio_sim_ros.sim.ground.sampling import Ground
-from thymio_sim_ros.sim.input_recorder import Input, Journal, Posted, Removed, Reset, Spawned, WorldOptions
+from thymio_sim_ros.sim.input_recorder import Input, InputRecorder, Posted, Removed, Reset, Spawned, WorldOptions
 from thymio_sim_ros.sim.model.clock import TICK_NS, Schedule, SimClock
 from thymio_sim_ros.sim.model.fields import FieldError, as_color, read, write
 from thymio_sim_ros.sim.model.geometry import Pose
@@ -32,14 +32,14 @@ from thymio_sim_ros.sim.playground.placement import (
 )
 from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.playground.scene import ObjectSnapshot, Scene, Snapshot
-from thymio_sim_ros.sim.robot.robot import Robot, Shared
+from thymio_sim_ros.sim.robot.robot import Robot, SharedState
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 from thymio_sim_ros.sim.stimuli import all_stimuli
 
 __all__ = ["TICK_NS", "StepResult", "World"]
 
 _TICK_S = TICK_NS * 1e-9
-_NOT_SURE = (0.0, 0.0, 0.0)
+_NO_CLEARANCE = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,35 +78,35 @@ class World:
         self.scene = Scene.of(playground)
         periods = None if periods_ns is None else tuple(periods_ns.items())
         self.options = WorldOptions(seed, noise, proximity_model, motor_model, periods)
-        self.journal: Journal | None = None
+        self.recorder: InputRecorder | None = None
         """Who is told what happens from now on."""
         self._ground = Ground(playground.floors, playground.paints) if ground is None else ground
-        self._footing = Footing(playground.floors)
+        self._floor_support = FloorSupport(playground.floors)
         self._fixed = Occupied(footprint_of(solid) for solid in playground.solids if solid.is_fixed)
         self._begin()
 
     def reset(self) -> None:
         """Everything as at the start: time 0, robots at their places, the same noise again, no command waiting."""
-        self._note(Reset())
+        self._record(Reset())
         self._begin()
 
     def _begin(self) -> None:
         self._clock = SimClock()
-        self._crowd: Crowd | None = None
+        self._batch: RobotBatch | None = None
         self._ground.restore()
         self._physics = Physics(self.playground.solids, self.playground.triggers)
         self._robots: dict[str, Robot] = {}
-        self._shared = Shared(self._clock, self._ground, self._physics, self.options.proximity_model, self._robots)
+        self._shared = SharedState(self._clock, self._ground, self._physics, self.options.proximity_model, self._robots)
         self._plugins = sorted((*all_actuators(), *all_stimuli()), key=lambda plugin: plugin.name)
         self._schedule = Schedule((sensor.period_ns, sensor.phase_ns) for sensor in self._sensors)
         for start in self.playground.robots:
             self._add(start)
         self._posted: list[tuple[str, Command]] = []
-        self._sure: dict[str, tuple[float, float, float]] = {}
+        self._clearances: dict[str, tuple[float, float, float]] = {}
         """Where each thing was when an edge was looked for, and how far away that is at least."""
         for movable in self._physics.movables.values():
             self._drop_over_edge(movable)
-        self._gather()
+        self._form_batch()
 
     @property
     def now_ns(self) -> int:
@@ -144,7 +144,7 @@ class World:
         elif isinstance(command, MoveRobot):
             pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
             self._check_place(footprint_of_robot(name, pose))
-        self._note(Posted(name, command))
+        self._record(Posted(name, command))
         self._posted.append((name, command))
 
     def spawn(self, start: RobotStart) -> None:
@@ -159,18 +159,18 @@ class World:
         except FieldError as error:
             raise ValueError(str(error)) from error
         self._check_place(footprint_of_robot(start.name, start.pose))
-        self._note(Spawned(start))
+        self._record(Spawned(start))
         self._add(start)
-        self._gather()
+        self._form_batch()
 
     def remove(self, robot: str) -> None:
         """Take a robot away, now; KeyError for an unknown one."""
         gone = self._robots.pop(robot)
         self._physics.remove_robot(gone.body)
         self._shared.forget(gone)
-        self._note(Removed(robot))
+        self._record(Removed(robot))
         self._posted = [(name, command) for name, command in self._posted if name != robot]
-        self._gather()
+        self._form_batch()
 
     def step(self) -> StepResult:
         """Let one tick pass."""
@@ -179,8 +179,8 @@ class World:
         contacts = self._move_bodies()
         now_ns = self._clock.advance()
         result = StepResult(now_ns, self._run_sensors(now_ns), contacts)
-        if self.journal is not None:
-            self.journal.stepped((now_ns, tuple(result.readings), contacts))
+        if self.recorder is not None:
+            self.recorder.record_step((now_ns, tuple(result.readings), contacts))
         return result
 
     def snapshot(self) -> Snapshot:
@@ -201,11 +201,11 @@ class World:
             pen = start.pen
             robot.apply(SetPen(pen.down, as_color(pen.color), pen.width_m))
 
-    def _gather(self) -> None:
+    def _form_batch(self) -> None:
         """Let many robots act, move and measure together."""
-        if self._crowd is not None:
-            self._crowd.disband()
-        self._crowd = Crowd(self._robots.values(), self._shared) if len(self._robots) >= CROWD else None
+        if self._batch is not None:
+            self._batch.dissolve()
+        self._batch = RobotBatch(self._robots.values(), self._shared) if len(self._robots) >= MIN_BATCH_ROBOTS else None
 
     def _names(self) -> set[str]:
         """All names that are taken."""
@@ -233,9 +233,9 @@ class World:
         if blocker is not None:
             raise PlacementError(wanted.name, Pose(*wanted.middle, 0.0), blocker)
 
-    def _note(self, happened: Input) -> None:
-        if self.journal is not None:
-            self.journal.note(self._clock.now_ns // TICK_NS, happened)
+    def _record(self, event: Input) -> None:
+        if self.recorder is not None:
+            self.recorder.record(self._clock.now_ns // TICK_NS, event)
 
     def _apply_commands(self) -> None:
         posted, self._posted = self._posted, []
@@ -248,21 +248,21 @@ class World:
                 self._robots[name].apply(command)
 
     def _run_actuators(self) -> None:
-        if self._crowd is not None:
-            self._crowd.act(_TICK_S)
+        if self._batch is not None:
+            self._batch.act(_TICK_S)
             return
         for robot in self._robots.values():
             robot.act(_TICK_S)
 
     def _move_bodies(self) -> tuple[Contact, ...]:
         contacts = self._physics.step()
-        if self._crowd is not None:
-            self._crowd.roll(_TICK_S)
-            self._crowd.look_down(self._footing)
+        if self._batch is not None:
+            self._batch.roll(_TICK_S)
+            self._batch.check_floor(self._floor_support)
         else:
             for robot in self._robots.values():
                 robot.roll(_TICK_S)
-                robot.balance.look_down(self._footing)
+                robot.edge_fall.check_floor(self._floor_support)
         for movable in self._physics.movables.values():
             if movable.is_moving:
                 self._drop_over_edge(movable)
@@ -273,18 +273,18 @@ class World:
 
     def _drop_over_edge(self, movable: MovableBody) -> None:
         x, y = movable.pose.x_m, movable.pose.y_m
-        sure_x, sure_y, sure_m = self._sure.get(movable.name, _NOT_SURE)
-        if math.hypot(x - sure_x, y - sure_y) < sure_m:
+        sure_x, sure_y, safe_m = self._clearances.get(movable.name, _NO_CLEARANCE)
+        if math.hypot(x - sure_x, y - sure_y) < safe_m:
             return
-        clearance_m = self._footing.clearance_m(x, y)
-        self._sure[movable.name] = (x, y, clearance_m)
+        clearance_m = self._floor_support.clearance_m(x, y)
+        self._clearances[movable.name] = (x, y, clearance_m)
         if clearance_m < 0.0:
             self._physics.drop_movable(movable)
 
     def _run_sensors(self, now_ns: int) -> Sequence[tuple[str, str, Reading]]:
         due = self._schedule.due(now_ns)
-        if self._crowd is not None:
-            return self._crowd.measure(due)
+        if self._batch is not None:
+            return self._batch.measure(due)
         readings: list[tuple[str, str, Reading]] = []
         for robot in self._robots.values():
             readings.extend(robot.measure(due))
@@ -309,4 +309,4 @@ def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -
             raise ValueError(f"sensor {name!r}: expected one of {', '.join(names)}")
         if period_ns <= 0:
             raise ValueError(f"period of {name!r}: found {period_ns} ns, expected a number above 0")
-    return tuple(sensor.every(periods_ns[sensor.name]) for sensor in sensors if sensor.name in periods_ns)
+    return tuple(sensor.with_period(periods_ns[sensor.name]) for sensor in sensors if sensor.name in periods_ns)

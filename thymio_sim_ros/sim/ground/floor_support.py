@@ -10,20 +10,20 @@ from collections.abc import Sequence
 
 from thymio_sim_ros.sim.model.geometry import Point
 from thymio_sim_ros.sim.model.primitives import Floor
-from thymio_sim_ros.sim.model.spatial_grid import Squares
+from thymio_sim_ros.sim.model.spatial_grid import SpatialGrid
 
-__all__ = ["Footing"]
+__all__ = ["FloorSupport"]
 
 _Sides = tuple[tuple[float, float, float], ...]
 """A convex polygon as sides (nx, ny, c): inside where n·p <= c."""
 
 
-class Footing:
+class FloorSupport:
     """The floors of a playground."""
 
     def __init__(self, floors: Sequence[Floor]) -> None:
         self._is_endless = not floors
-        self._floors: Squares[_Sides] = Squares()
+        self._floors: SpatialGrid[_Sides] = SpatialGrid()
         for floor in floors:
             xs, ys = [x for x, _ in floor.vertices], [y for _, y in floor.vertices]
             self._floors.add(_sides(floor.vertices), (min(xs), min(ys), max(xs), max(ys)))

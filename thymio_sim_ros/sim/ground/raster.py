@@ -62,7 +62,7 @@ class Picture:
         """Size of a pixel, and column and row of the first one, counted from the world's origin."""
         self.pixels = np.zeros(shape, dtype=np.uint16)
         """Color numbers by row (y) and column (x)."""
-        self.greys = np.zeros(_MAX_COLORS + 1)
+        self.grays = np.zeros(_MAX_COLORS + 1)
         """Grey 0…1 of each color: the mean of its parts."""
         self._palette: list[Color] = [(0.0, 0.0, 0.0)]
         self._numbers: dict[Color, int] = {}
@@ -122,9 +122,9 @@ class Picture:
         self.pixels[:], self._before = self._before, None
         return True
 
-    def move_to(self, pixels: npt.NDArray[np.uint16], greys: npt.NDArray[np.float64]) -> None:
+    def move_to(self, pixels: npt.NDArray[np.uint16], grays: npt.NDArray[np.float64]) -> None:
         """Live in these arrays, which hold the same, from now on."""
-        self.pixels, self.greys = pixels, greys
+        self.pixels, self.grays = pixels, grays
 
     def padded(self, top: int, bottom: int, left: int, right: int) -> npt.NDArray[np.uint16]:
         """Rows `top`…`bottom` and columns `left`…`right` (not included), without floor beyond the picture."""
@@ -188,10 +188,10 @@ class Picture:
         known = self._numbers.get(color)
         if known is not None:
             return known
-        grey = sum(color) / 3
+        gray = sum(color) / 3
         if len(self._palette) <= _MAX_COLORS:
             number = self._numbers[color] = len(self._palette)
             self._palette.append(color)
-            self.greys[number] = grey
+            self.grays[number] = gray
             return number
-        return int(np.argmin(np.abs(self.greys[1:] - grey))) + 1
+        return int(np.argmin(np.abs(self.grays[1:] - gray))) + 1

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim.ground.raster import Area, Picture
-from thymio_sim_ros.sim.kernel.footprint_binding import Sampling
+from thymio_sim_ros.sim.kernel.footprint_binding import FootprintBinding
 from thymio_sim_ros.sim.kernel.footprint_kernel import TAPS as _TAPS
 from thymio_sim_ros.sim.kernel.memory import is_available
 from thymio_sim_ros.sim.model.primitives import Color, Floor, Mark
@@ -56,7 +56,7 @@ class Ground:
     def __init__(self, floors: Sequence[Floor], paints: Sequence[Mark], *, is_compiled: bool | None = None) -> None:
         """`is_compiled`: many places by a kernel, or with numpy; None: by a kernel where that is available."""
         self._is_compiled = is_available() if is_compiled is None else is_compiled
-        self._sampling: Sampling | None = None
+        self._footprint_binding: FootprintBinding | None = None
         self._picture = Picture(floors, paints)
         self._cell_m = self._picture.pixel_m / _CELLS_PER_PIXEL
         steps = (np.arange(_TAPS) - _TAPS // 2) * _TAP_STEP_M
@@ -135,7 +135,7 @@ class Ground:
         cells_x = np.floor(x_m / self._cell_m).astype(np.intp)
         cells_y = np.floor(y_m / self._cell_m).astype(np.intp)
         colors = self._plain_colors(cells_x // _TILE_CELLS, cells_y // _TILE_CELLS)
-        reflectance, floor = self._picture.greys[colors], (colors != 0).astype(float)
+        reflectance, floor = self._picture.grays[colors], (colors != 0).astype(float)
         mixed = (colors == _MIXED).nonzero()[0]
         if len(mixed):
             height, width = self._picture.pixels.shape
@@ -146,21 +146,21 @@ class Ground:
 
     def _sampled(self, poses: _Values, points: _Values) -> tuple[_Values, _Values] | None:
         """By the kernel; None when there are tiles that are not known."""
-        if self._sampling is None or not self._sampling.is_for(len(poses), points):
+        if self._footprint_binding is None or not self._footprint_binding.is_for(len(poses), points):
             picture = self._picture
             steps = (np.arange(_TAPS) - _TAPS // 2) * _TAP_STEP_M
-            self._sampling = Sampling(
+            self._footprint_binding = FootprintBinding(
                 len(poses),
                 points,
                 picture.pixels,
                 self._plain,
-                picture.greys,
+                picture.grays,
                 (self._cell_m, picture.pixel_m, *steps.tolist(), *self._weights),
                 (_TILE_SHIFT, *self._plain.shape, *self._corner, *picture.pixels.shape, *picture.origin),
             )
-            picture.move_to(self._sampling.pixels, self._sampling.greys)
-            self._plain = self._sampling.tiles
-        return self._sampling.sample(poses)
+            picture.move_to(self._footprint_binding.pixels, self._footprint_binding.grays)
+            self._plain = self._footprint_binding.tiles
+        return self._footprint_binding.sample(poses)
 
     def _tiles_that_see(self, area: Area) -> list[tuple[int, int]]:
         """Tiles with a footprint that reaches into an area of the picture."""
@@ -217,10 +217,10 @@ class Ground:
         if rows.min() < 0 or rows.max() == height or columns.min() < 0 or columns.max() == width:
             beyond = ((rows < 0) | (rows == height))[None, :, :] | ((columns < 0) | (columns == width))[:, :, None]
             seen[beyond] = 0
-        grey = self._mean(self._picture.greys[seen])
+        gray = self._mean(self._picture.grays[seen])
         if seen.all():
-            return grey, np.ones_like(grey)
-        return _over_floor(grey, self._mean((seen == 0).astype(float)))
+            return gray, np.ones_like(gray)
+        return _over_floor(gray, self._mean((seen == 0).astype(float)))
 
     def _mean(self, values: _Values) -> _Values:
         """The weighted mean over the taps of footprints, by tap along x, footprint, tap along y."""
@@ -236,11 +236,11 @@ class Ground:
         """One tile of samples; a single one when the tile sees one color only."""
         seen, rows, columns = self._seen_by(tile_x, tile_y)
         if (seen == seen[0, 0]).all():
-            return GroundSample(float(self._picture.greys[seen[0, 0]]), 1.0) if seen[0, 0] else NO_FLOOR
-        grey = self._weigh(self._picture.greys[seen], rows, columns)
+            return GroundSample(float(self._picture.grays[seen[0, 0]]), 1.0) if seen[0, 0] else NO_FLOOR
+        gray = self._weigh(self._picture.grays[seen], rows, columns)
         if seen.all():
-            return grey, np.ones_like(grey)
-        return _over_floor(grey, self._weigh((seen == 0).astype(float), rows, columns))
+            return gray, np.ones_like(gray)
+        return _over_floor(gray, self._weigh((seen == 0).astype(float), rows, columns))
 
     def _seen_by(self, tile_x: int, tile_y: int) -> tuple[npt.NDArray[np.uint16], _Indices, _Indices]:
         """The part of the picture that a tile sees, and where in it the taps of its cells lie."""
@@ -275,7 +275,7 @@ def _within(numbers: _Indices, low: int, high: int) -> _Indices:
     return found
 
 
-def _over_floor(grey: _Values, missing: _Values) -> tuple[_Values, _Values]:
+def _over_floor(gray: _Values, missing: _Values) -> tuple[_Values, _Values]:
     """Mean grey of the floor and which part is floor, where a part of the footprint is missing."""
     floor = np.where(missing < 1.0 - 1e-9, 1.0 - missing, 0.0)
-    return np.divide(grey, floor, out=np.zeros_like(grey), where=floor > 0.0), floor
+    return np.divide(gray, floor, out=np.zeros_like(gray), where=floor > 0.0), floor

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim.kernel.memory import is_available
-from thymio_sim_ros.sim.kernel.rng_binding import Dealing
+from thymio_sim_ros.sim.kernel.rng_binding import RngBinding
 
 __all__ = ["Noise", "NormalBank", "UniformBank"]
 
@@ -54,9 +54,9 @@ class Noise:
         if number is not None:
             self._pending = None
             return number * sigma
-        turn, length = self._draw() * math.tau, math.sqrt(-2.0 * math.log(1.0 - self._draw()))
-        self._pending = math.sin(turn) * length
-        return math.cos(turn) * length * sigma
+        angle, length = self._draw() * math.tau, math.sqrt(-2.0 * math.log(1.0 - self._draw()))
+        self._pending = math.sin(angle) * length
+        return math.cos(angle) * length * sigma
 
     def uniform(self, low: float, high: float) -> float:
         """Even between low and high; their middle when noise is off."""
@@ -65,7 +65,7 @@ class Noise:
         return low + (high - low) * (self._ahead.pop() if self._ahead else self._random.random())
 
     def draw_ahead(self, count: int) -> bytes | Values:
-        """The next numbers, as they are or as 8 bytes each for `evens`; to be given back unless used."""
+        """The next numbers, as they are or as 8 bytes each for `uniforms`; to be given back unless used."""
         if len(self._ahead) == 0:
             return self._random.randbytes(8 * count)
         return np.array([self._draw() for _ in range(count)])
@@ -75,7 +75,7 @@ class Noise:
         pending, self._pending = self._pending, None
         return pending
 
-    def give_back(self, numbers: Sequence[float], pending: float | None = None) -> None:
+    def release(self, numbers: Sequence[float], pending: float | None = None) -> None:
         """Numbers drawn ahead and not used, in order; and the rest of a pair of normal ones."""
         self._ahead += reversed(numbers)
         self._pending = pending
@@ -84,7 +84,7 @@ class Noise:
         return self._ahead.pop() if self._ahead else self._random.random()
 
 
-def evens(blocks: Sequence[bytes | Values]) -> Values:
+def uniforms(blocks: Sequence[bytes | Values]) -> Values:
     """Blocks of `Noise.draw_ahead` as rows of numbers: as `random.random` makes them of 32 bit words."""
     raw = [block for block in blocks if isinstance(block, bytes)]
     words = np.frombuffer(b"".join(raw), dtype="<u4").reshape(len(raw), len(raw[0]) // 4 if raw else 0)
@@ -108,7 +108,7 @@ class UniformBank:
         if not self._noises or not self._noises[0].enabled:
             return np.full((count, len(self._noises)), (low + high) / 2)
         while self._used + count > len(self._numbers):
-            fresh = evens([noise.draw_ahead(_BLOCK) for noise in self._noises]).T
+            fresh = uniforms([noise.draw_ahead(_BLOCK) for noise in self._noises]).T
             self._numbers = np.concatenate((self._numbers[self._used :], fresh))
             self._used = 0
             self._limits = None
@@ -118,10 +118,10 @@ class UniformBank:
         first, self._used = self._used, self._used + count
         return self._between[first : self._used]
 
-    def give_back(self) -> None:
+    def release(self) -> None:
         """Let every user draw for himself again."""
         for noise, numbers in zip(self._noises, self._numbers[self._used :].T.tolist(), strict=True):
-            noise.give_back(numbers)
+            noise.release(numbers)
         self._numbers, self._used, self._limits = np.zeros((0, len(self._noises))), 0, None
 
 
@@ -132,8 +132,8 @@ class NormalBank:
         """`is_compiled`: dealt out by a kernel, or with numpy; None: by a kernel where there is one. Same numbers."""
         self._noises = noises
         self._is_compiled = is_available() if is_compiled is None else is_compiled
-        self._dealing: Dealing | None = None
-        self._evens = np.zeros((len(noises), _WIDTH))
+        self._rng_binding: RngBinding | None = None
+        self._uniforms = np.zeros((len(noises), _WIDTH))
         self._numbers = np.zeros((len(noises), _WIDTH))
         self._used: npt.NDArray[np.integer] = np.full(len(noises), _WIDTH)
         """How many of each row; a user who has used one of a pair starts with the other."""
@@ -146,23 +146,23 @@ class NormalBank:
         """`Noise.gauss` for each of these users, who stand in order; the same one at most `_BLOCK` times."""
         if len(users) == 0 or not self._noises[0].enabled:
             return np.zeros(len(users))
-        deal = self._deal_compiled if self._is_compiled else self._deal
-        dealt = deal(users)
+        draw = self._draw_compiled if self._is_compiled else self._draw_numpy
+        dealt = draw(users)
         if dealt is None:
             self._refill(np.flatnonzero(self._used >= _BLOCK))
-            dealt = deal(users)
+            dealt = draw(users)
             assert dealt is not None  # everybody has a block now
         drawn: Values = dealt * sigma
         return drawn
 
-    def give_back(self) -> None:
+    def release(self) -> None:
         """Let every user draw for himself again."""
         for row, (noise, used) in enumerate(zip(self._noises, self._used.tolist(), strict=True)):
             pending = float(self._numbers[row, used]) if used % 2 else None
-            noise.give_back(self._evens[row, used + used % 2 :].tolist(), pending)
+            noise.release(self._uniforms[row, used + used % 2 :].tolist(), pending)
         self._used[:] = _WIDTH
 
-    def _deal(self, users: npt.NDArray[np.intp]) -> Values | None:
+    def _draw_numpy(self, users: npt.NDArray[np.intp]) -> Values | None:
         """The next number for each turn of a user; None when one has too few left."""
         before = np.arange(len(users)) - np.searchsorted(users, users)
         counts = np.bincount(users, minlength=len(self._noises))
@@ -172,27 +172,27 @@ class NormalBank:
         self._used += counts
         return dealt
 
-    def _deal_compiled(self, users: npt.NDArray[np.intp]) -> Values | None:
-        """As `_deal`."""
-        dealing = self._dealing
-        if dealing is None or dealing.most < len(users):
-            dealing = Dealing(*self._numbers.shape, most=2 * len(users))
-            dealing.numbers[:], dealing.used[:] = self._numbers, self._used
-            self._numbers, self._used = dealing.numbers, dealing.used
-            self._dealing = dealing  # not before: whoever owned the numbers keeps them until they are copied
-        return dealing.deal(users)
+    def _draw_compiled(self, users: npt.NDArray[np.intp]) -> Values | None:
+        """As `_draw_numpy`."""
+        binding = self._rng_binding
+        if binding is None or binding.most < len(users):
+            binding = RngBinding(*self._numbers.shape, most=2 * len(users))
+            binding.numbers[:], binding.used[:] = self._numbers, self._used
+            self._numbers, self._used = binding.numbers, binding.used
+            self._rng_binding = binding  # not before: whoever owned the numbers keeps them until they are copied
+        return binding.draw(users)
 
     def _refill(self, rows: npt.NDArray[np.intp]) -> None:
         """A new block behind the last one of each of these users; the one before it is used.
 
         Whoever can take one gets it, wanting or not: filling many at once costs little more than filling one.
         """
-        fresh = evens([self._noises[row].draw_ahead(_BLOCK) for row in rows.tolist()])
-        turn, length = fresh[:, 0::2] * math.tau, np.sqrt(-2.0 * np.log(1.0 - fresh[:, 1::2]))
-        for values in (self._evens, self._numbers):
+        fresh = uniforms([self._noises[row].draw_ahead(_BLOCK) for row in rows.tolist()])
+        angle, length = fresh[:, 0::2] * math.tau, np.sqrt(-2.0 * np.log(1.0 - fresh[:, 1::2]))
+        for values in (self._uniforms, self._numbers):
             values[rows, :_BLOCK] = values[rows, _BLOCK:]
-        self._evens[rows, _BLOCK:] = fresh
+        self._uniforms[rows, _BLOCK:] = fresh
         numbers = np.empty(fresh.shape)
-        numbers[:, 0::2], numbers[:, 1::2] = np.cos(turn) * length, np.sin(turn) * length
+        numbers[:, 0::2], numbers[:, 1::2] = np.cos(angle) * length, np.sin(angle) * length
         self._numbers[rows, _BLOCK:] = numbers
         self._used[rows] -= _BLOCK

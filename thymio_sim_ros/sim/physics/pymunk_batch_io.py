@@ -17,7 +17,7 @@ import numpy.typing as npt
 import pymunk
 from pymunk import _chipmunk_cffi, batch
 
-__all__ = ["FORCES", "SPEEDS", "Reader", "Setter", "set_by_properties"]
+__all__ = ["FORCES", "SPEEDS", "BodyReader", "BodyWriter", "set_by_properties"]
 
 Values = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
@@ -28,7 +28,7 @@ FORCES = SPEEDS | _Fields.FORCE | _Fields.TORQUE
 _STATE = _Fields.BODY_ID | _Fields.POSITION | _Fields.ANGLE | SPEEDS
 
 
-class Setter:
+class BodyWriter:
     """Sets some bodies of a space; those that are not named sleep on."""
 
     def __init__(self, bodies: Sequence[pymunk.Body] = ()) -> None:
@@ -61,7 +61,7 @@ class Setter:
         return rows, buffer, _data(fields, buffer)
 
 
-class Reader:
+class BodyReader:
     """Reads all bodies of a space."""
 
     def __init__(self, space: pymunk.Space) -> None:

@@ -21,7 +21,7 @@ from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
 from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE, SUB_STEP_S, SUB_STEPS, TICK_S, Contact
 from thymio_sim_ros.sim.raycast.scalar import ConvexObstacle
 
-__all__ = ["MOMENT_KG_M2", "PUSH_N_S_M", "ROBOT_TYPE", "RobotBody", "Teller"]
+__all__ = ["MOMENT_KG_M2", "PUSH_N_S_M", "ROBOT_TYPE", "BodyArrays", "RobotBody"]
 
 ROBOT_TYPE = 1
 """pymunk's collision type of robots."""
@@ -40,15 +40,15 @@ _set_velocity, _set_spin, _set_force, _set_torque = (
 """pymunk's own setters, without its check of the attribute's name, which takes half of the time."""
 
 
-class Teller(Protocol):
+class BodyArrays(Protocol):
     """What moves many robots at once."""
 
     @property
-    def is_told(self) -> bool:
+    def is_written_back(self) -> bool:
         """Whether the bodies know what has become of them."""
         ...
 
-    def tell(self) -> None:
+    def write_back(self) -> None:
         """Write to the bodies what has become of them."""
         ...
 
@@ -69,9 +69,9 @@ class RobotBody:
         "_pose",
         "_speed_m_s",
         "_spin_rad_s",
+        "batch_driver",
         "body",
-        "fleet",
-        "is_engaged",
+        "is_active",
         "is_fallen",
         "name",
         "shape",
@@ -83,9 +83,9 @@ class RobotBody:
         self._pose = pose
         self.touching: dict[pymunk.Shape, Contact] = {}
         self._speed_m_s = self._spin_rad_s = 0.0
-        self.fleet: Teller | None = None
+        self.batch_driver: BodyArrays | None = None
         """The robots with which it moves."""
-        self.is_engaged = False
+        self.is_active = False
         """Whether the engine moves it; else its body is in no space."""
         self.is_fallen = False
         """Whether it lies below the floor, out of everybody's reach, until it is placed."""
@@ -103,22 +103,22 @@ class RobotBody:
     @property
     def pose(self) -> Pose:
         """Where it is."""
-        if self.fleet is not None and not self.fleet.is_told:
-            self.fleet.tell()
+        if self.batch_driver is not None and not self.batch_driver.is_written_back:
+            self.batch_driver.write_back()
         return self._pose
 
     @property
     def speed_m_s(self) -> float:
         """Speed along the heading."""
-        if self.fleet is not None and not self.fleet.is_told:
-            self.fleet.tell()
+        if self.batch_driver is not None and not self.batch_driver.is_written_back:
+            self.batch_driver.write_back()
         return self._speed_m_s
 
     @property
     def spin_rad_s(self) -> float:
         """Rate of turn, counter-clockwise."""
-        if self.fleet is not None and not self.fleet.is_told:
-            self.fleet.tell()
+        if self.batch_driver is not None and not self.batch_driver.is_written_back:
+            self.batch_driver.write_back()
         return self._spin_rad_s
 
     @property
@@ -142,8 +142,8 @@ class RobotBody:
     @property
     def course_rad(self) -> float:
         """The direction in which it moves, in its own frame; 0 at rest."""
-        if self.fleet is not None and not self.fleet.is_told:
-            self.fleet.tell()
+        if self.batch_driver is not None and not self.batch_driver.is_written_back:
+            self.batch_driver.write_back()
         if self._is_free:
             return math.pi if self.speed_m_s < 0.0 else 0.0
         vx, vy = self.body.velocity
@@ -162,11 +162,11 @@ class RobotBody:
         self._speed_m_s = self._spin_rad_s = 0.0
         self._angle = pose.yaw_rad
         self._pose = pose
-        if self.is_engaged:
+        if self.is_active:
             assert body.space is not None
             body.space.reindex_shapes_for_body(body)
 
-    def take_over(self, pose: Pose, speed_m_s: float, spin_rad_s: float, *, is_free: bool) -> None:
+    def set_state(self, pose: Pose, speed_m_s: float, spin_rad_s: float, *, is_free: bool) -> None:
         """Be where the fleet has brought it."""
         self._is_free = is_free
         self._pose, self._angle = pose, pose.yaw_rad
@@ -178,7 +178,7 @@ class RobotBody:
         self.touching.clear()
         self._speed_m_s = self._spin_rad_s = 0.0
 
-    def glide(self) -> None:
+    def move_freely(self) -> None:
         """A tick without the engine, for when nothing can be touched; the same sums in the same order."""
         left, right = self._driven
         self._speed_m_s = speed = (left + right) / 2
@@ -193,18 +193,18 @@ class RobotBody:
         self._angle = angle
         self._pose = Pose(x_m, y_m, angle)
 
-    def engage(self, space: pymunk.Space) -> None:
+    def activate(self, space: pymunk.Space) -> None:
         """Let the engine move it from where it is."""
-        if not self.is_engaged:
-            self.is_engaged = True
+        if not self.is_active:
+            self.is_active = True
             self.body.position = (self._pose.x_m, self._pose.y_m)
             self.body.angle = self._angle
             space.add(self.body, self.shape)
 
-    def disengage(self, space: pymunk.Space) -> None:
+    def deactivate(self, space: pymunk.Space) -> None:
         """Leave the engine."""
-        if self.is_engaged:
-            self.is_engaged = False
+        if self.is_active:
+            self.is_active = False
             space.remove(self.shape, self.body)
 
     def begin_tick(self) -> None:
@@ -235,7 +235,7 @@ class RobotBody:
         _set_force(body, (push_x * share, push_y * share))
         _set_torque(body, (spin - turning) * (MOMENT_KG_M2 / SUB_STEP_S))
 
-    def settle(self, earlier: int) -> None:
+    def finish_sub_step(self, earlier: int) -> None:
         """After a sub-step, `earlier` ones done: take over what contacts have made of the push."""
         if self._is_free and not self.touching:
             self._angle += self._spin_rad_s * SUB_STEP_S

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Notes"]
+__all__ = ["ColumnState"]
 
 Column = npt.NDArray[Any]
 
 
-class Notes:
+class ColumnState:
     """The memories of a sensor on many robots. Invariant: a column is the truth until it is given back or lent.
 
     Values are numbers, or tuples of as many numbers on each robot.
@@ -37,19 +37,19 @@ class Notes:
             found = self._columns[name] = np.array([memory.get(name, first) for memory in self._memories])
         return found
 
-    def give_back(self) -> None:
+    def release(self) -> None:
         """Write all columns to the memories."""
         for robot in range(len(self._memories)):
-            self.lend(robot)
+            self.write_row(robot)
         self._columns.clear()
 
-    def lend(self, robot: int) -> None:
+    def write_row(self, robot: int) -> None:
         """Let one robot's memory be the truth until it is taken back."""
         for name, column in self._columns.items():
             value = column[robot].tolist()
             self._memories[robot][name] = tuple(value) if isinstance(value, list) else value
 
-    def take_back(self, robot: int) -> None:
+    def read_row(self, robot: int) -> None:
         """Read one robot's memory again."""
         for name, column in self._columns.items():
             column[robot] = self._memories[robot][name]

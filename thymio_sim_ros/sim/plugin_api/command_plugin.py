@@ -8,8 +8,8 @@ from functools import partial
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from thymio_sim_ros.sim.model.geometry import Tilt
-from thymio_sim_ros.sim.plugin_api.plugin_isolation import Guard
-from thymio_sim_ros.sim.plugin_api.view import ActuatorView, GroupActuatorView
+from thymio_sim_ros.sim.plugin_api.plugin_isolation import PluginGuard
+from thymio_sim_ros.sim.plugin_api.view import ActuatorView, BatchActuatorView
 
 __all__ = ["CommandPlugin", "Tilting", "isolated"]
 
@@ -36,7 +36,7 @@ class CommandPlugin:
     apply: Callable[[Any, Any, int], None]
     update: Callable[[Any, ActuatorView, float], None] | None = None
     is_idle: Callable[[Any], bool] | None = None
-    update_all: Callable[[Sequence[Any], GroupActuatorView, float], None] | None = None
+    update_all: Callable[[Sequence[Any], BatchActuatorView, float], None] | None = None
     shows: Callable[[Any], Mapping[str, Any]] | None = None
 
 
@@ -56,7 +56,7 @@ def isolated(kind: str, plugin: P) -> P:
 
     `kind` is the word for it in log messages.
     """
-    guard, update, shows = Guard(kind, plugin.name), plugin.update, plugin.shows
+    guard, update, shows = PluginGuard(kind, plugin.name), plugin.update, plugin.shows
     return replace(
         plugin,
         begin=partial(guard.begin, plugin.begin),

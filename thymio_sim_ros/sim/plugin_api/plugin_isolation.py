@@ -9,18 +9,18 @@ import logging
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-__all__ = ["Broken", "Guard", "quiet_sensor"]
+__all__ = ["DisabledState", "PluginGuard", "guarded_sensor"]
 
 R = TypeVar("R")
 
 _BROKEN = "guards.broken"
 
 
-class Broken:
+class DisabledState:
     """The state of an actuator that could not even begin."""
 
 
-class Guard:
+class PluginGuard:
     """Runs the functions of one actuator or stimulus; on each robot it is switched off by its first error."""
 
     def __init__(self, kind: str, name: str) -> None:
@@ -34,11 +34,11 @@ class Guard:
             return make()
         except Exception:
             _log(self._kind, self._name)
-            return Broken()
+            return DisabledState()
 
     def run(self, act: Callable[..., None], state: Any, *arguments: Any) -> None:
         """Do it unless this robot's is broken."""
-        if isinstance(state, Broken) or id(state) in self._broken:
+        if isinstance(state, DisabledState) or id(state) in self._broken:
             return
         try:
             act(state, *arguments)
@@ -53,7 +53,7 @@ class Guard:
         return shown
 
 
-def quiet_sensor(name: str, measure: Callable[[Any], R]) -> Callable[[Any], R | None]:
+def guarded_sensor(name: str, measure: Callable[[Any], R]) -> Callable[[Any], R | None]:
     """`measure` of a sensor, which returns nothing any more once it has raised on that robot."""
 
     def guarded(view: Any) -> R | None:

@@ -13,12 +13,20 @@ import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim.kernel.memory import is_available
-from thymio_sim_ros.sim.kernel.raycast_binding import Casting
+from thymio_sim_ros.sim.kernel.raycast_binding import RaycastBinding
 from thymio_sim_ros.sim.model import robot_constants
-from thymio_sim_ros.sim.raycast.obstacle_table import BOX, DISC, HEIGHT, NOWHERE_M, Frames, Values, polygon_in_frame
+from thymio_sim_ros.sim.raycast.obstacle_table import (
+    BOX,
+    DISC,
+    HEIGHT,
+    NOWHERE_M,
+    ObstacleTable,
+    Values,
+    polygon_in_frame,
+)
 from thymio_sim_ros.sim.raycast.scalar import Obstacle
 
-__all__ = ["Fan", "Indices", "Raycaster", "Values"]
+__all__ = ["BatchRaycaster", "Fan", "Indices", "Values"]
 
 _MARGIN_M = 0.15
 _SAME_M = 1e-9
@@ -59,7 +67,7 @@ class Fan:
         self.reach_m = range_m + max(math.hypot(x, y) for x, y in places)
 
 
-class Raycaster:
+class BatchRaycaster:
     """What rays meet in a world with always the same robots.
 
     Their poses are told with every cast; other things that move, when they may have moved.
@@ -70,8 +78,8 @@ class Raycaster:
     ) -> None:
         """`is_compiled`: by kernels, or with numpy; None: by kernels where they are available. Nothing else differs."""
         self._is_compiled = is_available() if is_compiled is None else is_compiled
-        self._kernels: dict[Fan, Casting] = {}
-        self._frames = Frames([*fixed, *loose])
+        self._kernels: dict[Fan, RaycastBinding] = {}
+        self._table = ObstacleTable([*fixed, *loose])
         self._fixed = len(fixed)
         self._fallen: frozenset[int] = frozenset()
         self._lists: dict[Fan, tuple[Values, Indices, Indices]] = {}
@@ -86,9 +94,9 @@ class Raycaster:
             self._fallen = frozenset(fallen)
             self._lists.clear()
         for number, obstacle in moved.items():
-            row = self._frames.rows[self._fixed + number]
+            row = self._table.rows[self._fixed + number]
             size = row[4:].copy()
-            self._frames.put(self._fixed + number, obstacle)
+            self._table.put(self._fixed + number, obstacle)
             if np.abs(row[4:] - size).max() > _SAME_M:
                 self._lists.clear()
 
@@ -142,17 +150,17 @@ class Raycaster:
     def _cast_compiled(self, poses: Values, fan: Fan) -> tuple[Indices, Values]:
         kernel = self._kernels.get(fan)
         if kernel is None:
-            things = len(self._frames.rows)
-            kernel = Casting(fan, len(poses), things, self._fixed, _HULL_FRAME, _MARGIN_M / 3)
+            things = len(self._table.rows)
+            kernel = RaycastBinding(fan, len(poses), things, self._fixed, _HULL_FRAME, _MARGIN_M / 3)
             self._kernels[fan] = kernel
-        found = kernel.cast(poses, self._frames.rows) if fan in self._lists else None
+        found = kernel.cast(poses, self._table.rows) if fan in self._lists else None
         while found is None:
             frames, kinds = self._with_robots(poses)
             robot, thing = self._pairs(poses, frames, fan)
             places = self._places(poses, frames)
             self._lists[fan] = (places, robot, thing)
-            kernel.begin(frames, kinds, [*self._frames.polygons, _HULL_PLANES], robot, thing, places)
-            found = kernel.cast(poses, self._frames.rows)
+            kernel.begin(frames, kinds, [*self._table.polygons, _HULL_PLANES], robot, thing, places)
+            found = kernel.cast(poses, self._table.rows)
         return found
 
     def _places(self, poses: Values, frames: Values) -> Values:
@@ -170,8 +178,8 @@ class Raycaster:
         robots[:, 3] = s * cos + c * sin
         robots[:, 4:] = half_x, half_y, robot_constants.HULL_HEIGHT_M
         robots[list(self._fallen), HEIGHT] = NOWHERE_M
-        kinds = np.full(len(poses), len(self._frames.polygons), dtype=np.intp)
-        return np.concatenate([self._frames.rows, robots]), np.concatenate([self._frames.kinds, kinds])
+        kinds = np.full(len(poses), len(self._table.polygons), dtype=np.intp)
+        return np.concatenate([self._table.rows, robots]), np.concatenate([self._table.kinds, kinds])
 
     def _near(self, poses: Values, frames: Values, fan: Fan) -> tuple[Indices, Indices]:
         """Pairs of robots and things, at least as high as the rays, that may be in reach: robot by robot."""
@@ -215,7 +223,7 @@ class Raycaster:
             elif this == BOX:
                 distances[rows] = _meet_boxes(*ray, near[rows, 4, None], near[rows, 5, None])
             else:
-                polygons = self._frames.polygons
+                polygons = self._table.polygons
                 planes = polygons[this] if this < len(polygons) else _HULL_PLANES
                 distances[rows] = _meet_polygon(*ray, planes)
         return distances

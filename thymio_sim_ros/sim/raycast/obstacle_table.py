@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from thymio_sim_ros.sim.raycast.scalar import DiscObstacle, Obstacle
 
-__all__ = ["BOX", "DISC", "HEIGHT", "NOWHERE_M", "Frames", "Values", "polygon_in_frame"]
+__all__ = ["BOX", "DISC", "HEIGHT", "NOWHERE_M", "ObstacleTable", "Values", "polygon_in_frame"]
 
 Values = npt.NDArray[np.float64]
 
@@ -26,7 +26,7 @@ NOWHERE_M = -1.0
 _RIGHT_ANGLE = 1e-9
 
 
-class Frames:
+class ObstacleTable:
     """Rows: middle x, y; cosine and sine of the heading; half size along and across; height. `kinds` beside them."""
 
     __slots__ = ("kinds", "polygons", "rows")

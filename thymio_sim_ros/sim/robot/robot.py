@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from thymio_sim_ros.sim.audio.propagation import Sound, SoundSource
 from thymio_sim_ros.sim.ground.sampling import NO_FLOOR, Ground, GroundSample
-from thymio_sim_ros.sim.mechanics.edge_fall import Balance
+from thymio_sim_ros.sim.mechanics.edge_fall import EdgeFall
 from thymio_sim_ros.sim.mechanics.wheels import WheelArrays, Wheels
 from thymio_sim_ros.sim.model.clock import SimClock
 from thymio_sim_ros.sim.model.geometry import LEVEL, Point, Pose, Tilt, Twist
@@ -19,15 +19,15 @@ from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.playground.scene import RobotSnapshot
 from thymio_sim_ros.sim.plugin_api.command_plugin import CommandPlugin, Tilting
 from thymio_sim_ros.sim.raycast.scalar import Surroundings
-from thymio_sim_ros.sim.robot.actuator_instance import Task
+from thymio_sim_ros.sim.robot.plugin_instance import PluginInstance
 from thymio_sim_ros.sim.sensors import Sensor
 
-__all__ = ["Robot", "Shared"]
+__all__ = ["Robot", "SharedState"]
 
 S = TypeVar("S")
 
 
-class Shared:
+class SharedState:
     """What all robots of a world share."""
 
     __slots__ = ("_sounds", "_sounds_ns", "busy", "clock", "ground", "physics", "proximity_model", "robots", "woken")
@@ -57,17 +57,17 @@ class Shared:
             self._sounds = [
                 Sound(robot.pose.x_m, robot.pose.y_m, level)
                 for robot in self.robots.values()
-                for level in robot.levels(now_ns)
+                for level in robot.sound_levels(now_ns)
             ]
         return self._sounds
 
 
-class _View:
+class _PluginView:
     """A robot as one plug-in sees it; satisfies `SensorView` and `ActuatorView`."""
 
     __slots__ = ("_clock", "_robot", "_states", "_world", "memory", "noise", "proximity_model")
 
-    def __init__(self, robot: Robot, world: Shared, noise: Noise) -> None:
+    def __init__(self, robot: Robot, world: SharedState, noise: Noise) -> None:
         self._robot, self._world, self._states, self._clock = robot, world, robot.states, world.clock
         self.noise = noise
         self.memory: dict[str, Any] = {}
@@ -142,7 +142,7 @@ class Robot:
     def __init__(
         self,
         start: RobotStart,
-        shared: Shared,
+        shared: SharedState,
         plugins: Iterable[CommandPlugin],
         sensors: Iterable[Sensor],
         *,
@@ -155,14 +155,14 @@ class Robot:
         self.shared_wheels: WheelArrays | None = None
         """The wheels of all robots, when they roll as one."""
         self._clock, self._physics = shared.clock, shared.physics
-        self.balance = Balance(shared.clock, shared.physics, self.body)
+        self.edge_fall = EdgeFall(shared.clock, shared.physics, self.body)
         """Whether it stands."""
         self.states: dict[type[Any], Any] = {}
         """The state of every actuator, by its type."""
         self._accepting: dict[type[Any], tuple[CommandPlugin, Any]] = {}
         self._shown: list[tuple[Callable[[Any], Mapping[str, Any]], Any]] = []
         self._shared = shared
-        self.tasks: list[Task] = []
+        self.instances: list[PluginInstance] = []
         """What acts in a tick, in name order."""
         for plugin in plugins:
             state = plugin.begin()
@@ -172,13 +172,14 @@ class Robot:
             if plugin.shows is not None:
                 self._shown.append((plugin.shows, state))
             if plugin.update is not None:
-                view = _View(self, shared, Noise(seed, self.name, plugin.name, enabled=noise))
-                self.tasks.append(Task(plugin, state, view))
+                view = _PluginView(self, shared, Noise(seed, self.name, plugin.name, enabled=noise))
+                self.instances.append(PluginInstance(plugin, state, view))
         self._list_busy()
         self._tilting = [state for state in self.states.values() if isinstance(state, Tilting)]
         self._sound_sources = [state for state in self.states.values() if isinstance(state, SoundSource)]
         self.sensors = [
-            (sensor, _View(self, shared, Noise(seed, self.name, sensor.name, enabled=noise))) for sensor in sensors
+            (sensor, _PluginView(self, shared, Noise(seed, self.name, sensor.name, enabled=noise)))
+            for sensor in sensors
         ]
         self._wakes: dict[type[Any], list[int]] = {}
         for number, (sensor, _) in enumerate(self.sensors):
@@ -189,8 +190,8 @@ class Robot:
     @property
     def wheels(self) -> Wheels:
         """Its wheels."""
-        if self.shared_wheels is not None and not self.shared_wheels.is_told:
-            self.shared_wheels.tell()
+        if self.shared_wheels is not None and not self.shared_wheels.is_written_back:
+            self.shared_wheels.write_back()
         return self._wheels
 
     @property
@@ -206,7 +207,7 @@ class Robot:
     @property
     def tilt(self) -> Tilt:
         """How it leans: as the operator's hand holds it, or as it falls off an edge and lies there."""
-        return self.balance.tilt or self.held_tilt
+        return self.edge_fall.tilt or self.held_tilt
 
     @property
     def held_tilt(self) -> Tilt:
@@ -219,14 +220,14 @@ class Robot:
     @property
     def is_falling(self) -> bool:
         """Whether it is in the air, on its way down from an edge."""
-        return self.balance.is_falling
+        return self.edge_fall.is_falling
 
     @property
     def is_fallen(self) -> bool:
         """Whether it has fallen off an edge, falling still or not."""
         return self.body.is_fallen
 
-    def levels(self, now_ns: int) -> list[float]:
+    def sound_levels(self, now_ns: int) -> list[float]:
         """How loud is what sounds on it."""
         levels = (source.sound_level(now_ns) for source in self._sound_sources)
         return [level for level in levels if level]
@@ -240,9 +241,9 @@ class Robot:
         plugin, state = self._accepting[type(command)]
         plugin.apply(state, command, self._clock.now_ns)
         self.wake(type(command))
-        for task in self.tasks:
-            if task.state is state and not task.is_busy:
-                task.is_busy = True
+        for instance in self.instances:
+            if instance.state is state and not instance.is_busy:
+                instance.is_busy = True
                 self._list_busy()
 
     def wake(self, kind: type[Any]) -> None:
@@ -252,23 +253,23 @@ class Robot:
             self._woken.update(numbers)
             self._shared.woken[self] = None
 
-    def act(self, dt_s: float, *, is_in_crowd: bool = False) -> None:
+    def act(self, dt_s: float, *, is_batched: bool = False) -> None:
         """Run for one tick the actuators that are busy; in a crowd those that the crowd does not run for all."""
         has_rested = False
-        for task in self._busy:
-            if not (is_in_crowd and task.update_all is not None):
-                task.update(task.state, task.view, dt_s)
-            if task.is_idle is not None and task.is_idle(task.state):
-                task.is_busy, has_rested = False, True
+        for instance in self._busy:
+            if not (is_batched and instance.update_all is not None):
+                instance.update(instance.state, instance.view, dt_s)
+            if instance.is_idle is not None and instance.is_idle(instance.state):
+                instance.is_busy, has_rested = False, True
         if has_rested:
             self._list_busy()
-        if not is_in_crowd:
+        if not is_batched:
             self.body.drive(self.wheels.ground)
 
     def _list_busy(self) -> None:
         """What is to be updated, in name order; and whether the crowd has to ask."""
-        self._busy = tuple(task for task in self.tasks if task.is_busy)
-        if all(task.update_all is not None for task in self._busy):
+        self._busy = tuple(instance for instance in self.instances if instance.is_busy)
+        if all(instance.update_all is not None for instance in self._busy):
             self._shared.busy.pop(self, None)
         else:
             self._shared.busy[self] = None
@@ -277,7 +278,7 @@ class Robot:
         """Count on the wheels what the body has moved."""
         self.wheels.roll(self.body.covered_m_s, dt_s)
 
-    def take_woken(self) -> list[int]:
+    def pop_woken(self) -> list[int]:
         """The numbers of the sensors that were woken to measure, in order; those that only feel do so."""
         if not self._woken:
             return []
@@ -285,11 +286,11 @@ class Robot:
         self._shared.woken.pop(self, None)
         for number in woken:
             sensor, view = self.sensors[number]
-            if sensor.feel is not None:
-                sensor.feel(view)
-        return [number for number in woken if self.sensors[number][0].feel is None]
+            if sensor.on_wake is not None:
+                sensor.on_wake(view)
+        return [number for number in woken if self.sensors[number][0].on_wake is None]
 
-    def sense(self, number: int) -> Reading | None:
+    def measure_one(self, number: int) -> Reading | None:
         """What the sensor with this number reads now."""
         sensor, view = self.sensors[number]
         return sensor.measure(view)
@@ -297,11 +298,11 @@ class Robot:
     def place(self, pose: Pose) -> None:
         """Put it somewhere, at rest; from where it has fallen too."""
         self._physics.place(self.body, pose)
-        self.balance.regain()
+        self.edge_fall.clear()
 
     def measure(self, due: Sequence[int]) -> list[tuple[str, str, Reading]]:
         """The readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""
-        woken = self.take_woken() if self._woken else ()
+        woken = self.pop_woken() if self._woken else ()
         readings = []
         for number in sorted({*woken, *due}) if woken else due:
             sensor, view = self.sensors[number]

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 
-__all__ = ["REFRESH_NS", "are_news", "is_news"]
+__all__ = ["REFRESH_NS", "should_publish", "should_publish_all"]
 
 REFRESH_NS = 1_000_000_000
 
 
-def is_news(view: SensorView, value: object) -> bool:
+def should_publish(view: SensorView, value: object) -> bool:
     """Whether a value differs from the one told last, or that was told a second ago; it then counts as told.
 
     `memory["refresh_ns"]` is when it will be told again anyway.
@@ -24,12 +24,12 @@ def is_news(view: SensorView, value: object) -> bool:
     return True
 
 
-def are_news(group: GroupView, values: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
-    """`is_news` for each row of values, or for each value."""
-    now_ns, notes = group.now_ns, group.notes
-    told = notes.column("told", tuple(values[0].tolist()) if values.ndim > 1 else 0)
-    refresh_ns = notes.column("refresh_ns", 0)
+def should_publish_all(batch: BatchSensorView, values: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
+    """`should_publish` for each row of values, or for each value."""
+    now_ns, column_state = batch.now_ns, batch.column_state
+    told = column_state.column("told", tuple(values[0].tolist()) if values.ndim > 1 else 0)
+    refresh_ns = column_state.column("refresh_ns", 0)
     differ = told != values
-    news: npt.NDArray[np.bool_] = (differ.any(axis=1) if values.ndim > 1 else differ) | (now_ns >= refresh_ns)
-    told[news], refresh_ns[news] = values[news], now_ns + REFRESH_NS
-    return news
+    is_due: npt.NDArray[np.bool_] = (differ.any(axis=1) if values.ndim > 1 else differ) | (now_ns >= refresh_ns)
+    told[is_due], refresh_ns[is_due] = values[is_due], now_ns + REFRESH_NS
+    return is_due

@@ -20,10 +20,12 @@ _EMPTY_V, _FULL_V = 3.4, 4.1
 
 
 def _measure(view: SensorView) -> BatteryReading:
-    power = view.state(BatteryState)
-    word = units.volts_to_units(power.volts)
-    charge = max(0.0, min(1.0, (power.volts - _EMPTY_V) / (_FULL_V - _EMPTY_V)))
-    return BatteryReading(view.now_ns, (word, word, int(power.is_charging)), power.volts, charge, power.is_charging)
+    battery = view.state(BatteryState)
+    word = units.volts_to_units(battery.volts)
+    charge = max(0.0, min(1.0, (battery.volts - _EMPTY_V) / (_FULL_V - _EMPTY_V)))
+    return BatteryReading(
+        view.now_ns, (word, word, int(battery.is_charging)), battery.volts, charge, battery.is_charging
+    )
 
 
 SENSOR = Sensor(

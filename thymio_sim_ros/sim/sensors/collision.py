@@ -8,7 +8,7 @@ import numpy as np
 
 from thymio_sim_ros.sim.model.readings import CollisionReading
 from thymio_sim_ros.sim.physics import Contact
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 
 __all__ = ["SENSOR"]
@@ -25,12 +25,12 @@ def _measure(view: SensorView) -> CollisionReading | None:
     return CollisionReading(view.now_ns, (), is_touching)
 
 
-def _measure_all(group: GroupView) -> Sequence[CollisionReading | None]:
-    told, are_touching = group.notes.column("is_touching", _UNKNOWN), np.zeros(len(group), dtype=int)
-    are_touching[list(group.contacts)] = True
-    readings: list[CollisionReading | None] = [None] * len(group)
+def _measure_all(batch: BatchSensorView) -> Sequence[CollisionReading | None]:
+    told, are_touching = batch.column_state.column("is_touching", _UNKNOWN), np.zeros(len(batch), dtype=int)
+    are_touching[list(batch.contacts)] = True
+    readings: list[CollisionReading | None] = [None] * len(batch)
     for robot in np.flatnonzero(told != are_touching).tolist():
-        readings[robot] = CollisionReading(group.now_ns, (), bool(are_touching[robot]))
+        readings[robot] = CollisionReading(batch.now_ns, (), bool(are_touching[robot]))
     told[:] = are_touching
     return readings
 

@@ -3,7 +3,7 @@
 Over floor the count is 60 + 884 / (1 + exp(-9 (g - 0.44))), g being the grey of the footprint, plus noise; it fades
 to 0 as the footprint leaves the floor. Ambient is the operator's light, 0 at first; reflected is the count with that
 added, at most 1023; delta is reflected less ambient. An operator can say what a sensor counts instead
-(`actuators/override.py`).
+(`stimuli/sensor_override.py`).
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from thymio_sim_ros.sim.model import units
 from thymio_sim_ros.sim.model.readings import GroundReading
 from thymio_sim_ros.sim.model.robot_constants import GROUND_NOISE, GROUND_SENSORS
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
-from thymio_sim_ros.sim.plugin_api.reading_table import Later
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.reading_table import LazyReadings
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.stimuli.environment import EnvironmentState
 from thymio_sim_ros.sim.stimuli.sensor_override import SensorOverrideState, overridden
@@ -66,22 +66,22 @@ def _words(light: int, left: int, right: int) -> tuple[int, ...]:
     return (light, light, lit_left, lit_right, lit_left - light, lit_right - light)
 
 
-def _measure_all(group: GroupView) -> Later:
-    now_ns = group.now_ns
-    reflectances, floors = group.ground_at(_PLACES)
+def _measure_all(batch: BatchSensorView) -> LazyReadings:
+    now_ns = batch.now_ns
+    reflectances, floors = batch.ground_at(_PLACES)
     values = (floors * units.ground_responses(reflectances)).ravel()
     over_floor = floors.ravel().nonzero()[0]
-    values[over_floor] += group.noise.draw(over_floor // 2, GROUND_NOISE)
+    values[over_floor] += batch.noise.draw(over_floor // 2, GROUND_NOISE)
     np.minimum(values, units.GROUND_FULL, out=values)
     np.maximum(values, 0.0, out=values)
     counts = np.rint(values, out=values).astype(np.int32).reshape(-1, 2)
-    lights = [environment.ambient_light for environment in group.states(EnvironmentState)]
-    overrides = [state.ground for state in group.states(SensorOverrideState)]
+    lights = [environment.ambient_light for environment in batch.states(EnvironmentState)]
+    overrides = [state.ground for state in batch.states(SensorOverrideState)]
 
     def make(robot: int) -> GroundReading:
         return _reading(now_ns, lights[robot], counts[robot].tolist(), reflectances[robot].tolist(), overrides[robot])
 
-    return Later(len(group), make)
+    return LazyReadings(len(batch), make)
 
 
 SENSOR = Sensor(

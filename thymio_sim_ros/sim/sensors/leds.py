@@ -7,7 +7,7 @@ from typing import Any
 
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.model.readings import LedReading
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 
 __all__ = ["SENSOR"]
@@ -18,8 +18,8 @@ def _measure(view: SensorView) -> LedReading | None:
     return None if state.changes == memory.get("changes") else _changed(state, memory, view.now_ns)
 
 
-def _measure_all(group: GroupView) -> Sequence[LedReading | None]:
-    now_ns, pairs = group.now_ns, zip(group.states(LedState), group.notes.memories, strict=True)
+def _measure_all(batch: BatchSensorView) -> Sequence[LedReading | None]:
+    now_ns, pairs = batch.now_ns, zip(batch.states(LedState), batch.column_state.memories, strict=True)
     return [
         None if state.changes == memory.get("changes") else _changed(state, memory, now_ns) for state, memory in pairs
     ]

@@ -10,7 +10,7 @@ hits; a thin post straight ahead is invisible. The subtracted term ends at 13.5 
 of a slanted wall jumps there.
 Model "cone": nine rays, the mean of F(d cos a); it has no jumps, and an object that fills a part of the cone gives that
 part of F.
-An operator can say what a sensor counts instead (`actuators/override.py`).
+An operator can say what a sensor counts instead (`stimuli/sensor_override.py`).
 `ranges_m` is the distance of a wall across the axis that would give the same count, as the robot's driver has it.
 """
 
@@ -32,8 +32,8 @@ from thymio_sim_ros.sim.model.robot_constants import (
     PROXIMITY_RANGE_M,
 )
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
-from thymio_sim_ros.sim.plugin_api.reading_table import Later
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.reading_table import LazyReadings
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.raycast.batch import Fan, Values
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.sensors._proximity_binding import ProximityCounts
@@ -69,11 +69,11 @@ def response(distances_m: Sequence[float], model: str) -> float:
     if model == "cone":
         straight = map(float.__mul__, distances_m, _COSINES[model])
         return math.fsum(map(_within_range, distances_m, straight)) / len(distances_m)
-    right, centre, left = distances_m
+    right, center, left = distances_m
     if model == "default":
-        return units.proximity_response(min(right * COS_CONE, centre, left * COS_CONE))
-    slanted = centre / COS_CONE
-    total = units.proximity_response(right) + units.proximity_response(centre) + units.proximity_response(left)
+        return units.proximity_response(min(right * COS_CONE, center, left * COS_CONE))
+    slanted = center / COS_CONE
+    total = units.proximity_response(right) + units.proximity_response(center) + units.proximity_response(left)
     return total - 2.0 * units.proximity_response(slanted)
 
 
@@ -84,11 +84,11 @@ def responses(distances_m: Values, model: str) -> Values:
         found[distances_m > PROXIMITY_RANGE_M] = 0.0
         mean: Values = reduce(np.add, found.T) / distances_m.shape[1]  # one after the other, as the kernel does
         return mean
-    right, centre, left = distances_m.T
+    right, center, left = distances_m.T
     if model == "default":
-        return units.proximity_responses(np.minimum(np.minimum(right * COS_CONE, centre), left * COS_CONE))
-    slanted = centre / COS_CONE
-    of = units.proximity_responses(np.stack((right, centre, left, slanted)))
+        return units.proximity_responses(np.minimum(np.minimum(right * COS_CONE, center), left * COS_CONE))
+    slanted = center / COS_CONE
+    of = units.proximity_responses(np.stack((right, center, left, slanted)))
     total: Values = of[0] + of[1] + of[2] - 2.0 * of[3]
     return total
 
@@ -126,26 +126,26 @@ def _ranges(counts: Sequence[int]) -> tuple[float, ...]:
     return tuple([units.proximity_distance(count) if count else math.inf for count in counts])
 
 
-def _measure_all(group: GroupView) -> Later:
-    now_ns, model = group.now_ns, group.proximity_model
-    sensors, distances = group.cast(_FANS[model])
-    noise = group.noise.draw(sensors // _COUNT, PROXIMITY_NOISE)
+def _measure_all(batch: BatchSensorView) -> LazyReadings:
+    now_ns, model = batch.now_ns, batch.proximity_model
+    sensors, distances = batch.cast(_FANS[model])
+    noise = batch.noise.draw(sensors // _COUNT, PROXIMITY_NOISE)
     if is_available():
-        kernel = group.memory.get("counts")
+        kernel = batch.memory.get("counts")
         if kernel is None:
-            kernel = group.memory["counts"] = ProximityCounts(len(group) * _COUNT, model, _COSINES[model])
+            kernel = batch.memory["counts"] = ProximityCounts(len(batch) * _COUNT, model, _COSINES[model])
         counts = kernel.count(sensors, distances, noise).reshape(-1, _COUNT)
     else:
-        counts = np.zeros((len(group), _COUNT), dtype=np.int32)
+        counts = np.zeros((len(batch), _COUNT), dtype=np.int32)
         values = responses(distances, model) + noise
         counts.ravel()[sensors] = np.rint(np.minimum(np.maximum(values, 0.0), units.PROXIMITY_FULL))
-    overrides = [state.proximity for state in group.states(SensorOverrideState)]
+    overrides = [state.proximity for state in batch.states(SensorOverrideState)]
 
     def make(robot: int) -> ProximityReading:
         words = overridden(counts[robot].tolist(), overrides[robot])
         return ProximityReading(now_ns, tuple(words), _ranges(words))
 
-    return Later(len(group), make)
+    return LazyReadings(len(batch), make)
 
 
 SENSOR = Sensor(

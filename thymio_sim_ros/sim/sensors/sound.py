@@ -17,9 +17,9 @@ from thymio_sim_ros.sim.actuators.microphone import MicrophoneState
 from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL, level_at
 from thymio_sim_ros.sim.model.readings import SoundReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sensors._publish_on_change import are_news, is_news
+from thymio_sim_ros.sim.sensors._publish_on_change import should_publish, should_publish_all
 from thymio_sim_ros.sim.stimuli.environment import EnvironmentState
 
 __all__ = ["BLOCK_NS", "SENSOR"]
@@ -37,7 +37,7 @@ def _measure(view: SensorView) -> SoundReading | None:
         level = math.hypot(level, level_at(sounds, view.pose.x_m, view.pose.y_m))
     intensity = min(FULL_LEVEL, round(level))
     is_loud = view.state(MicrophoneState).is_exceeded(intensity)
-    if not is_news(view, intensity) and not is_loud:
+    if not should_publish(view, intensity) and not is_loud:
         return None
     return _reading(view.now_ns, intensity, is_loud=is_loud)
 
@@ -47,17 +47,17 @@ def _reading(now_ns: int, intensity: int, *, is_loud: bool) -> SoundReading:
     return SoundReading(now_ns, (intensity, 2 * smallest + intensity), is_loud)
 
 
-def _measure_all(group: GroupView) -> Sequence[SoundReading | None]:
-    levels = [float(environment.noise_level) for environment in group.states(EnvironmentState)]
-    if sounds := group.sounds:
-        places = zip(levels, group.poses.tolist(), strict=True)
+def _measure_all(batch: BatchSensorView) -> Sequence[SoundReading | None]:
+    levels = [float(environment.noise_level) for environment in batch.states(EnvironmentState)]
+    if sounds := batch.sounds:
+        places = zip(levels, batch.poses.tolist(), strict=True)
         levels = [math.hypot(level, level_at(sounds, x, y)) for level, (x, y, _) in places]
     intensities = [min(FULL_LEVEL, round(level)) for level in levels]
-    microphones = zip(group.states(MicrophoneState), intensities, strict=True)
+    microphones = zip(batch.states(MicrophoneState), intensities, strict=True)
     loud = [microphone.is_exceeded(intensity) for microphone, intensity in microphones]
-    readings: list[SoundReading | None] = [None] * len(group)
-    for robot in np.flatnonzero(are_news(group, np.array(intensities)) | loud).tolist():
-        readings[robot] = _reading(group.now_ns, intensities[robot], is_loud=loud[robot])
+    readings: list[SoundReading | None] = [None] * len(batch)
+    for robot in np.flatnonzero(should_publish_all(batch, np.array(intensities)) | loud).tolist():
+        readings[robot] = _reading(batch.now_ns, intensities[robot], is_loud=loud[robot])
     return readings
 
 

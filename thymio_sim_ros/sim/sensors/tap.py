@@ -15,7 +15,7 @@ from thymio_sim_ros.sim.model.readings import TapReading
 from thymio_sim_ros.sim.model.robot_constants import TAP_SPEED_M_S
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.stimuli.handling import HandlingState
 
@@ -36,17 +36,17 @@ def _is_knock(contact: Contact) -> bool:
     return contact.is_new and contact.speed_m_s > TAP_SPEED_M_S
 
 
-def _measure_all(group: GroupView) -> Sequence[TapReading | None]:
-    told, was_falling = group.notes.column("taps", 0), group.notes.column("is_falling", first=False)
-    taps, is_falling = [handling.taps for handling in group.states(HandlingState)], np.zeros(len(group), dtype=bool)
-    is_falling[group.falling] = True
+def _measure_all(batch: BatchSensorView) -> Sequence[TapReading | None]:
+    told, was_falling = batch.column_state.column("taps", 0), batch.column_state.column("is_falling", first=False)
+    taps, is_falling = [handling.taps for handling in batch.states(HandlingState)], np.zeros(len(batch), dtype=bool)
+    is_falling[batch.falling] = True
     is_tapped = told != taps
-    for robot in group.fallen:
+    for robot in batch.fallen:
         is_tapped[robot] |= was_falling[robot] and not is_falling[robot]
-    for robot, contacts in group.contacts.items():
+    for robot, contacts in batch.contacts.items():
         is_tapped[robot] |= any(map(_is_knock, contacts))
     told[:], was_falling[:] = taps, is_falling
-    reading = TapReading(group.now_ns, (1,))
+    reading = TapReading(batch.now_ns, (1,))
     return [reading if tapped else None for tapped in is_tapped.tolist()]
 
 

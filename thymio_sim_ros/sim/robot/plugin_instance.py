@@ -7,10 +7,10 @@ from typing import Any
 from thymio_sim_ros.sim.plugin_api.command_plugin import CommandPlugin
 from thymio_sim_ros.sim.plugin_api.view import ActuatorView
 
-__all__ = ["Task"]
+__all__ = ["PluginInstance"]
 
 
-class Task:
+class PluginInstance:
     """An actuator that acts on a robot in every tick in which it is busy."""
 
     __slots__ = ("is_busy", "is_idle", "state", "update", "update_all", "view")
