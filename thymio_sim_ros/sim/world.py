@@ -1,4 +1,4 @@
-"""The world: owns clock, bodies, ground and robots, and alone lets time pass.
+"""The world: owns clock, bodies, ground and robots, and is the only owner of simulated time.
 
 Commands may be posted at any time and take effect in the next step. The same playground, seed and commands
 give the same readings bit for bit. One thread may use a world; nothing here locks.
@@ -44,7 +44,7 @@ _NO_CLEARANCE = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class StepResult:
-    """What one step gave: readings as (robot, sensor, reading), by robot and then by sensor name; contacts."""
+    """Result of one step: readings as (robot, sensor, reading), by robot and then by sensor name; contacts."""
 
     now_ns: int
     readings: Sequence[tuple[str, str, Reading]]
@@ -52,7 +52,7 @@ class StepResult:
 
 
 class World:
-    """A playground that lives. Invariant: nothing in it changes but by `step`, `reset`, `spawn` and `remove`."""
+    """A running playground. Invariant: only `step`, `reset`, `spawn` and `remove` change it."""
 
     def __init__(
         self,
@@ -65,10 +65,19 @@ class World:
         periods_ns: Mapping[str, int] | None = None,
         ground: Ground | None = None,
     ) -> None:
-        """`motor_model`: one of `commands.MOTOR_MODELS`, ValueError for another.
+        """Create the world at time 0.
 
-        `periods_ns` names the sensors that measure and how often; None: all of them, as often as the robot does.
-        `ground` is that of the playground where it has been made already; it belongs to the world from now on.
+        Args:
+            playground: What the world contains.
+            seed: Seed of all random numbers.
+            noise: Whether sensors and motors are noisy.
+            proximity_model: One of `robot_constants.PROXIMITY_MODELS`.
+            motor_model: One of `commands.MOTOR_MODELS`.
+            periods_ns: The sensors that measure, and their periods; None: all, with their own periods.
+            ground: The ground of the playground if it exists already; the world owns it from now on.
+
+        Raises:
+            ValueError: A model or sensor is unknown, or a period is not above 0.
         """
         if proximity_model not in PROXIMITY_MODELS:
             raise ValueError(f"proximity model {proximity_model!r}: expected one of {', '.join(PROXIMITY_MODELS)}")
@@ -79,14 +88,14 @@ class World:
         periods = None if periods_ns is None else tuple(periods_ns.items())
         self.options = WorldOptions(seed, noise, proximity_model, motor_model, periods)
         self.recorder: InputRecorder | None = None
-        """Who is told what happens from now on."""
+        """Gets all inputs and results from now on."""
         self._ground = Ground(playground.floors, playground.paints) if ground is None else ground
         self._floor_support = FloorSupport(playground.floors)
         self._fixed = Occupied(footprint_of(solid) for solid in playground.solids if solid.is_fixed)
         self._begin()
 
     def reset(self) -> None:
-        """Everything as at the start: time 0, robots at their places, the same noise again, no command waiting."""
+        """Restore the initial state: time 0, robots at their start poses, the same noise, no pending commands."""
         self._record(Reset())
         self._begin()
 
@@ -103,7 +112,7 @@ class World:
             self._add(start)
         self._posted: list[tuple[str, Command]] = []
         self._clearances: dict[str, tuple[float, float, float]] = {}
-        """Where each thing was when an edge was looked for, and how far away that is at least."""
+        """Last position at which the distance to an edge was computed for an object, and that distance."""
         for movable in self._physics.movables.values():
             self._drop_over_edge(movable)
         self._form_batch()
@@ -115,32 +124,32 @@ class World:
 
     @property
     def robots(self) -> Mapping[str, Robot]:
-        """The robots by name, in the order of the playground, and then as they were added."""
+        """The robots by name: those of the playground in its order, then in the order in which they were added."""
         return MappingProxyType(self._robots)
 
     @property
     def objects(self) -> tuple[ObjectSnapshot, ...]:
-        """Where everything is that moves without wheels: movable things, then doors, in the playground's order."""
+        """Poses of objects, then doors, in the order of the playground."""
         return tuple(ObjectSnapshot(body.name, body.pose, body.is_fallen) for body in self._physics.objects)
 
     @property
     def movables(self) -> tuple[str, ...]:
-        """Names of the things that can be put somewhere, in the playground's order."""
+        """Names of the objects that can be moved, in the order of the playground."""
         return tuple(self._physics.movables)
 
     def post(self, name: str, command: Command) -> None:
-        """Let a command to a robot or a movable thing take effect in the next step.
+        """Post a command to a robot or an object; it takes effect in the next step.
 
-        KeyError for an unknown name, TypeError for a command that it does not take, PlacementError for a place that is
-        not free now.
+        Raises KeyError for an unknown name, TypeError for a command that is not accepted, ValueError for a pose that is
+        not finite, and PlacementError if the target position is occupied now.
         """
         if name in self._physics.movables:
             if not isinstance(command, MoveObject):
-                raise TypeError(f"a thing takes no {type(command).__name__}")
+                raise TypeError(f"an object accepts no {type(command).__name__}")
             pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
             self._check_place(footprint_of(self._physics.movables[name].solid.at(pose)))
         elif not self._robots[name].accepts(command):
-            raise TypeError(f"no actuator takes a {type(command).__name__}")
+            raise TypeError(f"no actuator or stimulus accepts a {type(command).__name__}")
         elif isinstance(command, MoveRobot):
             pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
             self._check_place(footprint_of_robot(name, pose))
@@ -148,9 +157,10 @@ class World:
         self._posted.append((name, command))
 
     def spawn(self, start: RobotStart) -> None:
-        """Add a robot, now.
+        """Add a robot at once.
 
-        PlacementError: its place is not free; ValueError: its name is taken, or it is one that no file may hold.
+        Raises PlacementError if its position is occupied, and ValueError if its name is taken or a value is not valid
+        in a playground file.
         """
         if start.name in self._names():
             raise ValueError(f"the name '{start.name}' is taken")
@@ -164,7 +174,7 @@ class World:
         self._form_batch()
 
     def remove(self, robot: str) -> None:
-        """Take a robot away, now; KeyError for an unknown one."""
+        """Remove a robot at once; raises KeyError for an unknown name."""
         gone = self._robots.pop(robot)
         self._physics.remove_robot(gone.body)
         self._shared.forget(gone)
@@ -173,7 +183,7 @@ class World:
         self._form_batch()
 
     def step(self) -> StepResult:
-        """Let one tick pass."""
+        """Advance the world by one tick."""
         self._apply_commands()
         self._run_actuators()
         contacts = self._move_bodies()
@@ -184,7 +194,7 @@ class World:
         return result
 
     def snapshot(self) -> Snapshot:
-        """How the world looks now."""
+        """The visible state of the world now."""
         return Snapshot(
             self._clock.now_ns,
             tuple(robot.snapshot() for robot in self._robots.values()),
@@ -202,17 +212,17 @@ class World:
             robot.apply(SetPen(pen.down, as_color(pen.color), pen.width_m))
 
     def _form_batch(self) -> None:
-        """Let many robots act, move and measure together."""
+        """Update the robots as a batch if there are enough of them."""
         if self._batch is not None:
             self._batch.dissolve()
         self._batch = RobotBatch(self._robots.values(), self._shared) if len(self._robots) >= MIN_BATCH_ROBOTS else None
 
     def _names(self) -> set[str]:
-        """All names that are taken."""
+        """All names in use."""
         return {*self._robots, *(shape.name for shape in self.playground.shapes)}
 
     def _check_place(self, wanted: Footprint) -> None:
-        """Refuse a place where something else stands, or will before anything else happens."""
+        """Raise PlacementError if a position is occupied now or by a pending command."""
         soon = {
             name: Pose(command.x_m, command.y_m, command.yaw_rad)
             for name, command in self._posted
@@ -292,7 +302,7 @@ class World:
 
 
 def _finite(name: str, pose: Pose) -> Pose:
-    """The pose itself; ValueError when it is none."""
+    """The pose; raises ValueError if it is not finite."""
     if not all(map(math.isfinite, (pose.x_m, pose.y_m, pose.yaw_rad))):
         at = f"{pose.x_m}, {pose.y_m} m, {pose.yaw_rad} rad"
         raise ValueError(f"'{name}' cannot stand at {at}: expected finite numbers")
@@ -300,7 +310,7 @@ def _finite(name: str, pose: Pose) -> Pose:
 
 
 def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -> tuple[Sensor, ...]:
-    """The sensors that measure; ValueError for a name that is none, or a period that is not above 0."""
+    """The sensors that measure; raises ValueError for an unknown name or a period that is not above 0."""
     if periods_ns is None:
         return sensors
     names = [sensor.name for sensor in sensors]

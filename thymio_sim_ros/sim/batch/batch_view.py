@@ -1,4 +1,4 @@
-"""The robots of a crowd as one of their sensors sees them at once."""
+"""The robots of a batch as one sensor sees them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ S = TypeVar("S")
 
 
 class RobotArrays(Protocol):
-    """The robots as they move and see together."""
+    """The arrays of a batch."""
 
     @property
     def shared(self) -> SharedState:
@@ -40,7 +40,7 @@ class RobotArrays(Protocol):
 
     @property
     def poses(self) -> Values:
-        """Where they are to be seen: rows x, y, yaw; who has fallen is far from any floor."""
+        """Poses, shape (robots, 3): x, y, yaw; a fallen robot is far from any floor."""
         ...
 
     def states(self, kind: type[S]) -> list[S]:
@@ -48,7 +48,7 @@ class RobotArrays(Protocol):
         ...
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
-        """What the rays of all robots meet now."""
+        """Casts the rays of all robots; see `BatchRaycaster.cast`."""
         ...
 
 
@@ -68,7 +68,7 @@ class BatchView:
         return len(self._robots)
 
     def release(self) -> None:
-        """Let every robot's sensor draw and remember for itself again."""
+        """Return unused random numbers and stored values to the robots."""
         for bank in (self._noise, self._uniforms):
             if bank is not None:
                 bank.release()

@@ -1,7 +1,7 @@
-"""All robots of a world as one: they move as a fleet, and plug-ins that can serve all of them in one go do so.
+"""The robots of a world as a batch: motion, and plug-ins that support it, are computed for all robots at once.
 
-Readings are those of robot by robot (counts may differ where rounding is a matter of the last bit): every sensor has
-its own generator on every robot, and draws from it in the same order.
+Readings are those of robots one by one, but for counts that are rounded differently due to the last bit: every sensor
+has its own random number generator on every robot, and draws from it in the same order.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Act = Callable[[Sequence[Any], BatchActuatorView, float], None]
 S = TypeVar("S")
 
 MIN_BATCH_ROBOTS = 14
-"""From so many robots on, all at once is quicker (measured, docs/performance.md)."""
+"""Number of robots from which on a batch is faster (measured, docs/performance.md)."""
 
 _NOWHERE_M = -1e6
 
@@ -49,7 +49,7 @@ class _ActuatorBatchView:
 
 
 class RobotBatch:
-    """The robots of a world, which stay the same until it disbands."""
+    """The robots of a world; a batch is dissolved when a robot is added or removed."""
 
     def __init__(self, robots: Iterable[Robot], shared: SharedState) -> None:
         self.shared = shared
@@ -73,7 +73,7 @@ class RobotBatch:
         for robot in self._robots:
             robot.shared_wheels = self.wheels
         self._clearances = np.zeros((3, len(self._robots)))
-        """Where each robot has looked for an edge, and the square of how far away that may be at least."""
+        """Position at which the distance to the edge was computed last, and the square of that distance, by robot."""
         self._acts: list[tuple[Act, list[Any], _ActuatorBatchView]] = []
         for instances in zip(*(robot.instances for robot in self._robots), strict=True):
             if (update_all := instances[0].update_all) is not None:
@@ -91,7 +91,7 @@ class RobotBatch:
         return len(self._robots)
 
     def dissolve(self) -> None:
-        """Every robot acts and moves alone again."""
+        """End the batch: every robot is updated on its own again."""
         self.shared.physics.dissolve()
         self.wheels.write_back()
         for robot in self._robots:
@@ -103,7 +103,7 @@ class RobotBatch:
 
     @property
     def poses(self) -> Values:
-        """Where they really are now: rows x, y, yaw; who has fallen is far from any floor."""
+        """Poses, shape (robots, 3): x, y, yaw; a fallen robot is far from any floor."""
         poses = self.batch_driver.poses
         fallen = self.batch_driver.fallen
         if len(fallen):
@@ -127,11 +127,14 @@ class RobotBatch:
         self.batch_driver.driven = self.wheels.ground
 
     def roll(self, dt_s: float) -> None:
-        """Count on the wheels what the bodies have moved."""
+        """Advance the wheels by the motion of the bodies."""
         self.wheels.roll(self.batch_driver.covered, dt_s)
 
     def check_floor(self, floor_support: FloorSupport) -> None:
-        """Let those fall who have no floor under their origins; the others look again when they have gone that far."""
+        """Make robots without floor under their origin fall.
+
+        A robot is checked again only when it has moved by the distance to the edge that was found last.
+        """
         places = self.batch_driver.poses.T[:2]
         ways = places - self._clearances[:2]
         ways *= ways

@@ -1,6 +1,6 @@
 """The picture on the ground: which color each square of `pixel_m` has, and where there is no floor at all.
 
-One pixel for each millimetre (more where the ground is very large), aligned with the world's origin. Floors make
+One pixel for each millimeter (more where the ground is very large), aligned with the world's origin. Floors make
 it, paint and prints cover floor, and a pen draws on it; what a pen has drawn can be taken away again.
 """
 
@@ -63,7 +63,7 @@ class Picture:
         self.pixels = np.zeros(shape, dtype=np.uint16)
         """Color numbers by row (y) and column (x)."""
         self.grays = np.zeros(_MAX_COLORS + 1)
-        """Grey 0…1 of each color: the mean of its parts."""
+        """Gray 0…1 of each color: the mean of its parts."""
         self._palette: list[Color] = [(0.0, 0.0, 0.0)]
         self._numbers: dict[Color, int] = {}
         for floor in floors:
@@ -136,7 +136,7 @@ class Picture:
         return part
 
     def _fill(self, vertices: Sequence[Point], color: Color, *, everywhere: bool) -> None:
-        """Paint the pixels whose centre lies in a convex polygon; without `everywhere` only those that are floor."""
+        """Paint the pixels whose center lies in a convex polygon; without `everywhere` only those that are floor."""
         number = self._number(color)
         xs = [x / self.pixel_m - self.origin[0] for x, _ in vertices]
         ys = [y / self.pixel_m - self.origin[1] for _, y in vertices]
@@ -184,7 +184,7 @@ class Picture:
             under[here] = numbers[table[code]]
 
     def _number(self, color: Color) -> int:
-        """The number of a color; when there are too many colors, of the nearest grey among them."""
+        """The number of a color; when there are too many colors, of the nearest gray among them."""
         known = self._numbers.get(color)
         if known is not None:
             return known

@@ -1,8 +1,8 @@
 """The ground under a sensor: a picture of floors, paint and drawings, and what a footprint sees of it.
 
 A sensor sees 9 x 9 samples, 2.5 mm apart along the world's axes, weighted by a Gaussian of 4 mm
-(docs/spec/thymio-robot.md section 7.2). Since samples lie on half millimetres, the picture is blurred once for every
-half millimetre; this is done tile by tile, when a sensor first comes near. Drawing forgets the tiles that see it.
+(docs/spec/thymio-robot.md section 7.2). Since samples lie on half millimeters, the picture is blurred once for every
+half millimeter; this is done tile by tile, when a sensor first comes near. Drawing forgets the tiles that see it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ __all__ = ["Ground", "GroundSample"]
 _TAP_STEP_M = 0.0025
 _TAP_SIGMA_M = 0.004
 _CELLS_PER_PIXEL = 2
-"""Blurred values per pixel: the samples' step is a multiple of half a millimetre."""
+"""Blurred values per pixel: the samples' step is a multiple of half a millimeter."""
 _TILE_SHIFT = 6
 _TILE_CELLS = 1 << _TILE_SHIFT
 _MAX_TILES = 1024
@@ -75,7 +75,7 @@ class Ground:
         return self._picture.pixel_m
 
     def sample(self, x_m: float, y_m: float) -> GroundSample:
-        """What a sensor's footprint centred here sees."""
+        """What a sensor's footprint centered here sees."""
         cell_x, cell_y = math.floor(x_m / self._cell_m), math.floor(y_m / self._cell_m)
         key = (cell_x // _TILE_CELLS, cell_y // _TILE_CELLS)
         tile = self._tiles.get(key)
@@ -112,7 +112,7 @@ class Ground:
     def draw_segment(
         self, x0_m: float, y0_m: float, x1_m: float, y1_m: float, width_m: float, color: Color | None
     ) -> None:
-        """Draw a line with round ends, metres in the world's frame; with None as color take drawings away there.
+        """Draw a line with round ends, meters in the world's frame; with None as color take drawings away there.
 
         Sensors see it from their next reading on. Where there is no floor nothing is drawn.
         """
@@ -276,6 +276,6 @@ def _within(numbers: _Indices, low: int, high: int) -> _Indices:
 
 
 def _over_floor(gray: _Values, missing: _Values) -> tuple[_Values, _Values]:
-    """Mean grey of the floor and which part is floor, where a part of the footprint is missing."""
+    """Mean gray of the floor and which part is floor, where a part of the footprint is missing."""
     floor = np.where(missing < 1.0 - 1e-9, 1.0 - missing, 0.0)
     return np.divide(gray, floor, out=np.zeros_like(gray), where=floor > 0.0), floor

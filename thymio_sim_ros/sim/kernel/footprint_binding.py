@@ -1,4 +1,4 @@
-"""The kernel of footprints for one ground: its arrays, and how it is called."""
+"""Binding of the footprint kernel for one ground."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class FootprintBinding:
         """Rows of `points` are x, y in a robot's frame.
 
         `counts` and `sizes` are those of the kernel, but for the number of places and the answers.
-        Pixels, tiles and greys are copied; whoever changes them changes those of this object from now on.
+        Pixels, tiles and grays are copied; later changes must be made to the copies in this object.
         """
         each = (robots, len(points))
         floats = [(len(sizes),), (robots, 3), (2, robots), points.shape, each, each, grays.shape, each, each]

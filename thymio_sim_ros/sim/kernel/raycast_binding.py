@@ -1,4 +1,4 @@
-"""The kernel of rays for one fan of sensors on always the same robots: its arrays, and how it is called."""
+"""Binding of the ray cast kernel for the fan of one sensor on a fixed set of robots."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The kernel of noise for one bank: its arrays, and how it is called."""
+"""Binding of the random number kernel for one bank."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Kernel: numbers that were drawn ahead are dealt out to their users. What `NormalBank.draw` does, step by step."""
+"""Kernel: hand out numbers that were drawn ahead to their users, as `NormalBank.draw` does."""
 
 from __future__ import annotations
 

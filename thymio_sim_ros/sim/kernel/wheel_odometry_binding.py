@@ -1,4 +1,4 @@
-"""The kernels of rolling wheels for always the same robots: their arrays, and how they are called."""
+"""Binding of the wheel odometry kernels for a fixed set of robots."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a robot still has floor under it."""
+"""Detects when a robot leaves the floor."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from thymio_sim_ros.sim.physics import Physics, RobotBody
 __all__ = ["EdgeFall"]
 
 _MAX_TICK_DISTANCE_M = robot_constants.MAX_SPEED_M_S * TICK_NS * 1e-9
-"""Of a robot in a tick, unless it is pushed."""
+"""Longest distance of a robot in a tick, unless it is pushed."""
 _MAX_SAFE_TICKS = 100
 
 
 class EdgeFall:
-    """One robot on its floor. Invariant: its body has fallen exactly when there is a fall to tell of."""
+    """The support of one robot. Invariant: its body has fallen exactly when `tilt` is not None."""
 
     __slots__ = ("_body", "_clock", "_fall", "_physics", "_safe_ticks")
 
@@ -28,20 +28,20 @@ class EdgeFall:
 
     @property
     def tilt(self) -> Tilt | None:
-        """How it leans as it falls and lies; None while it stands."""
+        """Tilt while it falls and lies; None while it stands."""
         return None if self._fall is None else self._fall.tilt(self._clock.now_ns)
 
     @property
     def is_falling(self) -> bool:
-        """Whether it is in the air, on its way down from an edge."""
+        """Whether the robot is in the air after an edge."""
         return self._fall is not None and self._fall.is_free(self._clock.now_ns)
 
     def clear(self) -> None:
-        """It was put somewhere else."""
+        """Forget a fall: the robot was placed."""
         self._fall, self._safe_ticks = None, 0
 
     def check_floor(self, floor_support: FloorSupport) -> None:
-        """Fall, if there is no floor under its origin (any more)."""
+        """Make the robot fall if there is no floor under its origin."""
         if self._safe_ticks > 0 and not self._body.touching:
             self._safe_ticks -= 1
         elif self._fall is None:
@@ -49,7 +49,9 @@ class EdgeFall:
             self._safe_ticks = int(min(safe_m / _MAX_TICK_DISTANCE_M, _MAX_SAFE_TICKS))
 
     def check_floor_at(self, floor_support: FloorSupport, x_m: float, y_m: float) -> float:
-        """How far it may go from here, where it is, and surely find floor, in m; 0 when it falls."""
+        """Make the robot fall if there is no floor at its position; returns a lower bound of the distance to the
+        edge in m, 0 when it falls.
+        """
         clearance_m = floor_support.clearance_m(x_m, y_m)
         if clearance_m < 0.0 and self._fall is None:
             self._fall = Fall(self._clock.now_ns + TICK_NS, self._body.course_rad)

@@ -1,4 +1,4 @@
-"""The wheels of robots: what they are told, how far they turned, and the odometry counted from them."""
+"""The wheels of robots: target speeds, angles, and the odometry computed from them."""
 
 from __future__ import annotations
 
@@ -40,16 +40,16 @@ class Wheels:
 
     @property
     def odometry(self) -> Pose:
-        """Where the wheels have brought the robot, by their count alone."""
+        """Pose by wheel odometry."""
         return Pose(*self.place)
 
     @property
     def twist(self) -> Twist:
-        """The body's motion as the wheels tell it."""
+        """The body's velocity by wheel odometry."""
         return twist_of(*self.speeds_m_s)
 
     def drive(self, commanded: tuple[float, float], slip: tuple[float, float], limit_m_s: float) -> None:
-        """Aim at speeds; the floor gets them times slip. Both are limited: far above, nothing of the slip is left."""
+        """Set target speeds; the speeds over ground are these times slip, both clamped to the limit."""
         left, right = commanded
         ground = (left * slip[0], right * slip[1])
         if not (
@@ -61,7 +61,7 @@ class Wheels:
         self.commanded, self.ground = commanded, ground
 
     def roll(self, covered_m_s: tuple[float, float], dt_s: float) -> None:
-        """Count a tick in which the robot covered ground at this speed at each wheel."""
+        """Advance angles and odometry by a tick, given the mean speed over ground at each wheel."""
         if covered_m_s == self.ground:
             self.speeds_m_s = self.commanded
         else:
@@ -81,7 +81,7 @@ class Wheels:
         self.angles_rad = (angle_left + left * per_m, angle_right + right * per_m)
 
     def reset_odometry(self) -> None:
-        """Start counting from zero, here."""
+        """Set the odometry to zero."""
         self.place = (0.0, 0.0, 0.0)
 
 
@@ -97,12 +97,12 @@ def _limited(speed_m_s: float, limit_m_s: float) -> float:
 class WheelArrays:
     """The wheels of a batch: the computations of `Wheels` on arrays of shape (2, robots), left first.
 
-    The arrays are authoritative. After `write_back`, and until the next `drive` or `roll`, each `Wheels` may be read and
-    changed.
+    The arrays are authoritative. After `write_back`, and until the next `drive` or `roll`, each `Wheels` may be read
+    and changed.
     """
 
     def __init__(self, wheels: Sequence[Wheels], *, is_compiled: bool | None = None) -> None:
-        """`is_compiled`: by kernels, or with numpy; None: by kernels where they are available. Nothing else differs."""
+        """`is_compiled`: use kernels, or numpy; None: kernels if available. The results are the same."""
         self._wheels = tuple(wheels)
         self._is_compiled = is_available() if is_compiled is None else is_compiled
         self._odometry_binding: WheelOdometryBinding | None = None
@@ -153,7 +153,7 @@ class WheelArrays:
         self._wheels[number].control = control
 
     def write_back(self) -> None:
-        """Write to the wheels what they are now."""
+        """Write the arrays back to the `Wheels`."""
         if self.is_written_back:
             return
         self.is_written_back = True
@@ -164,7 +164,7 @@ class WheelArrays:
             wheels.place = place
 
     def load(self) -> None:
-        """Read what the wheels are, if they may have been changed."""
+        """Read the `Wheels` into the arrays, if they may have been changed."""
         if not self.is_written_back:
             return
         self.is_written_back = False
@@ -177,7 +177,7 @@ class WheelArrays:
             self._odometry_binding.odometry[:], self._odometry_binding.angles[:] = self._odometry, self._angles
 
     def drive(self, commanded: Values, slip: Values, limit_m_s: float) -> None:
-        """As `Wheels.drive`. An array that is given again has not been changed."""
+        """Set target speeds, shape (2, robots); `commanded` must not be modified afterwards."""
         self.load()
         if commanded is not self._given:
             self._given = commanded
@@ -188,7 +188,7 @@ class WheelArrays:
         np.maximum(ground, -limit_m_s, out=ground)
 
     def roll(self, covered_m_s: Values, dt_s: float) -> None:
-        """As `Wheels.roll`."""
+        """Advance angles and odometry by a tick; `covered_m_s` has shape (2, robots)."""
         self.load()
         if self._is_compiled:
             self._roll_compiled(covered_m_s, dt_s)

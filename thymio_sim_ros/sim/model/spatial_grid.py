@@ -1,4 +1,4 @@
-"""A file of things by place: a square grid in which each thing lies wherever its bounds touch."""
+"""A uniform grid: each item is in all cells that its bounds touch."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 CELL_SIDE_M = 0.5
 _MAX_CELLS = 400
-"""What touches more squares than this is found everywhere."""
+"""An item that touches more cells than this is returned by every query."""
 
 Bounds = tuple[float, float, float, float]
 """Left, bottom, right, top."""
@@ -21,19 +21,19 @@ Cell = tuple[int, int]
 
 
 def cell_of(x_m: float, y_m: float) -> Cell:
-    """The square that holds a place."""
+    """The cell that contains a point."""
     return math.floor(x_m / CELL_SIDE_M), math.floor(y_m / CELL_SIDE_M)
 
 
 class SpatialGrid(Generic[T]):
-    """Things by place. Invariant: a query never misses a thing whose bounds meet its own."""
+    """Items by position. Invariant: a query never misses an item whose bounds overlap its own."""
 
     def __init__(self) -> None:
         self._everywhere: list[T] = []
         self._cells: dict[Cell, list[T]] = {}
 
     def add(self, thing: T, bounds: Bounds) -> None:
-        """File a thing."""
+        """Add an item."""
         columns, rows = _touched(bounds)
         if len(columns) * len(rows) > _MAX_CELLS:
             self._everywhere.append(thing)
@@ -42,7 +42,7 @@ class SpatialGrid(Generic[T]):
             self._cells.setdefault(cell, []).append(thing)
 
     def near(self, bounds: Bounds) -> Iterator[T]:
-        """What may meet these bounds, each thing once, in an order that depends on the past alone."""
+        """Items that may overlap these bounds, each once, in an order that depends on the sequence of calls only."""
         columns, rows = _touched(bounds)
         found = dict.fromkeys(self._everywhere)
         wanted = self._cells if len(columns) * len(rows) > len(self._cells) else product(columns, rows)

@@ -20,14 +20,14 @@ Flags = npt.NDArray[np.bool_]
 
 
 class ActiveBodies:
-    """Some robots of a fleet, always the same; in its arrays each has a column.
+    """A fixed set of robots of a batch; each has a column in the arrays.
 
-    Who touches nothing moves as the fleet reckons; the engine only has to find out when that ends. Those are held who
-    touch something, or have done so in this tick: what becomes of them is read from the engine.
+    A robot that touches nothing moves as the batch driver computed; pymunk only detects when that ends. A robot is
+    *held* if it touches something, or has in this tick: its motion is read from pymunk.
     """
 
     def __init__(self, bodies: Sequence[RobotBody], numbers: Indices, setter: BodyWriter) -> None:
-        """Those of the bodies with these numbers, whom the setter sets from now on."""
+        """The bodies with these numbers; the writer writes to them from now on."""
         self.numbers = numbers
         self._bodies = [bodies[number].body for number in numbers.tolist()]
         self._rows: Indices = np.zeros(0, dtype=np.intp)
@@ -37,7 +37,7 @@ class ActiveBodies:
         self._setter = setter
         setter.choose(self._bodies)
         self._state = np.zeros((6, count))
-        """Rows x, y, yaw, vx, vy, rate of turn; of those who touch something, as the engine has them."""
+        """Rows x, y, yaw, vx, vy, turn rate, as in pymunk; valid for robots in contact."""
         for column, number in enumerate(numbers.tolist()):
             if bodies[number].touching:
                 body = bodies[number].body
@@ -52,7 +52,7 @@ class ActiveBodies:
         return len(self.numbers)
 
     def begin_tick(self, driven: Values, rolling: Values, yaw: Values, touching: Flags | None) -> None:
-        """What the fleet knows of all its robots. `touching` is None when it is nobody.
+        """Start a tick with the state of all robots of the batch. `touching` is None if no robot is in contact.
 
         Rows of `driven`: what each wheel wants; of `rolling`: speed, rate of turn, the turn in half a sub-step and in
         a whole one.
@@ -69,7 +69,7 @@ class ActiveBodies:
             self._covered[:] = 0.0
 
     def push(self) -> None:
-        """As `RobotBody.push`."""
+        """Before a sub-step: write speeds, and in contact forces, to pymunk (`RobotBody.push` on arrays)."""
         speed, _, half_turn, _ = self._rolling
         heading = self._yaw + half_turn
         if self._is_any_touching:
@@ -94,7 +94,7 @@ class ActiveBodies:
         self._setter.set(FORCES, wanted.T)
 
     def finish_sub_step(self, earlier: int, reader: BodyReader, touching: Flags | None) -> None:
-        """As `RobotBody.finish_sub_step`; `touching` is that of the fleet if it has changed in this sub-step."""
+        """After a sub-step: read back the held robots. `touching`, of all robots, is None if it has not changed."""
         if touching is not None:
             self._touching = touching[self.numbers]
             self._is_any_touching = bool(np.count_nonzero(self._touching))
@@ -119,7 +119,7 @@ class ActiveBodies:
         self._covered[1] += (speed + half) / SUB_STEPS
 
     def write_held(self, now: Values) -> Indices:
-        """Write what has become of those held to their columns of the fleet; their numbers.
+        """Write the state of the held robots to their columns of `now`; returns their numbers.
 
         Rows x, y, yaw, speed along the heading, rate of turn, speed over ground at the left and the right wheel.
         """

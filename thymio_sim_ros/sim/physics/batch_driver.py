@@ -35,13 +35,13 @@ Indices = npt.NDArray[np.intp]
 
 _NONE: Indices = np.zeros(0, dtype=np.intp)
 _CHECKS_TO_DEACTIVATE = 4
-"""So many times robots look round before some of them may leave the engine."""
+"""Checks after which robots may be deactivated."""
 _PLACE, _SPEED, _SPIN, _COVERED = slice(0, 3), 3, 4, slice(5, 7)
 """Rows of what is known of the robots: x, y, yaw; speed, rate of turn; speed over ground at each wheel."""
 
 
 class BatchDriver:
-    """Robots of one space, always the same. Between ticks their state lies in arrays, or in bodies, or in both."""
+    """Moves a fixed set of robots of one space. Between ticks their state is in arrays, in bodies, or in both."""
 
     def __init__(
         self,
@@ -53,7 +53,7 @@ class BatchDriver:
         *,
         is_compiled: bool | None = None,
     ) -> None:
-        """`is_compiled`: by kernels, or with numpy; None: by kernels where they are available. Nothing else differs."""
+        """`is_compiled`: use kernels, or numpy; None: kernels if available. The results are the same."""
         compiled = is_available() if is_compiled is None else is_compiled
         self._space, self._bodies, self._broadphase = space, tuple(bodies), broadphase
         self._movables, self._doors = tuple(movables), tuple(doors)
@@ -61,9 +61,9 @@ class BatchDriver:
         self.driven = np.zeros((2, count))
         """Speed over ground that each wheel gives, m/s: left, then right."""
         self.changed: set[RobotBody] = set(self._bodies)
-        """To be filled with those for whom a contact begins or ends."""
+        """Robots with a contact that began or ended; filled by the contact tracker."""
         self._begun: set[RobotBody] = set()
-        """Who may have a contact that is new."""
+        """Robots that may have a new contact."""
         self._contacts: tuple[Contact, ...] | None = None
         """None when they may have changed."""
         self._index = {body: index for index, body in enumerate(self._bodies)}
@@ -91,12 +91,12 @@ class BatchDriver:
         self._is_load_moving = self._is_load_fast = False
         self._is_released = True
         self.is_written_back = True
-        """Whether the bodies know what the last tick has made of them."""
+        """Whether the bodies have the state after the last tick."""
         for body in self._bodies:
             body.batch_driver = self
 
     def dissolve(self) -> None:
-        """Let every body drive alone again."""
+        """End the batch: every body is moved on its own again."""
         self.write_back()
         for body in self._bodies:
             body.batch_driver = None
@@ -122,7 +122,7 @@ class BatchDriver:
 
     @property
     def fallen(self) -> Indices:
-        """The numbers of those who have fallen."""
+        """Numbers of the robots that have fallen."""
         if self._is_released:
             self._load()
         return self._fallen
@@ -133,7 +133,7 @@ class BatchDriver:
         return len(self._active) > 0 or self._is_load_moving or self._was_unpredictable
 
     def write_back(self) -> None:
-        """Write to the bodies what the last tick has made of them."""
+        """Write the state after the last tick to the bodies."""
         if self.is_written_back:
             return
         self.is_written_back = True
@@ -143,13 +143,13 @@ class BatchDriver:
             body.set_state(Pose(row[0], row[1], row[2]), row[3], row[4], is_free=free)
 
     def release(self) -> None:
-        """Let the bodies be changed until the next tick."""
+        """Make the bodies authoritative until the next tick, so that they can be changed."""
         self.write_back()
         self._is_released = True
         self.changed.update(self._bodies)
 
     def begin_tick(self, *, do_doors_move: bool) -> None:
-        """As `RobotBody.begin_tick`; and let all glide."""
+        """Start a tick: clear the flags of new contacts, update the active robots, integrate all robots freely."""
         if self._is_released:
             self._load()
         self._update_contacts()
@@ -172,12 +172,12 @@ class BatchDriver:
         self.is_written_back = False
 
     def push(self) -> None:
-        """As `RobotBody.push`."""
+        """Before a sub-step: write speeds or forces of the active robots to pymunk."""
         if len(self._active):
             self._active.push()
 
     def finish_sub_step(self, earlier: int) -> None:
-        """As `RobotBody.finish_sub_step`."""
+        """After a sub-step, which follows `earlier` ones of this tick: read back the robots in contact."""
         touching = None
         if self.changed:
             self._update_contacts()
@@ -186,7 +186,7 @@ class BatchDriver:
             self._active.finish_sub_step(earlier, self._reader, touching)
 
     def end_tick(self) -> None:
-        """As `RobotBody.end_tick`, and of everything that was pushed or slides."""
+        """Update the state of robots in contact and of objects that move."""
         if self._active.is_any_held:
             self._held = self._active.write_held(self._now)
         elif self._is_load_moving or self._was_unpredictable:
@@ -204,7 +204,7 @@ class BatchDriver:
         return self._contacts
 
     def _move_freely(self) -> Values:
-        """As `RobotBody.move_freely`, whatever else may happen to them; the yaws before it."""
+        """Integrate all robots as if nothing were in their way; returns the yaws before, shape (robots,)."""
         if self._binding is not None:
             self._binding.driven[:] = self.driven
             self._binding.start_tick()
@@ -253,7 +253,7 @@ class BatchDriver:
                 self._binding.is_touching[:] = self._is_touching
 
     def _update_active(self, *, is_unpredictable: bool) -> None:
-        """Engage those who may reach something; all when there is no telling. Let others go, though not every time."""
+        """Activate the robots that may reach something, or all; deactivate others, but not each time."""
         self._ticks_to_check = CHECK_INTERVAL_TICKS
         is_active, self._checks = self._is_active, self._checks + 1
         may_go = self._checks % _CHECKS_TO_DEACTIVATE == 0 or is_unpredictable != self._was_unpredictable
@@ -312,7 +312,7 @@ class BatchDriver:
         return ActiveBodies(self._bodies, numbers, self._setter)
 
     def _update_loads(self) -> None:
-        """Tell things that have moved."""
+        """Update the objects that have moved."""
         if self._load_order != self._reader.order:
             self._load_order = self._reader.order
             self._load_rows = self._reader.rows([movable.body for movable in self._loads])

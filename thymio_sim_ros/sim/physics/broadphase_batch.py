@@ -1,7 +1,7 @@
-"""Which of many robots may reach something soon; the others need no engine.
+"""Finds the robots of a batch that may reach something soon; the others need not be in pymunk's space.
 
-Robots are taken as the smallest circle round their hull, things that move as circles round their origins, things that
-do not as the boxes round them. All of them are sorted by x; only those near each other are compared.
+A robot is bounded by the smallest circle around its hull, a moving object by a circle around its origin, a fixed
+obstacle by a box. Sweep and prune: all are sorted by x, and only neighbors are compared.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Values = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 
 CHECK_INTERVAL_TICKS = 8
-"""What is not near stays out of reach for so many ticks."""
+"""A robot that is not near anything stays so for this many ticks."""
 _INTERVAL_DISTANCE_M = CHECK_INTERVAL_TICKS * MAX_TICK_DISTANCE_M
 
 
@@ -43,7 +43,7 @@ _ROBOT_REACH_M = 2 * (_RADIUS_M + _INTERVAL_DISTANCE_M) + SAFETY_MARGIN_M
 
 
 class BroadphaseBatch:
-    """Looks round among fixed obstacles, which stay, robots and things, which are told."""
+    """The broadphase of a batch: fixed obstacles are given once, robots and objects with every query."""
 
     def __init__(self, fixed: Sequence[Obstacle], *, is_compiled: bool | None = None) -> None:
         """`is_compiled`: by a kernel, or with numpy; None: by a kernel where there is one. Nothing else differs."""
@@ -57,7 +57,7 @@ class BroadphaseBatch:
         self._bounds = np.stack((x - wide_x, x + wide_x, y, wide_y))
 
     def near(self, poses: Values, stands: Flags, objects: Values) -> Flags:
-        """Who may reach anything within `CHECK_INTERVAL_TICKS`, while doors rest and nothing is fast.
+        """Whether each robot may reach anything within `CHECK_INTERVAL_TICKS`, while doors rest and nothing is fast.
 
         `poses` has rows x, y, yaw, things rows x, y, radius; robots that do not stand are not there.
         """

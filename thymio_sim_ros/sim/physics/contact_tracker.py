@@ -1,4 +1,4 @@
-"""Who touches what: kept in each robot's `touching`, as pymunk tells contacts that begin and end."""
+"""Records contacts in each robot's `touching`, from pymunk's callbacks for contacts that begin and end."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class ContactTracker:
             self._names[shape] = owner
 
     def forget(self, shape: pymunk.Shape) -> None:
-        """Nobody touches a shape any more."""
+        """Remove the contacts with a shape."""
         for robot in self._robots.values():
             robot.touching.pop(shape, None)
 
@@ -73,7 +73,7 @@ class ContactTracker:
 
 
 def _bounce(arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
-    """Things bounce off each other as their elasticities say."""
+    """Undo the division of elasticities (see `ROBOT_BOUNCE`) for two objects."""
     arbiter.restitution *= ROBOT_BOUNCE * ROBOT_BOUNCE
 
 

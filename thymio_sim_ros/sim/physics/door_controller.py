@@ -1,4 +1,4 @@
-"""All doors of a world, and who opens them."""
+"""The doors of a world, opened while a robot is on a pressure plate of them."""
 
 from __future__ import annotations
 

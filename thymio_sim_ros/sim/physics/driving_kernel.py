@@ -70,7 +70,7 @@ def compute_headings(
 
 
 def move_freely(counts: Ints, driven: Floats, rolling: Floats, cosines: Floats, sines: Floats, now: Floats) -> None:
-    """All drive as if there were nothing else."""
+    """Integrate all robots as if nothing were in their way."""
     count = counts[_ROBOTS]
     for robot in range(count):
         speed = rolling[robot]
@@ -95,7 +95,7 @@ def begin_tick(
     counts: Ints, headings: Floats, is_touching: Ints, numbers: Ints, touching: Ints, held: Ints, yaws: Floats,
     covered: Floats,
 ) -> None:  # fmt: skip
-    """The engaged begin a tick; those who touch something are held."""
+    """Start a tick of the active robots; those in contact are held."""
     count = counts[_ROBOTS]
     counts[_TOUCHING] = 0
     for index in range(counts[_ACTIVE]):
@@ -113,7 +113,7 @@ def begin_tick(
 def update_aims(
     counts: Ints, rolling: Floats, numbers: Ints, touching: Ints, yaws: Floats, state: Floats, aims: Floats
 ) -> None:
-    """Where the engaged head in a sub-step."""
+    """Headings of the active robots in the middle of a sub-step."""
     count = counts[_ROBOTS]
     for index in range(counts[_ACTIVE]):
         heading = yaws[index] + rolling[2 * count + numbers[index]]
@@ -127,7 +127,7 @@ def start_tick(
     is_touching: Ints, numbers: Ints, touching: Ints, held: Ints, yaws: Floats, covered: Floats, state: Floats,
     aims: Floats,
 ) -> None:  # fmt: skip
-    """All glide, and the engaged begin a tick and aim."""
+    """Integrate all robots; start the tick of the active ones."""
     move_freely(counts, driven, rolling, cosines, sines, now)
     begin_tick(counts, headings, is_touching, numbers, touching, held, yaws, covered)
     update_aims(counts, rolling, numbers, touching, yaws, state, aims)
@@ -137,7 +137,7 @@ def missing_speeds(
     counts: Ints, rolling: Floats, numbers: Ints, touching: Ints, state: Floats, ways_x: Floats, ways_y: Floats,
     speeds: Floats, pushes_x: Floats, pushes_y: Floats,
 ) -> None:  # fmt: skip
-    """The speeds that the wheels want, and with what those push who do not have them."""
+    """Target velocities of the active robots, and the unlimited forces of those in contact."""
     count = counts[_ROBOTS]
     for index in range(counts[_ACTIVE]):
         speed = rolling[numbers[index]]
@@ -157,7 +157,7 @@ def push(
     counts: Ints, touching: Ints, state: Floats, speeds: Floats, pushes_x: Floats, pushes_y: Floats, forces: Floats,
     wanted: Floats,
 ) -> None:  # fmt: skip
-    """Speed, rate of turn, force and torque for each of the engaged."""
+    """Velocity, turn rate, force and torque of each active robot, as `BodyWriter` expects them."""
     for index in range(counts[_ACTIVE]):
         share = _DRIVE_N / max(forces[index], _DRIVE_N)
         wanted[6 * index + 3] = pushes_x[index] * share
@@ -176,7 +176,7 @@ def read_back(
     ways_x: Floats, ways_y: Floats, touching: Ints, held: Ints, yaws: Floats, covered: Floats, state: Floats,
     along: Floats,
 ) -> None:  # fmt: skip
-    """What contacts have made of the push. `bodies` count only when somebody is held."""
+    """Read back the motion that contacts allowed. `bodies`, as pymunk has them, are read only if a robot is held."""
     count = counts[_ROBOTS]
     counts[_TOUCHING] = 0
     for index in range(counts[_ACTIVE]):
@@ -207,7 +207,7 @@ def read_back(
 def write_held(
     counts: Ints, numbers: Ints, held: Ints, state: Floats, along: Floats, covered: Floats, now: Floats
 ) -> None:
-    """What has become of those who are held."""
+    """Write the state of the held robots to `now`."""
     count = counts[_ROBOTS]
     for index in range(counts[_ACTIVE]):
         if held[index] != 0:
@@ -225,7 +225,7 @@ def finish_sub_step(
     ways_x: Floats, ways_y: Floats, touching: Ints, held: Ints, yaws: Floats, covered: Floats, state: Floats,
     along: Floats, now: Floats, aims: Floats,
 ) -> None:  # fmt: skip
-    """After a sub-step: take over what contacts have made of the push, and aim for the next one."""
+    """After a sub-step: read back the motion, and compute the headings for the next one."""
     read_back(
         counts, driven, rolling, is_touching, numbers, rows, bodies, ways_x, ways_y, touching, held, yaws, covered,
         state, along,

@@ -29,7 +29,7 @@ _ROBOTS, _ACTIVE, _EARLIER, _TOUCHING, _HELD = range(len(driving_kernel.COUNTS))
 
 
 class DrivingKernelBinding:
-    """The arrays of a fleet in the memory of kernels, by the names that the kernels give them."""
+    """The arrays of a batch in the memory of kernels, by the names of the parameters of the kernels."""
 
     def __init__(self, robots: int, bodies: int) -> None:
         """`bodies`: how many there may be in the engine's space."""
@@ -69,7 +69,7 @@ class DrivingKernelBinding:
         return self._memory.bind(driving_kernel, kernel, *(self._arrays[name] for name in names))
 
     def start_tick(self) -> None:
-        """As `BatchDriver` without kernels: all of `now` after a tick with `driven`; and the engaged begin theirs."""
+        """Integrate all robots by a tick with `driven` into `now`, and start the tick of the active ones."""
         self._compute_headings()
         np.cos(self._headings, out=self._cosines)
         np.sin(self._headings, out=self._sines)
@@ -77,7 +77,7 @@ class DrivingKernelBinding:
 
 
 class CompiledActiveBodies:
-    """As `ActiveBodies`, of a fleet that glides by the same `DrivingKernelBinding`; one at a time."""
+    """Does what `ActiveBodies` does, by kernels; only one may use a binding at a time."""
 
     def __init__(
         self, binding: DrivingKernelBinding, bodies: Sequence[RobotBody], numbers: Indices, setter: BodyWriter
@@ -112,15 +112,15 @@ class CompiledActiveBodies:
 
     @property
     def is_any_held(self) -> bool:
-        """As `ActiveBodies`."""
+        """See the method of this name in `ActiveBodies`, which gives the same bits."""
         return bool(self._counts[_HELD])
 
     def begin_tick(self, _driven: Values, _rolling: Values, _yaw: Values, touching: Flags | None) -> None:
-        """As `ActiveBodies`; what the fleet knows is in the arrays already, and they have begun."""
+        """Start a tick; the arrays of the binding have the state already."""
         self._is_any_touching = touching is not None
 
     def push(self) -> None:
-        """As `ActiveBodies`."""
+        """See the method of this name in `ActiveBodies`, which gives the same bits."""
         binding = self._binding
         np.cos(self._aims, out=self._cos)
         np.sin(self._aims, out=self._sin)
@@ -133,7 +133,7 @@ class CompiledActiveBodies:
         self._setter.set(FORCES, self._wanted)
 
     def finish_sub_step(self, earlier: int, reader: BodyReader, touching: Flags | None) -> None:
-        """As `ActiveBodies`."""
+        """See the method of this name in `ActiveBodies`, which gives the same bits."""
         if touching is not None:
             self._is_any_touching = bool(np.count_nonzero(touching))
         counts = self._counts
@@ -147,7 +147,7 @@ class CompiledActiveBodies:
         self._binding.finish_sub_step()
 
     def write_held(self, now: Values) -> Indices:
-        """As `ActiveBodies`."""
+        """See the method of this name in `ActiveBodies`, which gives the same bits."""
         now[:] = self._binding.now
         numbers: Indices = self.numbers[self._held.nonzero()[0]]
         return numbers

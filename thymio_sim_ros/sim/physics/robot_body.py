@@ -3,8 +3,8 @@
 A free robot has the speed of its wheels; its velocity points along the heading in the middle of the sub-step, so that
 its path follows arcs to the third order. pymunk moves bodies first and solves contacts and forces afterwards; a robot
 that touches something is therefore pushed by a force, which that solution takes into account: it would give the robot
-the speed of its wheels within a tick, as the reference does by decree, but never exceeds what the tyres can hold, so
-that heavy things stall it. Wheels at rest resist a push in the same way, and two robots share the difference of their
+the speed of its wheels within a tick, as Enki imposes, but never exceeds the grip of the tires, so that heavy
+objects stall it. Wheels at rest resist a push in the same way, and two robots share the difference of their
 speeds. Wheels hold the heading (docs/spec/thymio-robot.md section 11).
 """
 
@@ -41,22 +41,22 @@ _set_velocity, _set_spin, _set_force, _set_torque = (
 
 
 class BodyArrays(Protocol):
-    """What moves many robots at once."""
+    """The owner of the state of many robots in arrays."""
 
     @property
     def is_written_back(self) -> bool:
-        """Whether the bodies know what has become of them."""
+        """Whether the bodies are up to date."""
         ...
 
     def write_back(self) -> None:
-        """Write to the bodies what has become of them."""
+        """Write the arrays back to the bodies."""
         ...
 
 
 class RobotBody:
     """One robot's body, pushed by its two wheels. Invariant: `pose` is the body's after the last tick.
 
-    In a fleet it moves with the others, and the methods of a tick are not called.
+    In a batch the driver moves it, and the methods of a tick are not called.
     """
 
     __slots__ = (
@@ -84,11 +84,11 @@ class RobotBody:
         self.touching: dict[pymunk.Shape, Contact] = {}
         self._speed_m_s = self._spin_rad_s = 0.0
         self.batch_driver: BodyArrays | None = None
-        """The robots with which it moves."""
+        """The driver of its batch, if it is in one."""
         self.is_active = False
-        """Whether the engine moves it; else its body is in no space."""
+        """Whether pymunk moves it; otherwise its body is in no space."""
         self.is_fallen = False
-        """Whether it lies below the floor, out of everybody's reach, until it is placed."""
+        """Whether it has fallen; nothing touches or sees it until it is placed."""
         self._driven = self._covered = (0.0, 0.0)
         self._is_free = True
         self._angle = self._heading = pose.yaw_rad
@@ -167,19 +167,22 @@ class RobotBody:
             body.space.reindex_shapes_for_body(body)
 
     def set_state(self, pose: Pose, speed_m_s: float, spin_rad_s: float, *, is_free: bool) -> None:
-        """Be where the fleet has brought it."""
+        """Set the state that the batch driver computed."""
         self._is_free = is_free
         self._pose, self._angle = pose, pose.yaw_rad
         self._speed_m_s, self._spin_rad_s = speed_m_s, spin_rad_s
 
     def fall(self) -> None:
-        """Lose the floor: from now on the wheels turn in the air."""
+        """Fall: from now on the wheels have no grip."""
         self.is_fallen = self._is_free = True
         self.touching.clear()
         self._speed_m_s = self._spin_rad_s = 0.0
 
     def move_freely(self) -> None:
-        """A tick without the engine, for when nothing can be touched; the same sums in the same order."""
+        """Integrate a tick without pymunk, for a robot that can touch nothing.
+
+        The operations and their order are those of the other path, so that both give the same bits.
+        """
         left, right = self._driven
         self._speed_m_s = speed = (left + right) / 2
         self._spin_rad_s = spin = (right - left) / robot_constants.WHEEL_TRACK_M
@@ -194,7 +197,7 @@ class RobotBody:
         self._pose = Pose(x_m, y_m, angle)
 
     def activate(self, space: pymunk.Space) -> None:
-        """Let the engine move it from where it is."""
+        """Add the body to pymunk's space."""
         if not self.is_active:
             self.is_active = True
             self.body.position = (self._pose.x_m, self._pose.y_m)
@@ -202,7 +205,7 @@ class RobotBody:
             space.add(self.body, self.shape)
 
     def deactivate(self, space: pymunk.Space) -> None:
-        """Leave the engine."""
+        """Remove the body from pymunk's space."""
         if self.is_active:
             self.is_active = False
             space.remove(self.shape, self.body)
@@ -216,7 +219,7 @@ class RobotBody:
                 self.touching[key] = replace(contact, is_new=False)
 
     def push(self) -> None:
-        """Before a sub-step: take the speed of the wheels, as far as contacts let."""
+        """Before a sub-step: set the speed of the wheels, or in contact a force toward it, limited by the grip."""
         left, right = self._driven
         speed, spin = (left + right) / 2, (right - left) / robot_constants.WHEEL_TRACK_M
         body = self.body
@@ -236,7 +239,7 @@ class RobotBody:
         _set_torque(body, (spin - turning) * (MOMENT_KG_M2 / SUB_STEP_S))
 
     def finish_sub_step(self, earlier: int) -> None:
-        """After a sub-step, `earlier` ones done: take over what contacts have made of the push."""
+        """After a sub-step, which follows `earlier` ones of this tick: read back the motion that contacts allowed."""
         if self._is_free and not self.touching:
             self._angle += self._spin_rad_s * SUB_STEP_S
             return
@@ -257,7 +260,7 @@ class RobotBody:
         )
 
     def end_tick(self) -> None:
-        """Tell the new pose."""
+        """Update the pose."""
         x_m, y_m = self.body.position
         self._angle = self.body.angle
         self._pose = Pose(x_m, y_m, self._angle)

@@ -1,4 +1,4 @@
-"""The robots of a space, one by one: those that can reach nothing glide, the others are moved by the engine."""
+"""Moves the robots of a space one by one: outside pymunk while they can reach nothing, else by pymunk."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from thymio_sim_ros.sim.raycast.broadphase import Broadphase
 __all__ = ["ScalarDriver"]
 
 _CHECK_INTERVAL_TICKS = 10
-"""How often it is worth while to look whether a robot is in nobody's reach any more, and for how long it must be."""
+"""Interval at which active robots are checked, and the time without contact after which they are deactivated."""
 
 
 class ScalarDriver:
-    """Robots that move one by one."""
+    """Moves robots one by one."""
 
     def __init__(
         self,
@@ -28,24 +28,24 @@ class ScalarDriver:
         movables: Mapping[str, MovableBody],
         broadphase: Broadphase,
     ) -> None:
-        """Of the robots those move that have not fallen, whoever they are in a tick."""
+        """`robots` may change between ticks; fallen robots do not move."""
         self._space, self._robots, self._movables, self._broadphase = space, robots, movables, broadphase
         self._active: list[RobotBody] = []
         self._is_anything_moving = False
         self._free_ticks: dict[RobotBody, int] = {}
-        """For how many ticks each can reach nothing; below 0 it is engaged and looks round again after so many."""
+        """Ticks in which a robot can reach nothing; negative: ticks until an active robot is checked again."""
 
     @property
     def needs_engine(self) -> bool:
-        """Whether there is anything for the engine to do in this tick."""
+        """Whether pymunk has to step in this tick."""
         return self._is_anything_moving or bool(self._active)
 
     def interrupt(self) -> None:
-        """Somebody may be somewhere else now, or gone."""
+        """Discard cached times: a body may have been moved or removed."""
         self._free_ticks.clear()
 
     def begin_tick(self, *, do_doors_move: bool) -> None:
-        """Let those glide who can reach nothing."""
+        """Integrate the robots that can reach nothing; activate the others."""
         moving = [movable for movable in self._movables.values() if movable.is_moving]
         is_unpredictable = do_doors_move or any(movable.is_fast for movable in moving)
         self._is_anything_moving = do_doors_move or bool(moving)
@@ -67,17 +67,17 @@ class ScalarDriver:
                 self._free_ticks[robot] = ticks + 1
 
     def push(self) -> None:
-        """Before a sub-step: let all engaged ones take the speeds of their wheels."""
+        """Before a sub-step: apply the wheels of all active robots."""
         for robot in self._active:
             robot.push()
 
     def finish_sub_step(self, earlier: int) -> None:
-        """After a sub-step, `earlier` ones done."""
+        """After a sub-step, which follows `earlier` ones of this tick."""
         for robot in self._active:
             robot.finish_sub_step(earlier)
 
     def end_tick(self) -> None:
-        """Tell new poses."""
+        """Update poses."""
         for robot in self._active:
             robot.end_tick()
         for movable in self._movables.values():
@@ -88,7 +88,7 @@ class ScalarDriver:
         return tuple(contact for robot in self._active for contact in robot.touching.values())
 
     def _update_active(self, robot: RobotBody, *, is_unpredictable: bool) -> int:
-        """A number for `_free_ticks`."""
+        """Activate or deactivate a robot; returns its number for `_free_ticks`."""
         if not (robot.touching or is_unpredictable):
             is_alone = len(self._robots) == 1 and not self._is_anything_moving
             at_least = _CHECK_INTERVAL_TICKS if robot.is_active else 1

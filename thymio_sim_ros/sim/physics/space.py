@@ -1,7 +1,7 @@
-"""The space of all bodies: it lets them move and collide, and knows what rays may meet.
+"""The space of all bodies: motion, collisions, and the obstacles of rays.
 
-Robots that can reach nothing are not in pymunk's space: they glide by the same sums, and as long as all do and nothing
-moves by itself, pymunk rests.
+Robots that can reach nothing are not in pymunk's space but are integrated by the same formulas. While that holds for
+all robots and no object or door moves, pymunk does not step.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ from thymio_sim_ros.sim.raycast.scalar import Obstacle, Surroundings, obstacle_o
 __all__ = ["Physics"]
 
 _SLOP_M = 0.0002
-"""Overlap that is left between touching bodies."""
+"""Overlap that the solver leaves between touching bodies."""
 _ITERATIONS = 40
-"""Of the solver: with fewer, mirrored worlds do not push mirrored."""
+"""Iterations of the solver; with fewer, mirrored worlds do not give mirrored motion."""
 _DRAG_PER_S = 0.01
-"""Of its speed a thing loses this part each second, beside its friction.
+"""Part of its speed that an object loses per second, besides friction.
 
 Source: docs/spec/playground-formats.md section 1.3.
 """
 _DROWSY_S = 0.1
-"""What has been at rest for so long costs nothing until it is touched."""
+"""An object at rest for this long sleeps until it is touched."""
 
 
 class Physics:
@@ -57,7 +57,7 @@ class Physics:
         self._robots: dict[RobotBody, None] = {}
         self._movables: dict[str, MovableBody] = {}
         self._moved: set[MovableBody | DoorBody] = set()
-        """Things that rays see elsewhere than when `moved` was called last."""
+        """Objects and doors that have moved since the last call of `moved_obstacles`."""
         self._door_controller = DoorController(solids, triggers, self._moved)
         self._batch_driver: BatchDriver | None = None
         for solid in solids:
@@ -71,7 +71,7 @@ class Physics:
                 self._add(solid.name, self._fixed_shape(solid))
         self._numbers = {body: number for number, body in enumerate(self.objects)}
         self.fixed: tuple[Obstacle, ...] = tuple(obstacle_of(solid) for solid in solids if solid.is_fixed)
-        """What rays see of everything that never moves."""
+        """Obstacles that never move."""
         self._broadphase = Broadphase(self.fixed)
         self._list_movers()
         self._scalar_driver = ScalarDriver(self._space, self._robots, self._movables, self._broadphase)
@@ -87,7 +87,7 @@ class Physics:
         return self._door_controller.doors
 
     def movable_obstacles(self) -> list[Obstacle | None]:
-        """What rays see of `objects`; None for what has fallen."""
+        """The obstacles of `objects`; None for a fallen one."""
         self._moved.clear()
         return [_obstacle_or_none(body) for body in self.objects]
 
@@ -111,7 +111,7 @@ class Physics:
         return robot
 
     def remove_robot(self, robot: RobotBody) -> None:
-        """Take a robot's body away; nobody touches it any more."""
+        """Remove a robot's body and its contacts."""
         self.dissolve()
         self._interrupt()
         robot.deactivate(self._space)
@@ -120,7 +120,7 @@ class Physics:
         self._list_movers()
 
     def drop_robot(self, robot: RobotBody) -> None:
-        """Let a robot fall below the floor, where nothing touches or sees it."""
+        """Make a robot fall; nothing touches or sees it until it is placed."""
         self._interrupt()
         robot.deactivate(self._space)
         self._contact_tracker.forget(robot.shape)
@@ -128,7 +128,7 @@ class Physics:
         self._list_movers()
 
     def drop_movable(self, movable: MovableBody) -> None:
-        """Let a thing fall below the floor."""
+        """Make an object fall."""
         self._interrupt()
         self._space.remove(movable.shape, movable.body, *movable.joints)
         self._contact_tracker.forget(movable.shape)
@@ -136,7 +136,7 @@ class Physics:
         self._list_movers()
 
     def place(self, body: RobotBody | MovableBody, pose: Pose) -> None:
-        """Put a robot or a thing somewhere, at rest; what has fallen stands on the floor again."""
+        """Place a robot or an object at a pose, at rest; a fallen one stands on the floor again."""
         self._interrupt()
         was_fallen = body.is_fallen
         body.place(pose)
@@ -152,14 +152,14 @@ class Physics:
         return (*self._movables.values(), *self.doors.values())
 
     def form_batch(self) -> BatchDriver:
-        """All robots move as one from now on, until one is added or removed or they disband."""
+        """Move all robots as a batch until a robot is added or removed or `dissolve` is called."""
         self._interrupt()
         movables, doors = tuple(self._movables.values()), tuple(self.doors.values())
         self._batch_driver = BatchDriver(self._space, tuple(self._robots), movables, doors, BroadphaseBatch(self.fixed))
         return self._batch_driver
 
     def dissolve(self) -> None:
-        """Every robot moves alone again."""
+        """End the batch: robots are moved one by one again."""
         if self._batch_driver is not None:
             self._batch_driver.dissolve()
             self._batch_driver = None
@@ -181,7 +181,7 @@ class Physics:
         return driver.contacts()
 
     def surroundings(self, robot: RobotBody, reach_m: float, height_m: float) -> Surroundings:
-        """What a robot's rays may meet within `reach_m` of its origin, at least `height_m` high."""
+        """Obstacles within `reach_m` of a robot's origin that are at least `height_m` high."""
         if robot.is_fallen:
             return Surroundings(())
         x, y = robot.pose.x_m, robot.pose.y_m
@@ -206,13 +206,13 @@ class Physics:
         return [robot for robot in self._robots if not robot.is_fallen]
 
     def _interrupt(self) -> None:
-        """Before a body is changed from outside."""
+        """Prepare for a change of a body from outside."""
         self._scalar_driver.interrupt()
         if self._batch_driver is not None:
             self._batch_driver.release()
 
     def _list_movers(self) -> None:
-        """Tell `broadphase` who moves now."""
+        """Update the list of moving bodies in the broadphase."""
         movers: list[Mover] = [*self._standing()]
         movers += [movable for movable in self._movables.values() if not movable.is_fallen]
         self._broadphase.replace_movers([*movers, *self.doors.values()])
@@ -233,5 +233,5 @@ class Physics:
 
 
 def _obstacle_or_none(body: MovableBody | DoorBody) -> Obstacle | None:
-    """What rays see of a thing."""
+    """The obstacle of an object or door; None if it has fallen."""
     return None if body.is_fallen else body.obstacle

@@ -1,4 +1,4 @@
-"""For how long a robot can reach nothing: so long it glides, and the engine need not know where it is."""
+"""A lower bound of the time until a robot can touch anything; for so long it is integrated outside pymunk."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from thymio_sim_ros.sim.raycast.broadphase import Broadphase
 __all__ = ["MAX_TICK_DISTANCE_M", "OBJECT_SPEED_FACTOR", "SAFETY_MARGIN_M", "ticks_to_contact"]
 
 MAX_TICK_DISTANCE_M = robot_constants.MAX_SPEED_M_S * TICK_S
-"""Of a robot in a tick."""
+"""Longest distance of a robot in a tick."""
 SAFETY_MARGIN_M = 0.005
-"""So much farther than it may be, nothing is near."""
+"""Safety margin of all distances."""
 OBJECT_SPEED_FACTOR = 2.0
-"""A thing that is pushed goes at most so many times as far as a robot; else it is fast (`MovableBody.is_fast`)."""
+"""A pushed object moves at most this many times as far as a robot; otherwise it is fast (`MovableBody.is_fast`)."""
 _MOST_TICKS = 100
 _FAR_M = robot_constants.HULL_RADIUS_M + SAFETY_MARGIN_M + _MOST_TICKS * MAX_TICK_DISTANCE_M
-"""What is farther away does not shorten the quiet."""
+"""Bodies farther away than this need no check."""
 
 
 def ticks_to_contact(robot: RobotBody, broadphase: Broadphase, *, at_least: int, is_alone: bool) -> int:
-    """For how many ticks it can reach nothing, however it and all others drive, while doors rest and nothing is fast.
+    """Number of ticks in which the robot can touch nothing, however robots drive, if no door moves and nothing is fast.
 
-    0 when they are fewer than `at_least`. `is_alone` when nothing else moves, or could be moved by anybody else.
+    0 if they are fewer than `at_least`. `is_alone`: no other body moves or could be moved by another robot.
     """
     reach_m = robot_constants.HULL_RADIUS_M + SAFETY_MARGIN_M
     x, y = robot.pose.x_m, robot.pose.y_m

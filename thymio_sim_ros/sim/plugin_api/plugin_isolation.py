@@ -1,6 +1,6 @@
-"""Lets a plug-in of another package break alone: what it raises is logged, then it keeps quiet on that robot.
+"""Isolates plug-ins of other packages: an error is logged, and the plug-in is switched off on that robot.
 
-Ours have no such guard: an error of theirs is a defect, and stops the world with its trace.
+Plug-ins of this package are not isolated: an error stops the world with its traceback.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _BROKEN = "guards.broken"
 
 
 class DisabledState:
-    """The state of an actuator that could not even begin."""
+    """The state of a plug-in whose `begin` has raised."""
 
 
 class PluginGuard:
@@ -26,7 +26,7 @@ class PluginGuard:
     def __init__(self, kind: str, name: str) -> None:
         self._kind, self._name = kind, name
         self._broken: dict[int, Any] = {}
-        """States by their identity; held, so that no other takes it over."""
+        """States by identity; the references keep an id from being used again."""
 
     def begin(self, make: Callable[[], Any]) -> Any:
         """A state for one robot."""
@@ -37,7 +37,7 @@ class PluginGuard:
             return DisabledState()
 
     def run(self, act: Callable[..., None], state: Any, *arguments: Any) -> None:
-        """Do it unless this robot's is broken."""
+        """Call `act` unless the plug-in is switched off on this robot."""
         if isinstance(state, DisabledState) or id(state) in self._broken:
             return
         try:
@@ -54,7 +54,7 @@ class PluginGuard:
 
 
 def guarded_sensor(name: str, measure: Callable[[Any], R]) -> Callable[[Any], R | None]:
-    """`measure` of a sensor, which returns nothing any more once it has raised on that robot."""
+    """`measure` of a sensor, which returns None once it has raised on that robot."""
 
     def guarded(view: Any) -> R | None:
         if _BROKEN in view.memory:

@@ -1,4 +1,4 @@
-"""What one tick's sensors have read, kept by sensor and taken apart by robot only when somebody looks."""
+"""The readings of one tick, stored by sensor and converted to rows by robot on demand."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Row = tuple[str, str, Reading]
 
 
 class LazyReadings(Sequence[Reading | None]):
-    """Readings of all robots by one sensor, made one by one when asked for. `make` keeps what it needs for ever."""
+    """Readings of one sensor on all robots, made on access. `make` must not depend on state that changes later."""
 
     __slots__ = ("_count", "_make")
 
@@ -67,7 +67,7 @@ class ReadingTable(Sequence[Row]):
         return repr(self._all())
 
     def of(self, sensors: Collection[str]) -> Iterable[Row]:
-        """The rows of some sensors, in the same order; readings of the others are not made for that."""
+        """The rows of some sensors, in the same order, without making the readings of the others."""
         if self._rows is not None:
             return (row for row in self._rows if row[1] in sensors)
         wanted = [column for column in self._columns if column[0] in sensors]
@@ -93,7 +93,7 @@ class ReadingTable(Sequence[Row]):
 
 
 def select_rows(readings: Sequence[Row], sensors: Collection[str]) -> Iterable[Row]:
-    """Those of some sensors among the readings of one tick."""
+    """The rows of some sensors among the readings of one tick."""
     if isinstance(readings, ReadingTable):
         return readings.of(sensors)
     return (row for row in readings if row[1] in sensors)

@@ -1,7 +1,7 @@
-"""Which obstacles are near a place, without looking at all of them.
+"""Finds the obstacles near a point without testing all of them.
 
-Fixed ones are filed once; what moves is filed anew, by the square of its middle, whenever it may have moved. A query
-costs what is near, however large the world and the crowd are.
+Fixed obstacles are put into a grid once. Moving bodies are put into the cell of their origin again whenever they may
+have moved. The cost of a query depends on what is near, not on the size of the world.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ __all__ = ["Broadphase", "Mover"]
 
 
 class Mover(Protocol):
-    """Something that moves: a robot, a movable, a door."""
+    """A moving body: a robot, an object or a door."""
 
     @property
     def pose(self) -> Pose:
-        """Where it is."""
+        """Its pose."""
         ...
 
     @property
     def reach_m(self) -> float:
-        """No part of it is farther from its origin."""
+        """Largest distance of any of its points from its origin."""
         ...
 
     @property
     def obstacle(self) -> Obstacle:
-        """What rays see of it there."""
+        """Its obstacle for rays at this pose."""
         ...
 
 
@@ -53,17 +53,17 @@ class Broadphase:
         self._max_reach_m = 0.0
 
     def replace_movers(self, movers: Iterable[Mover]) -> None:
-        """From now on these move, and no others."""
+        """Replace the list of moving bodies."""
         self._movers = tuple(movers)
         self._max_reach_m = max((mover.reach_m for mover in self._movers), default=0.0)
         self._cells = None
 
     def invalidate_movers(self) -> None:
-        """Movers may have moved."""
+        """Note that movers may have moved."""
         self._cells = None
 
     def fixed(self, x_m: float, y_m: float, reach_m: float) -> tuple[Obstacle, ...]:
-        """Fixed obstacles that may be nearer to a place than `reach_m`; never one too few."""
+        """Fixed obstacles that may be within `reach_m` of a point; a superset."""
         cell = cell_of(x_m, y_m)
         found = self._found.get((cell, reach_m))
         if found is None:
@@ -73,7 +73,7 @@ class Broadphase:
         return found
 
     def movers(self, x_m: float, y_m: float, reach_m: float) -> Iterator[Mover]:
-        """What moves and may be nearer to a place than `reach_m`; never one too few."""
+        """Moving bodies that may be within `reach_m` of a point; a superset."""
         far = reach_m + self._max_reach_m
         left, bottom = cell_of(x_m - far, y_m - far)
         right, top = cell_of(x_m + far, y_m + far)

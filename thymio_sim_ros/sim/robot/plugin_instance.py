@@ -1,4 +1,4 @@
-"""An actuator at work on one robot."""
+"""An actuator or stimulus on one robot."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["PluginInstance"]
 
 
 class PluginInstance:
-    """An actuator that acts on a robot in every tick in which it is busy."""
+    """An actuator or stimulus with its state; it acts in every tick in which it is busy."""
 
     __slots__ = ("is_busy", "is_idle", "state", "update", "update_all", "view")
 

@@ -1,4 +1,4 @@
-"""One robot: a body, two wheels, the state of its actuators, and a view for each plug-in."""
+"""One robot: a body, two wheels, the states of its actuators and stimuli, and a view for each plug-in."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ S = TypeVar("S")
 
 
 class SharedState:
-    """What all robots of a world share."""
+    """State that all robots of a world share."""
 
     __slots__ = ("_sounds", "_sounds_ns", "busy", "clock", "ground", "physics", "proximity_model", "robots", "woken")
 
@@ -38,7 +38,7 @@ class SharedState:
         self.clock, self.ground, self.physics, self.proximity_model = clock, ground, physics, proximity_model
         self.robots = robots
         self.busy: dict[Robot, None] = {}
-        """Robots with something to do in the next tick beside what all do at once."""
+        """Robots with plug-ins to update in the next tick that are not updated as a batch."""
         self.woken: dict[Robot, None] = {}
         """Robots with a sensor that was woken."""
         self._sounds: list[Sound] = []
@@ -50,7 +50,7 @@ class SharedState:
         self.woken.pop(robot, None)
 
     def sounds(self) -> list[Sound]:
-        """All that sounds now; every robot is asked once per tick, however many listen."""
+        """All sounds now; computed once per tick."""
         now_ns = self.clock.now_ns
         if self._sounds_ns != now_ns:
             self._sounds_ns = now_ns
@@ -153,17 +153,17 @@ class Robot:
         self.body: RobotBody = shared.physics.add_robot(start.name, start.pose)
         self._wheels = Wheels()
         self.shared_wheels: WheelArrays | None = None
-        """The wheels of all robots, when they roll as one."""
+        """The wheels of the batch, if the robot is in one."""
         self._clock, self._physics = shared.clock, shared.physics
         self.edge_fall = EdgeFall(shared.clock, shared.physics, self.body)
-        """Whether it stands."""
+        """Detects when it falls off an edge."""
         self.states: dict[type[Any], Any] = {}
-        """The state of every actuator, by its type."""
+        """The states of actuators and stimuli, by type."""
         self._accepting: dict[type[Any], tuple[CommandPlugin, Any]] = {}
         self._shown: list[tuple[Callable[[Any], Mapping[str, Any]], Any]] = []
         self._shared = shared
         self.instances: list[PluginInstance] = []
-        """What acts in a tick, in name order."""
+        """The actuators and stimuli with `update`, in name order."""
         for plugin in plugins:
             state = plugin.begin()
             self.states[type(state)] = state
@@ -196,7 +196,7 @@ class Robot:
 
     @property
     def pose(self) -> Pose:
-        """Where it really is."""
+        """True pose."""
         return self.body.pose
 
     @property
@@ -206,7 +206,7 @@ class Robot:
 
     @property
     def tilt(self) -> Tilt:
-        """How it leans: as the operator's hand holds it, or as it falls off an edge and lies there."""
+        """Tilt: held by an operator, or falling off an edge and lying there."""
         return self.edge_fall.tilt or self.held_tilt
 
     @property
@@ -228,16 +228,16 @@ class Robot:
         return self.body.is_fallen
 
     def sound_levels(self, now_ns: int) -> list[float]:
-        """How loud is what sounds on it."""
+        """Levels of the sounds that it makes now."""
         levels = (source.sound_level(now_ns) for source in self._sound_sources)
         return [level for level in levels if level]
 
     def accepts(self, command: object) -> bool:
-        """Whether an actuator takes this type of command."""
+        """Whether an actuator or stimulus accepts this type of command."""
         return type(command) in self._accepting
 
     def apply(self, command: object) -> None:
-        """Hand a command to its actuator."""
+        """Pass a command to its actuator or stimulus."""
         plugin, state = self._accepting[type(command)]
         plugin.apply(state, command, self._clock.now_ns)
         self.wake(type(command))
@@ -247,14 +247,14 @@ class Robot:
                 self._list_busy()
 
     def wake(self, kind: type[Any]) -> None:
-        """Let the sensors that wait for this type of thing measure at the end of the tick."""
+        """Wake the sensors that have this type in `wakes_on`."""
         numbers = self._wakes.get(kind)
         if numbers:
             self._woken.update(numbers)
             self._shared.woken[self] = None
 
     def act(self, dt_s: float, *, is_batched: bool = False) -> None:
-        """Run for one tick the actuators that are busy; in a crowd those that the crowd does not run for all."""
+        """Update the busy actuators and stimuli for one tick; in a batch, those without `update_all`."""
         has_rested = False
         for instance in self._busy:
             if not (is_batched and instance.update_all is not None):
@@ -267,7 +267,7 @@ class Robot:
             self.body.drive(self.wheels.ground)
 
     def _list_busy(self) -> None:
-        """What is to be updated, in name order; and whether the crowd has to ask."""
+        """Collect what has to be updated, in name order, and register the robot as busy."""
         self._busy = tuple(instance for instance in self.instances if instance.is_busy)
         if all(instance.update_all is not None for instance in self._busy):
             self._shared.busy.pop(self, None)
@@ -275,11 +275,11 @@ class Robot:
             self._shared.busy[self] = None
 
     def roll(self, dt_s: float) -> None:
-        """Count on the wheels what the body has moved."""
+        """Advance the wheels by the motion of the body."""
         self.wheels.roll(self.body.covered_m_s, dt_s)
 
     def pop_woken(self) -> list[int]:
-        """The numbers of the sensors that were woken to measure, in order; those that only feel do so."""
+        """Remove and return the numbers of the woken sensors, in order; those with `on_wake` are called instead."""
         if not self._woken:
             return []
         woken, self._woken = sorted(self._woken), set()
@@ -291,12 +291,12 @@ class Robot:
         return [number for number in woken if self.sensors[number][0].on_wake is None]
 
     def measure_one(self, number: int) -> Reading | None:
-        """What the sensor with this number reads now."""
+        """The reading of the sensor with this number now."""
         sensor, view = self.sensors[number]
         return sensor.measure(view)
 
     def place(self, pose: Pose) -> None:
-        """Put it somewhere, at rest; from where it has fallen too."""
+        """Place it at a pose, at rest, also after a fall."""
         self._physics.place(self.body, pose)
         self.edge_fall.clear()
 
@@ -312,12 +312,12 @@ class Robot:
         return readings
 
     def state(self, kind: type[S]) -> S:
-        """The state of the actuator whose state is a `kind`; KeyError when there is none."""
+        """The state of type `kind` of an actuator or stimulus; raises KeyError if there is none."""
         state: S = self.states[kind]
         return state
 
     def snapshot(self) -> RobotSnapshot:
-        """How it looks now."""
+        """The visible state now."""
         return RobotSnapshot(
             name=self.name,
             pose=self.body.pose,

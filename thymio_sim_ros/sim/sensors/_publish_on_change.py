@@ -1,4 +1,4 @@
-"""What changes rarely is told when it changes, and once a second for programs that were reset meanwhile."""
+"""Values that change rarely are reported on change, and once per second for programs that were reset meanwhile."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ REFRESH_NS = 1_000_000_000
 
 
 def should_publish(view: SensorView, value: object) -> bool:
-    """Whether a value differs from the one told last, or that was told a second ago; it then counts as told.
+    """Whether a value differs from the one reported last, or that was a second ago; if so, it is stored as reported.
 
-    `memory["refresh_ns"]` is when it will be told again anyway.
+    `memory["refresh_ns"]` is when it is reported again without a change.
     """
     memory, now_ns = view.memory, view.now_ns
-    if value == memory.get("told") and now_ns < memory["refresh_ns"]:
+    if value == memory.get("reported") and now_ns < memory["refresh_ns"]:
         return False
-    memory["told"], memory["refresh_ns"] = value, now_ns + REFRESH_NS
+    memory["reported"], memory["refresh_ns"] = value, now_ns + REFRESH_NS
     return True
 
 
 def should_publish_all(batch: BatchSensorView, values: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
-    """`should_publish` for each row of values, or for each value."""
+    """`should_publish` for each robot: `values` has shape (robots,) or (robots, words); returns shape (robots,)."""
     now_ns, column_state = batch.now_ns, batch.column_state
-    told = column_state.column("told", tuple(values[0].tolist()) if values.ndim > 1 else 0)
+    reported = column_state.column("reported", tuple(values[0].tolist()) if values.ndim > 1 else 0)
     refresh_ns = column_state.column("refresh_ns", 0)
-    differ = told != values
+    differ = reported != values
     is_due: npt.NDArray[np.bool_] = (differ.any(axis=1) if values.ndim > 1 else differ) | (now_ns >= refresh_ns)
-    told[is_due], refresh_ns[is_due] = values[is_due], now_ns + REFRESH_NS
+    reported[is_due], refresh_ns[is_due] = values[is_due], now_ns + REFRESH_NS
     return is_due

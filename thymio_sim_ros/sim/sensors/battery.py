@@ -1,7 +1,7 @@
 """The battery, once a second and when it is set (docs/spec/thymio-robot.md section 7.4), no noise.
 
-Two words are V * 198.9 each, a third tells whether a charger is connected. `charge` grows evenly from 3.4 V, where
-the last light goes out, to 4.1 V of a full lithium cell (own choice of the upper end; section 8.4 gives the lower).
+Two words are V * 198.9 each, the third is 1 while a charger is connected. `charge` is linear from 3.4 V, where
+the last light goes out, to 4.1 V of a full lithium cell (the upper end is an assumption; section 8.4 gives the lower).
 """
 
 from __future__ import annotations

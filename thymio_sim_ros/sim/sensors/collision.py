@@ -1,4 +1,4 @@
-"""Whether the robot touches anything but the floor: told when it changes, the first time at the start."""
+"""Whether the robot touches anything but the floor, reported at the start and on change."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from thymio_sim_ros.sim.sensors import Sensor
 __all__ = ["SENSOR"]
 
 _UNKNOWN = -1
-"""Neither: nothing was told yet."""
+"""Neither true nor false: nothing was reported yet."""
 
 
 def _measure(view: SensorView) -> CollisionReading | None:
@@ -26,12 +26,12 @@ def _measure(view: SensorView) -> CollisionReading | None:
 
 
 def _measure_all(batch: BatchSensorView) -> Sequence[CollisionReading | None]:
-    told, are_touching = batch.column_state.column("is_touching", _UNKNOWN), np.zeros(len(batch), dtype=int)
+    reported, are_touching = batch.column_state.column("is_touching", _UNKNOWN), np.zeros(len(batch), dtype=int)
     are_touching[list(batch.contacts)] = True
     readings: list[CollisionReading | None] = [None] * len(batch)
-    for robot in np.flatnonzero(told != are_touching).tolist():
+    for robot in np.flatnonzero(reported != are_touching).tolist():
         readings[robot] = CollisionReading(batch.now_ns, (), bool(are_touching[robot]))
-    told[:] = are_touching
+    reported[:] = are_touching
     return readings
 
 

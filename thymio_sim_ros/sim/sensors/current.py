@@ -1,10 +1,10 @@
-"""Current and integrator of the motors' control, told when they change (docs/spec/thymio-robot.md section 2.1).
+"""Current and integrator of the motors' control, reported on change (docs/spec/thymio-robot.md section 2.1).
 
 With motors that follow at once the control loop is in its steady state: its output is the pwm of the speed aimed at,
 its integral three times that, within ±4806. The current grows with the voltage that no turning takes up, which is what
 the pwm aimed at has more than the pwm of the speed reached: a free wheel draws none, a wheel held at full speed 800,
 above the 600 (about 0.4 A) at which the robot protects itself. It is filtered over 64 ticks. Motors with a control
-loop of their own tell what is in it.
+loop report its state.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def _measure(view: SensorView) -> CurrentReading | None:
     aimed, reached = wheels.commanded, wheels.speeds_m_s
     one, other = currents = memory.get("currents", _REST)
     if aimed == reached == memory.get("aimed") and currents == _REST and view.now_ns < memory["refresh_ns"]:
-        return None  # the rule on a free way, and cheap
+        return None  # fast path: the usual case while nothing is touched
     one = _filtered(one, abs(aimed[0] - reached[0]) * _LOAD_PER_M_S)
     other = _filtered(other, abs(aimed[1] - reached[1]) * _LOAD_PER_M_S)
     memory["currents"] = (one, other)

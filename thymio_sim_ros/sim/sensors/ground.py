@@ -1,8 +1,8 @@
 """Two ground sensors (docs/spec/thymio-robot.md section 7.2).
 
-Over floor the count is 60 + 884 / (1 + exp(-9 (g - 0.44))), g being the grey of the footprint, plus noise; it fades
+Over floor the count is 60 + 884 / (1 + exp(-9 (g - 0.44))), g being the gray of the footprint, plus noise; it fades
 to 0 as the footprint leaves the floor. Ambient is the operator's light, 0 at first; reflected is the count with that
-added, at most 1023; delta is reflected less ambient. An operator can say what a sensor counts instead
+added, at most 1023; delta is reflected less ambient. An operator can override counts
 (`stimuli/sensor_override.py`).
 """
 

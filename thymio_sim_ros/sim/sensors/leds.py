@@ -1,4 +1,4 @@
-"""What the lights show, looked at 25 times a second and told when it changed; the first time at the start."""
+"""The LEDs, polled 25 times per second, reported at the start and on change."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _measure_all(batch: BatchSensorView) -> Sequence[LedReading | None]:
 
 
 def _changed(state: LedState, memory: dict[str, Any], now_ns: int) -> LedReading | None:
-    """A reading, unless what was set meanwhile has come back to what was told."""
+    """A reading; None if the levels are again those reported last."""
     memory["changes"], groups = state.changes, tuple(state.levels.items())
     if groups == memory.get("groups"):
         return None

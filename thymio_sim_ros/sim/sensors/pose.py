@@ -1,4 +1,4 @@
-"""Where the robot is, at 20 Hz: by its wheels and in truth. Programs see nothing of it."""
+"""Pose and velocity of the robot at 20 Hz, by odometry and true. Aseba programs do not see it."""
 
 from __future__ import annotations
 

@@ -2,16 +2,16 @@
 
 F is `units.proximity_response`; d are the distances of a sensor's rays, from right to left, and a the angles between
 ray and axis. Noise is added, then the count is clamped. A wall across the axis gives F of its distance in every model.
-Model "default": three rays, the largest F(d cos a), since the strongest echo outweighs the others. Every term falls
+Model "default": three rays, the largest F(d cos a), since the strongest echo dominates. Every term falls
 with d, so the count of a flat wall falls with its distance at every angle; whatever is seen gives at least F of the
 range, 1226, as a real sensor gives at least 1000.
-Model "enki": three rays, F(left) + F(centre) + F(right) - 2 F(centre / cos 15°), the last term only when the centre ray
+Model "enki": three rays, F(left) + F(center) + F(right) - 2 F(center / cos 15°), the last term only when the center ray
 hits; a thin post straight ahead is invisible. The subtracted term ends at 13.5 cm and the others at 14 cm, so the count
 of a slanted wall jumps there.
 Model "cone": nine rays, the mean of F(d cos a); it has no jumps, and an object that fills a part of the cone gives that
 part of F.
-An operator can say what a sensor counts instead (`stimuli/sensor_override.py`).
-`ranges_m` is the distance of a wall across the axis that would give the same count, as the robot's driver has it.
+An operator can override counts (`stimuli/sensor_override.py`).
+`ranges_m` is the distance of a wall across the axis that would give the same count, as in the robot's ROS driver.
 """
 
 from __future__ import annotations

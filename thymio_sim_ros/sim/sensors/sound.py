@@ -1,9 +1,9 @@
 """The microphone, 61 blocks a second of 128 8-bit samples (docs/spec/thymio-robot.md sections 3 and 7.4), no noise.
 
 mic.intensity is the largest minus the smallest sample of a block, 0…255, mic._mean their sum; in silence all samples
-are 128. What is heard: the operator's noise and all sounds of the world by their distances
+are 128. The level is that of the background noise and of all sounds of the world, attenuated by distance
 (`sim/audio/propagation.py`), energies added. The event `mic` comes with every block that is louder than mic.threshold,
-unless that is 0. Quieter blocks are told when they differ from the last one told, and once a second.
+unless that is 0. Quieter blocks are reported on change and once per second.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ BLOCK_NS = 16_384_000
 """128 samples at 7812.5 Hz (docs/spec/thymio-robot.md section 9)."""
 
 _SILENCE = 128
-"""A sample at rest: the middle of 8 bits. Own choice."""
+"""A sample in silence: the middle of 8 bits. Assumption."""
 
 
 def _measure(view: SensorView) -> SoundReading | None:

@@ -1,6 +1,6 @@
-"""A knock: a contact that begins faster than 2 cm/s, or the operator's hand (docs/spec/thymio-robot.md section 7.3).
+"""Taps: a contact that begins faster than 2 cm/s, or a tap by an operator (docs/spec/thymio-robot.md section 7.3).
 
-So is the landing after a fall, for which it looks as often as the accelerometer measures. acc._tap becomes 1; a program
+The landing after a fall is a tap, too; it is detected at the rate of the accelerometer. acc._tap becomes 1; a program
 clears it.
 """
 
@@ -37,15 +37,15 @@ def _is_knock(contact: Contact) -> bool:
 
 
 def _measure_all(batch: BatchSensorView) -> Sequence[TapReading | None]:
-    told, was_falling = batch.column_state.column("taps", 0), batch.column_state.column("is_falling", first=False)
+    reported, was_falling = batch.column_state.column("taps", 0), batch.column_state.column("is_falling", first=False)
     taps, is_falling = [handling.taps for handling in batch.states(HandlingState)], np.zeros(len(batch), dtype=bool)
     is_falling[batch.falling] = True
-    is_tapped = told != taps
+    is_tapped = reported != taps
     for robot in batch.fallen:
         is_tapped[robot] |= was_falling[robot] and not is_falling[robot]
     for robot, contacts in batch.contacts.items():
         is_tapped[robot] |= any(map(_is_knock, contacts))
-    told[:], was_falling[:] = taps, is_falling
+    reported[:], was_falling[:] = taps, is_falling
     reading = TapReading(batch.now_ns, (1,))
     return [reading if tapped else None for tapped in is_tapped.tolist()]
 
