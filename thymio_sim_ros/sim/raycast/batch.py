@@ -237,7 +237,7 @@ class BatchRaycaster:
 def _facing(
     fan: Fan, pair: Indices, sensor: Indices, x: Values, y: Values, c: Values, s: Values, near: Values
 ) -> tuple[Indices, Indices]:
-    """The pairs whose rays may meet the circle around the obstacle, with sensors at x, y in its frame, turned by c, s."""
+    """Pairs whose rays may meet the circle around the obstacle; sensors are at x, y in its frame, turned by c, s."""
     ax, ay = fan.axes[:, sensor]
     ax, ay = c * ax - s * ay, s * ax + c * ay
     radius = np.sqrt(near[:, 4] * near[:, 4] + near[:, 5] * near[:, 5])
