@@ -112,7 +112,7 @@ def topics(robots: int, heard: str, *, only_regular: bool = False) -> Iterator[t
     spaces = [""] if robots == 1 else [f"/r{index}" for index in range(robots)]
     for space in spaces:
         for sensor in generate_ros_docs.own_sensors():
-            for row in sensor_topics.rows_of(sensor):
+            for row in sensor_topics.select_rows(sensor):
                 if only_regular and not sensor_topics.is_regular(sensor, row):
                     continue
                 if heard == ALL or row.type is Range or row.topic in ("odom", "joint_states", "imu"):

@@ -39,7 +39,7 @@ MESSAGES = frozenset({
 ROS = MESSAGES | {"rclpy", "ament_index_python", "rosidl_parser", "rosidl_runtime_py"}
 ALL_OF_OURS = frozenset(PACKAGES)
 DECLARATIONS = _names(
-    "sim.commands", "sim.model", "sim.sensors", "sim.actuators", "sim.plugin_api", "sim.audio.synthesis"
+    "sim.commands", "sim.model", "sim.sensors", "sim.actuators", "sim.stimuli", "sim.plugin_api", "sim.audio.synthesis"
 )
 
 # The longest name that fits a module decides.

@@ -121,7 +121,7 @@ def test_a_broken_one_is_named_and_the_others_go_on(
     ("name", "old", "new", "said"),
     [
         ("compass", '("compass.heading", 1)', '("prox.horizontal", 1)', "variable prox.horizontal"),
-        ("hop", 'Native("hop", ("millimetres",)', 'Native("leds.top", ("millimetres",)', "native leds.top"),
+        ("hop", 'Native("hop", ("millimeters",)', 'Native("leds.top", ("millimeters",)', "native leds.top"),
     ],
 )
 def test_programs_see_nothing_of_one_that_does_not_fit_the_robot(

@@ -1,10 +1,9 @@
 """Collects plug-ins: exports of the modules of a folder of this project, and entry points of other packages.
 
-A package of plug-ins is its own registry (docs/plugins.md): a file in the folder is a plug-in, without any
-registration. Another package adds to `thymio_sim_ros.sensors`, `.actuators` or `.shapes` by an entry
-point of a group of that name, and whole folders to `.behaviours` and `.playgrounds`. Errors in plug-ins of
-this project are raised; broken ones of other packages are logged and skipped. Plug-ins are sorted by name, so that the
-order of iteration is repeatable.
+A package of plug-ins is its own registry (docs/plugins.md): a file in the folder is a plug-in. Another package adds
+plug-ins by entry points of the groups `thymio_sim_ros.sensors`, `.actuators`, `.stimuli` and `.shapes`, and whole
+folders by `.behaviours` and `.playgrounds`. A broken module of this package raises RegistryError; a broken plug-in of
+another package is logged and left out. Name order makes every walk over a registry repeatable.
 """
 
 from __future__ import annotations

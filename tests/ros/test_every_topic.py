@@ -56,7 +56,7 @@ PAIR = json.dumps(
     }
 )  # fmt: skip
 
-PUBLISHED = [(sensor, row) for sensor in generate_ros_docs.own_sensors() for row in sensor_topics.rows_of(sensor)]
+PUBLISHED = [(sensor, row) for sensor in generate_ros_docs.own_sensors() for row in sensor_topics.select_rows(sensor)]
 INPUTS = {one.topic: one for one in robot_inputs()}
 
 

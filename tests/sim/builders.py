@@ -63,7 +63,7 @@ def post_wall(distance_m: float) -> dict[str, Any]:
     return box(0.0795 + distance_m + 0.01, 0.0, 0.02, 1.0)
 
 
-def sense(world: World, sensor: str, robot: str | None = None) -> Any:
+def measure_one(world: World, sensor: str, robot: str | None = None) -> Any:
     """The next reading of a sensor of a robot (the first one unless named)."""
     robot = robot or next(iter(world.robots))
     while True:

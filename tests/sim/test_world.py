@@ -272,7 +272,7 @@ def test_a_command_for_nobody_is_refused() -> None:
 
 
 def test_what_is_no_command_is_refused() -> None:
-    with pytest.raises(TypeError, match="no actuator takes a str"):
+    with pytest.raises(TypeError, match="no actuator or stimulus accepts a str"):
         World(make([FLOOR])).post("thymio", "forward")  # type: ignore[arg-type]  # the mistake under test
 
 

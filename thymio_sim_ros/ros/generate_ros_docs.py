@@ -119,7 +119,7 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def _published() -> Iterator[_Line]:
     for sensor in own_sensors():
-        for row in sensor_topics.rows_of(sensor):
+        for row in sensor_topics.select_rows(sensor):
             often = sensor_topics.often(sensor, row)
             profile = qos.kind_of(row.profile)
             yield _Line(row.topic, type_name(row.type), often, row.frame, profile, row.about)

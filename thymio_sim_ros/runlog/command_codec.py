@@ -13,6 +13,7 @@ from typing import Any
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.actuators import all_actuators
 from thymio_sim_ros.sim.commands import Command, MoveObject
+from thymio_sim_ros.sim.stimuli import all_stimuli
 
 __all__ = ["CommandJsonError", "decode", "encode", "kinds"]
 
@@ -23,7 +24,7 @@ class CommandJsonError(ThymioSimError, ValueError):
 
 def kinds() -> dict[str, type[Any]]:
     """Every type of command that a world takes, by name."""
-    taken = [kind for actuator in all_actuators() for kind in actuator.accepts]
+    taken = [kind for plugin in (*all_actuators(), *all_stimuli()) for kind in plugin.accepts]
     return {kind.__name__: kind for kind in (*taken, MoveObject)}
 
 

@@ -104,9 +104,9 @@ class RunLog:
         self._flush()
         head = {"name": name, "playground": dumps(world.playground), **asdict(world.options)}
         self._write({"world": head})
-        world.journal = self
+        world.recorder = self
 
-    def note(self, tick: int, happened: Input) -> None:
+    def record(self, tick: int, happened: Input) -> None:
         """Something came in after so many ticks."""
         match happened:
             case Posted(name, command):
@@ -120,7 +120,7 @@ class RunLog:
                 self._flush()
                 self._write({"tick": tick, "reset": True})
 
-    def stepped(self, result: object) -> None:
+    def record_step(self, result: object) -> None:
         """A step gave this."""
         self._crcs.append(digest(result))
         if len(self._crcs) == _TICKS_PER_LINE:

@@ -1,6 +1,6 @@
-"""What happens to a world, told as it happens: enough to let the same happen again.
+"""The inputs of a world, recorded so that a run can be repeated.
 
-A world tells its journal every input with the number of ticks that had passed, and the result of every step.
+A world passes every input to its recorder, with the number of ticks before it, and the result of every step.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from typing import Protocol
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.playground.reader import RobotStart
 
-__all__ = ["Input", "Journal", "Posted", "Removed", "Reset", "Spawned", "WorldOptions"]
+__all__ = ["Input", "InputRecorder", "Posted", "Removed", "Reset", "Spawned", "WorldOptions"]
 
 
 @dataclass(frozen=True, slots=True)
 class WorldOptions:
-    """Everything but the playground that a world is made with; `periods_ns` as pairs, None for the robot's own."""
+    """The options of a world besides its playground; `periods_ns` as pairs, None for the periods of the sensors."""
 
     seed: int
     noise: bool
@@ -27,7 +27,7 @@ class WorldOptions:
 
 @dataclass(frozen=True, slots=True)
 class Posted:
-    """A command for a robot or thing."""
+    """A command was posted to a robot or an object."""
 
     name: str
     command: Command
@@ -42,26 +42,26 @@ class Spawned:
 
 @dataclass(frozen=True, slots=True)
 class Removed:
-    """A robot was taken away."""
+    """A robot was removed."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class Reset:
-    """Everything is as at the start; ticks count from 0 again."""
+    """The world was reset; ticks are counted from 0 again."""
 
 
 Input = Posted | Spawned | Removed | Reset
 
 
-class Journal(Protocol):
-    """Who writes down what happens to a world."""
+class InputRecorder(Protocol):
+    """Records the inputs and results of a world."""
 
-    def note(self, tick: int, happened: Input) -> None:
-        """Something came in after so many ticks."""
+    def record(self, tick: int, event: Input) -> None:
+        """Record an input that arrived after this many ticks."""
         ...
 
-    def stepped(self, result: object) -> None:
-        """A step gave this; its `repr` tells it bit for bit."""
+    def record_step(self, result: object) -> None:
+        """Record the result of a step; its `repr` is exact to the bit."""
         ...

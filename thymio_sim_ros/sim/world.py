@@ -1,4 +1,4 @@
-"""The world: owns clock, bodies, ground and robots, and alone lets time pass.
+"""The world: owns clock, bodies, ground and robots, and is the only owner of simulated time.
 
 Commands may be posted at any time and take effect in the next step. The same playground, seed and commands
 give the same readings bit for bit. One thread may use a world; nothing here locks.
@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from thymio_sim_ros.sim.actuators import all_actuators
-from thymio_sim_ros.sim.batch.robot_batch import CROWD, Crowd
+from thymio_sim_ros.sim.batch.robot_batch import MIN_BATCH_ROBOTS, RobotBatch
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, MoveObject, MoveRobot, SetMotorModel, SetPen
-from thymio_sim_ros.sim.ground.floor_support import Footing
+from thymio_sim_ros.sim.ground.floor_support import FloorSupport
 from thymio_sim_ros.sim.ground.sampling import Ground
-from thymio_sim_ros.sim.input_recorder import Input, Journal, Posted, Removed, Reset, Spawned, WorldOptions
+from thymio_sim_ros.sim.input_recorder import Input, InputRecorder, Posted, Removed, Reset, Spawned, WorldOptions
 from thymio_sim_ros.sim.model.clock import TICK_NS, Schedule, SimClock
 from thymio_sim_ros.sim.model.fields import FieldError, as_color, read, write
 from thymio_sim_ros.sim.model.geometry import Pose
@@ -32,18 +32,19 @@ from thymio_sim_ros.sim.playground.placement import (
 )
 from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.playground.scene import ObjectSnapshot, Scene, Snapshot
-from thymio_sim_ros.sim.robot.robot import Robot, Shared
+from thymio_sim_ros.sim.robot.robot import Robot, SharedState
 from thymio_sim_ros.sim.sensors import Sensor, all_sensors
+from thymio_sim_ros.sim.stimuli import all_stimuli
 
 __all__ = ["TICK_NS", "StepResult", "World"]
 
 _TICK_S = TICK_NS * 1e-9
-_NOT_SURE = (0.0, 0.0, 0.0)
+_NO_CLEARANCE = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class StepResult:
-    """What one step gave: readings as (robot, sensor, reading), by robot and then by sensor name; contacts."""
+    """Result of one step: readings as (robot, sensor, reading), by robot and then by sensor name; contacts."""
 
     now_ns: int
     readings: Sequence[tuple[str, str, Reading]]
@@ -51,7 +52,7 @@ class StepResult:
 
 
 class World:
-    """A playground that lives. Invariant: nothing in it changes but by `step`, `reset`, `spawn` and `remove`."""
+    """A running playground. Invariant: only `step`, `reset`, `spawn` and `remove` change it."""
 
     def __init__(
         self,
@@ -64,10 +65,19 @@ class World:
         periods_ns: Mapping[str, int] | None = None,
         ground: Ground | None = None,
     ) -> None:
-        """`motor_model`: one of `commands.MOTOR_MODELS`, ValueError for another.
+        """Create the world at time 0.
 
-        `periods_ns` names the sensors that measure and how often; None: all of them, as often as the robot does.
-        `ground` is that of the playground where it has been made already; it belongs to the world from now on.
+        Args:
+            playground: What the world contains.
+            seed: Seed of all random numbers.
+            noise: Whether sensors and motors are noisy.
+            proximity_model: One of `robot_constants.PROXIMITY_MODELS`.
+            motor_model: One of `commands.MOTOR_MODELS`.
+            periods_ns: The sensors that measure, and their periods; None: all, with their own periods.
+            ground: The ground of the playground if it exists already; the world owns it from now on.
+
+        Raises:
+            ValueError: A model or sensor is unknown, or a period is not above 0.
         """
         if proximity_model not in PROXIMITY_MODELS:
             raise ValueError(f"proximity model {proximity_model!r}: expected one of {', '.join(PROXIMITY_MODELS)}")
@@ -77,35 +87,35 @@ class World:
         self.scene = Scene.of(playground)
         periods = None if periods_ns is None else tuple(periods_ns.items())
         self.options = WorldOptions(seed, noise, proximity_model, motor_model, periods)
-        self.journal: Journal | None = None
-        """Who is told what happens from now on."""
+        self.recorder: InputRecorder | None = None
+        """Gets all inputs and results from now on."""
         self._ground = Ground(playground.floors, playground.paints) if ground is None else ground
-        self._footing = Footing(playground.floors)
+        self._floor_support = FloorSupport(playground.floors)
         self._fixed = Occupied(footprint_of(solid) for solid in playground.solids if solid.is_fixed)
         self._begin()
 
     def reset(self) -> None:
-        """Everything as at the start: time 0, robots at their places, the same noise again, no command waiting."""
-        self._note(Reset())
+        """Restore the initial state: time 0, robots at their start poses, the same noise, no pending commands."""
+        self._record(Reset())
         self._begin()
 
     def _begin(self) -> None:
         self._clock = SimClock()
-        self._crowd: Crowd | None = None
+        self._batch: RobotBatch | None = None
         self._ground.restore()
         self._physics = Physics(self.playground.solids, self.playground.triggers)
         self._robots: dict[str, Robot] = {}
-        self._shared = Shared(self._clock, self._ground, self._physics, self.options.proximity_model, self._robots)
-        self._actuators = all_actuators()
+        self._shared = SharedState(self._clock, self._ground, self._physics, self.options.proximity_model, self._robots)
+        self._plugins = sorted((*all_actuators(), *all_stimuli()), key=lambda plugin: plugin.name)
         self._schedule = Schedule((sensor.period_ns, sensor.phase_ns) for sensor in self._sensors)
         for start in self.playground.robots:
             self._add(start)
         self._posted: list[tuple[str, Command]] = []
-        self._sure: dict[str, tuple[float, float, float]] = {}
-        """Where each thing was when an edge was looked for, and how far away that is at least."""
+        self._clearances: dict[str, tuple[float, float, float]] = {}
+        """Last position at which the distance to an edge was computed for an object, and that distance."""
         for movable in self._physics.movables.values():
             self._drop_over_edge(movable)
-        self._gather()
+        self._form_batch()
 
     @property
     def now_ns(self) -> int:
@@ -114,42 +124,43 @@ class World:
 
     @property
     def robots(self) -> Mapping[str, Robot]:
-        """The robots by name, in the order of the playground, and then as they were added."""
+        """The robots by name: those of the playground in its order, then in the order in which they were added."""
         return MappingProxyType(self._robots)
 
     @property
     def objects(self) -> tuple[ObjectSnapshot, ...]:
-        """Where everything is that moves without wheels: movable things, then doors, in the playground's order."""
+        """Poses of objects, then doors, in the order of the playground."""
         return tuple(ObjectSnapshot(body.name, body.pose, body.is_fallen) for body in self._physics.objects)
 
     @property
     def movables(self) -> tuple[str, ...]:
-        """Names of the things that can be put somewhere, in the playground's order."""
+        """Names of the objects that can be moved, in the order of the playground."""
         return tuple(self._physics.movables)
 
     def post(self, name: str, command: Command) -> None:
-        """Let a command to a robot or a movable thing take effect in the next step.
+        """Post a command to a robot or an object; it takes effect in the next step.
 
-        KeyError for an unknown name, TypeError for a command that it does not take, PlacementError for a place that is
-        not free now.
+        Raises KeyError for an unknown name, TypeError for a command that is not accepted, ValueError for a pose that is
+        not finite, and PlacementError if the target position is occupied now.
         """
         if name in self._physics.movables:
             if not isinstance(command, MoveObject):
-                raise TypeError(f"a thing takes no {type(command).__name__}")
+                raise TypeError(f"an object accepts no {type(command).__name__}")
             pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
             self._check_place(footprint_of(self._physics.movables[name].solid.at(pose)))
         elif not self._robots[name].accepts(command):
-            raise TypeError(f"no actuator takes a {type(command).__name__}")
+            raise TypeError(f"no actuator or stimulus accepts a {type(command).__name__}")
         elif isinstance(command, MoveRobot):
             pose = _finite(name, Pose(command.x_m, command.y_m, command.yaw_rad))
             self._check_place(footprint_of_robot(name, pose))
-        self._note(Posted(name, command))
+        self._record(Posted(name, command))
         self._posted.append((name, command))
 
     def spawn(self, start: RobotStart) -> None:
-        """Add a robot, now.
+        """Add a robot at once.
 
-        PlacementError: its place is not free; ValueError: its name is taken, or it is one that no file may hold.
+        Raises PlacementError if its position is occupied, and ValueError if its name is taken or a value is not valid
+        in a playground file.
         """
         if start.name in self._names():
             raise ValueError(f"the name '{start.name}' is taken")
@@ -158,32 +169,32 @@ class World:
         except FieldError as error:
             raise ValueError(str(error)) from error
         self._check_place(footprint_of_robot(start.name, start.pose))
-        self._note(Spawned(start))
+        self._record(Spawned(start))
         self._add(start)
-        self._gather()
+        self._form_batch()
 
     def remove(self, robot: str) -> None:
-        """Take a robot away, now; KeyError for an unknown one."""
+        """Remove a robot at once; raises KeyError for an unknown name."""
         gone = self._robots.pop(robot)
         self._physics.remove_robot(gone.body)
         self._shared.forget(gone)
-        self._note(Removed(robot))
+        self._record(Removed(robot))
         self._posted = [(name, command) for name, command in self._posted if name != robot]
-        self._gather()
+        self._form_batch()
 
     def step(self) -> StepResult:
-        """Let one tick pass."""
+        """Advance the world by one tick."""
         self._apply_commands()
         self._run_actuators()
         contacts = self._move_bodies()
         now_ns = self._clock.advance()
         result = StepResult(now_ns, self._run_sensors(now_ns), contacts)
-        if self.journal is not None:
-            self.journal.stepped((now_ns, tuple(result.readings), contacts))
+        if self.recorder is not None:
+            self.recorder.record_step((now_ns, tuple(result.readings), contacts))
         return result
 
     def snapshot(self) -> Snapshot:
-        """How the world looks now."""
+        """The visible state of the world now."""
         return Snapshot(
             self._clock.now_ns,
             tuple(robot.snapshot() for robot in self._robots.values()),
@@ -192,7 +203,7 @@ class World:
 
     def _add(self, start: RobotStart) -> None:
         robot = Robot(
-            start, self._shared, self._actuators, self._sensors, seed=self.options.seed, noise=self.options.noise
+            start, self._shared, self._plugins, self._sensors, seed=self.options.seed, noise=self.options.noise
         )
         self._robots[start.name] = robot
         robot.apply(self._motor_model)
@@ -200,18 +211,18 @@ class World:
             pen = start.pen
             robot.apply(SetPen(pen.down, as_color(pen.color), pen.width_m))
 
-    def _gather(self) -> None:
-        """Let many robots act, move and measure together."""
-        if self._crowd is not None:
-            self._crowd.disband()
-        self._crowd = Crowd(self._robots.values(), self._shared) if len(self._robots) >= CROWD else None
+    def _form_batch(self) -> None:
+        """Update the robots as a batch if there are enough of them."""
+        if self._batch is not None:
+            self._batch.dissolve()
+        self._batch = RobotBatch(self._robots.values(), self._shared) if len(self._robots) >= MIN_BATCH_ROBOTS else None
 
     def _names(self) -> set[str]:
-        """All names that are taken."""
+        """All names in use."""
         return {*self._robots, *(shape.name for shape in self.playground.shapes)}
 
     def _check_place(self, wanted: Footprint) -> None:
-        """Refuse a place where something else stands, or will before anything else happens."""
+        """Raise PlacementError if a position is occupied now or by a pending command."""
         soon = {
             name: Pose(command.x_m, command.y_m, command.yaw_rad)
             for name, command in self._posted
@@ -232,9 +243,9 @@ class World:
         if blocker is not None:
             raise PlacementError(wanted.name, Pose(*wanted.middle, 0.0), blocker)
 
-    def _note(self, happened: Input) -> None:
-        if self.journal is not None:
-            self.journal.note(self._clock.now_ns // TICK_NS, happened)
+    def _record(self, event: Input) -> None:
+        if self.recorder is not None:
+            self.recorder.record(self._clock.now_ns // TICK_NS, event)
 
     def _apply_commands(self) -> None:
         posted, self._posted = self._posted, []
@@ -247,21 +258,21 @@ class World:
                 self._robots[name].apply(command)
 
     def _run_actuators(self) -> None:
-        if self._crowd is not None:
-            self._crowd.act(_TICK_S)
+        if self._batch is not None:
+            self._batch.act(_TICK_S)
             return
         for robot in self._robots.values():
             robot.act(_TICK_S)
 
     def _move_bodies(self) -> tuple[Contact, ...]:
         contacts = self._physics.step()
-        if self._crowd is not None:
-            self._crowd.roll(_TICK_S)
-            self._crowd.look_down(self._footing)
+        if self._batch is not None:
+            self._batch.roll(_TICK_S)
+            self._batch.check_floor(self._floor_support)
         else:
             for robot in self._robots.values():
                 robot.roll(_TICK_S)
-                robot.balance.look_down(self._footing)
+                robot.edge_fall.check_floor(self._floor_support)
         for movable in self._physics.movables.values():
             if movable.is_moving:
                 self._drop_over_edge(movable)
@@ -272,18 +283,18 @@ class World:
 
     def _drop_over_edge(self, movable: MovableBody) -> None:
         x, y = movable.pose.x_m, movable.pose.y_m
-        sure_x, sure_y, sure_m = self._sure.get(movable.name, _NOT_SURE)
-        if math.hypot(x - sure_x, y - sure_y) < sure_m:
+        sure_x, sure_y, safe_m = self._clearances.get(movable.name, _NO_CLEARANCE)
+        if math.hypot(x - sure_x, y - sure_y) < safe_m:
             return
-        clearance_m = self._footing.clearance_m(x, y)
-        self._sure[movable.name] = (x, y, clearance_m)
+        clearance_m = self._floor_support.clearance_m(x, y)
+        self._clearances[movable.name] = (x, y, clearance_m)
         if clearance_m < 0.0:
             self._physics.drop_movable(movable)
 
     def _run_sensors(self, now_ns: int) -> Sequence[tuple[str, str, Reading]]:
         due = self._schedule.due(now_ns)
-        if self._crowd is not None:
-            return self._crowd.measure(due)
+        if self._batch is not None:
+            return self._batch.measure(due)
         readings: list[tuple[str, str, Reading]] = []
         for robot in self._robots.values():
             readings.extend(robot.measure(due))
@@ -291,7 +302,7 @@ class World:
 
 
 def _finite(name: str, pose: Pose) -> Pose:
-    """The pose itself; ValueError when it is none."""
+    """The pose; raises ValueError if it is not finite."""
     if not all(map(math.isfinite, (pose.x_m, pose.y_m, pose.yaw_rad))):
         at = f"{pose.x_m}, {pose.y_m} m, {pose.yaw_rad} rad"
         raise ValueError(f"'{name}' cannot stand at {at}: expected finite numbers")
@@ -299,7 +310,7 @@ def _finite(name: str, pose: Pose) -> Pose:
 
 
 def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -> tuple[Sensor, ...]:
-    """The sensors that measure; ValueError for a name that is none, or a period that is not above 0."""
+    """The sensors that measure; raises ValueError for an unknown name or a period that is not above 0."""
     if periods_ns is None:
         return sensors
     names = [sensor.name for sensor in sensors]
@@ -308,4 +319,4 @@ def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -
             raise ValueError(f"sensor {name!r}: expected one of {', '.join(names)}")
         if period_ns <= 0:
             raise ValueError(f"period of {name!r}: found {period_ns} ns, expected a number above 0")
-    return tuple(sensor.every(periods_ns[sensor.name]) for sensor in sensors if sensor.name in periods_ns)
+    return tuple(sensor.with_period(periods_ns[sensor.name]) for sensor in sensors if sensor.name in periods_ns)

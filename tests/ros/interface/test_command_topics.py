@@ -40,6 +40,7 @@ from thymio_sim_ros.sim.commands import (
     StopGesture,
     StopSound,
 )
+from thymio_sim_ros.sim.stimuli import all_stimuli
 
 BY_TOPIC = {row.topic: row for row in ROWS}
 
@@ -91,7 +92,7 @@ def test_every_command_of_a_reset_has_a_topic(actuator):
 
 
 def test_every_row_gives_commands_that_an_actuator_takes():
-    accepted = {kind for actuator in all_actuators() for kind in actuator.accepts}
+    accepted = {kind for plugin in (*all_actuators(), *all_stimuli()) for kind in plugin.accepts}
     messages = {
         "pen/down": Bool(data=True),
         "_pen/color": ColorRGBA(r=1.0, a=1.0),

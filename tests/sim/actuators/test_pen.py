@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import pytest
 
-from tests.sim.builders import FLOOR, make, readings, run, send, sense
+from tests.sim.builders import FLOOR, make, measure_one, readings, run, send
 from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.pen import ACTUATOR, PenState
 from thymio_sim_ros.sim.commands import BodyTwist, MotorTargets, MoveRobot, SetPen
@@ -157,14 +157,14 @@ def test_another_robot_s_ground_sensors_see_the_drawing_at_once() -> None:
     world = World(make([FLOOR], TWO), noise=False)
     over_the_way, aside = MoveRobot(0.15, -0.072, math.pi / 2), MoveRobot(0.15, -0.5, math.pi / 2)
     world.post("reader", over_the_way)
-    assert sense(world, "ground", "reader").words[2:4] == (938, 938)
+    assert measure_one(world, "ground", "reader").words[2:4] == (938, 938)
     for command in (BROAD, BodyTwist(0.1, 0.0)):
         world.post("painter", command)
     world.post("reader", aside)
     run(world, 3.5)
     world.post("painter", BodyTwist(0.0, 0.0))
     world.post("reader", over_the_way)
-    assert max(sense(world, "ground", "reader").words[2:4]) < 150
+    assert max(measure_one(world, "ground", "reader").words[2:4]) < 150
 
 
 def test_the_eraser_takes_drawings_away_but_not_what_was_painted() -> None:
@@ -182,7 +182,7 @@ def test_the_eraser_takes_drawings_away_but_not_what_was_painted() -> None:
     send(world, BodyTwist(0.0, 0.0))
     send(world, MoveRobot(0.0, -0.5, 0.0))
     send(world, MoveRobot(0.1 - 0.072, 0.0, 0.0))
-    assert sense(world, "ground").words[2:4] == (938, 938)
+    assert measure_one(world, "ground").words[2:4] == (938, 938)
 
 
 def test_a_reset_world_is_clean_again() -> None:
@@ -193,7 +193,7 @@ def test_a_reset_world_is_clean_again() -> None:
     world.reset()
     assert world.snapshot().robots[0].strokes == ()
     send(world, MoveRobot(0.05, 0.0, 0.0))
-    assert sense(world, "ground").words[2:4] == (938, 938)
+    assert measure_one(world, "ground").words[2:4] == (938, 938)
 
 
 def test_the_trail_is_told_when_it_grew_and_not_otherwise() -> None:

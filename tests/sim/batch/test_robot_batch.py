@@ -14,7 +14,7 @@ import pytest
 
 from tests.sim.builders import FLOOR, box, make, run, shipped
 from thymio_sim_ros.sim.actuators import all_actuators
-from thymio_sim_ros.sim.batch.robot_batch import CROWD
+from thymio_sim_ros.sim.batch.robot_batch import MIN_BATCH_ROBOTS
 from thymio_sim_ros.sim.commands import (
     BodyTwist,
     Clap,
@@ -63,9 +63,9 @@ def busy(dice: random.Random, robots: int) -> Playground:
     return dataclasses.replace(reader.loads(json.dumps(data), "busy"), robots=starts)
 
 
-def play(monkeypatch: pytest.MonkeyPatch, crowd: int, scene: Playground, **options: Any) -> list[StepResult]:
+def play(monkeypatch: pytest.MonkeyPatch, batch: int, scene: Playground, **options: Any) -> list[StepResult]:
     """Two seconds in which robots drive and push, one falls off the edge, and one has a button pressed."""
-    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
     world = World(scene, **options)
     dice = random.Random(1)
     steps = []
@@ -115,8 +115,8 @@ def test_all_at_once_reads_what_one_by_one_reads(monkeypatch: pytest.MonkeyPatch
 def test_one_robot_may_be_a_crowd(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = shipped("obstacle")
     runs = []
-    for crowd in (ONE_BY_ONE, AT_ONCE):
-        monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+    for batch in (ONE_BY_ONE, AT_ONCE):
+        monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
         world = World(scene, seed=4)
         world.post("thymio", MotorTargets(300, 250))
         runs.append(run(world, 5.0))
@@ -146,8 +146,8 @@ def test_things_that_are_pushed_moved_opened_or_gone_are_seen_where_they_are(mon
         ],
     )
     runs = []
-    for crowd in (ONE_BY_ONE, AT_ONCE):
-        monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+    for batch in (ONE_BY_ONE, AT_ONCE):
+        monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
         world = World(scene)
         steps = []
         for tick in range(300):
@@ -171,8 +171,8 @@ def test_things_that_are_pushed_moved_opened_or_gone_are_seen_where_they_are(mon
 def test_commands_of_a_crowd_time_out_and_motor_models_change_as_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
     robots = [{"name": f"robot_{index}", "x_m": index * 0.4, "y_m": 0.0} for index in range(4)]
     runs = []
-    for crowd in (ONE_BY_ONE, AT_ONCE):
-        monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+    for batch in (ONE_BY_ONE, AT_ONCE):
+        monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
         world = World(make([FLOOR], robots))
         steps = []
         for tick in range(100):
@@ -197,7 +197,7 @@ def test_a_crowd_repeats_itself_bit_for_bit(monkeypatch: pytest.MonkeyPatch) -> 
 def test_readings_may_be_looked_at_much_later(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = busy(random.Random(9), 12)
     late = play(monkeypatch, AT_ONCE, scene, seed=2)
-    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", AT_ONCE)
+    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", AT_ONCE)
     world = World(scene, seed=2)
     dice = random.Random(1)
     for tick, step in enumerate(late):
@@ -210,20 +210,20 @@ def test_readings_may_be_looked_at_much_later(monkeypatch: pytest.MonkeyPatch) -
         assert list(world.step().readings) == list(step.readings)
 
 
-@pytest.mark.parametrize("crowd", [AT_ONCE, 12])
+@pytest.mark.parametrize("batch", [AT_ONCE, 12])
 def test_robots_that_come_and_go_take_along_what_their_sensors_remember(
-    monkeypatch: pytest.MonkeyPatch, crowd: int
+    monkeypatch: pytest.MonkeyPatch, batch: int
 ) -> None:
     """With 12 as the limit they are now a crowd and now each alone."""
-    runs = [come_and_go(monkeypatch, limit, busy(random.Random(5), 12)) for limit in (ONE_BY_ONE, crowd)]
+    runs = [come_and_go(monkeypatch, limit, busy(random.Random(5), 12)) for limit in (ONE_BY_ONE, batch)]
     assert_same(*runs)
     told = {name for step in runs[0] for _, name, _ in step.readings}
     assert {"tap", "current", "collision", "accelerometer", "sound", "buttons"} <= told
 
 
-def come_and_go(monkeypatch: pytest.MonkeyPatch, crowd: int, scene: Playground) -> list[StepResult]:
+def come_and_go(monkeypatch: pytest.MonkeyPatch, batch: int, scene: Playground) -> list[StepResult]:
     """Three seconds in which robots are taken away and put back, tapped, tilted, clapped at and driven in two ways."""
-    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
     world = World(scene, seed=3)
     dice, steps, away = random.Random(2), [], list[RobotStart]()
     for tick in range(300):
@@ -253,9 +253,9 @@ def test_a_sensor_that_is_woken_measures_on_its_robot_alone() -> None:
     assert found == [*expected[:3], ("robot_2", "loudspeaker"), *expected[3:]]
 
 
-@pytest.mark.parametrize("crowd", [ONE_BY_ONE, AT_ONCE])
-def test_an_actuator_at_rest_is_left_alone_until_its_next_command(monkeypatch: pytest.MonkeyPatch, crowd: int) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+@pytest.mark.parametrize("batch", [ONE_BY_ONE, AT_ONCE])
+def test_an_actuator_at_rest_is_left_alone_until_its_next_command(monkeypatch: pytest.MonkeyPatch, batch: int) -> None:
+    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
     calls: list[Any] = []
 
     def update(state: Any, _view: Any, _dt_s: float) -> None:
@@ -283,7 +283,7 @@ def test_only_the_chosen_sensors_measure_and_as_often_as_told() -> None:
     assert {name for _, name in found} == {"ground", "buttons"}
 
 
-@pytest.mark.parametrize("robots", [1, CROWD])
+@pytest.mark.parametrize("robots", [1, MIN_BATCH_ROBOTS])
 def test_sensors_of_one_period_measure_in_the_same_tick_whatever_their_own_phase(robots: int) -> None:
     starts = [{"name": f"r{number}", "x_m": 0.3 * number, "y_m": 0.0} for number in range(robots)]
     regular = [sensor.name for sensor in all_sensors() if sensor.period_ns != NEVER_NS]
@@ -301,7 +301,7 @@ def test_a_sensor_that_is_none_or_never_measures_is_refused(periods_ns: dict[str
 
 def test_noise_of_one_robot_does_not_depend_on_how_many_there_are(monkeypatch: pytest.MonkeyPatch) -> None:
     near, far = {"name": "near", "x_m": 0.0, "y_m": 0.0}, {"name": "far", "x_m": 1.5, "y_m": 1.5}
-    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", 2)
+    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", 2)
     few, many = (World(make([FLOOR, box(0.15, 0.0, 0.02, 0.5)], robots)) for robots in ([near], [near, far]))
     for one, both in zip(run(few, 1.0), run(many, 1.0), strict=True):
         other = {name: reading for robot, name, reading in both.readings if robot == "near"}

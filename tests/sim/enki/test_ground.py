@@ -35,15 +35,15 @@ def ground_of(scene: Scene) -> Ground:
     width, height = scene["world"]["width"], scene["world"]["height"]
     pattern = scene.get("ground") or scene["meta"]["tiles"]
     match pattern:
-        case {"kind": "uniform", "grey8": grey}:
-            return Ground([_floor(grey, 0.0, 0.0, width, height)], [])
+        case {"kind": "uniform", "grey8": gray}:
+            return Ground([_floor(gray, 0.0, 0.0, width, height)], [])
         case {"kind": "half_plane", "along": along, "edge": edge, "below": below, "above": above}:
             right, top = (edge, height) if along == "x" else (width, edge)
             left, bottom = (edge, 0.0) if along == "x" else (0.0, edge)
             return Ground([_floor(below, 0.0, 0.0, right, top), _floor(above, left, bottom, width, height)], [])
-        case {"kind": "stripe", "centre_y": centre, "width": wide, "stripe": stripe, "outside": outside}:
+        case {"kind": "stripe", "centre_y": center, "width": wide, "stripe": stripe, "outside": outside}:
             half = wide / 2 - 1e-9  # a texel whose middle lies on the border does not belong to the stripe
-            paint = Paint("stripe", _area(0.0, centre - half, width, centre + half), (stripe / 255,) * 3)
+            paint = Paint("stripe", _area(0.0, center - half, width, center + half), (stripe / 255,) * 3)
             return Ground([_floor(outside, 0.0, 0.0, width, height)], [paint])
         case {"kind": "tiles", "tile": size, "rows_from_y0": rows}:
             return Ground(_tiles(size, rows), [])
@@ -52,9 +52,9 @@ def ground_of(scene: Scene) -> Ground:
 
 def _tiles(size: float, rows: list[list[Any]]) -> list[Floor]:
     return [
-        _floor(grey, column * size, row * size, (column + 1) * size, (row + 1) * size)
-        for row, greys in enumerate(rows)
-        for column, grey in enumerate(greys)
+        _floor(gray, column * size, row * size, (column + 1) * size, (row + 1) * size)
+        for row, grays in enumerate(rows)
+        for column, gray in enumerate(grays)
     ]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.sim.builders import sense
+from tests.sim.builders import measure_one
 from tests.sim.enki.scenes import Scene, world_of
 
 GRAZE_M = 1e-9
@@ -12,9 +12,9 @@ GRAZE_M = 1e-9
 
 
 @pytest.mark.enki("prox")
-@pytest.mark.parametrize("crowd", [10**9, 1], ids=["alone", "at once"])
-def test_a_scene_reads_as_measured_in_enki_mode(monkeypatch: pytest.MonkeyPatch, scene: Scene, crowd: int) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+@pytest.mark.parametrize("batch", [10**9, 1], ids=["alone", "at once"])
+def test_a_scene_reads_as_measured_in_enki_mode(monkeypatch: pytest.MonkeyPatch, scene: Scene, batch: int) -> None:
+    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
     found = [_read(scene, grown_m) for grown_m in (0.0, GRAZE_M, -GRAZE_M)]
     expected = pytest.approx(scene["noiseless"], abs=2)
     assert any(words == expected for words in found), (found[0], scene["noiseless"])
@@ -27,5 +27,7 @@ def _read(scene: Scene, grown_m: float) -> tuple[int, ...]:
         for thing in scene["objects"]
     ]
     options = {"proximity_model": "enki", "periods_ns": {"proximity": 10_000_000}}
-    words: tuple[int, ...] = sense(world_of({**scene, "objects": things}, noise=False, **options), "proximity").words
+    words: tuple[int, ...] = measure_one(
+        world_of({**scene, "objects": things}, noise=False, **options), "proximity"
+    ).words
     return words

@@ -58,8 +58,8 @@ def test_a_png_comes_back_pixel_by_pixel() -> None:
 def test_pngs_of_other_kinds_become_colors(mode: str, value: int) -> None:
     out = io.BytesIO()
     image.new(mode, (2, 2), value).save(out, "PNG")
-    grey = {"1": 255, "P": 0}.get(mode, 128)
-    assert color_at(decode(data_uri(out.getvalue(), "image/png")), 1, 1) == (grey, grey, grey, 255)
+    gray = {"1": 255, "P": 0}.get(mode, 128)
+    assert color_at(decode(data_uri(out.getvalue(), "image/png")), 1, 1) == (gray, gray, gray, 255)
 
 
 def test_a_jpeg_is_read() -> None:

@@ -117,7 +117,7 @@ def test_bands_give_the_same_ground_as_the_whole_print(
     monkeypatch.setattr(decals, "_BAND_PIXELS", 5000)
     banded = ground(photo)
     assert (banded.pixels == at_once.pixels).all()
-    assert (banded.greys == at_once.greys).all()
+    assert (banded.grays == at_once.grays).all()
 
 
 def test_a_photograph_leaves_colors_for_pens() -> None:

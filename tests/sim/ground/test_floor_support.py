@@ -7,23 +7,23 @@ import math
 import pytest
 
 from tests.sim.builders import FLOOR, make
-from thymio_sim_ros.sim.ground.floor_support import Footing
+from thymio_sim_ros.sim.ground.floor_support import FloorSupport
 
 
 def test_a_playground_without_floors_has_no_edge() -> None:
-    assert Footing(()).clearance_m(3.0, 4.0) == math.inf
+    assert FloorSupport(()).clearance_m(3.0, 4.0) == math.inf
 
 
 def test_clearance_is_the_way_to_the_nearest_edge() -> None:
-    footing = Footing(make([FLOOR]).floors)
-    assert footing.clearance_m(0.0, 0.5) == pytest.approx(1.5)
-    assert footing.clearance_m(1.9, 0.0) == pytest.approx(0.1)
-    assert footing.clearance_m(2.1, 0.0) < 0.0
-    assert footing.clearance_m(9.0, 0.0) < 0.0
+    floor_support = FloorSupport(make([FLOOR]).floors)
+    assert floor_support.clearance_m(0.0, 0.5) == pytest.approx(1.5)
+    assert floor_support.clearance_m(1.9, 0.0) == pytest.approx(0.1)
+    assert floor_support.clearance_m(2.1, 0.0) < 0.0
+    assert floor_support.clearance_m(9.0, 0.0) < 0.0
 
 
 def test_floors_that_touch_leave_no_gap() -> None:
     tile = {"kind": "rectangle", "size_x_m": 1.0, "size_y_m": 1.0, "color": "#ffffff"}
-    footing = Footing(make([{**tile, "x_m": 0.5}, {**tile, "x_m": -0.5}], []).floors)
-    assert footing.clearance_m(0.0, 0.0) == pytest.approx(0.0)
-    assert footing.clearance_m(0.2, 0.0) == pytest.approx(0.2)
+    floor_support = FloorSupport(make([{**tile, "x_m": 0.5}, {**tile, "x_m": -0.5}], []).floors)
+    assert floor_support.clearance_m(0.0, 0.0) == pytest.approx(0.0)
+    assert floor_support.clearance_m(0.2, 0.0) == pytest.approx(0.2)

@@ -116,13 +116,13 @@ def test_restoring_takes_all_drawings_away() -> None:
 
 
 def test_a_print_of_tiles_reads_as_floors_of_tiles() -> None:
-    greys = [[37 * (3 * row + column) ** 2 % 256 for column in range(8)] for row in range(8)]
+    grays = [[37 * (3 * row + column) ** 2 % 256 for column in range(8)] for row in range(8)]
     floors = [
-        floor(grey, column * 0.025, row * 0.025, (column + 1) * 0.025, (row + 1) * 0.025)
-        for row, line in enumerate(greys)
-        for column, grey in enumerate(line)
+        floor(gray, column * 0.025, row * 0.025, (column + 1) * 0.025, (row + 1) * 0.025)
+        for row, line in enumerate(grays)
+        for column, gray in enumerate(line)
     ]
-    rows = [[(grey, grey, grey, 255) for grey in line] for line in reversed(greys)]
+    rows = [[(gray, gray, gray, 255) for gray in line] for line in reversed(grays)]
     sheet = printed(rows, 0.2, 0.2, Pose(0.1, 0.1, 0.0))
     on_paper, tiled = Ground([floor(255, 0.0, 0.0, 0.2, 0.2)], [sheet]), Ground(floors, [])
     places = [(step * 0.0371 % 0.2, step * 0.0217 % 0.2) for step in range(200)]

@@ -34,7 +34,7 @@ def test_a_bank_deals_bit_for_bit(most: int) -> None:
         expected, found = (bank.draw(turns, 3.0).tolist() for bank in banks)
         assert found == expected
     for bank in banks:
-        bank.give_back()
+        bank.release()
     expected, found = ([noise.gauss(1.0) for noise in pair for _ in range(300)] for pair in used)
     assert found == expected
 

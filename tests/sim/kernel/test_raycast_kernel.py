@@ -11,7 +11,7 @@ import pytest
 
 from tests.sim.raycast.test_batch import FAN, scatter, things
 from thymio_sim_ros.sim.model.geometry import Pose
-from thymio_sim_ros.sim.raycast.batch import Raycaster
+from thymio_sim_ros.sim.raycast.batch import BatchRaycaster
 from thymio_sim_ros.sim.raycast.scalar import Obstacle
 
 
@@ -24,7 +24,7 @@ def rows(poses: Sequence[Pose]) -> Any:
 def test_random_scenes_come_out_bit_for_bit(seed: int) -> None:
     dice = random.Random(seed)
     fixed, loose = things(dice, 10, 1.5), things(dice, 4, 1.5)
-    casters = [Raycaster(fixed, loose, is_compiled=is_compiled) for is_compiled in (False, True)]
+    casters = [BatchRaycaster(fixed, loose, is_compiled=is_compiled) for is_compiled in (False, True)]
     poses, gone = scatter(dice, dice.choice((1, 2, 15)), 1.5), frozenset[int]()
     for step in range(8):
         now: list[Obstacle | None] = [None if step > 5 and dice.random() < 0.5 else thing for thing in loose]
@@ -42,7 +42,7 @@ def test_more_that_is_near_than_at_first_finds_room() -> None:
     dice = random.Random(1)
     fixed = things(dice, 120, 1.0)
     far, near = [Pose(40.0 + 3 * index, 40.0, 0.0) for index in range(12)], scatter(dice, 12, 1.0)
-    casters = [Raycaster(fixed, is_compiled=is_compiled) for is_compiled in (False, True)]
+    casters = [BatchRaycaster(fixed, is_compiled=is_compiled) for is_compiled in (False, True)]
     for poses in (far, near, far):
         expected, found = (caster.cast(rows(poses), FAN) for caster in casters)
         assert [part.tolist() for part in found] == [part.tolist() for part in expected]

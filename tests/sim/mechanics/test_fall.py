@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.sim.builders import FLOOR, GREY, ROBOT, box, make, readings, run, send, sense
+from tests.sim.builders import FLOOR, GREY, ROBOT, box, make, measure_one, readings, run, send
 from thymio_sim_ros.sim.commands import MotorTargets, MoveObject, MoveRobot
 from thymio_sim_ros.sim.mechanics.fall import FALL_NS, Fall
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
@@ -77,7 +77,7 @@ def test_the_wheels_of_a_fallen_robot_turn_without_grip() -> None:
 
 def test_the_ground_sensors_read_nothing_before_and_after_the_fall() -> None:
     world = at_edge()
-    assert sense(world, "ground").words == (0,) * 6
+    assert measure_one(world, "ground").words == (0,) * 6
     send(world, MotorTargets(300, 300))
     assert {reading.words for reading in readings(run(world, 3.0), "ground")} == {(0,) * 6}
 
@@ -85,10 +85,10 @@ def test_the_ground_sensors_read_nothing_before_and_after_the_fall() -> None:
 def test_a_fallen_robot_is_seen_and_touched_by_nobody_and_sees_nothing() -> None:
     wall = box(EDGE_M + 0.11, 0.0, 0.02, 0.4)
     world = at_edge(wall, others=({**ROBOT, "name": "other", "x_m": EDGE_M - 0.3},))
-    assert sense(world, "proximity").words[2] > 0
+    assert measure_one(world, "proximity").words[2] > 0
     send(world, MoveRobot(EDGE_M + 0.005, 0.0, 0.0))
     run(world, 1.0)
-    assert sense(world, "proximity").words == (0,) * 7
+    assert measure_one(world, "proximity").words == (0,) * 7
     world.post("other", MotorTargets(500, 500))
     steps = run(world, 3.0)
     assert all(step.contacts == () for step in steps)
@@ -140,7 +140,7 @@ def test_a_thing_pushed_over_the_edge_is_gone() -> None:
     assert world.snapshot().objects[0].pose.x_m == pytest.approx(EDGE_M, abs=0.003)
     assert world.robots["thymio"].tilt == LEVEL
     send(world, MotorTargets(0, 0))
-    assert sense(world, "proximity").words == (0,) * 7
+    assert measure_one(world, "proximity").words == (0,) * 7
 
 
 def test_a_thing_that_starts_past_the_edge_is_not_there() -> None:

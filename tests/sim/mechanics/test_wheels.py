@@ -69,10 +69,10 @@ def test_many_wheels_turn_as_each_would_alone() -> None:
         arrays.drive(np.array(pairs).T, np.array(slips).T, 0.166)
         arrays.roll(arrays.ground - np.array([taken, [0.0] * 4]), 0.01)
         if tick == 20:
-            arrays.tell()
+            arrays.write_back()
             together[1].reset_odometry()
             alone[1].reset_odometry()
-    arrays.tell()
+    arrays.write_back()
     for one, other in zip(alone, together, strict=True):
         assert other.speeds_m_s == pytest.approx(one.speeds_m_s, abs=1e-12)
         assert other.angles_rad == pytest.approx(one.angles_rad, abs=1e-12)

@@ -67,7 +67,7 @@ def test_what_a_bank_has_not_used_it_gives_back(used: int) -> None:
     bank = NormalBank(together)
     for _ in range(used):
         bank.draw(np.array([0]), 1.0)
-    bank.give_back()
+    bank.release()
     drawn = [alone[0].gauss(1.0) for _ in range(used + 400)][used:]
     assert [together[0].gauss(1.0) for _ in range(400)] == pytest.approx(drawn, abs=1e-12)
     assert together[1].gauss(1.0) == alone[1].gauss(1.0)
@@ -78,7 +78,7 @@ def test_even_numbers_are_given_back_too_and_may_be_banked_again(used: int) -> N
     alone, together = users(2), users(2)
     bank = UniformBank(together)
     bank.draw(0.0, 1.0, used)
-    bank.give_back()
+    bank.release()
     again = UniformBank(together)
     expected = [noise.uniform(0.0, 1.0) for noise in alone for _ in range(used + 300)]
     assert [number for row in again.draw(0.0, 1.0, 300).T.tolist() for number in row] == (

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.model.spatial_grid import Squares, square_of
+from thymio_sim_ros.sim.model.spatial_grid import SpatialGrid, cell_of
 
 
 def test_a_place_on_a_border_belongs_to_the_square_above_it() -> None:
-    assert (square_of(0.49, -0.01), square_of(0.5, 0.0)) == ((0, -1), (1, 0))
+    assert (cell_of(0.49, -0.01), cell_of(0.5, 0.0)) == ((0, -1), (1, 0))
 
 
 def test_a_thing_is_found_wherever_its_bounds_touch_and_once() -> None:
-    squares: Squares[str] = Squares()
+    squares: SpatialGrid[str] = SpatialGrid()
     squares.add("beam", (0.1, 0.1, 2.4, 0.2))
     squares.add("dot", (3.0, 3.0, 3.1, 3.1))
     assert list(squares.near((0.0, 0.0, 0.9, 0.4))) == ["beam"]
@@ -20,6 +20,6 @@ def test_a_thing_is_found_wherever_its_bounds_touch_and_once() -> None:
 
 
 def test_what_is_larger_than_the_world_is_found_everywhere() -> None:
-    squares: Squares[str] = Squares()
+    squares: SpatialGrid[str] = SpatialGrid()
     squares.add("sky", (-1e6, -1e6, 1e6, 1e6))
     assert list(squares.near((5.0, 5.0, 5.0, 5.0))) == ["sky"]

@@ -41,11 +41,11 @@ def test_the_distance_of_a_count_stays_in_the_range(count: int, distance: float)
 
 
 @pytest.mark.parametrize(
-    ("grey", "count"),
+    ("gray", "count"),
     [(0, 77), (0.1, 100), (0.2, 151), (0.3, 255), (0.4, 423), (0.5, 619), (0.6, 775), (0.8, 911), (1, 938)],
 )
-def test_the_ground_responds_as_the_table_says(grey: float, count: int) -> None:
-    assert units.ground_response(grey) == pytest.approx(count, abs=0.6)
+def test_the_ground_responds_as_the_table_says(gray: float, count: int) -> None:
+    assert units.ground_response(gray) == pytest.approx(count, abs=0.6)
 
 
 @pytest.mark.parametrize(

@@ -39,7 +39,7 @@ def numbers(robots: list[RobotBody]) -> list[float]:
 @pytest.mark.parametrize("seed", range(3))
 def test_a_fleet_moves_as_its_robots_would_alone(solids: tuple[Solid, ...], seed: int) -> None:
     (one, alone), (other, together) = physics(*solids), physics(*solids)
-    fleet = other.gather()
+    batch_driver = other.form_batch()
     dice = random.Random(seed)
     close = 1e-3  # in a jam the last bit decides which corners touch
     for tick in range(300):
@@ -47,14 +47,14 @@ def test_a_fleet_moves_as_its_robots_would_alone(solids: tuple[Solid, ...], seed
             wheels = speeds(dice)
         for robot, pair in zip(alone, wheels, strict=True):
             robot.drive(pair)
-        fleet.driven = np.array(wheels).T
+        batch_driver.driven = np.array(wheels).T
         contacts = one.step()
         assert [(contact.robot, contact.other) for contact in other.step()] == [
             (contact.robot, contact.other) for contact in contacts
         ]
         assert numbers(together) == pytest.approx(numbers(alone), abs=close)
         covered = [speed for robot in alone for speed in robot.covered_m_s]
-        assert fleet.covered.T.ravel() == pytest.approx(covered, abs=close)
+        assert batch_driver.covered.T.ravel() == pytest.approx(covered, abs=close)
         for name, movable in one.movables.items():
             pose = other.movables[name].pose
             assert math.dist((pose.x_m, pose.y_m), (movable.pose.x_m, movable.pose.y_m)) < close
@@ -62,7 +62,7 @@ def test_a_fleet_moves_as_its_robots_would_alone(solids: tuple[Solid, ...], seed
 
 def test_a_robot_may_be_placed_dropped_and_placed_again() -> None:
     (one, alone), (other, together) = physics(WALL), physics(WALL)
-    fleet = other.gather()
+    batch_driver = other.form_batch()
     wheels = [(0.1, 0.08)] * len(STARTS)
     for tick in range(200):
         for found, robots in ((one, alone), (other, together)):
@@ -74,10 +74,10 @@ def test_a_robot_may_be_placed_dropped_and_placed_again() -> None:
                 found.place(robots[2], Pose(-0.5, -0.5, 0.0))
         for robot, pair in zip(alone, wheels, strict=True):
             robot.drive(pair)
-        fleet.driven = np.array(wheels).T
+        batch_driver.driven = np.array(wheels).T
         one.step()
         other.step()
-        assert fleet.fallen.tolist() == ([2] if 80 <= tick < 120 else [])
+        assert batch_driver.fallen.tolist() == ([2] if 80 <= tick < 120 else [])
         assert numbers(together) == pytest.approx(numbers(alone), abs=1e-9)
 
 
@@ -85,13 +85,13 @@ def test_disbanded_the_robots_go_on_as_if_they_had_driven_alone() -> None:
     (one, alone), (other, together) = physics(WALL), physics(WALL)
     for tick in range(200):
         if tick in (20, 120):
-            fleet = other.gather()
+            batch_driver = other.form_batch()
         if tick in (80, 160):
-            other.disband()
+            other.dissolve()
         for robot in (*alone, *together):
             robot.drive((0.12, 0.1))
-        if together[0].fleet is not None:
-            fleet.driven = np.array([(0.12, 0.1)] * len(STARTS)).T
+        if together[0].batch_driver is not None:
+            batch_driver.driven = np.array([(0.12, 0.1)] * len(STARTS)).T
         one.step()
         other.step()
         assert numbers(together) == pytest.approx(numbers(alone), abs=1e-9)
@@ -99,9 +99,9 @@ def test_disbanded_the_robots_go_on_as_if_they_had_driven_alone() -> None:
 
 def test_a_robot_more_or_less_disbands_a_fleet() -> None:
     found, robots = physics()
-    found.gather()
+    found.form_batch()
     added = found.add_robot("more", Pose(1.0, 1.0, 0.0))
-    assert robots[0].fleet is None
-    found.gather()
+    assert robots[0].batch_driver is None
+    found.form_batch()
     found.remove_robot(added)
-    assert robots[0].fleet is None
+    assert robots[0].batch_driver is None

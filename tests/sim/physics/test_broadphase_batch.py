@@ -12,11 +12,11 @@ import pytest
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.primitives import Box, Disc, Polygon, Solid
-from thymio_sim_ros.sim.physics.broadphase_batch import LOOK_ROUND_TICKS, Lookout
-from thymio_sim_ros.sim.physics.time_to_contact import LONGEST_WAY_M
+from thymio_sim_ros.sim.physics.broadphase_batch import CHECK_INTERVAL_TICKS, BroadphaseBatch
+from thymio_sim_ros.sim.physics.time_to_contact import MAX_TICK_DISTANCE_M
 from thymio_sim_ros.sim.raycast.scalar import obstacle_of
 
-WAY_M = LOOK_ROUND_TICKS * LONGEST_WAY_M
+WAY_M = CHECK_INTERVAL_TICKS * MAX_TICK_DISTANCE_M
 LOOSE_M = 0.05
 """A robot nearer than this to a fixed outline, beside its way, may be told to be near; farther it is not."""
 TRIANGLE = Polygon(((0.0, 0.0), (0.1, 0.0), (0.0, 0.08)))
@@ -41,9 +41,11 @@ def gap_m(one: list[tuple[float, float]], other: list[tuple[float, float]]) -> f
     return min(min(distance_m(other, *corner) for corner in one), min(distance_m(one, *corner) for corner in other))
 
 
-def look(lookout: Lookout, places: list[Place], things: Sequence[Place] = (), fallen: int = -1) -> list[bool]:
+def look(
+    broadphase: BroadphaseBatch, places: list[Place], things: Sequence[Place] = (), fallen: int = -1
+) -> list[bool]:
     stands = np.arange(len(places)) != fallen
-    found: list[bool] = lookout.near(
+    found: list[bool] = broadphase.near(
         np.array(places).reshape(-1, 3).T, stands, np.array(things).reshape(-1, 3).T
     ).tolist()
     return found
@@ -65,7 +67,7 @@ def test_nobody_who_could_reach_anything_is_overlooked_and_few_others_are_told(s
     ]
     places = [(dice.uniform(-1.4, 1.4), dice.uniform(-1.4, 1.4), dice.uniform(-3, 3)) for _ in range(20)]
     things = [(dice.uniform(-1.4, 1.4), dice.uniform(-1.4, 1.4), dice.uniform(0.01, 0.05)) for _ in range(5)]
-    found = look(Lookout([obstacle_of(solid) for solid in fixed]), places, things)
+    found = look(BroadphaseBatch([obstacle_of(solid) for solid in fixed]), places, things)
     hulls = [list(Pose(*place).place_all(robot_constants.hull())) for place in places]
     for index, hull in enumerate(hulls):
         spare = []
@@ -84,10 +86,10 @@ def test_nobody_who_could_reach_anything_is_overlooked_and_few_others_are_told(s
 
 
 def test_two_robots_are_near_each_other_when_both_can_come_closer() -> None:
-    lookout = Lookout([])
+    broadphase = BroadphaseBatch([])
     for gap, expected in ((2 * WAY_M - 0.001, True), (2 * WAY_M + 0.02, False)):
         places = [(0.0, 0.0, 0.0), (2 * robot_constants.HULL_RADIUS_M + gap, 0.0, math.pi)]
-        assert look(lookout, places) == [expected, expected]
+        assert look(broadphase, places) == [expected, expected]
 
 
 @pytest.mark.parametrize("is_compiled", [None, False])
@@ -95,11 +97,11 @@ def test_who_has_fallen_is_near_nobody_and_nothing(is_compiled: bool | None) -> 
     places = [(0.0, 0.0, 0.0), (0.17, 0.0, math.pi), (5.0, 0.0, 0.0)]
     post = obstacle_of(Solid("post", Pose(0.17, 0.0, 0.0), Disc(0.02), 0.1, (0, 0, 0)))
     for fixed in ([], [post]):
-        lookout = Lookout(fixed, is_compiled=is_compiled)
-        assert look(lookout, places) == [True, True, False]
-        assert look(lookout, places, fallen=1) == [False, False, False]
+        broadphase = BroadphaseBatch(fixed, is_compiled=is_compiled)
+        assert look(broadphase, places) == [True, True, False]
+        assert look(broadphase, places, fallen=1) == [False, False, False]
 
 
 def test_alone_in_an_empty_world_nobody_is_near() -> None:
-    assert look(Lookout([]), [(0.0, 0.0, 0.0)]) == [False]
-    assert look(Lookout([]), []) == []
+    assert look(BroadphaseBatch([]), [(0.0, 0.0, 0.0)]) == [False]
+    assert look(BroadphaseBatch([]), []) == []

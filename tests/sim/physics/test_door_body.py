@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.sim.builders import FLOOR, GREY, ROBOT, make, run, send, sense
+from tests.sim.builders import FLOOR, GREY, ROBOT, make, measure_one, run, send
 from thymio_sim_ros.sim.commands import MotorTargets, MoveObject, MoveRobot
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.playground import reader
@@ -113,11 +113,11 @@ def test_a_closing_door_pushes_a_robot_that_stands_in_its_way() -> None:
 
 def test_sensors_see_a_door_where_it_is() -> None:
     world = build({**GATE, "closed_x_m": 0.15, "opened_x_m": 0.15}, PLATE)
-    closed = sense(world, "proximity").words[2]
+    closed = measure_one(world, "proximity").words[2]
     enter(world)
     run(world, 2.5)
     assert closed > 2000
-    assert sense(world, "proximity").words[2] == 0
+    assert measure_one(world, "proximity").words[2] == 0
 
 
 def test_one_of_several_areas_is_enough() -> None:
@@ -176,9 +176,9 @@ def test_a_door_waits_for_a_robot_between_it_and_a_wall(
     yaw_rad: float, move_s: float, tick_m: float, others: int
 ) -> None:
     """It was squeezed out sideways, or beyond the door."""
-    crowd = [{**ROBOT, "name": f"idle{place}", "x_m": -1.5 + 0.2 * place, "y_m": -1.5} for place in range(others)]
+    batch = [{**ROBOT, "name": f"idle{place}", "x_m": -1.5 + 0.2 * place, "y_m": -1.5} for place in range(others)]
     opener = {**ROBOT, "name": "opener", "x_m": -0.5, "y_m": 0.34}
-    world = World(make([FLOOR, {**GATE, "move_s": move_s}, PLATE, SILL], (ROBOT, opener, *crowd)), noise=False)
+    world = World(make([FLOOR, {**GATE, "move_s": move_s}, PLATE, SILL], (ROBOT, opener, *batch)), noise=False)
     run(world, move_s)
     send(world, MoveRobot(0.5, -0.1, yaw_rad))
     leave(world)

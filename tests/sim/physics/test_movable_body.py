@@ -8,7 +8,7 @@ from typing import Any
 import pymunk
 import pytest
 
-from tests.sim.builders import FLOOR, GREY, ROBOT, box, make, run, send, sense
+from tests.sim.builders import FLOOR, GREY, ROBOT, box, make, measure_one, run, send
 from thymio_sim_ros.sim.commands import MotorTargets
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.physics import MovableBody
@@ -36,9 +36,9 @@ def place_of(world: World, name: str) -> Pose:
     return next(thing.pose for thing in world.snapshot().objects if thing.name == name)
 
 
-@pytest.mark.parametrize("crowd", [3, 1], ids=["one by one", "in a crowd"])
-def test_a_thing_that_was_pushed_away_is_met_where_it_is(monkeypatch: pytest.MonkeyPatch, crowd: int) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+@pytest.mark.parametrize("batch", [3, 1], ids=["one by one", "in a batch"])
+def test_a_thing_that_was_pushed_away_is_met_where_it_is(monkeypatch: pytest.MonkeyPatch, batch: int) -> None:
+    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
     other = {**ROBOT, "name": "other", "x_m": 0.6, "y_m": 0.6, "yaw_rad": -math.pi / 2}
     world = quiet(crate(0.2), robots=(ROBOT, other))
     for robot, speed, seconds in (("thymio", 500, 3.0), ("thymio", -500, 2.5), ("other", 500, 3.5)):
@@ -49,13 +49,13 @@ def test_a_thing_that_was_pushed_away_is_met_where_it_is(monkeypatch: pytest.Mon
     assert place_of(world, "crate").y_m < -0.05
 
 
-@pytest.mark.parametrize("crowd", [2, 1], ids=["alone", "in a crowd"])
+@pytest.mark.parametrize("batch", [2, 1], ids=["alone", "in a batch"])
 @pytest.mark.parametrize(("height_m", "is_seen"), [(0.03, False), (0.1, True)])
 def test_proximity_sensors_look_over_a_low_thing(
-    monkeypatch: pytest.MonkeyPatch, crowd: int, height_m: float, is_seen: bool
+    monkeypatch: pytest.MonkeyPatch, batch: int, height_m: float, is_seen: bool
 ) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
-    assert any(sense(quiet(crate(0.15, height_m=height_m)), "proximity").words) == is_seen
+    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
+    assert any(measure_one(quiet(crate(0.15, height_m=height_m)), "proximity").words) == is_seen
 
 
 def test_a_thing_that_turns_on_the_spot_is_not_at_rest() -> None:
@@ -63,7 +63,7 @@ def test_a_thing_that_turns_on_the_spot_is_not_at_rest() -> None:
     thing = MovableBody(solid, pymunk.Body(body_type=pymunk.Body.STATIC), set())
     for spin, is_moving in ((1.0, True), (1e-9, False)):
         thing.body.angular_velocity = spin
-        thing.settle(0.5, 0.0, 0.1, 0.0, 0.0, spin)
+        thing.finish_sub_step(0.5, 0.0, 0.1, 0.0, 0.0, spin)
         assert (thing.is_moving, thing.body.angular_velocity) == (is_moving, spin if is_moving else 0.0)
 
 
@@ -151,27 +151,27 @@ def test_a_robot_never_jumps_through_a_thing_as_in_the_reference() -> None:
 
 def test_rays_see_a_thing_where_it_is_now() -> None:
     world = quiet(can(0.12, mass_kg=0.05), box(0.9, 0.0, 0.1, 1.0))
-    before = sense(world, "proximity").words[2]
+    before = measure_one(world, "proximity").words[2]
     send(world, MotorTargets(500, 500))
     run(world, 2.0)
-    pushed = sense(world, "proximity").words[2]
+    pushed = measure_one(world, "proximity").words[2]
     send(world, MotorTargets(-500, -500))
     run(world, 1.5)
-    assert (before > 4000, pushed > 4000, sense(world, "proximity").words[2]) == (True, True, 0)
+    assert (before > 4000, pushed > 4000, measure_one(world, "proximity").words[2]) == (True, True, 0)
 
 
 def test_a_thing_that_is_elsewhere_or_gone_is_told_once() -> None:
     world = quiet(crate(0.5), can(-0.5))
     physics = world._physics
-    one, other = physics.loose()
-    assert physics.moved() == {}
+    one, other = physics.movable_obstacles()
+    assert physics.moved_obstacles() == {}
     first, second = physics.movables.values()
     physics.place(second, Pose(-0.6, 0.1, 0.0))
-    assert physics.moved() == {1: second.obstacle}
+    assert physics.moved_obstacles() == {1: second.obstacle}
     assert (first.obstacle, second.obstacle is other) == (one, False)
     physics.drop_movable(first)
-    assert physics.moved() == {0: None}
-    assert physics.moved() == {}
+    assert physics.moved_obstacles() == {0: None}
+    assert physics.moved_obstacles() == {}
 
 
 def test_the_contact_names_the_thing() -> None:

@@ -23,18 +23,18 @@ class Driver:
     def __init__(self, is_fleet: bool, solids: list[Solid], triggers: list[Trigger], *poses: Pose) -> None:
         self.physics = Physics(solids, triggers)
         self.robots = [self.physics.add_robot(f"robot_{index}", pose) for index, pose in enumerate(poses)]
-        self.fleet = self.physics.gather() if is_fleet else None
+        self.batch_driver = self.physics.form_batch() if is_fleet else None
         self.speeds = [(0.0, 0.0)] * len(poses)
 
     def step(self) -> None:
         for robot, speeds in zip(self.robots, self.speeds, strict=True):
             robot.drive(speeds)
-        if self.fleet is not None:
-            self.fleet.driven = np.array(self.speeds).T
+        if self.batch_driver is not None:
+            self.batch_driver.driven = np.array(self.speeds).T
         self.physics.step()
 
     def engaged(self) -> list[bool]:
-        return [robot.is_engaged for robot in self.robots]
+        return [robot.is_active for robot in self.robots]
 
 
 def straight(robot: RobotBody) -> float:

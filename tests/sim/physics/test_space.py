@@ -124,9 +124,9 @@ def test_gliding_is_what_the_engine_does(monkeypatch: pytest.MonkeyPatch) -> Non
         return poses
 
     gliding = go()
-    monkeypatch.setattr(scalar_driver, "quiet_ticks", lambda robot, nearby, at_least, is_alone: 0)
-    for glided, stepped in zip(gliding, go(), strict=True):
-        assert pose_close(glided, stepped, 1e-9)
+    monkeypatch.setattr(scalar_driver, "ticks_to_contact", lambda robot, broadphase, at_least, is_alone: 0)
+    for glided, record_step in zip(gliding, go(), strict=True):
+        assert pose_close(glided, record_step, 1e-9)
 
 
 def test_a_gliding_robot_that_is_moved_to_a_wall_stops_at_it() -> None:

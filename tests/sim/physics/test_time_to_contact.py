@@ -11,21 +11,21 @@ from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.primitives import Box, Disc, Load, Solid
 from thymio_sim_ros.sim.physics import MovableBody, RobotBody
-from thymio_sim_ros.sim.physics.time_to_contact import LONGEST_WAY_M, SAFE_M, quiet_ticks
-from thymio_sim_ros.sim.raycast.broadphase import Mover, Nearby
+from thymio_sim_ros.sim.physics.time_to_contact import MAX_TICK_DISTANCE_M, SAFETY_MARGIN_M, ticks_to_contact
+from thymio_sim_ros.sim.raycast.broadphase import Broadphase, Mover
 from thymio_sim_ros.sim.raycast.scalar import obstacle_of
 
 GREY = (0.5, 0.5, 0.5)
 ROBOT = RobotBody("robot", Pose(0.0, 0.0, 1.0))
-REACH_M = robot_constants.HULL_RADIUS_M + SAFE_M
+REACH_M = robot_constants.HULL_RADIUS_M + SAFETY_MARGIN_M
 
 
 def ticks(
     solids: Iterable[Solid] = (), movers: Iterable[Mover] = (), *, at_least: int = 1, is_alone: bool = False
 ) -> int:
-    nearby = Nearby(obstacle_of(solid) for solid in solids)
-    nearby.replace_movers([ROBOT, *movers])
-    return quiet_ticks(ROBOT, nearby, at_least=at_least, is_alone=is_alone)
+    broadphase = Broadphase(obstacle_of(solid) for solid in solids)
+    broadphase.replace_movers([ROBOT, *movers])
+    return ticks_to_contact(ROBOT, broadphase, at_least=at_least, is_alone=is_alone)
 
 
 def wall(away_m: float) -> Solid:
@@ -38,23 +38,25 @@ def thing(away_m: float) -> MovableBody:
 
 
 def test_a_wall_is_as_far_as_a_robot_can_go() -> None:
-    assert ticks([wall(20.5 * LONGEST_WAY_M)]) == 20
-    assert ticks([wall(0.5 * LONGEST_WAY_M)]) == 0
+    assert ticks([wall(20.5 * MAX_TICK_DISTANCE_M)]) == 20
+    assert ticks([wall(0.5 * MAX_TICK_DISTANCE_M)]) == 0
 
 
 def test_fewer_ticks_than_asked_for_are_none() -> None:
-    assert ticks([wall(20.5 * LONGEST_WAY_M)], at_least=20) == 20
-    assert ticks([wall(20.5 * LONGEST_WAY_M)], at_least=21) == 0
+    assert ticks([wall(20.5 * MAX_TICK_DISTANCE_M)], at_least=20) == 20
+    assert ticks([wall(20.5 * MAX_TICK_DISTANCE_M)], at_least=21) == 0
 
 
 def test_two_robots_share_the_distance() -> None:
-    other = RobotBody("other", Pose(0.0, robot_constants.HULL_RADIUS_M + REACH_M + 20.5 * LONGEST_WAY_M, -math.pi / 2))
+    other = RobotBody(
+        "other", Pose(0.0, robot_constants.HULL_RADIUS_M + REACH_M + 20.5 * MAX_TICK_DISTANCE_M, -math.pi / 2)
+    )
     assert ticks(movers=[other]) == 10
 
 
 def test_a_thing_that_nobody_else_can_push_waits_and_another_may_come_twice_as_fast() -> None:
-    assert ticks(movers=[thing(30.5 * LONGEST_WAY_M)], is_alone=True) == 30
-    assert ticks(movers=[thing(30.5 * LONGEST_WAY_M)]) == 10
+    assert ticks(movers=[thing(30.5 * MAX_TICK_DISTANCE_M)], is_alone=True) == 30
+    assert ticks(movers=[thing(30.5 * MAX_TICK_DISTANCE_M)]) == 10
 
 
 def test_far_from_everything_it_looks_again_after_about_a_second() -> None:

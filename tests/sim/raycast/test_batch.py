@@ -11,7 +11,7 @@ import pytest
 
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Pose
-from thymio_sim_ros.sim.raycast.batch import Fan, Raycaster
+from thymio_sim_ros.sim.raycast.batch import BatchRaycaster, Fan
 from thymio_sim_ros.sim.raycast.scalar import ConvexObstacle, DiscObstacle, Obstacle, Surroundings
 
 ANGLES = (-0.3, -0.1, 0.0, 0.25)
@@ -42,7 +42,7 @@ def one_by_one(poses: Sequence[Pose], obstacles: Sequence[Obstacle], fan: Fan) -
     return found
 
 
-def all_at_once(caster: Raycaster, poses: Sequence[Pose], fan: Fan) -> list[list[float]]:
+def all_at_once(caster: BatchRaycaster, poses: Sequence[Pose], fan: Fan) -> list[list[float]]:
     sensors, distances = caster.cast(
         np.array([(pose.x_m, pose.y_m, pose.yaw_rad) for pose in poses]).reshape(-1, 3), fan
     )
@@ -85,7 +85,7 @@ def things(dice: random.Random, count: int, side: float) -> list[Obstacle]:
 def test_random_scenes_agree_with_rays_one_by_one(seed: int) -> None:
     dice = random.Random(seed)
     obstacles, poses = things(dice, 12, 1.5), scatter(dice, dice.choice((1, 2, 15)), 1.5)
-    assert close(all_at_once(Raycaster(obstacles), poses, FAN), one_by_one(poses, obstacles, FAN))
+    assert close(all_at_once(BatchRaycaster(obstacles), poses, FAN), one_by_one(poses, obstacles, FAN))
 
 
 def test_rays_along_the_sides_of_a_box_agree() -> None:
@@ -95,14 +95,14 @@ def test_rays_along_the_sides_of_a_box_agree() -> None:
         box(Pose(0.0, 0.3, 0.0), 0.2, 0.1),
         box(Pose(-0.3, 0.2, 0.0), 0.1, 0.1),
     ]
-    found = all_at_once(Raycaster(obstacles), [Pose(0.0, 0.0, 0.0)], fan)
+    found = all_at_once(BatchRaycaster(obstacles), [Pose(0.0, 0.0, 0.0)], fan)
     assert found == [pytest.approx([0.2, 0.2, math.inf, math.inf])]
 
 
 def test_while_robots_wander_what_is_near_stays_up_to_date() -> None:
     dice = random.Random(3)
     obstacles, poses = things(dice, 20, 2.0), scatter(dice, 10, 2.0)
-    caster = Raycaster(obstacles)
+    caster = BatchRaycaster(obstacles)
     for _ in range(60):
         poses = [
             Pose(p.x_m + dice.uniform(-0.02, 0.03), p.y_m + dice.uniform(-0.02, 0.03), p.yaw_rad + dice.uniform(-1, 1))
@@ -114,7 +114,7 @@ def test_while_robots_wander_what_is_near_stays_up_to_date() -> None:
 def test_things_that_move_are_seen_where_they_are() -> None:
     dice = random.Random(4)
     fixed, loose, poses = things(dice, 5, 1.0), things(dice, 5, 1.0), scatter(dice, 6, 1.0)
-    caster = Raycaster(fixed, loose)
+    caster = BatchRaycaster(fixed, loose)
     for step in range(5):
         loose = things(dice, 5, 1.0) if step % 2 else loose
         caster.move(dict(enumerate(loose)))
@@ -124,7 +124,7 @@ def test_things_that_move_are_seen_where_they_are() -> None:
 def test_what_is_gone_or_fallen_is_not_seen_and_sees_nothing() -> None:
     dice = random.Random(6)
     loose, poses = things(dice, 8, 1.0), scatter(dice, 6, 1.0)
-    caster = Raycaster([], loose)
+    caster = BatchRaycaster([], loose)
     caster.move({0: None}, fallen={2})
     left = [pose for index, pose in enumerate(poses) if index != 2]
     found = all_at_once(caster, poses, FAN)
@@ -143,11 +143,11 @@ def test_two_fans_of_different_reach_may_take_turns() -> None:
     dice = random.Random(5)
     far = Fan([(0.0, 0.0)], [[(1.0, 0.0), (0.6, 0.8)]], range_m=0.9, height_m=0.09)
     obstacles, poses = things(dice, 12, 1.5), scatter(dice, 6, 1.5)
-    caster = Raycaster(obstacles)
+    caster = BatchRaycaster(obstacles)
     for fan in (FAN, far, FAN):
         assert close(all_at_once(caster, poses, fan), one_by_one(poses, obstacles, fan))
 
 
 def test_without_robots_or_things_nothing_is_seen() -> None:
-    assert all_at_once(Raycaster([]), [], FAN) == []
-    assert all_at_once(Raycaster([]), [Pose(0.0, 0.0, 0.0)], FAN) == [[math.inf] * 4] * 2
+    assert all_at_once(BatchRaycaster([]), [], FAN) == []
+    assert all_at_once(BatchRaycaster([]), [Pose(0.0, 0.0, 0.0)], FAN) == [[math.inf] * 4] * 2

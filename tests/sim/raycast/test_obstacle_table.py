@@ -7,7 +7,7 @@ import math
 import pytest
 
 from thymio_sim_ros.sim.model.geometry import Pose
-from thymio_sim_ros.sim.raycast.obstacle_table import BOX, DISC, HEIGHT, NOWHERE_M, Frames, polygon_in_frame
+from thymio_sim_ros.sim.raycast.obstacle_table import BOX, DISC, HEIGHT, NOWHERE_M, ObstacleTable, polygon_in_frame
 from thymio_sim_ros.sim.raycast.scalar import ConvexObstacle, DiscObstacle
 
 CORNERS = ((-0.2, -0.1), (0.2, -0.1), (0.2, 0.1), (-0.2, 0.1))
@@ -34,14 +34,16 @@ def test_a_trapezoid_is_no_box() -> None:
 
 
 def test_rows_tell_kinds() -> None:
-    frames = Frames([DiscObstacle(1.0, 2.0, 0.3, 0.1), ConvexObstacle(CORNERS, 0.2), ConvexObstacle(TRIANGLE, 0.3)])
+    frames = ObstacleTable(
+        [DiscObstacle(1.0, 2.0, 0.3, 0.1), ConvexObstacle(CORNERS, 0.2), ConvexObstacle(TRIANGLE, 0.3)]
+    )
     assert frames.kinds.tolist() == [DISC, BOX, 0]
     assert frames.rows[:, HEIGHT].tolist() == [0.1, 0.2, 0.3]
     assert frames.rows[0].tolist() == [1.0, 2.0, 1.0, 0.0, 0.3, 0.3, 0.1]
 
 
 def test_a_polygon_that_moves_keeps_its_number() -> None:
-    frames = Frames([ConvexObstacle(TRIANGLE, 0.3)])
+    frames = ObstacleTable([ConvexObstacle(TRIANGLE, 0.3)])
     for turn in range(3):
         frames.put(0, ConvexObstacle(Pose(0.0, 0.0, turn).place_all(TRIANGLE), 0.3))
     assert (frames.kinds.tolist(), len(frames.polygons)) == ([0], 1)
@@ -49,7 +51,7 @@ def test_a_polygon_that_moves_keeps_its_number() -> None:
 
 def test_what_is_gone_has_no_height_until_it_is_back() -> None:
     disc = DiscObstacle(1.0, 2.0, 0.3, 0.1)
-    frames = Frames([disc])
+    frames = ObstacleTable([disc])
     frames.put(0, None)
     assert frames.rows[0, HEIGHT] == NOWHERE_M
     frames.put(0, disc)

@@ -92,8 +92,8 @@ def test_a_wall_is_felt_as_a_shock() -> None:
 def test_a_hit_from_the_side_is_felt_sidewards() -> None:
     contact = Contact("thymio", "other", 0.0, 0.06, 0.3, True)
     view = FakeView(contacts=(contact,), now_ns=62_500_000)
-    assert accelerometer.SENSOR.feel is not None
-    accelerometer.SENSOR.feel(view)
+    assert accelerometer.SENSOR.on_wake is not None
+    accelerometer.SENSOR.on_wake(view)
     view.contacts = ()
     first = accelerometer.SENSOR.measure(view)
     view.now_ns += 62_500_000
@@ -107,9 +107,9 @@ def test_a_hit_from_the_side_is_felt_sidewards() -> None:
 def test_hits_between_two_readings_add_up_and_what_is_touched_on_is_none() -> None:
     hit, touched = Contact("thymio", "other", 0.0, 0.06, 0.2, True), Contact("thymio", "wall", 0.0, 0.06, 0.2, False)
     view = FakeView(contacts=(hit, touched), now_ns=62_500_000)
-    assert accelerometer.SENSOR.feel is not None
+    assert accelerometer.SENSOR.on_wake is not None
     for _ in range(2):
-        accelerometer.SENSOR.feel(view)
+        accelerometer.SENSOR.on_wake(view)
     reading = accelerometer.SENSOR.measure(view)
     assert reading is not None
     assert reading.words[0] == round(2 * 0.2 / 0.0625 / 9.81 * 23)

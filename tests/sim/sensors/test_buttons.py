@@ -6,11 +6,11 @@ import pytest
 
 from tests.sim.builders import FLOOR, make, readings, run, send
 from tests.sim.fake_view import FakeView
-from thymio_sim_ros.sim.actuators.buttons import ACTUATOR, ButtonState
 from thymio_sim_ros.sim.commands import (
     PressButton,
 )
 from thymio_sim_ros.sim.sensors import buttons
+from thymio_sim_ros.sim.stimuli.buttons import STIMULUS, ButtonState
 from thymio_sim_ros.sim.world import World
 
 
@@ -21,7 +21,7 @@ def world() -> World:
 
 def test_held_buttons_read_one_in_the_order_of_the_firmware() -> None:
     state = ButtonState()
-    ACTUATOR.apply(state, PressButton("center", pressed=True), 0)
+    STIMULUS.apply(state, PressButton("center", pressed=True), 0)
     reading = buttons.SENSOR.measure(FakeView(states=(state,)))
     assert reading is not None
     assert reading.words == (0, 0, 1, 0, 0)

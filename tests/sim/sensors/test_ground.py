@@ -6,22 +6,22 @@ import statistics
 
 import pytest
 
-from tests.sim.builders import FLOOR, ROBOT, make, sense
+from tests.sim.builders import FLOOR, ROBOT, make, measure_one
 from tests.sim.fake_view import FakeView
-from thymio_sim_ros.sim.actuators.room import RoomState
-from thymio_sim_ros.sim.batch.robot_batch import CROWD
+from thymio_sim_ros.sim.batch.robot_batch import MIN_BATCH_ROBOTS
 from thymio_sim_ros.sim.commands import SetAmbientLight
 from thymio_sim_ros.sim.ground.sampling import GroundSample
 from thymio_sim_ros.sim.model.noise import Noise
 from thymio_sim_ros.sim.model.readings import GroundReading
 from thymio_sim_ros.sim.sensors.ground import SENSOR
+from thymio_sim_ros.sim.stimuli.environment import EnvironmentState
 from thymio_sim_ros.sim.world import World
 
 WHITE, BLACK = GroundSample(1.0, 1.0), GroundSample(0.0, 1.0)
 
 
 def measure(left: GroundSample, right: GroundSample, noise: Noise | None = None, light: int = 0) -> GroundReading:
-    view = FakeView(grounds={0.0115: left, -0.0115: right}, states=(RoomState(ambient_light=light),))
+    view = FakeView(grounds={0.0115: left, -0.0115: right}, states=(EnvironmentState(ambient_light=light),))
     if noise is not None:
         view.noise = noise
     reading = SENSOR.measure(view)
@@ -41,14 +41,14 @@ def test_ambient_light_is_added_to_what_is_reflected_up_to_the_limit(light: int,
     assert measure(WHITE, BLACK, light=light).words == words
 
 
-@pytest.mark.parametrize("robots", [1, CROWD])
+@pytest.mark.parametrize("robots", [1, MIN_BATCH_ROBOTS])
 def test_an_operator_lights_the_ground_of_one_robot(robots: int) -> None:
     starts = [{**ROBOT, "name": f"robot{index}", "y_m": 0.13 * index} for index in range(robots)]
     world = World(make([FLOOR], starts), noise=False)
     world.post("robot0", SetAmbientLight(20))
-    assert sense(world, "ground", "robot0").words == (20, 20, 958, 958, 938, 938)
+    assert measure_one(world, "ground", "robot0").words == (20, 20, 958, 958, 938, 938)
     for index in range(1, robots):
-        assert sense(world, "ground", f"robot{index}").words == (0, 0, 938, 938, 938, 938)
+        assert measure_one(world, "ground", f"robot{index}").words == (0, 0, 938, 938, 938, 938)
 
 
 def test_reflectances_are_greys() -> None:
@@ -70,7 +70,7 @@ def test_noise_spreads_counts_as_measured() -> None:
 
 def test_a_robot_at_the_edge_of_a_table_reads_zero() -> None:
     world = World(make([{**FLOOR, "size_x_m": 0.1}]), noise=False)
-    assert sense(world, "ground").words == (0,) * 6
+    assert measure_one(world, "ground").words == (0,) * 6
 
 
 def test_a_robot_astride_an_edge_of_colors_reads_both() -> None:
@@ -79,4 +79,4 @@ def test_a_robot_astride_an_edge_of_colors_reads_both() -> None:
         {**FLOOR, "y_m": -2.0, "name": "south", "color": "#000000"},
     ]
     world = World(make(halves, [ROBOT]), noise=False)
-    assert sense(world, "ground").words[4:] == pytest.approx((938, 77), abs=3)
+    assert measure_one(world, "ground").words[4:] == pytest.approx((938, 77), abs=3)

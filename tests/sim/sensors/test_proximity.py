@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis.strategies import floats
 
-from tests.sim.builders import FLOOR, ROBOT, box, make, post_wall, sense
+from tests.sim.builders import FLOOR, ROBOT, box, make, measure_one, post_wall
 from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.noise import Noise
@@ -134,19 +134,19 @@ def test_noise_never_leaves_the_limits() -> None:
 
 def test_a_robot_sees_the_hull_of_another() -> None:
     world = World(make([FLOOR], [ROBOT, {**ROBOT, "name": "other", "x_m": 0.2}]), noise=False)
-    assert sense(world, "proximity", "thymio").ranges_m[FRONT] == pytest.approx(0.17 - 0.0795, abs=1e-3)
-    assert [count > 0 for count in sense(world, "proximity", "other").words] == [False] * 5 + [True] * 2
+    assert measure_one(world, "proximity", "thymio").ranges_m[FRONT] == pytest.approx(0.17 - 0.0795, abs=1e-3)
+    assert [count > 0 for count in measure_one(world, "proximity", "other").words] == [False] * 5 + [True] * 2
 
 
 def test_a_robot_stands_before_a_wall_in_the_world() -> None:
     world = World(make([FLOOR, post_wall(0.06)]), noise=False)
-    assert sense(world, "proximity").ranges_m[FRONT] == pytest.approx(0.06, abs=1e-4)
+    assert measure_one(world, "proximity").ranges_m[FRONT] == pytest.approx(0.06, abs=1e-4)
 
 
 def test_a_near_thing_hides_a_far_one() -> None:
     far, near = post_wall(0.1), box(0.0795 + 0.05 + 0.01, 0.0, 0.02, 0.5)
     world = World(make([FLOOR, {**far, "name": "far"}, {**near, "name": "near"}]), noise=False)
-    assert sense(world, "proximity").ranges_m[FRONT] == pytest.approx(0.05, abs=1e-4)
+    assert measure_one(world, "proximity").ranges_m[FRONT] == pytest.approx(0.05, abs=1e-4)
 
 
 STEP_M = 0.0005

@@ -7,17 +7,17 @@ import pytest
 from tests.sim.builders import FLOOR, ROBOT, make, readings, run, send
 from tests.sim.fake_view import FakeView
 from thymio_sim_ros.sim.actuators.microphone import MicrophoneState
-from thymio_sim_ros.sim.actuators.room import RoomState
 from thymio_sim_ros.sim.audio.propagation import Sound
 from thymio_sim_ros.sim.commands import Clap, PlayTone, SetNoiseLevel, SetSoundThreshold
 from thymio_sim_ros.sim.model.readings import SoundReading
 from thymio_sim_ros.sim.sensors import sound
+from thymio_sim_ros.sim.stimuli.environment import EnvironmentState
 from thymio_sim_ros.sim.world import StepResult, World
 
 PAIR = ({**ROBOT, "name": "a"}, {**ROBOT, "name": "b", "x_m": 0.5})
 
 
-def heard(steps: list[StepResult], robot: str) -> list[int]:
+def intensities(steps: list[StepResult], robot: str) -> list[int]:
     """Intensities that a robot read."""
     return [
         reading.words[0]
@@ -29,7 +29,7 @@ def heard(steps: list[StepResult], robot: str) -> list[int]:
 
 def measured(level: int, sounds: tuple[Sound, ...] = (), threshold: int = 0) -> SoundReading:
     """One block at the origin."""
-    states = (RoomState(noise_level=level), MicrophoneState(threshold))
+    states = (EnvironmentState(noise_level=level), MicrophoneState(threshold))
     reading = sound.SENSOR.measure(FakeView(states=states, sounds=sounds))
     assert isinstance(reading, SoundReading)
     return reading
@@ -80,14 +80,14 @@ def test_a_clap_is_heard_by_other_robots_from_afar() -> None:
     run(world, 0.1)
     world.post("a", Clap(250))
     steps = run(world, 0.1)
-    assert (max(heard(steps, "a")), max(heard(steps, "b"))) == (250, 50)
+    assert (max(intensities(steps, "a")), max(intensities(steps, "b"))) == (250, 50)
 
 
 def test_noise_is_heard_by_its_robot_alone() -> None:
     world = World(make([FLOOR], PAIR))
     world.post("a", SetNoiseLevel(90))
     steps = run(world, 0.1)
-    assert (max(heard(steps, "a")), max(heard(steps, "b"))) == (90, 0)
+    assert (max(intensities(steps, "a")), max(intensities(steps, "b"))) == (90, 0)
 
 
 def test_a_loudspeaker_is_heard_while_it_plays() -> None:
@@ -95,25 +95,25 @@ def test_a_loudspeaker_is_heard_while_it_plays() -> None:
     run(world, 0.1)
     world.post("b", PlayTone(440.0, 500_000_000))
     playing, after = run(world, 0.4), run(world, 0.5)
-    assert 0 < heard(playing, "a")[-1] < heard(playing, "b")[-1] < 246
-    assert (heard(after, "a")[-1], heard(after, "b")[-1]) == (0, 0)
+    assert 0 < intensities(playing, "a")[-1] < intensities(playing, "b")[-1] < 246
+    assert (intensities(after, "a")[-1], intensities(after, "b")[-1]) == (0, 0)
 
 
 def test_after_a_loud_block_silence_is_news() -> None:
-    room = RoomState()
-    view = FakeView(states=(room, MicrophoneState(50)))
-    told = []
-    for room.noise_level in (0, 100, 0):
-        told.append(sound.SENSOR.measure(view))
+    environment = EnvironmentState()
+    view = FakeView(states=(environment, MicrophoneState(50)))
+    measurements = []
+    for environment.noise_level in (0, 100, 0):
+        measurements.append(sound.SENSOR.measure(view))
         view.now_ns += sound.BLOCK_NS
-    assert [reading and reading.words[0] for reading in told] == [0, 100, 0]
+    assert [reading and reading.words[0] for reading in measurements] == [0, 100, 0]
 
 
-@pytest.mark.parametrize("crowd", [2, 1], ids=["alone", "in a crowd"])
-def test_steady_sound_is_told_61_times_a_second_only_when_it_is_loud(
-    monkeypatch: pytest.MonkeyPatch, crowd: int
+@pytest.mark.parametrize("batch", [2, 1], ids=["alone", "in a batch"])
+def test_steady_sound_is_measurements_61_times_a_second_only_when_it_is_loud(
+    monkeypatch: pytest.MonkeyPatch, batch: int
 ) -> None:
-    monkeypatch.setattr("thymio_sim_ros.sim.world.CROWD", crowd)
+    monkeypatch.setattr("thymio_sim_ros.sim.world.MIN_BATCH_ROBOTS", batch)
     world = World(make([FLOOR]))
     send(world, SetNoiseLevel(100))
     assert len(readings(run(world, 10.0), "sound")) == 10

@@ -56,7 +56,7 @@ def _variable(name: str, sensors: dict[str, Sensor], outputs: dict[str, str]) ->
 
 def _sensed(sensor: Sensor, name: str) -> str:
     """Topics in SI units, that of the name's last word alone if it has one, then the integers."""
-    topics = [row.topic for row in sensor_topics.rows_of(sensor)]
+    topics = [row.topic for row in sensor_topics.select_rows(sensor)]
     *units, raw = topics
     units = [topic for topic in units if not is_hidden(topic)] or units
     own = [topic for topic in units if topic.endswith(f"/{name.rpartition('.')[2]}")]

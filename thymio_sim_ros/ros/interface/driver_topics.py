@@ -81,7 +81,7 @@ class DriverTopics:
     @classmethod
     def plain(cls) -> DriverTopics:
         """The topics with hidden names under those of the driver."""
-        rows = {sensor.name: _plain(sensor_topics.rows_of(sensor)) for sensor in all_sensors()}
+        rows = {sensor.name: _plain(sensor_topics.select_rows(sensor)) for sensor in all_sensors()}
         return cls({sensor: plain for sensor, plain in rows.items() if plain}, _plain(robot_inputs()))
 
     def with_all(self, other: DriverTopics) -> DriverTopics:

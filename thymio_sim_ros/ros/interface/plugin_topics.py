@@ -1,7 +1,8 @@
-"""Topics of the actuators that a plug-in adds: one per type of command, its numbers in one labelled array.
+"""Topics of the actuators and stimuli that a plug-in adds: one per type of command, its numbers in one labeled array.
 
 A command that is none of `sim/commands/` travels as std_msgs/Float64MultiArray on `actuator/<actuator>`, or on
-`actuator/<actuator>/<command>` where an actuator takes several; programs speak on it, and so may people and nodes.
+`actuator/<actuator>/<command>` where an actuator accepts several; for stimuli the topic begins with `stimulus/`.
+Programs, nodes and people publish on it.
 """
 
 from __future__ import annotations
@@ -18,7 +19,9 @@ from thymio_sim_ros.ros.interface import command_checks, convert_readings
 from thymio_sim_ros.ros.interface.command_checks import CommandError
 from thymio_sim_ros.ros.interface.command_topics import CommandRow
 from thymio_sim_ros.sim import commands
-from thymio_sim_ros.sim.actuators import Actuator, all_actuators
+from thymio_sim_ros.sim.actuators import all_actuators
+from thymio_sim_ros.sim.plugin_api.command_plugin import CommandPlugin
+from thymio_sim_ros.sim.stimuli import Stimulus, all_stimuli
 
 __all__ = ["rows", "topic_of"]
 
@@ -33,22 +36,23 @@ def rows() -> tuple[CommandRow, ...]:
     """One row for each command that only a plug-in knows; those with other fields than numbers have none."""
     return tuple(
         CommandRow(topic, Float64MultiArray, _decoder(kind), _encode, about=_about(kind))
-        for actuator in all_actuators()
-        for kind, topic in _topics(actuator).items()
+        for plugin in (*all_actuators(), *all_stimuli())
+        for kind, topic in _topics(plugin).items()
     )
 
 
 def topic_of(command: object) -> str | None:
     """The topic of a plug-in's command; None for any other."""
-    found = (_topics(actuator).get(type(command)) for actuator in all_actuators())
+    found = (_topics(plugin).get(type(command)) for plugin in (*all_actuators(), *all_stimuli()))
     return next((topic for topic in found if topic is not None), None)
 
 
-def _topics(actuator: Actuator) -> dict[type[Any], str]:
-    own = [kind for kind in actuator.accepts if issubclass(kind, commands.PluginCommand) and _has_only_numbers(kind)]
+def _topics(plugin: CommandPlugin) -> dict[type[Any], str]:
+    prefix = "stimulus" if isinstance(plugin, Stimulus) else "actuator"
+    own = [kind for kind in plugin.accepts if issubclass(kind, commands.PluginCommand) and _has_only_numbers(kind)]
     if len(own) == 1:
-        return {own[0]: f"actuator/{actuator.name}"}
-    return {kind: f"actuator/{actuator.name}/{_word(kind.__name__)}" for kind in own}
+        return {own[0]: f"{prefix}/{plugin.name}"}
+    return {kind: f"{prefix}/{plugin.name}/{_word(kind.__name__)}" for kind in own}
 
 
 def _has_only_numbers(kind: type[Any]) -> bool:

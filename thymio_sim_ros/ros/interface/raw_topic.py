@@ -86,7 +86,7 @@ class RawTopic:
         self._heard = {
             sensor.name: Heard(sensor.name, is_regular=sensor_topics.is_regular(sensor, row))
             for sensor in all_sensors()
-            for row in sensor_topics.rows_of(sensor)
+            for row in sensor_topics.select_rows(sensor)
             if row.topic == raw_topic(sensor.name)
         }
         self._is_heard = False

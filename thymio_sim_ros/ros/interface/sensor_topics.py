@@ -264,7 +264,7 @@ AT_START: Mapping[str, Reading] = {
 """What these sensors, which tell changes only, would say of a robot that has done nothing yet."""
 
 
-def rows_of(sensor: Sensor) -> tuple[Row, ...]:
+def select_rows(sensor: Sensor) -> tuple[Row, ...]:
     """Topics of a sensor; one added by a plug-in has those of its words."""
     variables = ", ".join(f"`{name}`" if size == 1 else f"`{name}[{size}]`" for name, size in sensor.aseba.variables)
     about = f"Aseba's integers: {variables}" if variables else "the event, without values"

@@ -50,7 +50,7 @@ from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.model.clock import TICK_NS, Pacer
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError, RobotStart
-from thymio_sim_ros.sim.plugin_api.reading_table import rows_of
+from thymio_sim_ros.sim.plugin_api.reading_table import select_rows
 from thymio_sim_ros.sim.world import World
 
 __all__ = ["Simulator", "SimulatorParams", "main"]
@@ -263,7 +263,7 @@ class Simulator:
         self.follow()
         for _ in range(ticks):
             result = self.world.step()
-            for robot, sensor, reading in rows_of(result.readings, self._audience.sensors):
+            for robot, sensor, reading in select_rows(result.readings, self._audience.sensors):
                 ports = self._roster[robot]
                 ports.publish(sensor, reading)
                 self._raw.take(ports.names.name, sensor, reading)

@@ -53,7 +53,7 @@ def first_words() -> frozenset[str]:
 
     Of hidden ones also without the `_`: the driver's names.
     """
-    rows = (row.topic for sensor in all_sensors() for row in sensor_topics.rows_of(sensor))
+    rows = (row.topic for sensor in all_sensors() for row in sensor_topics.select_rows(sensor))
     topics = (*rows, *(one.topic for one in robot_inputs()), "aseba/")
     words = {topic.partition("/")[0] for topic in topics if "/" in topic}
     return frozenset(words | {word.removeprefix(HIDDEN) for word in words})
@@ -123,7 +123,7 @@ class RobotPorts:
         self._sent: dict[str, tuple[_Outlet, ...]] = {}
         """By sensor, what somebody hears or what is always sent."""
         for sensor in all_sensors():
-            for row in (*sensor_topics.rows_of(sensor), *options.extra.rows.get(sensor.name, ())):
+            for row in (*sensor_topics.select_rows(sensor), *options.extra.rows.get(sensor.name, ())):
                 if row.topic not in options.left_out:
                     every_ns = options.every_ns.get(row.topic, row.every_ns)
                     self._open(row, Heard(sensor.name, every_ns, sensor_topics.is_regular(sensor, row)))

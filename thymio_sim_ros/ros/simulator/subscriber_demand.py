@@ -29,7 +29,7 @@ class Audience:
     def __init__(self, periods_ns: Mapping[str, int] | None = None) -> None:
         """`periods_ns`: of sensors that do not measure as often as they say themselves."""
         periods_ns = periods_ns or {}
-        sensors = [sensor.every(periods_ns.get(sensor.name, sensor.period_ns)) for sensor in all_sensors()]
+        sensors = [sensor.with_period(periods_ns.get(sensor.name, sensor.period_ns)) for sensor in all_sensors()]
         self._schedule = {sensor.name: (sensor.period_ns, sensor.phase_ns) for sensor in sensors}
         self._counts: Counter[Heard] = Counter()
         self._since_ns, self._due_ns = 0, 0

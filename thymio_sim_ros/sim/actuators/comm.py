@@ -1,6 +1,6 @@
-"""The sending half of infrared communication (docs/spec/thymio-robot.md section 7.5); `sensors/comm.py` is the other.
+"""The sending half of infrared communication (docs/spec/thymio-robot.md section 7.5); see also `sensors/comm.py`.
 
-All seven emitters send the same value in every frame. A negative value is a pulse without data, which nobody decodes.
+All seven emitters send the same value in every frame. A negative value is a pulse without data, which no robot decodes.
 Off is the state after a reset; switching off zeroes what was sent and what was received.
 """
 
@@ -21,14 +21,14 @@ FULL_PAYLOAD = 2047
 
 @dataclass(slots=True)
 class CommState:
-    """Whether it sends and receives, and the value sent, at most FULL_PAYLOAD."""
+    """Whether communication is enabled, and the value to send, at most FULL_PAYLOAD."""
 
     is_enabled: bool = False
     payload: int = 0
 
     @property
     def is_sending(self) -> bool:
-        """Whether there is something to decode."""
+        """Whether other robots can decode a value."""
         return self.is_enabled and self.payload >= 0
 
 

@@ -1,7 +1,7 @@
 """The lights: brightness 0…32 for each light of each group (docs/spec/thymio-robot.md sections 6.3 and 8).
 
-The robot's own rules show the sensors on them until somebody, a program or ROS, takes a group over. A gesture moves
-the lights of one group until it is stopped, or somebody else sets them.
+The firmware shows the sensors on a group of LEDs until a program or ROS takes the group over. A gesture animates one
+group until it is stopped or the group is set.
 """
 
 from __future__ import annotations
@@ -72,9 +72,9 @@ LED_NUMBERS = _numbers()
 
 @dataclass(slots=True)
 class LedState:
-    """Levels 0…32 of every group, in the order of `LED_GROUPS`; groups that the robot's own rules lost; a gesture.
+    """Levels 0…32 of every group, in the order of `LED_GROUPS`; groups that were taken over; a gesture.
 
-    `own` is what these rules want to show, also on groups that they lost. `changes` counts how often lights were set to
+    `own` is what the firmware shows, also on groups that were taken over. `changes` counts how often lights were set to
     something else.
     """
 
@@ -87,27 +87,27 @@ class LedState:
     changes: int = field(default=0, compare=False)
 
     def show(self, group: str, levels: tuple[int, ...]) -> None:
-        """Let lights shine, whoever they belong to."""
+        """Set the levels of a group without taking it over."""
         levels = _limited(group, levels)
         if levels != self.levels[group]:
             self.levels[group] = levels
             self.changes += 1
 
     def set(self, group: str, levels: tuple[int, ...]) -> None:
-        """Take a group over; what moved it ends."""
+        """Take over a group and end its gesture."""
         self.show(group, levels)
         self.taken.add(group)
         if self.gesture is not None and self.gesture.group == group:
             self.gesture = None
 
     def show_own(self, group: str, levels: tuple[int, ...]) -> None:
-        """What the robot's own rules want to show; it shines when they have the group."""
+        """Store what the firmware shows on a group, and show it unless the group was taken over."""
         self.own[group] = levels
         if group not in self.taken:
             self.show(group, levels)
 
     def release(self, group: str) -> None:
-        """Give a group back to the robot's own rules."""
+        """Return a group to the firmware."""
         self.set(group, self.own.get(group, (0,) * LED_GROUPS[group]))
         self.taken.discard(group)
 
@@ -185,6 +185,7 @@ ACTUATOR = Actuator(
     apply=_apply,
     update=_update,
     is_idle=lambda state: state.gesture is None,
+    shows=lambda state: {"leds": tuple(state.levels.items())},
     aseba=ActuatorFace(
         outputs=tuple(
             Output(((name, LED_GROUPS[group]),), _setter(group))

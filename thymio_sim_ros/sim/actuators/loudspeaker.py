@@ -24,7 +24,7 @@ from thymio_sim_ros.sim.commands import (
 from thymio_sim_ros.sim.plugin_api.aseba_binding import ActuatorFace, Native
 from thymio_sim_ros.sim.plugin_api.view import ActuatorView
 
-__all__ = ["ACTUATOR", "LoudspeakerState"]
+__all__ = ["ACTUATOR", "SPEAKER_SHARE", "LoudspeakerState"]
 
 ALARM_NS = 3_000_000_000
 """Between two sounds of an alarm (docs/spec/ros-interface.md section 4.2)."""
@@ -32,6 +32,9 @@ _NO_SOUND = b"\x80"
 """One sample of silence: a sound of no length ends, too."""
 SHORTEST_TICKS = 4
 """Ticks of the shortest tone that a program can ask for (section 6.3)."""
+SPEAKER_SHARE = 0.6
+"""Level near a loudspeaker per count of its samples' peak-to-peak value. Assumption: clear beside the robot, and always
+below the 246 that the built-in attentive behavior takes for a clap (docs/spec/thymio-behaviors.md section 8)."""
 
 
 @dataclass(slots=True)
@@ -59,9 +62,13 @@ class LoudspeakerState:
         """Whether nothing tones."""
         return self.note is None and not self.samples
 
-    def play(self, notes: tuple[Note, ...], samples: bytes, now_ns: int) -> None:
+    def sound_level(self, _now_ns: int) -> float:
+        """Level near the robot; see `SoundSource`."""
+        return SPEAKER_SHARE * self.sounding_level
+
+    def play(self, column_state: tuple[Note, ...], samples: bytes, now_ns: int) -> None:
         """Begin with the first note, or with samples; neither is silence."""
-        self.note, self._waiting = (notes[0], notes[1:]) if notes else (None, ())
+        self.note, self._waiting = (column_state[0], column_state[1:]) if column_state else (None, ())
         self.samples = samples
         self.began_ns = now_ns
         self.changes += 1
@@ -88,9 +95,9 @@ class LoudspeakerState:
         self.changes += 1
         self._measure(now_ns)
 
-    def _next(self, notes: tuple[Note, ...], now_ns: int) -> None:
-        self.finished += not notes
-        self.play(notes, b"", now_ns)
+    def _next(self, column_state: tuple[Note, ...], now_ns: int) -> None:
+        self.finished += not column_state
+        self.play(column_state, b"", now_ns)
 
     def _measure(self, now_ns: int) -> None:
         first = (now_ns - self.began_ns) // SAMPLE_NS

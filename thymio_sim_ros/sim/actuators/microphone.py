@@ -1,4 +1,4 @@
-"""The loudness above which a sound is worth telling: mic.threshold (docs/spec/thymio-robot.md section 5)."""
+"""The level above which a sound is reported: mic.threshold (docs/spec/thymio-robot.md section 5)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class MicrophoneState:
     threshold: int = 0
 
     def is_exceeded(self, intensity: int) -> bool:
-        """Whether a sound is told."""
+        """Whether a sound of this intensity is reported."""
         return intensity > self.threshold != 0
 
 

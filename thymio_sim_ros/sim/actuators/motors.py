@@ -19,7 +19,7 @@ from thymio_sim_ros.sim.mechanics.motor_control import WheelControl
 from thymio_sim_ros.sim.mechanics.wheels import WheelArrays
 from thymio_sim_ros.sim.model import robot_constants, units
 from thymio_sim_ros.sim.plugin_api.aseba_binding import ActuatorFace, Output
-from thymio_sim_ros.sim.plugin_api.view import ActuatorView, GroupActuatorView
+from thymio_sim_ros.sim.plugin_api.view import ActuatorView, BatchActuatorView
 
 __all__ = ["ACTUATOR", "MotorState", "wanted_speeds"]
 
@@ -34,7 +34,7 @@ class MotorState:
     speeds_m_s: tuple[float, float] = _AT_REST
     ends_ns: int | None = None
     control: tuple[WheelControl, WheelControl] | None = None
-    news: tuple[set[int], int] | None = None
+    batch_changes: tuple[set[int], int] | None = None
     """Where a crowd wants to read that a command has come, and the number to be written there."""
 
 
@@ -64,8 +64,8 @@ def _apply(state: MotorState, command: MotorTargets | WheelVelocities | BodyTwis
     else:
         state.speeds_m_s = wheel_speeds(command)
         state.ends_ns = now_ns + command.timeout_ns if command.timeout_ns else None
-    if state.news is not None:
-        changed, number = state.news
+    if state.batch_changes is not None:
+        changed, number = state.batch_changes
         changed.add(number)
 
 
@@ -97,7 +97,7 @@ def _controlled(state: MotorState, wheels_m_s: Sequence[float], dt_s: float) -> 
     return (left, right)
 
 
-class _Together:
+class _BatchTargets:
     """What a crowd's motors aim at, kept from tick to tick; looked at again when a command has come."""
 
     def __init__(self, states: Sequence[MotorState]) -> None:
@@ -108,9 +108,9 @@ class _Together:
         """Numbers of those with control loops."""
         self.changed = set(range(len(states)))
         for number, state in enumerate(states):
-            state.news = (self.changed, number)
+            state.batch_changes = (self.changed, number)
 
-    def look(self, states: Sequence[MotorState], wheels: WheelArrays, now_ns: int) -> None:
+    def refresh(self, states: Sequence[MotorState], wheels: WheelArrays, now_ns: int) -> None:
         """Take over what has changed."""
         for number in self.timed:
             if _time_out(states[number], now_ns):
@@ -134,18 +134,18 @@ def _include(numbers: set[int], number: int, *, is_in: bool) -> None:
         numbers.discard(number)
 
 
-def _update_all(states: Sequence[MotorState], group: GroupActuatorView, dt_s: float) -> None:
-    wheels = group.wheels
-    together = group.memory.get("together")
-    if together is None:
-        together = group.memory["together"] = _Together(states)
-    together.look(states, wheels, group.now_ns)
-    commanded = together.commanded
-    if together.controlled:
+def _update_all(states: Sequence[MotorState], batch: BatchActuatorView, dt_s: float) -> None:
+    wheels = batch.wheels
+    targets = batch.memory.get("targets")
+    if targets is None:
+        targets = batch.memory["targets"] = _BatchTargets(states)
+    targets.refresh(states, wheels, batch.now_ns)
+    commanded = targets.commanded
+    if targets.controlled:
         commanded, turning = commanded.copy(), wheels.speeds.T.tolist()
-        for number in together.controlled:
+        for number in targets.controlled:
             commanded[:, number] = _controlled(states[number], turning[number], dt_s)
-    wheels.drive(commanded, group.noise.draw(*robot_constants.SLIP, 2), robot_constants.MAX_SPEED_M_S)
+    wheels.drive(commanded, batch.noise.draw(*robot_constants.SLIP, 2), robot_constants.MAX_SPEED_M_S)
 
 
 def _targets(words: Sequence[int]) -> Command:

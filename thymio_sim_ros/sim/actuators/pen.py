@@ -127,4 +127,5 @@ ACTUATOR = Actuator(
     apply=_apply,
     update=_update,
     is_idle=lambda state: not state.down,
+    shows=lambda state: {"strokes": state.strokes},
 )

@@ -1,4 +1,4 @@
-"""Sound in the world: who makes it, and how it fades with distance.
+"""Sound in the world: its sources, and how it fades with distance.
 
 A level is what a microphone at `NEAR_M` from the source reads as mic.intensity, 0…255 (docs/spec/thymio-robot.md
 section 7.4). Loudspeakers and claps are sources; a robot hears its own.
@@ -11,42 +11,38 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
-__all__ = ["FULL_LEVEL", "NEAR_M", "SPEAKER_SHARE", "Sound", "Sounding", "heard"]
+__all__ = ["FULL_LEVEL", "NEAR_M", "Sound", "SoundSource", "level_at"]
 
 FULL_LEVEL = 255
-"""The loudest that a microphone tells: the range of its 8-bit samples (docs/spec/thymio-robot.md section 7.4)."""
+"""Largest level that a microphone reports: the range of its 8-bit samples (docs/spec/thymio-robot.md section 7.4)."""
 
 NEAR_M = 0.1
-"""Up to here a source is heard in full. Own choice: about the nearest that two robots come, centre to centre."""
-
-SPEAKER_SHARE = 0.6
-"""Level near a loudspeaker for each count of its samples' swing. Own choice: clear beside the robot, and in full below
-the 246 that the built-in attentive behaviour takes for a clap (docs/spec/thymio-behaviors.md section 8)."""
+"""Distance within which a source is heard at its full level. Assumption: about the smallest distance of two robots,
+from center to center."""
 
 
 @runtime_checkable
-class Sounding(Protocol):
-    """State of an actuator that is a loudspeaker: any with this property is heard from its robot's place."""
+class SoundSource(Protocol):
+    """The state of a plug-in that makes sound: any state with this method is heard from where its robot is."""
 
-    @property
-    def sounding_level(self) -> float:
-        """Swing of the samples that it plays now, 0 (silent) to FULL_LEVEL."""
+    def sound_level(self, now_ns: int) -> float:
+        """Level within NEAR_M of the robot at this simulated time; 0 is silent."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Sound:
-    """A source in the world at one moment."""
+    """A source in the world at one time: position in m and level."""
 
     x_m: float
     y_m: float
     level: float
 
 
-def heard(sounds: Iterable[Sound], x_m: float, y_m: float) -> float:
-    """Level of all sounds together at a place.
+def level_at(sounds: Iterable[Sound], x_m: float, y_m: float) -> float:
+    """The level of all sounds together at a point.
 
-    An amplitude falls as 1/d (free field) and is no louder than at NEAR_M; the energies of different sources add up.
+    An amplitude falls as 1/d (free field), but not within NEAR_M; the energies of different sources add up.
     """
     energy = 0.0
     for sound in sounds:

@@ -1,36 +1,35 @@
-"""The robots of a crowd as one of their sensors sees them at once."""
+"""The robots of a batch as one sensor sees them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol, TypeVar
 
-from thymio_sim_ros.sim.actuators.hand import HandState
 from thymio_sim_ros.sim.audio.propagation import Sound
 from thymio_sim_ros.sim.mechanics.wheels import WheelArrays
 from thymio_sim_ros.sim.model.geometry import Tilt
 from thymio_sim_ros.sim.model.noise import NormalBank, UniformBank
-from thymio_sim_ros.sim.physics import Contact, Fleet
-from thymio_sim_ros.sim.plugin_api.column_state import Notes
+from thymio_sim_ros.sim.physics import BatchDriver, Contact
+from thymio_sim_ros.sim.plugin_api.column_state import ColumnState
 from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.raycast.batch import Fan, Indices, Values
-from thymio_sim_ros.sim.robot.robot import Robot, Shared
+from thymio_sim_ros.sim.robot.robot import Robot, SharedState
 
-__all__ = ["Group"]
+__all__ = ["BatchView"]
 
 S = TypeVar("S")
 
 
-class Together(Protocol):
-    """The robots as they move and see together."""
+class RobotArrays(Protocol):
+    """The arrays of a batch."""
 
     @property
-    def shared(self) -> Shared:
+    def shared(self) -> SharedState:
         """What all robots of the world share."""
         ...
 
     @property
-    def fleet(self) -> Fleet:
+    def batch_driver(self) -> BatchDriver:
         """Their bodies."""
         ...
 
@@ -41,7 +40,7 @@ class Together(Protocol):
 
     @property
     def poses(self) -> Values:
-        """Where they are to be seen: rows x, y, yaw; who has fallen is far from any floor."""
+        """Poses, shape (robots, 3): x, y, yaw; a fallen robot is far from any floor."""
         ...
 
     def states(self, kind: type[S]) -> list[S]:
@@ -49,69 +48,69 @@ class Together(Protocol):
         ...
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
-        """What the rays of all robots meet now."""
+        """Casts the rays of all robots; see `BatchRaycaster.cast`."""
         ...
 
 
-class Group:
-    """Satisfies `GroupView`."""
+class BatchView:
+    """Satisfies `BatchSensorView`."""
 
-    __slots__ = ("_crowd", "_evens", "_noise", "_robots", "_views", "memory", "notes")
+    __slots__ = ("_batch", "_noise", "_robots", "_uniforms", "_views", "column_state", "memory")
 
-    def __init__(self, crowd: Together, robots: Sequence[Robot], views: Sequence[SensorView]) -> None:
-        self._crowd, self._robots, self._views = crowd, robots, views
+    def __init__(self, batch: RobotArrays, robots: Sequence[Robot], views: Sequence[SensorView]) -> None:
+        self._batch, self._robots, self._views = batch, robots, views
         self._noise: NormalBank | None = None
-        self._evens: UniformBank | None = None
+        self._uniforms: UniformBank | None = None
         self.memory: dict[str, Any] = {}
-        self.notes = Notes([view.memory for view in views])
+        self.column_state = ColumnState([view.memory for view in views])
 
     def __len__(self) -> int:
         return len(self._robots)
 
-    def give_back(self) -> None:
-        """Let every robot's sensor draw and remember for itself again."""
-        for bank in (self._noise, self._evens):
+    def release(self) -> None:
+        """Return unused random numbers and stored values to the robots."""
+        for bank in (self._noise, self._uniforms):
             if bank is not None:
-                bank.give_back()
-        self.notes.give_back()
+                bank.release()
+        self.column_state.release()
 
     @property
     def noise(self) -> NormalBank:
-        assert self._evens is None
+        assert self._uniforms is None
         if self._noise is None:
             self._noise = NormalBank([view.noise for view in self._views])
         return self._noise
 
     @property
-    def evens(self) -> UniformBank:
+    def uniforms(self) -> UniformBank:
         assert self._noise is None
-        if self._evens is None:
-            self._evens = UniformBank([view.noise for view in self._views])
-        return self._evens
+        if self._uniforms is None:
+            self._uniforms = UniformBank([view.noise for view in self._views])
+        return self._uniforms
 
     @property
     def now_ns(self) -> int:
-        return self._crowd.shared.clock.now_ns
+        return self._batch.shared.clock.now_ns
 
     @property
     def proximity_model(self) -> str:
-        return self._crowd.shared.proximity_model
+        return self._batch.shared.proximity_model
 
     @property
     def poses(self) -> Values:
-        return self._crowd.fleet.poses
+        return self._batch.batch_driver.poses
 
     @property
     def motion(self) -> tuple[Values, Values]:
-        return self._crowd.fleet.motion
+        return self._batch.batch_driver.motion
 
     @property
     def wheels(self) -> WheelArrays:
-        return self._crowd.wheels
+        return self._batch.wheels
 
     @property
     def fallen(self) -> Sequence[int]:
-        found: list[int] = self._crowd.fleet.fallen.tolist()
+        found: list[int] = self._batch.batch_driver.fallen.tolist()
         return found
 
     @property
@@ -120,7 +119,7 @@ class Group:
 
     @property
     def tilts(self) -> Sequence[Tilt]:
-        tilts = [hand.tilt for hand in self.states(HandState)]
+        tilts = [robot.held_tilt for robot in self._robots]
         for robot in self.fallen:
             tilts[robot] = self._robots[robot].tilt
         return tilts
@@ -132,13 +131,13 @@ class Group:
 
     @property
     def sounds(self) -> Sequence[Sound]:
-        return self._crowd.shared.sounds()
+        return self._batch.shared.sounds()
 
     def states(self, kind: type[S]) -> list[S]:
-        return self._crowd.states(kind)
+        return self._batch.states(kind)
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
-        return self._crowd.cast(fan)
+        return self._batch.cast(fan)
 
     def ground_at(self, places: Values) -> tuple[Values, Values]:
-        return self._crowd.shared.ground.sample_under(self._crowd.poses, places)
+        return self._batch.shared.ground.sample_under(self._batch.poses, places)

@@ -1,7 +1,7 @@
-"""All robots of a world as one: they move as a fleet, and plug-ins that can serve all of them in one go do so.
+"""The robots of a world as a batch: motion, and plug-ins that support it, are computed for all robots at once.
 
-Readings are those of robot by robot (counts may differ where rounding is a matter of the last bit): every sensor has
-its own generator on every robot, and draws from it in the same order.
+Readings are those of robots one by one, but for counts that are rounded differently due to the last bit: every sensor
+has its own random number generator on every robot, and draws from it in the same order.
 """
 
 from __future__ import annotations
@@ -12,34 +12,34 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from thymio_sim_ros.sim.batch.batch_view import Group
-from thymio_sim_ros.sim.ground.floor_support import Footing
+from thymio_sim_ros.sim.batch.batch_view import BatchView
+from thymio_sim_ros.sim.ground.floor_support import FloorSupport
 from thymio_sim_ros.sim.mechanics.wheels import WheelArrays
 from thymio_sim_ros.sim.model.noise import UniformBank
 from thymio_sim_ros.sim.model.readings import Reading
-from thymio_sim_ros.sim.plugin_api.reading_table import Columns
-from thymio_sim_ros.sim.plugin_api.view import GroupActuatorView
-from thymio_sim_ros.sim.raycast.batch import Fan, Indices, Raycaster, Values
-from thymio_sim_ros.sim.robot.robot import Robot, Shared
+from thymio_sim_ros.sim.plugin_api.reading_table import ReadingTable
+from thymio_sim_ros.sim.plugin_api.view import BatchActuatorView
+from thymio_sim_ros.sim.raycast.batch import BatchRaycaster, Fan, Indices, Values
+from thymio_sim_ros.sim.robot.robot import Robot, SharedState
 
-__all__ = ["CROWD", "Crowd"]
+__all__ = ["MIN_BATCH_ROBOTS", "RobotBatch"]
 
-Act = Callable[[Sequence[Any], GroupActuatorView, float], None]
+Act = Callable[[Sequence[Any], BatchActuatorView, float], None]
 
 S = TypeVar("S")
 
-CROWD = 14
-"""From so many robots on, all at once is quicker (measured, docs/performance.md)."""
+MIN_BATCH_ROBOTS = 14
+"""Number of robots from which on a batch is faster (measured, docs/performance.md)."""
 
 _NOWHERE_M = -1e6
 
 
-class _Actors:
-    """The robots as one actuator sees them; satisfies `GroupActuatorView`."""
+class _ActuatorBatchView:
+    """The robots as one actuator sees them; satisfies `BatchActuatorView`."""
 
     __slots__ = ("_clock", "memory", "noise", "wheels")
 
-    def __init__(self, shared: Shared, wheels: WheelArrays, noise: UniformBank) -> None:
+    def __init__(self, shared: SharedState, wheels: WheelArrays, noise: UniformBank) -> None:
         self._clock, self.wheels, self.noise = shared.clock, wheels, noise
         self.memory: dict[str, Any] = {}
 
@@ -48,58 +48,64 @@ class _Actors:
         return self._clock.now_ns
 
 
-class Crowd:
-    """The robots of a world, which stay the same until it disbands."""
+class RobotBatch:
+    """The robots of a world; a batch is dissolved when a robot is added or removed."""
 
-    def __init__(self, robots: Iterable[Robot], shared: Shared) -> None:
+    def __init__(self, robots: Iterable[Robot], shared: SharedState) -> None:
         self.shared = shared
-        self._caster = Raycaster(shared.physics.fixed, shared.physics.loose())
+        self._raycaster = BatchRaycaster(shared.physics.fixed, shared.physics.movable_obstacles())
         self._robots = tuple(robots)
         self._names = tuple(robot.name for robot in self._robots)
         self._states: dict[type[Any], list[Any]] = {}
         self._order = {robot: index for index, robot in enumerate(self._robots)}
-        self._banks: list[UniformBank] = []
+        self._uniform_banks: list[UniformBank] = []
         self._sensors = [sensor for sensor, _ in self._robots[0].sensors]
         self._views = [
             [view for _, view in column] for column in zip(*(robot.sensors for robot in self._robots), strict=True)
         ]
-        self._groups = {
-            number: Group(self, self._robots, self._views[number])
+        self._batch_views = {
+            number: BatchView(self, self._robots, self._views[number])
             for number, sensor in enumerate(self._sensors)
             if sensor.measure_all is not None
         }
-        self.fleet = shared.physics.gather()
+        self.batch_driver = shared.physics.form_batch()
         self.wheels = WheelArrays([robot.wheels for robot in self._robots])
         for robot in self._robots:
             robot.shared_wheels = self.wheels
-        self._sure = np.zeros((3, len(self._robots)))
-        """Where each robot has looked for an edge, and the square of how far away that may be at least."""
-        self._acts: list[tuple[Act, list[Any], _Actors]] = []
-        for tasks in zip(*(robot.tasks for robot in self._robots), strict=True):
-            if (update_all := tasks[0].update_all) is not None:
-                even = UniformBank([task.view.noise for task in tasks])
-                self._banks.append(even)
-                self._acts.append((update_all, [task.state for task in tasks], _Actors(shared, self.wheels, even)))
+        self._clearances = np.zeros((3, len(self._robots)))
+        """Position at which the distance to the edge was computed last, and the square of that distance, by robot."""
+        self._acts: list[tuple[Act, list[Any], _ActuatorBatchView]] = []
+        for instances in zip(*(robot.instances for robot in self._robots), strict=True):
+            if (update_all := instances[0].update_all) is not None:
+                uniform_bank = UniformBank([instance.view.noise for instance in instances])
+                self._uniform_banks.append(uniform_bank)
+                self._acts.append(
+                    (
+                        update_all,
+                        [instance.state for instance in instances],
+                        _ActuatorBatchView(shared, self.wheels, uniform_bank),
+                    )
+                )
 
     def __len__(self) -> int:
         return len(self._robots)
 
-    def disband(self) -> None:
-        """Every robot acts and moves alone again."""
-        self.shared.physics.disband()
-        self.wheels.tell()
+    def dissolve(self) -> None:
+        """End the batch: every robot is updated on its own again."""
+        self.shared.physics.dissolve()
+        self.wheels.write_back()
         for robot in self._robots:
             robot.shared_wheels = None
-        for bank in self._banks:
-            bank.give_back()
-        for group in self._groups.values():
-            group.give_back()
+        for bank in self._uniform_banks:
+            bank.release()
+        for view in self._batch_views.values():
+            view.release()
 
     @property
     def poses(self) -> Values:
-        """Where they really are now: rows x, y, yaw; who has fallen is far from any floor."""
-        poses = self.fleet.poses
-        fallen = self.fleet.fallen
+        """Poses, shape (robots, 3): x, y, yaw; a fallen robot is far from any floor."""
+        poses = self.batch_driver.poses
+        fallen = self.batch_driver.fallen
         if len(fallen):
             poses = poses.copy()
             poses[fallen] = [(_NOWHERE_M, index, 0.0) for index in fallen]
@@ -115,56 +121,59 @@ class Crowd:
     def act(self, dt_s: float) -> None:
         """Run the actuators for one tick."""
         for robot in self._in_order(self.shared.busy):
-            robot.act(dt_s, is_in_crowd=True)
-        for update_all, states, group in self._acts:
-            update_all(states, group, dt_s)
-        self.fleet.driven = self.wheels.ground
+            robot.act(dt_s, is_batched=True)
+        for update_all, states, view in self._acts:
+            update_all(states, view, dt_s)
+        self.batch_driver.driven = self.wheels.ground
 
     def roll(self, dt_s: float) -> None:
-        """Count on the wheels what the bodies have moved."""
-        self.wheels.roll(self.fleet.covered, dt_s)
+        """Advance the wheels by the motion of the bodies."""
+        self.wheels.roll(self.batch_driver.covered, dt_s)
 
-    def look_down(self, footing: Footing) -> None:
-        """Let those fall who have no floor under their origins; the others look again when they have gone that far."""
-        places = self.fleet.poses.T[:2]
-        ways = places - self._sure[:2]
+    def check_floor(self, floor_support: FloorSupport) -> None:
+        """Make robots without floor under their origin fall.
+
+        A robot is checked again only when it has moved by the distance to the edge that was found last.
+        """
+        places = self.batch_driver.poses.T[:2]
+        ways = places - self._clearances[:2]
         ways *= ways
-        for index in (ways[0] + ways[1] >= self._sure[2]).nonzero()[0].tolist():
+        for index in (ways[0] + ways[1] >= self._clearances[2]).nonzero()[0].tolist():
             x, y = places[:, index].tolist()
-            self._sure[:, index] = x, y, self._robots[index].balance.stand(footing, x, y) ** 2
+            self._clearances[:, index] = x, y, self._robots[index].edge_fall.check_floor_at(floor_support, x, y) ** 2
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
-        """What the rays of all robots meet now (`Raycaster.cast`)."""
-        self._caster.move(self.shared.physics.moved(), self.fleet.fallen.tolist())
-        return self._caster.cast(self.poses, fan)
+        """What the rays of all robots meet now (`BatchRaycaster.cast`)."""
+        self._raycaster.move(self.shared.physics.moved_obstacles(), self.batch_driver.fallen.tolist())
+        return self._raycaster.cast(self.poses, fan)
 
-    def measure(self, due: Sequence[int]) -> Columns:
+    def measure(self, due: Sequence[int]) -> ReadingTable:
         """The readings of the sensors with these numbers, and of those woken."""
-        woken = {self._order[robot]: robot.take_woken() for robot in self._in_order(self.shared.woken)}
+        woken = {self._order[robot]: robot.pop_woken() for robot in self._in_order(self.shared.woken)}
         awake: Sequence[int] = sorted({*due, *chain.from_iterable(woken.values())}) if woken else due
         columns: list[tuple[str, Sequence[Reading | None]]] = []
         for number in awake:
             sensor = self._sensors[number]
             if number not in due:
                 some = [index for index, numbers in woken.items() if number in numbers]
-                column: Sequence[Reading | None] = self._sense(number, some)
+                column: Sequence[Reading | None] = self._measure_some(number, some)
             elif sensor.measure_all is not None:
-                column = sensor.measure_all(self._groups[number])
+                column = sensor.measure_all(self._batch_views[number])
             else:
                 column = [sensor.measure(view) for view in self._views[number]]
             columns.append((sensor.name, column))
-        return Columns(self._names, columns)
+        return ReadingTable(self._names, columns)
 
-    def _sense(self, number: int, some: Sequence[int]) -> Sequence[Reading | None]:
+    def _measure_some(self, number: int, some: Sequence[int]) -> Sequence[Reading | None]:
         """The readings of one sensor of some robots."""
         column: list[Reading | None] = [None] * len(self._robots)
-        group = self._groups.get(number)
+        view = self._batch_views.get(number)
         for index in some:
-            if group is not None:
-                group.notes.lend(index)
-            column[index] = self._robots[index].sense(number)
-            if group is not None:
-                group.notes.take_back(index)
+            if view is not None:
+                view.column_state.write_row(index)
+            column[index] = self._robots[index].measure_one(number)
+            if view is not None:
+                view.column_state.read_row(index)
         return column
 
     def _in_order(self, some: Collection[Robot]) -> list[Robot]:

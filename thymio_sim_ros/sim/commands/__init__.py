@@ -1,4 +1,4 @@
-"""Everything that goes into the world: one frozen value per thing a robot can be told.
+"""Commands to the world: one frozen dataclass per kind of command.
 
 Commands are posted at any time and take effect at the next tick, in the order of arrival
 (`World.post`). They carry SI units, except where a field is a Thymio integer by name.
@@ -108,10 +108,10 @@ __all__ = [
 
 
 class PluginCommand:
-    """Base of the commands that a plug-in brings along (docs/plugins.md)."""
+    """Base of the commands that a plug-in defines (docs/plugins.md)."""
 
     __slots__ = ()
 
 
 Command = Driving | Lighting | Sounding | Operating | Sensing | PluginCommand
-"""Anything that a world takes."""
+"""Any command that a world accepts."""

@@ -6,7 +6,7 @@ __all__ = ["check", "check_counts"]
 
 
 def check(command: object, low: float, high: float, *fields: str) -> None:
-    """ValueError unless these fields lie in a range (NaN does not)."""
+    """Raise ValueError unless these fields are in a range; NaN is not."""
     for field in fields:
         value = getattr(command, field)
         if not low <= value <= high:
@@ -14,7 +14,7 @@ def check(command: object, low: float, high: float, *fields: str) -> None:
 
 
 def check_counts(command: object, counts: tuple[int, ...], number: int, high: int) -> None:
-    """ValueError unless these are so many counts of sensors, -1 for those that see by themselves."""
+    """Raise ValueError unless there are `number` counts from 0 to `high`, or -1 for a measured one."""
     name = type(command).__name__
     if len(counts) != number:
         raise ValueError(f"{name}: {len(counts)} counts found, expected {number}")

@@ -1,4 +1,4 @@
-"""The lights of the robot: who sets them, and what moves them by itself."""
+"""Commands to the LEDs."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ LED_GROUPS: dict[str, int] = {
 """LED groups and their number of lights (docs/spec/thymio-robot.md sections 6.3 and 8)."""
 
 LED_GESTURES = ("circle", "blink", "kit", "alive")
-"""Lights that move by themselves (docs/spec/ros-interface.md section 4.2)."""
+"""Animations of the LEDs (docs/spec/ros-interface.md section 4.2)."""
 
 LED_FULL = 32
 """Brightness of a fully lit LED (docs/spec/thymio-robot.md section 8.1)."""
@@ -43,7 +43,7 @@ LED_FULL = 32
 
 @dataclass(frozen=True, slots=True)
 class SetLeds:
-    """Brightness 0…32 of every light of one group of `LED_GROUPS`; the robot's own rules no longer touch the group."""
+    """Brightness 0…32 of every light of one group of `LED_GROUPS`; the firmware no longer controls the group."""
 
     group: str
     levels: tuple[int, ...]
@@ -59,7 +59,7 @@ class SetLed:
 
 @dataclass(frozen=True, slots=True)
 class ShowOnLeds:
-    """What the robot's own rules show on one group (section 8.4): as `SetLeds`, unless somebody has taken it over."""
+    """What the firmware shows on one group (section 8.4); no effect while the group is taken over."""
 
     group: str
     levels: tuple[int, ...]
@@ -67,14 +67,14 @@ class ShowOnLeds:
 
 @dataclass(frozen=True, slots=True)
 class ReleaseLeds:
-    """The lights of one group go back to the robot's own rules, and show what these want to."""
+    """Return one group to the firmware, which shows the sensors on it again."""
 
     group: str
 
 
 @dataclass(frozen=True, slots=True)
 class PlayGesture:
-    """Lights that move by themselves: one of `LED_GESTURES`, with a period of 0.1…60 s, negative for backwards."""
+    """Start a gesture: one of `LED_GESTURES`, with a period of 0.1…60 s, negative for backwards."""
 
     name: str
     period_s: float
@@ -88,13 +88,13 @@ class PlayGesture:
 
 @dataclass(frozen=True, slots=True)
 class StopGesture:
-    """The lights of a gesture go back to the robot's own rules."""
+    """Stop the gesture and return its group to the firmware."""
 
 
 LEDS_GIVEN_BACK: tuple[ShowOnLeds | ReleaseLeds, ...] = (
     *(ShowOnLeds(group, (0,) * size) for group, size in LED_GROUPS.items()),
     *(ReleaseLeds(group) for group in LED_GROUPS),
 )
-"""All lights go back to the robot's own rules, which show nothing."""
+"""Return all LEDs to the firmware, which shows nothing."""
 
 Lighting = SetLeds | SetLed | ShowOnLeds | ReleaseLeds | PlayGesture | StopGesture

@@ -1,4 +1,4 @@
-"""What somebody does to the robot from outside: fingers, hands, voices, light, pen."""
+"""Commands of an operator: handling, sounds, light, battery, pen."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ BUTTONS = ("backward", "left", "center", "forward", "right")
 
 @dataclass(frozen=True, slots=True)
 class PressButton:
-    """A finger put on (or taken off) one of `BUTTONS`."""
+    """Press or release one of `BUTTONS`."""
 
     button: str
     pressed: bool
@@ -41,7 +41,7 @@ class PressButton:
 
 @dataclass(frozen=True, slots=True)
 class MoveRobot:
-    """Put the robot somewhere (metres, radians, world frame); its odometry does not notice."""
+    """Move the robot to a pose (m, rad, world frame); the odometry does not change."""
 
     x_m: float
     y_m: float
@@ -50,7 +50,7 @@ class MoveRobot:
 
 @dataclass(frozen=True, slots=True)
 class MoveObject:
-    """Put a movable thing somewhere, at rest (metres, radians, world frame)."""
+    """Move an object to a pose, at rest (m, rad, world frame)."""
 
     x_m: float
     y_m: float
@@ -61,7 +61,7 @@ class MoveObject:
 class SetPen:
     """The pen in the pen hole, put in by an operator; None leaves a property as it is.
 
-    `color`: red, green, blue 0…1; `width_m` 0.001…0.1; `erase`: it takes drawings away instead.
+    `color`: red, green, blue 0…1; `width_m` 0.001…0.1; `erase`: it erases drawings instead.
     """
 
     down: bool | None = None
@@ -72,12 +72,12 @@ class SetPen:
 
 @dataclass(frozen=True, slots=True)
 class Tap:
-    """A knock on the robot's body."""
+    """Tap the body of the robot."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tilt:
-    """Hold the robot at an angle until told otherwise: rad, ±pi; roll lifts its left side, pitch lowers its front."""
+    """Hold the robot at an angle until the next command: rad, ±pi; roll lifts its left side, pitch lowers its front."""
 
     roll_rad: float
     pitch_rad: float
@@ -88,7 +88,7 @@ class Tilt:
 
 @dataclass(frozen=True, slots=True)
 class Clap:
-    """A clap beside the robot, as loud as mic.intensity tells, 0…255; other robots hear it by their distance."""
+    """A clap beside the robot, in units of mic.intensity, 0…255; other robots hear it attenuated by distance."""
 
     intensity: int
 
@@ -98,7 +98,7 @@ class Clap:
 
 @dataclass(frozen=True, slots=True)
 class SetNoiseLevel:
-    """A steady noise round this robot alone, as mic.intensity tells it, 0…255."""
+    """A continuous noise for this robot only, in units of mic.intensity, 0…255."""
 
     intensity: int
 
@@ -108,7 +108,7 @@ class SetNoiseLevel:
 
 @dataclass(frozen=True, slots=True)
 class SetAmbientLight:
-    """Light that reaches the ground sensors besides their own, as prox.ground.ambiant tells it, 0…1023."""
+    """Light that reaches the ground sensors besides their own, in units of prox.ground.ambiant, 0…1023."""
 
     level: int
 
@@ -118,7 +118,7 @@ class SetAmbientLight:
 
 @dataclass(frozen=True, slots=True)
 class SetProximity:
-    """What the seven proximity sensors count from now on, 0…4505 in Thymio's order; -1: what it sees by itself."""
+    """Override the counts of the seven proximity sensors, 0…4505 in Thymio's order; -1: measured."""
 
     counts: tuple[int, ...]
 
@@ -128,7 +128,7 @@ class SetProximity:
 
 @dataclass(frozen=True, slots=True)
 class SetGround:
-    """What the two ground sensors count of their own light from now on, 0…1023; -1: what it sees by itself."""
+    """Override the counts of the two ground sensors, without ambient light, 0…1023; -1: measured."""
 
     counts: tuple[int, ...]
 

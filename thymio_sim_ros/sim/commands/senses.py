@@ -1,4 +1,4 @@
-"""What a program tells the senses of its robot: from which sound on it listens, what its infrared says."""
+"""Commands to microphone and infrared communication."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["EnableComm", "Sensing", "SetCommPayload", "SetSoundThreshold"]
 
 @dataclass(frozen=True, slots=True)
 class SetSoundThreshold:
-    """mic.threshold: a sound above it is told, 0 is off (int16)."""
+    """mic.threshold: a sound above it raises the event mic, 0 is off (int16)."""
 
     level: int
 

@@ -200,7 +200,7 @@ def _rgba(image: Any, image_module: ModuleType) -> Pixels:
     for top in range(0, rows, height):
         band = image.crop((0, top, columns, min(rows, top + height)))
         if band.mode.startswith("I"):
-            # Pillow would cut 16 bit greys off at 255.
+            # Pillow would cut 16 bit grays off at 255.
             band = image_module.fromarray((np.asarray(band).astype(np.uint32) >> 8).clip(0, 255).astype(np.uint8))
         rgba.write(band.convert("RGBA").tobytes())
     image.close()

@@ -12,7 +12,7 @@ __all__ = ["CSS_DPI", "REFUSED"]
 
 REFUSED = 3
 CSS_DPI = 96.0
-"""What a millimetre in an SVG is in pixels; only proportions matter here."""
+"""What a millimeter in an SVG is in pixels; only proportions matter here."""
 _CPU_S = 2
 """Of processor time; `svg_process` limits the wall time."""
 

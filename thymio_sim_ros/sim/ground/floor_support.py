@@ -1,6 +1,6 @@
-"""Where there is floor to stand on, and how far its edge is.
+"""Where there is floor, and the distance to its edge.
 
-A playground without any floor has no edges: there the ground is taken to go on for ever, though nobody can see it.
+A playground without any floor has no edges: its ground is infinite, though the ground sensors do not see it.
 """
 
 from __future__ import annotations
@@ -10,26 +10,26 @@ from collections.abc import Sequence
 
 from thymio_sim_ros.sim.model.geometry import Point
 from thymio_sim_ros.sim.model.primitives import Floor
-from thymio_sim_ros.sim.model.spatial_grid import Squares
+from thymio_sim_ros.sim.model.spatial_grid import SpatialGrid
 
-__all__ = ["Footing"]
+__all__ = ["FloorSupport"]
 
 _Sides = tuple[tuple[float, float, float], ...]
 """A convex polygon as sides (nx, ny, c): inside where n·p <= c."""
 
 
-class Footing:
+class FloorSupport:
     """The floors of a playground."""
 
     def __init__(self, floors: Sequence[Floor]) -> None:
         self._is_endless = not floors
-        self._floors: Squares[_Sides] = Squares()
+        self._floors: SpatialGrid[_Sides] = SpatialGrid()
         for floor in floors:
             xs, ys = [x for x, _ in floor.vertices], [y for _, y in floor.vertices]
             self._floors.add(_sides(floor.vertices), (min(xs), min(ys), max(xs), max(ys)))
 
     def clearance_m(self, x_m: float, y_m: float) -> float:
-        """How far one can go from a place in any direction and surely stay on floor; below 0 where there is none."""
+        """A lower bound of the distance from a point to the edge of the floor, in m; below 0 if there is no floor."""
         if self._is_endless:
             return math.inf
         largest = -math.inf

@@ -1,6 +1,6 @@
 """The picture on the ground: which color each square of `pixel_m` has, and where there is no floor at all.
 
-One pixel for each millimetre (more where the ground is very large), aligned with the world's origin. Floors make
+One pixel for each millimeter (more where the ground is very large), aligned with the world's origin. Floors make
 it, paint and prints cover floor, and a pen draws on it; what a pen has drawn can be taken away again.
 """
 
@@ -62,8 +62,8 @@ class Picture:
         """Size of a pixel, and column and row of the first one, counted from the world's origin."""
         self.pixels = np.zeros(shape, dtype=np.uint16)
         """Color numbers by row (y) and column (x)."""
-        self.greys = np.zeros(_MAX_COLORS + 1)
-        """Grey 0…1 of each color: the mean of its parts."""
+        self.grays = np.zeros(_MAX_COLORS + 1)
+        """Gray 0…1 of each color: the mean of its parts."""
         self._palette: list[Color] = [(0.0, 0.0, 0.0)]
         self._numbers: dict[Color, int] = {}
         for floor in floors:
@@ -122,9 +122,9 @@ class Picture:
         self.pixels[:], self._before = self._before, None
         return True
 
-    def move_to(self, pixels: npt.NDArray[np.uint16], greys: npt.NDArray[np.float64]) -> None:
+    def move_to(self, pixels: npt.NDArray[np.uint16], grays: npt.NDArray[np.float64]) -> None:
         """Live in these arrays, which hold the same, from now on."""
-        self.pixels, self.greys = pixels, greys
+        self.pixels, self.grays = pixels, grays
 
     def padded(self, top: int, bottom: int, left: int, right: int) -> npt.NDArray[np.uint16]:
         """Rows `top`…`bottom` and columns `left`…`right` (not included), without floor beyond the picture."""
@@ -136,7 +136,7 @@ class Picture:
         return part
 
     def _fill(self, vertices: Sequence[Point], color: Color, *, everywhere: bool) -> None:
-        """Paint the pixels whose centre lies in a convex polygon; without `everywhere` only those that are floor."""
+        """Paint the pixels whose center lies in a convex polygon; without `everywhere` only those that are floor."""
         number = self._number(color)
         xs = [x / self.pixel_m - self.origin[0] for x, _ in vertices]
         ys = [y / self.pixel_m - self.origin[1] for _, y in vertices]
@@ -184,14 +184,14 @@ class Picture:
             under[here] = numbers[table[code]]
 
     def _number(self, color: Color) -> int:
-        """The number of a color; when there are too many colors, of the nearest grey among them."""
+        """The number of a color; when there are too many colors, of the nearest gray among them."""
         known = self._numbers.get(color)
         if known is not None:
             return known
-        grey = sum(color) / 3
+        gray = sum(color) / 3
         if len(self._palette) <= _MAX_COLORS:
             number = self._numbers[color] = len(self._palette)
             self._palette.append(color)
-            self.greys[number] = grey
+            self.grays[number] = gray
             return number
-        return int(np.argmin(np.abs(self.greys[1:] - grey))) + 1
+        return int(np.argmin(np.abs(self.grays[1:] - gray))) + 1

@@ -1,8 +1,8 @@
 """The ground under a sensor: a picture of floors, paint and drawings, and what a footprint sees of it.
 
 A sensor sees 9 x 9 samples, 2.5 mm apart along the world's axes, weighted by a Gaussian of 4 mm
-(docs/spec/thymio-robot.md section 7.2). Since samples lie on half millimetres, the picture is blurred once for every
-half millimetre; this is done tile by tile, when a sensor first comes near. Drawing forgets the tiles that see it.
+(docs/spec/thymio-robot.md section 7.2). Since samples lie on half millimeters, the picture is blurred once for every
+half millimeter; this is done tile by tile, when a sensor first comes near. Drawing forgets the tiles that see it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim.ground.raster import Area, Picture
-from thymio_sim_ros.sim.kernel.footprint_binding import Sampling
+from thymio_sim_ros.sim.kernel.footprint_binding import FootprintBinding
 from thymio_sim_ros.sim.kernel.footprint_kernel import TAPS as _TAPS
 from thymio_sim_ros.sim.kernel.memory import is_available
 from thymio_sim_ros.sim.model.primitives import Color, Floor, Mark
@@ -25,7 +25,7 @@ __all__ = ["Ground", "GroundSample"]
 _TAP_STEP_M = 0.0025
 _TAP_SIGMA_M = 0.004
 _CELLS_PER_PIXEL = 2
-"""Blurred values per pixel: the samples' step is a multiple of half a millimetre."""
+"""Blurred values per pixel: the samples' step is a multiple of half a millimeter."""
 _TILE_SHIFT = 6
 _TILE_CELLS = 1 << _TILE_SHIFT
 _MAX_TILES = 1024
@@ -56,7 +56,7 @@ class Ground:
     def __init__(self, floors: Sequence[Floor], paints: Sequence[Mark], *, is_compiled: bool | None = None) -> None:
         """`is_compiled`: many places by a kernel, or with numpy; None: by a kernel where that is available."""
         self._is_compiled = is_available() if is_compiled is None else is_compiled
-        self._sampling: Sampling | None = None
+        self._footprint_binding: FootprintBinding | None = None
         self._picture = Picture(floors, paints)
         self._cell_m = self._picture.pixel_m / _CELLS_PER_PIXEL
         steps = (np.arange(_TAPS) - _TAPS // 2) * _TAP_STEP_M
@@ -75,7 +75,7 @@ class Ground:
         return self._picture.pixel_m
 
     def sample(self, x_m: float, y_m: float) -> GroundSample:
-        """What a sensor's footprint centred here sees."""
+        """What a sensor's footprint centered here sees."""
         cell_x, cell_y = math.floor(x_m / self._cell_m), math.floor(y_m / self._cell_m)
         key = (cell_x // _TILE_CELLS, cell_y // _TILE_CELLS)
         tile = self._tiles.get(key)
@@ -112,7 +112,7 @@ class Ground:
     def draw_segment(
         self, x0_m: float, y0_m: float, x1_m: float, y1_m: float, width_m: float, color: Color | None
     ) -> None:
-        """Draw a line with round ends, metres in the world's frame; with None as color take drawings away there.
+        """Draw a line with round ends, meters in the world's frame; with None as color take drawings away there.
 
         Sensors see it from their next reading on. Where there is no floor nothing is drawn.
         """
@@ -135,7 +135,7 @@ class Ground:
         cells_x = np.floor(x_m / self._cell_m).astype(np.intp)
         cells_y = np.floor(y_m / self._cell_m).astype(np.intp)
         colors = self._plain_colors(cells_x // _TILE_CELLS, cells_y // _TILE_CELLS)
-        reflectance, floor = self._picture.greys[colors], (colors != 0).astype(float)
+        reflectance, floor = self._picture.grays[colors], (colors != 0).astype(float)
         mixed = (colors == _MIXED).nonzero()[0]
         if len(mixed):
             height, width = self._picture.pixels.shape
@@ -146,21 +146,21 @@ class Ground:
 
     def _sampled(self, poses: _Values, points: _Values) -> tuple[_Values, _Values] | None:
         """By the kernel; None when there are tiles that are not known."""
-        if self._sampling is None or not self._sampling.is_for(len(poses), points):
+        if self._footprint_binding is None or not self._footprint_binding.is_for(len(poses), points):
             picture = self._picture
             steps = (np.arange(_TAPS) - _TAPS // 2) * _TAP_STEP_M
-            self._sampling = Sampling(
+            self._footprint_binding = FootprintBinding(
                 len(poses),
                 points,
                 picture.pixels,
                 self._plain,
-                picture.greys,
+                picture.grays,
                 (self._cell_m, picture.pixel_m, *steps.tolist(), *self._weights),
                 (_TILE_SHIFT, *self._plain.shape, *self._corner, *picture.pixels.shape, *picture.origin),
             )
-            picture.move_to(self._sampling.pixels, self._sampling.greys)
-            self._plain = self._sampling.tiles
-        return self._sampling.sample(poses)
+            picture.move_to(self._footprint_binding.pixels, self._footprint_binding.grays)
+            self._plain = self._footprint_binding.tiles
+        return self._footprint_binding.sample(poses)
 
     def _tiles_that_see(self, area: Area) -> list[tuple[int, int]]:
         """Tiles with a footprint that reaches into an area of the picture."""
@@ -217,10 +217,10 @@ class Ground:
         if rows.min() < 0 or rows.max() == height or columns.min() < 0 or columns.max() == width:
             beyond = ((rows < 0) | (rows == height))[None, :, :] | ((columns < 0) | (columns == width))[:, :, None]
             seen[beyond] = 0
-        grey = self._mean(self._picture.greys[seen])
+        gray = self._mean(self._picture.grays[seen])
         if seen.all():
-            return grey, np.ones_like(grey)
-        return _over_floor(grey, self._mean((seen == 0).astype(float)))
+            return gray, np.ones_like(gray)
+        return _over_floor(gray, self._mean((seen == 0).astype(float)))
 
     def _mean(self, values: _Values) -> _Values:
         """The weighted mean over the taps of footprints, by tap along x, footprint, tap along y."""
@@ -236,11 +236,11 @@ class Ground:
         """One tile of samples; a single one when the tile sees one color only."""
         seen, rows, columns = self._seen_by(tile_x, tile_y)
         if (seen == seen[0, 0]).all():
-            return GroundSample(float(self._picture.greys[seen[0, 0]]), 1.0) if seen[0, 0] else NO_FLOOR
-        grey = self._weigh(self._picture.greys[seen], rows, columns)
+            return GroundSample(float(self._picture.grays[seen[0, 0]]), 1.0) if seen[0, 0] else NO_FLOOR
+        gray = self._weigh(self._picture.grays[seen], rows, columns)
         if seen.all():
-            return grey, np.ones_like(grey)
-        return _over_floor(grey, self._weigh((seen == 0).astype(float), rows, columns))
+            return gray, np.ones_like(gray)
+        return _over_floor(gray, self._weigh((seen == 0).astype(float), rows, columns))
 
     def _seen_by(self, tile_x: int, tile_y: int) -> tuple[npt.NDArray[np.uint16], _Indices, _Indices]:
         """The part of the picture that a tile sees, and where in it the taps of its cells lie."""
@@ -275,7 +275,7 @@ def _within(numbers: _Indices, low: int, high: int) -> _Indices:
     return found
 
 
-def _over_floor(grey: _Values, missing: _Values) -> tuple[_Values, _Values]:
-    """Mean grey of the floor and which part is floor, where a part of the footprint is missing."""
+def _over_floor(gray: _Values, missing: _Values) -> tuple[_Values, _Values]:
+    """Mean gray of the floor and which part is floor, where a part of the footprint is missing."""
     floor = np.where(missing < 1.0 - 1e-9, 1.0 - missing, 0.0)
-    return np.divide(grey, floor, out=np.zeros_like(grey), where=floor > 0.0), floor
+    return np.divide(gray, floor, out=np.zeros_like(gray), where=floor > 0.0), floor

@@ -1,1 +1,1 @@
-"""Kernels: loops over many robots that are compiled where that is possible (docs/performance.md)."""
+"""Kernels: loops over the robots of a batch, compiled to WebAssembly if wasmtime is installed (docs/performance.md)."""

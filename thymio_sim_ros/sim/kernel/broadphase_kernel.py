@@ -1,4 +1,4 @@
-"""Kernel: which of many robots may reach something. The tests of `Lookout.near`, operation by operation."""
+"""Kernel: which of many robots may reach something. The tests of `BroadphaseBatch.near`, operation by operation."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ __all__ = ["COUNTS", "KERNELS", "first_from", "near"]
 
 KERNELS = ("first_from", "near")
 
-COUNTS = ("robots", "fixed", "things")
-_ROBOTS, _FIXED, _THINGS = range(len(COUNTS))
-_ROBOT_REACH, _THING_REACH = 0, 1
+COUNTS = ("robots", "fixed", "objects")
+_ROBOTS, _FIXED, _OBJECTS = range(len(COUNTS))
+_ROBOT_REACH, _OBJECT_REACH = 0, 1
 """Places in `sizes`: between two robots; beyond a thing's radius."""
 
 
@@ -28,10 +28,10 @@ def first_from(count: int, order: Ints, xs: Floats, least: float) -> int:
 
 
 def near(
-    counts: Ints, sizes: Floats, xs: Floats, ys: Floats, stands: Ints, fixed: Floats, bounds: Floats, things: Floats,
+    counts: Ints, sizes: Floats, xs: Floats, ys: Floats, stands: Ints, fixed: Floats, bounds: Floats, objects: Floats,
     order: Ints, found: Ints,
 ) -> None:  # fmt: skip
-    """`order` is that of last time, and is put right; rows of `fixed`, `bounds` and `things` are values."""
+    """`order` is that of last time, and is put right; rows of `fixed`, `bounds` and `objects` are values."""
     robots = counts[_ROBOTS]
     for robot in range(robots):
         found[robot] = 0
@@ -57,11 +57,11 @@ def near(
                     found[other] = 1
                 after = after + 1
 
-    count = counts[_THINGS]
-    for thing in range(count):
-        x = things[thing]
-        y = things[count + thing]
-        reach = things[2 * count + thing] + sizes[_THING_REACH]
+    count = counts[_OBJECTS]
+    for object_ in range(count):
+        x = objects[object_]
+        y = objects[count + object_]
+        reach = objects[2 * count + object_] + sizes[_OBJECT_REACH]
         at = first_from(robots, order, xs, x - reach)
         while at < robots and xs[order[at]] <= x + reach:
             robot = order[at]

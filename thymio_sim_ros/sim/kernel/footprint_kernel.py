@@ -53,7 +53,7 @@ def sample(
     ys: Floats,
     tiles: Ints,
     pixels: Words,
-    greys: Floats,
+    grays: Floats,
     near: Ints,
     reflectances: Floats,
     floors: Floats,
@@ -74,12 +74,12 @@ def sample(
             counts[_IS_UNKNOWN] = 1
             return
         if color != _MIXED:
-            reflectances[place] = greys[color]
+            reflectances[place] = grays[color]
             floors[place] = 1.0 if color != 0 else 0.0
             continue
         taps(cell_x, counts[_ORIGIN_X], width, sizes, near, 0)
         taps(cell_y, counts[_ORIGIN_Y], height, sizes, near, _TAPS)
-        grey = 0.0
+        gray = 0.0
         missing = 0.0
         for along in range(_TAPS):
             row = near[_TAPS + along]
@@ -90,14 +90,14 @@ def sample(
                 color = 0
                 if 0 <= row < height and 0 <= column < width:
                     color = pixels[row * width + column]
-                grey_across += sizes[_WEIGHTS + across] * greys[color]
+                grey_across += sizes[_WEIGHTS + across] * grays[color]
                 if color == 0:
                     missing_across += sizes[_WEIGHTS + across]
-            grey += sizes[_WEIGHTS + along] * grey_across
+            gray += sizes[_WEIGHTS + along] * grey_across
             missing += sizes[_WEIGHTS + along] * missing_across
         floor = 1.0
         if missing > 0.0:
             floor = 1.0 - missing if missing < _ALL else 0.0
-            grey = grey / floor if floor > 0.0 else 0.0
-        reflectances[place] = grey
+            gray = gray / floor if floor > 0.0 else 0.0
+        reflectances[place] = gray
         floors[place] = floor

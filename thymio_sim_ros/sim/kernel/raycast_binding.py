@@ -1,4 +1,4 @@
-"""The kernel of rays for one fan of sensors on always the same robots: its arrays, and how it is called."""
+"""Binding of the ray cast kernel for the fan of one sensor on a fixed set of robots."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from thymio_sim_ros.sim.kernel import raycast_kernel
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 
-__all__ = ["Casting", "Rays"]
+__all__ = ["FanArrays", "RaycastBinding"]
 
 Values = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
@@ -22,7 +22,7 @@ _SPARE = 2
 _FEW = 64
 
 
-class Rays(Protocol):
+class FanArrays(Protocol):
     """What a fan says of its sensors."""
 
     places: Values
@@ -35,10 +35,12 @@ class Rays(Protocol):
     is_narrow: bool
 
 
-class Casting:
+class RaycastBinding:
     """What is near, and what rays meet of it. Invariant: after `begin`, which says what is near."""
 
-    def __init__(self, fan: Rays, robots: int, things: int, fixed: int, hull: Sequence[float], most_m: float) -> None:
+    def __init__(
+        self, fan: FanArrays, robots: int, things: int, fixed: int, hull: Sequence[float], most_m: float
+    ) -> None:
         """`hull`: middle, turn and half size of a robot in its frame; the list of what is near holds for `most_m`."""
         self._fan, self._robots, self._things, self._fixed = fan, robots, things, fixed
         self._sizes = (fan.range_m, fan.reach_m, most_m, *hull)
@@ -62,7 +64,7 @@ class Casting:
         if len(thing) > self._room[0] or len(planes) > self._room[1]:
             self._room = (max(_FEW, _SPARE * len(thing)), max(_FEW, _SPARE * len(planes)))
             self._take()
-        self._frames[:] = frames
+        self._table[:] = frames
         self._kinds[:] = kinds
         self._plane_rows[: len(planes)] = planes
         self._side_numbers[: len(polygons) + 1] = np.cumsum([0, *map(len, polygons)])
@@ -72,11 +74,11 @@ class Casting:
         self._was[:] = places
 
     def cast(self, poses: Values, rows: Values) -> tuple[Indices, Values] | None:
-        """As `Raycaster.cast`, of things with these `rows` now; None when what is near has to be found anew."""
+        """As `BatchRaycaster.cast`, of things with these `rows` now; None when what is near has to be found anew."""
         if self._room[0] == 0:
             return None
         self._poses[:] = poses
-        self._frames[: self._things] = rows
+        self._table[: self._things] = rows
         np.cos(poses[:, 2], out=self._turns[0])
         np.sin(poses[:, 2], out=self._turns[1])
         self._call()
@@ -104,7 +106,7 @@ class Casting:
             part[:] = values
         counts[:6] = robots, sensors, count, self._things, self._fixed, fan.is_narrow
         self._memory = memory
-        self._poses, self._turns, self._frames, self._was = poses, turns, frames, was
+        self._poses, self._turns, self._table, self._was = poses, turns, frames, was
         self._plane_rows, self._distances = plane_rows, distances
         self._counts, self._kinds, self._first, self._near = counts, kinds, first, near
         self._side_numbers, self._numbers = side_numbers, numbers

@@ -1,4 +1,4 @@
-"""Kernel: how far the rays of all robots go. The sums of `Raycaster.cast`, operation by operation."""
+"""Kernel: the distances of the rays of all robots, computed as in `BatchRaycaster.cast`, operation by operation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The kernel of noise for one bank: its arrays, and how it is called."""
+"""Binding of the random number kernel for one bank."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import numpy.typing as npt
 from thymio_sim_ros.sim.kernel import rng_kernel
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 
-__all__ = ["Dealing"]
+__all__ = ["RngBinding"]
 
 Values = npt.NDArray[np.float64]
 
 
-class Dealing:
+class RngBinding:
     """Numbers drawn ahead: a row of `numbers` for each user, of which the first `used` are gone."""
 
     def __init__(self, users: int, width: int, most: int) -> None:
@@ -21,19 +21,19 @@ class Dealing:
         memory, floats, ints = KernelMemory.holding(
             [(users, width), (most,)], [(len(rng_kernel.COUNTS),), (users,), (most,)]
         )
-        self.numbers, self._dealt = floats
+        self.numbers, self._drawn = floats
         self._counts, self.used, self._users = ints
         self._counts[1] = width
         self._memory = memory
         self.most = most
         self._call = memory.bind(
-            rng_kernel, rng_kernel.deal, self._counts, self._users, self.numbers, self.used, self._dealt
+            rng_kernel, rng_kernel.draw, self._counts, self._users, self.numbers, self.used, self._drawn
         )
 
-    def deal(self, users: npt.NDArray[np.intp]) -> Values | None:
+    def draw(self, users: npt.NDArray[np.intp]) -> Values | None:
         """A number for each turn of a user, to be read until the next call; None when one has too few left."""
         turns = len(users)
         self._users[:turns] = users
         self._counts[0] = turns
         self._call()
-        return None if self._counts[2] else self._dealt[:turns]
+        return None if self._counts[2] else self._drawn[:turns]

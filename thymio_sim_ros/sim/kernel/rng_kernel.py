@@ -1,19 +1,19 @@
-"""Kernel: numbers that were drawn ahead are dealt out to their users. What `NormalBank.draw` does, step by step."""
+"""Kernel: hand out numbers that were drawn ahead to their users, as `NormalBank.draw` does."""
 
 from __future__ import annotations
 
 from thymio_sim_ros.sim.kernel.compiler import Floats, Ints
 
-__all__ = ["COUNTS", "KERNELS", "deal"]
+__all__ = ["COUNTS", "KERNELS", "draw"]
 
-KERNELS = ("deal",)
+KERNELS = ("draw",)
 
 COUNTS = ("turns", "width", "is_short")
 """What each of `counts` is: so many turns, so many numbers in a row; the last is an answer."""
 _TURNS, _WIDTH, _IS_SHORT = range(len(COUNTS))
 
 
-def deal(counts: Ints, users: Ints, numbers: Floats, used: Ints, dealt: Floats) -> None:
+def draw(counts: Ints, users: Ints, numbers: Floats, used: Ints, drawn: Floats) -> None:
     """The next number for each turn of a user, unless one has too few: then none is dealt."""
     width = counts[_WIDTH]
     counts[_IS_SHORT] = 0
@@ -24,5 +24,5 @@ def deal(counts: Ints, users: Ints, numbers: Floats, used: Ints, dealt: Floats) 
             for earlier in range(turn):
                 used[users[earlier]] -= 1
             return
-        dealt[turn] = numbers[user * width + used[user]]
+        drawn[turn] = numbers[user * width + used[user]]
         used[user] += 1

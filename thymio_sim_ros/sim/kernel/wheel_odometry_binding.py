@@ -1,4 +1,4 @@
-"""The kernels of rolling wheels for always the same robots: their arrays, and how they are called."""
+"""Binding of the wheel odometry kernels for a fixed set of robots."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import numpy.typing as npt
 from thymio_sim_ros.sim.kernel import wheel_odometry_kernel
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 
-__all__ = ["Counting"]
+__all__ = ["WheelOdometryBinding"]
 
 Values = npt.NDArray[np.float64]
 
 
-class Counting:
+class WheelOdometryBinding:
     """What is counted on wheels: `odometry` and `angles`, which `roll` changes."""
 
     def __init__(self, robots: int, dt_s: float, track_m: float, radius_m: float) -> None:

@@ -1,8 +1,8 @@
-"""A robot that has lost the floor.
+"""A robot that has fallen off an edge.
 
-Its origin, which is its centre of mass, was over nothing (docs/spec/thymio-robot.md section 1.1). It falls freely for
-as long as a thing needs from a table of 0.2 m, tips over in the direction in which it went, and then lies there, its
-wheels in the air, until somebody moves it. The height and the slant are own choices: no source has either.
+Its origin, the center of mass, is not over the floor (docs/spec/thymio-robot.md section 1.1). It falls
+freely for as long as from a table of 0.2 m, tilts in the direction of its motion, and then lies with its wheels in the
+air until it is moved. Height and tilt are assumptions: no source gives them.
 """
 
 from __future__ import annotations

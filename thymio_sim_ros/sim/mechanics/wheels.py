@@ -1,4 +1,4 @@
-"""The wheels of robots: what they are told, how far they turned, and the odometry counted from them."""
+"""The wheels of robots: target speeds, angles, and the odometry computed from them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim.kernel.memory import is_available
-from thymio_sim_ros.sim.kernel.wheel_odometry_binding import Counting
+from thymio_sim_ros.sim.kernel.wheel_odometry_binding import WheelOdometryBinding
 from thymio_sim_ros.sim.mechanics.motor_control import WheelControl
 from thymio_sim_ros.sim.model.geometry import Pose, Twist
 from thymio_sim_ros.sim.model.robot_constants import WHEEL_RADIUS_M, WHEEL_TRACK_M
@@ -40,16 +40,16 @@ class Wheels:
 
     @property
     def odometry(self) -> Pose:
-        """Where the wheels have brought the robot, by their count alone."""
+        """Pose by wheel odometry."""
         return Pose(*self.place)
 
     @property
     def twist(self) -> Twist:
-        """The body's motion as the wheels tell it."""
+        """The body's velocity by wheel odometry."""
         return twist_of(*self.speeds_m_s)
 
     def drive(self, commanded: tuple[float, float], slip: tuple[float, float], limit_m_s: float) -> None:
-        """Aim at speeds; the floor gets them times slip. Both are limited: far above, nothing of the slip is left."""
+        """Set target speeds; the speeds over ground are these times slip, both clamped to the limit."""
         left, right = commanded
         ground = (left * slip[0], right * slip[1])
         if not (
@@ -61,7 +61,7 @@ class Wheels:
         self.commanded, self.ground = commanded, ground
 
     def roll(self, covered_m_s: tuple[float, float], dt_s: float) -> None:
-        """Count a tick in which the robot covered ground at this speed at each wheel."""
+        """Advance angles and odometry by a tick, given the mean speed over ground at each wheel."""
         if covered_m_s == self.ground:
             self.speeds_m_s = self.commanded
         else:
@@ -72,16 +72,16 @@ class Wheels:
         left, right = self.speeds_m_s
         if left == 0.0 and right == 0.0:
             return
-        way, turn = (left + right) / 2 * dt_s, (right - left) / WHEEL_TRACK_M * dt_s
+        distance, turn = (left + right) / 2 * dt_s, (right - left) / WHEEL_TRACK_M * dt_s
         x_m, y_m, yaw_rad = self.place
         heading = yaw_rad + turn / 2
-        self.place = (x_m + way * math.cos(heading), y_m + way * math.sin(heading), yaw_rad + turn)
+        self.place = (x_m + distance * math.cos(heading), y_m + distance * math.sin(heading), yaw_rad + turn)
         angle_left, angle_right = self.angles_rad
         per_m = dt_s / WHEEL_RADIUS_M
         self.angles_rad = (angle_left + left * per_m, angle_right + right * per_m)
 
     def reset_odometry(self) -> None:
-        """Start counting from zero, here."""
+        """Set the odometry to zero."""
         self.place = (0.0, 0.0, 0.0)
 
 
@@ -95,51 +95,52 @@ def _limited(speed_m_s: float, limit_m_s: float) -> float:
 
 
 class WheelArrays:
-    """The wheels of many robots: the sums of `Wheels` on arrays, whose rows are left and right.
+    """The wheels of a batch: the computations of `Wheels` on arrays of shape (2, robots), left first.
 
-    The arrays are the truth, and each `Wheels` may be read, and changed, after `tell` until the next `drive` or `roll`.
+    The arrays are authoritative. After `write_back`, and until the next `drive` or `roll`, each `Wheels` may be read
+    and changed.
     """
 
     def __init__(self, wheels: Sequence[Wheels], *, is_compiled: bool | None = None) -> None:
-        """`is_compiled`: by kernels, or with numpy; None: by kernels where they are available. Nothing else differs."""
+        """`is_compiled`: use kernels, or numpy; None: kernels if available. The results are the same."""
         self._wheels = tuple(wheels)
         self._is_compiled = is_available() if is_compiled is None else is_compiled
-        self._counting: Counting | None = None
-        self.is_told = True
+        self._odometry_binding: WheelOdometryBinding | None = None
+        self.is_written_back = True
         """Whether the wheels are the truth just now."""
         self._given: Values | None = None
         """What was commanded last, beyond the limit perhaps."""
         self._allowed: Values = np.zeros((2, 0))
-        self.take()
+        self.load()
 
     @property
     def ground(self) -> Values:
         """Speeds that reach the floor, m/s."""
-        self.take()
+        self.load()
         return self._ground
 
     @property
     def speeds(self) -> Values:
         """Speeds at the rim, m/s."""
-        self.take()
+        self.load()
         return self._speeds
 
     @property
     def commanded(self) -> Values:
         """Speeds that the motors aim at, m/s."""
-        self.take()
+        self.load()
         return self._commanded
 
     @property
     def angles(self) -> Values:
         """How far they have turned, rad."""
-        self.take()
+        self.load()
         return self._angles
 
     @property
     def odometry(self) -> Values:
         """Where they have brought the robots by their count: rows x, y, yaw."""
-        self.take()
+        self.load()
         return self._odometry
 
     @property
@@ -151,33 +152,33 @@ class WheelArrays:
         """The loops that one robot's motors follow."""
         self._wheels[number].control = control
 
-    def tell(self) -> None:
-        """Write to the wheels what they are now."""
-        if self.is_told:
+    def write_back(self) -> None:
+        """Write the arrays back to the `Wheels`."""
+        if self.is_written_back:
             return
-        self.is_told = True
+        self.is_written_back = True
         columns = (self._commanded, self._ground, self._speeds, self._angles)
         pairs = zip(*(zip(*values.tolist(), strict=True) for values in columns), strict=True)
         for wheels, values, place in zip(self._wheels, pairs, zip(*self._odometry.tolist(), strict=True), strict=True):
             wheels.commanded, wheels.ground, wheels.speeds_m_s, wheels.angles_rad = values
             wheels.place = place
 
-    def take(self) -> None:
-        """Read what the wheels are, if they may have been changed."""
-        if not self.is_told:
+    def load(self) -> None:
+        """Read the `Wheels` into the arrays, if they may have been changed."""
+        if not self.is_written_back:
             return
-        self.is_told = False
+        self.is_written_back = False
         self._commanded = _rows([wheels.commanded for wheels in self._wheels], 2)
         self._ground = _rows([wheels.ground for wheels in self._wheels], 2)
         self._speeds = _rows([wheels.speeds_m_s for wheels in self._wheels], 2)
         self._angles = _rows([wheels.angles_rad for wheels in self._wheels], 2)
         self._odometry = _rows([wheels.place for wheels in self._wheels], 3)
-        if self._counting is not None:
-            self._counting.odometry[:], self._counting.angles[:] = self._odometry, self._angles
+        if self._odometry_binding is not None:
+            self._odometry_binding.odometry[:], self._odometry_binding.angles[:] = self._odometry, self._angles
 
     def drive(self, commanded: Values, slip: Values, limit_m_s: float) -> None:
-        """As `Wheels.drive`. An array that is given again has not been changed."""
-        self.take()
+        """Set target speeds, shape (2, robots); `commanded` must not be modified afterwards."""
+        self.load()
         if commanded is not self._given:
             self._given = commanded
             self._allowed = np.maximum(-limit_m_s, np.minimum(limit_m_s, commanded))
@@ -187,16 +188,16 @@ class WheelArrays:
         np.maximum(ground, -limit_m_s, out=ground)
 
     def roll(self, covered_m_s: Values, dt_s: float) -> None:
-        """As `Wheels.roll`."""
-        self.take()
+        """Advance angles and odometry by a tick; `covered_m_s` has shape (2, robots)."""
+        self.load()
         if self._is_compiled:
             self._roll_compiled(covered_m_s, dt_s)
             return
         self._speeds = speeds = covered_m_s - self._ground
         speeds += self._commanded
         left, right = speeds
-        way, turn = left + right, right - left
-        way *= dt_s / 2
+        distance, turn = left + right, right - left
+        distance *= dt_s / 2
         turn /= WHEEL_TRACK_M
         turn *= dt_s
         before, self._odometry = self._odometry, np.empty_like(self._odometry)
@@ -205,17 +206,19 @@ class WheelArrays:
         place = self._odometry[:2]
         np.cos(heading, out=place[0])
         np.sin(heading, out=place[1])
-        place *= way
+        place *= distance
         place += before[:2]
         np.add(before[2], turn, out=self._odometry[2])
         self._angles = self._angles + speeds * (dt_s / WHEEL_RADIUS_M)
 
     def _roll_compiled(self, covered_m_s: Values, dt_s: float) -> None:
-        counting = self._counting
-        if counting is None or counting.dt_s != dt_s:
-            counting = self._counting = Counting(len(self._wheels), dt_s, WHEEL_TRACK_M, WHEEL_RADIUS_M)
-            counting.odometry[:], counting.angles[:] = self._odometry, self._angles
-        self._speeds, self._odometry, self._angles = counting.roll(covered_m_s, self._ground, self._commanded)
+        binding = self._odometry_binding
+        if binding is None or binding.dt_s != dt_s:
+            binding = self._odometry_binding = WheelOdometryBinding(
+                len(self._wheels), dt_s, WHEEL_TRACK_M, WHEEL_RADIUS_M
+            )
+            binding.odometry[:], binding.angles[:] = self._odometry, self._angles
+        self._speeds, self._odometry, self._angles = binding.roll(covered_m_s, self._ground, self._commanded)
 
 
 def _rows(values: Sequence[Sequence[float]], width: int) -> Values:

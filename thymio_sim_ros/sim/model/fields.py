@@ -106,7 +106,7 @@ class File:
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """A list of [x, y] in metres."""
+    """A list of [x, y] in meters."""
 
     fewest: int
     most: int

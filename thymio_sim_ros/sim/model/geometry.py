@@ -1,6 +1,6 @@
 """Plane geometry: poses, twists, and convex outlines as half planes that rays and overlap tests use.
 
-Right-handed, x forward, y left, angles in radians counter-clockwise from x (REP 103); metres.
+Right-handed, x forward, y left, angles in radians counter-clockwise from x (REP 103); meters.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Position in metres and heading in radians."""
+    """Position in meters and heading in radians."""
 
     x_m: float
     y_m: float

@@ -1,8 +1,8 @@
-"""Repeatable randomness: one generator for each robot and each of its sensors and actuators, and banks of many.
+"""Repeatable random numbers: one generator per robot and sensor or actuator, and banks of generators for batches.
 
-Every generator is a sequence of even numbers in [0, 1); normal numbers are made of two of them at a time (Box and
-Muller). A bank draws ahead for many users at once and gives back what it has not used, so that the sequence of each
-stays the same.
+Every generator is a sequence of uniform random numbers in [0, 1). Normal numbers are made of two of them at a time
+(Box-Muller). A bank draws ahead for many generators at once and returns unused numbers, so that the sequence of each
+stays the same as without a bank.
 """
 
 from __future__ import annotations
@@ -16,20 +16,23 @@ import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim.kernel.memory import is_available
-from thymio_sim_ros.sim.kernel.rng_binding import Dealing
+from thymio_sim_ros.sim.kernel.rng_binding import RngBinding
 
 __all__ = ["Noise", "NormalBank", "UniformBank"]
 
 Values = npt.NDArray[np.float64]
 
 _BLOCK = 128
-"""Numbers that a bank draws ahead for each user; even, since normal numbers come in pairs."""
+"""Numbers that a bank draws ahead per user; a multiple of 2, since normal numbers come in pairs."""
 _WIDTH = 2 * _BLOCK
-"""Numbers that a bank of normal ones keeps for each user: a block that is being used, and the one behind it."""
+"""Numbers that a bank of normal numbers keeps per user: the block in use and the next one."""
 
 
 class Noise:
-    """The random numbers of one user. Invariant: they depend on (seed, robot, user) alone, not on other users."""
+    """The random numbers of one user: a sensor or actuator on one robot.
+
+    Invariant: the sequence depends on (seed, robot, user) alone, not on other users.
+    """
 
     __slots__ = ("_ahead", "_enabled", "_pending", "_random")
 
@@ -39,44 +42,44 @@ class Noise:
         self._enabled = enabled
         self._pending: float | None = None
         self._ahead: list[float] = []
-        """Numbers drawn but not used, the next one last."""
+        """Numbers drawn but not used; the next one is last."""
 
     @property
     def enabled(self) -> bool:
-        """Whether it makes any noise."""
+        """Whether noise is on."""
         return self._enabled
 
     def gauss(self, sigma: float) -> float:
-        """Normal around 0; exactly 0 when noise is off."""
+        """A normal number with mean 0 and standard deviation `sigma`; exactly 0 when noise is off."""
         if not self._enabled:
             return 0.0
         number = self._pending
         if number is not None:
             self._pending = None
             return number * sigma
-        turn, length = self._draw() * math.tau, math.sqrt(-2.0 * math.log(1.0 - self._draw()))
-        self._pending = math.sin(turn) * length
-        return math.cos(turn) * length * sigma
+        angle, length = self._draw() * math.tau, math.sqrt(-2.0 * math.log(1.0 - self._draw()))
+        self._pending = math.sin(angle) * length
+        return math.cos(angle) * length * sigma
 
     def uniform(self, low: float, high: float) -> float:
-        """Even between low and high; their middle when noise is off."""
+        """A uniform number between `low` and `high`; their mean when noise is off."""
         if not self._enabled:
             return (low + high) / 2
         return low + (high - low) * (self._ahead.pop() if self._ahead else self._random.random())
 
     def draw_ahead(self, count: int) -> bytes | Values:
-        """The next numbers, as they are or as 8 bytes each for `evens`; to be given back unless used."""
+        """The next numbers, as floats or as 8 bytes each for `uniforms`; return unused ones by `release`."""
         if len(self._ahead) == 0:
             return self._random.randbytes(8 * count)
         return np.array([self._draw() for _ in range(count)])
 
     def take_pending(self) -> float | None:
-        """The second normal number of a pair of which one is used."""
+        """Remove and return the second normal number of a pair whose first is used; None if there is none."""
         pending, self._pending = self._pending, None
         return pending
 
-    def give_back(self, numbers: Sequence[float], pending: float | None = None) -> None:
-        """Numbers drawn ahead and not used, in order; and the rest of a pair of normal ones."""
+    def release(self, numbers: Sequence[float], pending: float | None = None) -> None:
+        """Return numbers that were drawn ahead and not used, in order, and the rest of a pair of normal numbers."""
         self._ahead += reversed(numbers)
         self._pending = pending
 
@@ -84,8 +87,11 @@ class Noise:
         return self._ahead.pop() if self._ahead else self._random.random()
 
 
-def evens(blocks: Sequence[bytes | Values]) -> Values:
-    """Blocks of `Noise.draw_ahead` as rows of numbers: as `random.random` makes them of 32 bit words."""
+def uniforms(blocks: Sequence[bytes | Values]) -> Values:
+    """Blocks of `Noise.draw_ahead` as rows of uniform numbers.
+
+    `random.random` combines 27 and 26 bits of two 32-bit words of the generator; the same is done here on arrays.
+    """
     raw = [block for block in blocks if isinstance(block, bytes)]
     words = np.frombuffer(b"".join(raw), dtype="<u4").reshape(len(raw), len(raw[0]) // 4 if raw else 0)
     made = iter(((words[:, 0::2] >> 5) * 67108864.0 + (words[:, 1::2] >> 6)) / 9007199254740992.0)
@@ -93,7 +99,7 @@ def evens(blocks: Sequence[bytes | Values]) -> Values:
 
 
 class UniformBank:
-    """Even numbers for many users who always draw the same number of them."""
+    """Uniform numbers for users that always draw equally many."""
 
     def __init__(self, noises: Sequence[Noise]) -> None:
         self._noises = noises
@@ -101,14 +107,14 @@ class UniformBank:
         self._used = 0
         self._limits: tuple[float, float] | None = None
         self._between = self._numbers
-        """The numbers as they are between these limits."""
+        """The numbers scaled to these limits."""
 
     def draw(self, low: float, high: float, count: int) -> Values:
-        """`Noise.uniform` so many times: a row for each time, a column for each user; not to be written to."""
+        """The next `count` numbers of every user, shape (count, users); read-only. See `Noise.uniform`."""
         if not self._noises or not self._noises[0].enabled:
             return np.full((count, len(self._noises)), (low + high) / 2)
         while self._used + count > len(self._numbers):
-            fresh = evens([noise.draw_ahead(_BLOCK) for noise in self._noises]).T
+            fresh = uniforms([noise.draw_ahead(_BLOCK) for noise in self._noises]).T
             self._numbers = np.concatenate((self._numbers[self._used :], fresh))
             self._used = 0
             self._limits = None
@@ -118,10 +124,10 @@ class UniformBank:
         first, self._used = self._used, self._used + count
         return self._between[first : self._used]
 
-    def give_back(self) -> None:
-        """Let every user draw for himself again."""
+    def release(self) -> None:
+        """Return the unused numbers, so that users draw from their own generators again."""
         for noise, numbers in zip(self._noises, self._numbers[self._used :].T.tolist(), strict=True):
-            noise.give_back(numbers)
+            noise.release(numbers)
         self._numbers, self._used, self._limits = np.zeros((0, len(self._noises))), 0, None
 
 
@@ -129,41 +135,41 @@ class NormalBank:
     """Normal numbers for many users."""
 
     def __init__(self, noises: Sequence[Noise], *, is_compiled: bool | None = None) -> None:
-        """`is_compiled`: dealt out by a kernel, or with numpy; None: by a kernel where there is one. Same numbers."""
+        """`is_compiled`: use a kernel, or numpy; None: a kernel if available. The numbers are the same."""
         self._noises = noises
         self._is_compiled = is_available() if is_compiled is None else is_compiled
-        self._dealing: Dealing | None = None
-        self._evens = np.zeros((len(noises), _WIDTH))
+        self._rng_binding: RngBinding | None = None
+        self._uniforms = np.zeros((len(noises), _WIDTH))
         self._numbers = np.zeros((len(noises), _WIDTH))
         self._used: npt.NDArray[np.integer] = np.full(len(noises), _WIDTH)
-        """How many of each row; a user who has used one of a pair starts with the other."""
+        """Numbers used per row; a user that has used one number of a pair starts with the other."""
         for row, noise in enumerate(noises):
             pending = noise.take_pending()
             if pending is not None:
                 self._used[row], self._numbers[row, -1] = _WIDTH - 1, pending
 
     def draw(self, users: npt.NDArray[np.intp], sigma: float) -> Values:
-        """`Noise.gauss` for each of these users, who stand in order; the same one at most `_BLOCK` times."""
+        """One normal number for each entry of `users`, which is sorted; a user may occur at most `_BLOCK` times."""
         if len(users) == 0 or not self._noises[0].enabled:
             return np.zeros(len(users))
-        deal = self._deal_compiled if self._is_compiled else self._deal
-        dealt = deal(users)
+        draw = self._draw_compiled if self._is_compiled else self._draw_numpy
+        dealt = draw(users)
         if dealt is None:
             self._refill(np.flatnonzero(self._used >= _BLOCK))
-            dealt = deal(users)
-            assert dealt is not None  # everybody has a block now
+            dealt = draw(users)
+            assert dealt is not None  # every user has a full block now
         drawn: Values = dealt * sigma
         return drawn
 
-    def give_back(self) -> None:
-        """Let every user draw for himself again."""
+    def release(self) -> None:
+        """Return the unused numbers, so that users draw from their own generators again."""
         for row, (noise, used) in enumerate(zip(self._noises, self._used.tolist(), strict=True)):
             pending = float(self._numbers[row, used]) if used % 2 else None
-            noise.give_back(self._evens[row, used + used % 2 :].tolist(), pending)
+            noise.release(self._uniforms[row, used + used % 2 :].tolist(), pending)
         self._used[:] = _WIDTH
 
-    def _deal(self, users: npt.NDArray[np.intp]) -> Values | None:
-        """The next number for each turn of a user; None when one has too few left."""
+    def _draw_numpy(self, users: npt.NDArray[np.intp]) -> Values | None:
+        """The next number for each entry of `users`; None if a user has too few left."""
         before = np.arange(len(users)) - np.searchsorted(users, users)
         counts = np.bincount(users, minlength=len(self._noises))
         if (self._used + counts).max() > _WIDTH:
@@ -172,27 +178,27 @@ class NormalBank:
         self._used += counts
         return dealt
 
-    def _deal_compiled(self, users: npt.NDArray[np.intp]) -> Values | None:
-        """As `_deal`."""
-        dealing = self._dealing
-        if dealing is None or dealing.most < len(users):
-            dealing = Dealing(*self._numbers.shape, most=2 * len(users))
-            dealing.numbers[:], dealing.used[:] = self._numbers, self._used
-            self._numbers, self._used = dealing.numbers, dealing.used
-            self._dealing = dealing  # not before: whoever owned the numbers keeps them until they are copied
-        return dealing.deal(users)
+    def _draw_compiled(self, users: npt.NDArray[np.intp]) -> Values | None:
+        """What `_draw_numpy` does, by a kernel."""
+        binding = self._rng_binding
+        if binding is None or binding.most < len(users):
+            binding = RngBinding(*self._numbers.shape, most=2 * len(users))
+            binding.numbers[:], binding.used[:] = self._numbers, self._used
+            self._numbers, self._used = binding.numbers, binding.used
+            self._rng_binding = binding  # last: the former arrays are needed until they are copied
+        return binding.draw(users)
 
     def _refill(self, rows: npt.NDArray[np.intp]) -> None:
-        """A new block behind the last one of each of these users; the one before it is used.
+        """Append a block to these rows, whose first block is used up.
 
-        Whoever can take one gets it, wanting or not: filling many at once costs little more than filling one.
+        All such rows are filled, not only those in need: filling many at once costs little more than filling one.
         """
-        fresh = evens([self._noises[row].draw_ahead(_BLOCK) for row in rows.tolist()])
-        turn, length = fresh[:, 0::2] * math.tau, np.sqrt(-2.0 * np.log(1.0 - fresh[:, 1::2]))
-        for values in (self._evens, self._numbers):
+        fresh = uniforms([self._noises[row].draw_ahead(_BLOCK) for row in rows.tolist()])
+        angle, length = fresh[:, 0::2] * math.tau, np.sqrt(-2.0 * np.log(1.0 - fresh[:, 1::2]))
+        for values in (self._uniforms, self._numbers):
             values[rows, :_BLOCK] = values[rows, _BLOCK:]
-        self._evens[rows, _BLOCK:] = fresh
+        self._uniforms[rows, _BLOCK:] = fresh
         numbers = np.empty(fresh.shape)
-        numbers[:, 0::2], numbers[:, 1::2] = np.cos(turn) * length, np.sin(turn) * length
+        numbers[:, 0::2], numbers[:, 1::2] = np.cos(angle) * length, np.sin(angle) * length
         self._numbers[rows, _BLOCK:] = numbers
         self._used[rows] -= _BLOCK

@@ -35,7 +35,7 @@ Color = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """Outline: a rectangle centred on its pose."""
+    """Outline: a rectangle centered on its pose."""
 
     size_x_m: float
     size_y_m: float
@@ -62,7 +62,7 @@ class Box:
 
 @dataclass(frozen=True, slots=True)
 class Disc:
-    """Outline: a circle centred on its pose."""
+    """Outline: a circle centered on its pose."""
 
     radius_m: float
 
@@ -172,7 +172,7 @@ class Paint:
 
 @dataclass(frozen=True, slots=True)
 class Print:
-    """A picture on the ground, centred on its pose; its first row is the far side (+y), its first column -x.
+    """A picture on the ground, centered on its pose; its first row is the far side (+y), its first column -x.
 
     `rgba` holds red, green, blue, opacity (0…255) of each pixel, row by row; the ground shows through what is not
     opaque. Like paint it covers what was painted before.

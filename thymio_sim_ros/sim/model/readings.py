@@ -30,7 +30,7 @@ class ProximityReading:
 class GroundReading:
     """Two ground sensors, left then right.
 
-    `words`: ambient l r, reflected l r, delta l r (0…1023). `reflectances`: grey under each, 0…1.
+    `words`: ambient l r, reflected l r, delta l r (0…1023). `reflectances`: gray under each, 0…1.
     """
 
     stamp_ns: int

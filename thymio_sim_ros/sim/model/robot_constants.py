@@ -37,7 +37,7 @@ PWM_LIMIT = 801
 """Limit of motor.*.pwm (section 2.1)."""
 
 DRIVE_FORCE_N = 2.65
-"""The most that the tyres can push: the weight, as rubber grips. Own choice: section 11 asks for a finite force."""
+"""The most that the tires can push: the weight, as rubber grips. Own choice: section 11 asks for a finite force."""
 
 PROXIMITY_POSES: tuple[tuple[float, float, float], ...] = (
     (0.062, 0.0485, math.radians(40)),
@@ -51,7 +51,7 @@ PROXIMITY_POSES: tuple[tuple[float, float, float], ...] = (
 """x, y, heading of the proximity sensors in Thymio's order 0…6: left to right, then rear left, rear right (section
 7.1)."""
 PROXIMITY_MODELS = ("default", "enki", "cone")
-"""How they may see: `sensors.proximity` tells the equations apart."""
+"""Models of proximity sensors; `sensors.proximity` has the equations."""
 
 PROXIMITY_HEIGHT_M = 0.034
 """Lower things are not seen (section 7.1)."""

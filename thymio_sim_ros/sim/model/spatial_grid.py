@@ -1,4 +1,4 @@
-"""A file of things by place: a square grid in which each thing lies wherever its bounds touch."""
+"""A uniform grid: each item is in all cells that its bounds touch."""
 
 from __future__ import annotations
 
@@ -7,52 +7,52 @@ from collections.abc import Iterator
 from itertools import product
 from typing import Generic, TypeVar
 
-__all__ = ["SIDE_M", "Bounds", "Square", "Squares", "square_of"]
+__all__ = ["CELL_SIDE_M", "Bounds", "Cell", "SpatialGrid", "cell_of"]
 
 T = TypeVar("T")
 
-SIDE_M = 0.5
-_MOST = 400
-"""What touches more squares than this is found everywhere."""
+CELL_SIDE_M = 0.5
+_MAX_CELLS = 400
+"""An item that touches more cells than this is returned by every query."""
 
 Bounds = tuple[float, float, float, float]
 """Left, bottom, right, top."""
-Square = tuple[int, int]
+Cell = tuple[int, int]
 
 
-def square_of(x_m: float, y_m: float) -> Square:
-    """The square that holds a place."""
-    return math.floor(x_m / SIDE_M), math.floor(y_m / SIDE_M)
+def cell_of(x_m: float, y_m: float) -> Cell:
+    """The cell that contains a point."""
+    return math.floor(x_m / CELL_SIDE_M), math.floor(y_m / CELL_SIDE_M)
 
 
-class Squares(Generic[T]):
-    """Things by place. Invariant: a query never misses a thing whose bounds meet its own."""
+class SpatialGrid(Generic[T]):
+    """Items by position. Invariant: a query never misses an item whose bounds overlap its own."""
 
     def __init__(self) -> None:
         self._everywhere: list[T] = []
-        self._filed: dict[Square, list[T]] = {}
+        self._cells: dict[Cell, list[T]] = {}
 
     def add(self, thing: T, bounds: Bounds) -> None:
-        """File a thing."""
+        """Add an item."""
         columns, rows = _touched(bounds)
-        if len(columns) * len(rows) > _MOST:
+        if len(columns) * len(rows) > _MAX_CELLS:
             self._everywhere.append(thing)
             return
-        for square in product(columns, rows):
-            self._filed.setdefault(square, []).append(thing)
+        for cell in product(columns, rows):
+            self._cells.setdefault(cell, []).append(thing)
 
     def near(self, bounds: Bounds) -> Iterator[T]:
-        """What may meet these bounds, each thing once, in an order that depends on the past alone."""
+        """Items that may overlap these bounds, each once, in an order that depends on the sequence of calls only."""
         columns, rows = _touched(bounds)
         found = dict.fromkeys(self._everywhere)
-        wanted = self._filed if len(columns) * len(rows) > len(self._filed) else product(columns, rows)
-        for square in wanted:
-            found.update(dict.fromkeys(self._filed.get(square, ())))
+        wanted = self._cells if len(columns) * len(rows) > len(self._cells) else product(columns, rows)
+        for cell in wanted:
+            found.update(dict.fromkeys(self._cells.get(cell, ())))
         return iter(found)
 
 
 def _touched(bounds: Bounds) -> tuple[range, range]:
     """Columns and rows of the squares that bounds touch."""
-    left, bottom = square_of(bounds[0], bounds[1])
-    right, top = square_of(bounds[2], bounds[3])
+    left, bottom = cell_of(bounds[0], bounds[1])
+    right, top = cell_of(bounds[2], bounds[3])
     return range(left, right + 1), range(bottom, top + 1)

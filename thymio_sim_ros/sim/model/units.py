@@ -103,12 +103,12 @@ def proximity_distance(count: float) -> float:
 
 
 def ground_response(reflectance: float) -> float:
-    """Count of a ground sensor over a grey 0…1: 60 + 884 / (1 + exp(-9 (g - 0.44)))."""
+    """Count of a ground sensor over a gray 0…1: 60 + 884 / (1 + exp(-9 (g - 0.44)))."""
     return _GROUND_BLACK + _GROUND_SPAN / (1.0 + math.exp(-_GROUND_SLOPE * (reflectance - _GROUND_MIDDLE)))
 
 
 def ground_reflectance(count: float) -> float:
-    """The grey 0…1 over which a ground sensor gives a count."""
+    """The gray 0…1 over which a ground sensor gives a count."""
     above = count - _GROUND_BLACK
     if not 0.0 < above < _GROUND_SPAN:
         return 0.0 if above <= 0.0 else 1.0
@@ -116,7 +116,7 @@ def ground_reflectance(count: float) -> float:
 
 
 def ground_responses(reflectances: Values) -> Values:
-    """`ground_response` of many greys."""
+    """`ground_response` of many grays."""
     found: Values = _GROUND_BLACK + _GROUND_SPAN / (1.0 + np.exp(-_GROUND_SLOPE * (reflectances - _GROUND_MIDDLE)))
     return found
 

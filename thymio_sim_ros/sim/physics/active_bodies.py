@@ -1,4 +1,4 @@
-"""The robots of a fleet that are in the engine's space: the sums of `RobotBody.push` and `settle` on arrays."""
+"""The robots of a batch that are in pymunk's space: `RobotBody.push` and `finish_sub_step` on arrays."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ import numpy.typing as npt
 
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS
-from thymio_sim_ros.sim.physics.pymunk_batch_io import FORCES, SPEEDS, Reader, Setter
+from thymio_sim_ros.sim.physics.pymunk_batch_io import FORCES, SPEEDS, BodyReader, BodyWriter
 from thymio_sim_ros.sim.physics.robot_body import MOMENT_KG_M2, PUSH_N_S_M, RobotBody
 
-__all__ = ["Engaged"]
+__all__ = ["ActiveBodies"]
 
 Values = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
 Flags = npt.NDArray[np.bool_]
 
 
-class Engaged:
-    """Some robots of a fleet, always the same; in its arrays each has a column.
+class ActiveBodies:
+    """A fixed set of robots of a batch; each has a column in the arrays.
 
-    Who touches nothing moves as the fleet reckons; the engine only has to find out when that ends. Those are held who
-    touch something, or have done so in this tick: what becomes of them is read from the engine.
+    A robot that touches nothing moves as the batch driver computed; pymunk only detects when that ends. A robot is
+    *held* if it touches something, or has in this tick: its motion is read from pymunk.
     """
 
-    def __init__(self, bodies: Sequence[RobotBody], numbers: Indices, setter: Setter) -> None:
-        """Those of the bodies with these numbers, whom the setter sets from now on."""
+    def __init__(self, bodies: Sequence[RobotBody], numbers: Indices, setter: BodyWriter) -> None:
+        """The bodies with these numbers; the writer writes to them from now on."""
         self.numbers = numbers
         self._bodies = [bodies[number].body for number in numbers.tolist()]
         self._rows: Indices = np.zeros(0, dtype=np.intp)
@@ -37,7 +37,7 @@ class Engaged:
         self._setter = setter
         setter.choose(self._bodies)
         self._state = np.zeros((6, count))
-        """Rows x, y, yaw, vx, vy, rate of turn; of those who touch something, as the engine has them."""
+        """Rows x, y, yaw, vx, vy, turn rate, as in pymunk; valid for robots in contact."""
         for column, number in enumerate(numbers.tolist()):
             if bodies[number].touching:
                 body = bodies[number].body
@@ -46,13 +46,13 @@ class Engaged:
         self._cos, self._sin, self._speed = np.zeros(count), np.zeros(count), np.zeros(count)
         self._covered = np.zeros((2, count))
         self._touching, self._held = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
-        self._is_anybody_touching = self.is_anybody_held = False
+        self._is_any_touching = self.is_any_held = False
 
     def __len__(self) -> int:
         return len(self.numbers)
 
     def begin_tick(self, driven: Values, rolling: Values, yaw: Values, touching: Flags | None) -> None:
-        """What the fleet knows of all its robots. `touching` is None when it is nobody.
+        """Start a tick with the state of all robots of the batch. `touching` is None if no robot is in contact.
 
         Rows of `driven`: what each wheel wants; of `rolling`: speed, rate of turn, the turn in half a sub-step and in
         a whole one.
@@ -62,24 +62,24 @@ class Engaged:
         self._rolling = rolling[:, numbers]
         self._target[2] = self._rolling[1]
         self._yaw = yaw[numbers]
-        self._is_anybody_touching = self.is_anybody_held = touching is not None
+        self._is_any_touching = self.is_any_held = touching is not None
         if touching is not None:
             self._touching = touching[numbers]
             self._held = self._touching.copy()
             self._covered[:] = 0.0
 
     def push(self) -> None:
-        """As `RobotBody.push`."""
+        """Before a sub-step: write speeds, and in contact forces, to pymunk (`RobotBody.push` on arrays)."""
         speed, _, half_turn, _ = self._rolling
         heading = self._yaw + half_turn
-        if self._is_anybody_touching:
+        if self._is_any_touching:
             heading += self._touching * self._state[5] * SUB_STEP_S
         target = self._target
         np.cos(heading, out=self._cos)
         np.sin(heading, out=self._sin)
         np.multiply(speed, self._cos, out=target[0])
         np.multiply(speed, self._sin, out=target[1])
-        if not self._is_anybody_touching:
+        if not self._is_any_touching:
             self._setter.set(SPEEDS, target.T)
             return
         motion, wanted = self._state[3:], self._wanted
@@ -93,19 +93,19 @@ class Engaged:
         np.copyto(wanted[:3], motion, where=self._touching)
         self._setter.set(FORCES, wanted.T)
 
-    def settle(self, earlier: int, reader: Reader, touching: Flags | None) -> None:
-        """As `RobotBody.settle`; `touching` is that of the fleet if it has changed in this sub-step."""
+    def finish_sub_step(self, earlier: int, reader: BodyReader, touching: Flags | None) -> None:
+        """After a sub-step: read back the held robots. `touching`, of all robots, is None if it has not changed."""
         if touching is not None:
             self._touching = touching[self.numbers]
-            self._is_anybody_touching = bool(np.count_nonzero(self._touching))
-        if not (self._is_anybody_touching or self.is_anybody_held):
+            self._is_any_touching = bool(np.count_nonzero(self._touching))
+        if not (self._is_any_touching or self.is_any_held):
             self._yaw = self._yaw + self._rolling[3]
             return
         reader.read()
         if reader.order != self._order:
             self._order, self._rows = reader.order, reader.rows(self._bodies)
-        if not self.is_anybody_held:
-            self.is_anybody_held = True
+        if not self.is_any_held:
+            self.is_any_held = True
             self._held = np.zeros(len(self), dtype=bool)
         if touching is not None:
             begun = self._touching & ~self._held
@@ -118,8 +118,8 @@ class Engaged:
         self._covered[0] += (speed - half) / SUB_STEPS
         self._covered[1] += (speed + half) / SUB_STEPS
 
-    def note(self, now: Values) -> Indices:
-        """Write what has become of those held to their columns of the fleet; their numbers.
+    def write_held(self, now: Values) -> Indices:
+        """Write the state of the held robots to their columns of `now`; returns their numbers.
 
         Rows x, y, yaw, speed along the heading, rate of turn, speed over ground at the left and the right wheel.
         """

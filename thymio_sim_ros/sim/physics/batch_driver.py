@@ -1,9 +1,9 @@
-"""The bodies of many robots at once: the sums of `RobotBody` on arrays.
+"""The bodies of many robots at once: the computations of `RobotBody` on arrays.
 
-All robots glide; those that may reach something soon (`Lookout`) are engaged: their bodies are in the space as well,
-which tells who touches anything, and moves who does. While a fleet drives, its arrays are the truth, and a body asks it
-to `tell` when somebody looks; before a body is changed from outside, `release` makes the body the truth until the next
-tick.
+All robots are first integrated as if nothing were in their way. Robots that may reach something soon
+(`BroadphaseBatch`) are *active*: their bodies are also in pymunk's space, which detects contacts and moves the robots
+in contact. While the driver runs, its arrays are authoritative, and a body calls `write_back` before it is read. Before
+a body is changed from outside, `release` makes the body authoritative until the next tick.
 """
 
 from __future__ import annotations
@@ -19,29 +19,29 @@ import pymunk
 from thymio_sim_ros.sim.kernel.memory import is_available
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Pose
-from thymio_sim_ros.sim.physics.active_bodies import Engaged
-from thymio_sim_ros.sim.physics.broadphase_batch import LOOK_ROUND_TICKS, Lookout
+from thymio_sim_ros.sim.physics.active_bodies import ActiveBodies
+from thymio_sim_ros.sim.physics.broadphase_batch import CHECK_INTERVAL_TICKS, BroadphaseBatch
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS, Contact
 from thymio_sim_ros.sim.physics.door_body import DoorBody
-from thymio_sim_ros.sim.physics.driving_kernel_binding import CompiledEngaged, Driving
+from thymio_sim_ros.sim.physics.driving_kernel_binding import CompiledActiveBodies, DrivingKernelBinding
 from thymio_sim_ros.sim.physics.movable_body import MovableBody
-from thymio_sim_ros.sim.physics.pymunk_batch_io import Reader, Setter
+from thymio_sim_ros.sim.physics.pymunk_batch_io import BodyReader, BodyWriter
 from thymio_sim_ros.sim.physics.robot_body import RobotBody
 
-__all__ = ["Fleet"]
+__all__ = ["BatchDriver"]
 
 Values = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
 
-_NOBODY: Indices = np.zeros(0, dtype=np.intp)
-_LOOKS_TO_GO = 4
-"""So many times robots look round before some of them may leave the engine."""
+_NONE: Indices = np.zeros(0, dtype=np.intp)
+_CHECKS_TO_DEACTIVATE = 4
+"""Checks after which robots may be deactivated."""
 _PLACE, _SPEED, _SPIN, _COVERED = slice(0, 3), 3, 4, slice(5, 7)
 """Rows of what is known of the robots: x, y, yaw; speed, rate of turn; speed over ground at each wheel."""
 
 
-class Fleet:
-    """Robots of one space, always the same. Between ticks their state lies in arrays, or in bodies, or in both."""
+class BatchDriver:
+    """Moves a fixed set of robots of one space. Between ticks their state is in arrays, in bodies, or in both."""
 
     def __init__(
         self,
@@ -49,61 +49,63 @@ class Fleet:
         bodies: Sequence[RobotBody],
         movables: Sequence[MovableBody],
         doors: Sequence[DoorBody],
-        lookout: Lookout,
+        broadphase: BroadphaseBatch,
         *,
         is_compiled: bool | None = None,
     ) -> None:
-        """`is_compiled`: by kernels, or with numpy; None: by kernels where they are available. Nothing else differs."""
+        """`is_compiled`: use kernels, or numpy; None: kernels if available. The results are the same."""
         compiled = is_available() if is_compiled is None else is_compiled
-        self._space, self._bodies, self._lookout = space, tuple(bodies), lookout
+        self._space, self._bodies, self._broadphase = space, tuple(bodies), broadphase
         self._movables, self._doors = tuple(movables), tuple(doors)
         count = len(self._bodies)
         self.driven = np.zeros((2, count))
         """Speed over ground that each wheel gives, m/s: left, then right."""
         self.changed: set[RobotBody] = set(self._bodies)
-        """To be filled with those for whom a contact begins or ends."""
+        """Robots with a contact that began or ended; filled by the contact tracker."""
         self._begun: set[RobotBody] = set()
-        """Who may have a contact that is new."""
+        """Robots that may have a new contact."""
         self._contacts: tuple[Contact, ...] | None = None
         """None when they may have changed."""
         self._index = {body: index for index, body in enumerate(self._bodies)}
         self._is_touching = np.zeros(count, dtype=bool)
-        self._touching = self._held = self._fallen = _NOBODY
+        self._touching = self._held = self._fallen = _NONE
         self._stands = np.ones(count, dtype=bool)
         self._now = np.zeros((7, count))
         self._rolling = np.zeros((4, count))
         """Speed and rate of turn that the wheels give in this tick, and the turn in half a sub-step and in a whole."""
-        self._is_engaged = np.zeros(count, dtype=bool)
-        self._driving = Driving(count, len(self._bodies) + len(movables) + len(doors) + 1) if compiled else None
-        self._setter, self._reader = Setter(), Reader(space)
-        self._engaged = self._engage(_NOBODY)
-        self._look_round_in = self._looks = 0
-        self._was_restless = False
+        self._is_active = np.zeros(count, dtype=bool)
+        self._binding = (
+            DrivingKernelBinding(count, len(self._bodies) + len(movables) + len(doors) + 1) if compiled else None
+        )
+        self._setter, self._reader = BodyWriter(), BodyReader(space)
+        self._active = self._make_active(_NONE)
+        self._ticks_to_check = self._checks = 0
+        self._was_unpredictable = False
         self._loads: list[MovableBody] = []
         """Things that have not fallen."""
-        self._things = np.zeros((3, 0))
+        self._objects = np.zeros((3, 0))
         """Their x, y and reach."""
-        self._load_rows, self._load_order = _NOBODY, 0
+        self._load_rows, self._load_order = _NONE, 0
         """Where the reader has them, and in which order of its own."""
         self._load_state = np.zeros((0, 6))
         self._is_load_moving = self._is_load_fast = False
         self._is_released = True
-        self.is_told = True
-        """Whether the bodies know what the last tick has made of them."""
+        self.is_written_back = True
+        """Whether the bodies have the state after the last tick."""
         for body in self._bodies:
-            body.fleet = self
+            body.batch_driver = self
 
-    def disband(self) -> None:
-        """Let every body drive alone again."""
-        self.tell()
+    def dissolve(self) -> None:
+        """End the batch: every body is moved on its own again."""
+        self.write_back()
         for body in self._bodies:
-            body.fleet = None
+            body.batch_driver = None
 
     @property
     def poses(self) -> Values:
         """Where the robots are: rows x, y, yaw. Not to be changed; the next tick makes a new one."""
         if self._is_released:
-            self._take()
+            self._load()
         return self._now[_PLACE].T
 
     @property
@@ -115,46 +117,46 @@ class Fleet:
     def motion(self) -> tuple[Values, Values]:
         """Speeds along the headings, m/s, and rates of turn, rad/s."""
         if self._is_released:
-            self._take()
+            self._load()
         return self._now[_SPEED], self._now[_SPIN]
 
     @property
     def fallen(self) -> Indices:
-        """The numbers of those who have fallen."""
+        """Numbers of the robots that have fallen."""
         if self._is_released:
-            self._take()
+            self._load()
         return self._fallen
 
     @property
     def needs_engine(self) -> bool:
         """Whether there is anything for the engine to do in this tick."""
-        return len(self._engaged) > 0 or self._is_load_moving or self._was_restless
+        return len(self._active) > 0 or self._is_load_moving or self._was_unpredictable
 
-    def tell(self) -> None:
-        """Write to the bodies what the last tick has made of them."""
-        if self.is_told:
+    def write_back(self) -> None:
+        """Write the state after the last tick to the bodies."""
+        if self.is_written_back:
             return
-        self.is_told = True
+        self.is_written_back = True
         is_free = np.ones(len(self._bodies), dtype=bool)
         is_free[self._held] = False
         for body, row, free in zip(self._bodies, self._now[:5].T.tolist(), is_free.tolist(), strict=True):
-            body.take_over(Pose(row[0], row[1], row[2]), row[3], row[4], is_free=free)
+            body.set_state(Pose(row[0], row[1], row[2]), row[3], row[4], is_free=free)
 
     def release(self) -> None:
-        """Let the bodies be changed until the next tick."""
-        self.tell()
+        """Make the bodies authoritative until the next tick, so that they can be changed."""
+        self.write_back()
         self._is_released = True
         self.changed.update(self._bodies)
 
     def begin_tick(self, *, do_doors_move: bool) -> None:
-        """As `RobotBody.begin_tick`; and let all glide."""
+        """Start a tick: clear the flags of new contacts, update the active robots, integrate all robots freely."""
         if self._is_released:
-            self._take()
-        self._look_at_contacts()
-        is_restless = do_doors_move or self._is_load_fast
-        if self._look_round_in == 0 or is_restless != self._was_restless:
-            self._look_round(is_restless=is_restless)
-        self._look_round_in -= 1
+            self._load()
+        self._update_contacts()
+        is_unpredictable = do_doors_move or self._is_load_fast
+        if self._ticks_to_check == 0 or is_unpredictable != self._was_unpredictable:
+            self._update_active(is_unpredictable=is_unpredictable)
+        self._ticks_to_check -= 1
         if self._begun:
             self._contacts = None
         for body in self._begun:
@@ -162,37 +164,37 @@ class Fleet:
                 if contact.is_new:
                     body.touching[key] = replace(contact, is_new=False)
         self._begun.clear()
-        before = self._glide()
-        if len(self._engaged):
+        before = self._move_freely()
+        if len(self._active):
             touching = self._is_touching if len(self._touching) else None
-            self._engaged.begin_tick(self.driven, self._rolling, before, touching)
-        self._held = _NOBODY
-        self.is_told = False
+            self._active.begin_tick(self.driven, self._rolling, before, touching)
+        self._held = _NONE
+        self.is_written_back = False
 
     def push(self) -> None:
-        """As `RobotBody.push`."""
-        if len(self._engaged):
-            self._engaged.push()
+        """Before a sub-step: write speeds or forces of the active robots to pymunk."""
+        if len(self._active):
+            self._active.push()
 
-    def settle(self, earlier: int) -> None:
-        """As `RobotBody.settle`."""
+    def finish_sub_step(self, earlier: int) -> None:
+        """After a sub-step, which follows `earlier` ones of this tick: read back the robots in contact."""
         touching = None
         if self.changed:
-            self._look_at_contacts()
+            self._update_contacts()
             touching = self._is_touching
-        if len(self._engaged):
-            self._engaged.settle(earlier, self._reader, touching)
+        if len(self._active):
+            self._active.finish_sub_step(earlier, self._reader, touching)
 
     def end_tick(self) -> None:
-        """As `RobotBody.end_tick`, and of everything that was pushed or slides."""
-        if self._engaged.is_anybody_held:
-            self._held = self._engaged.note(self._now)
-        elif self._is_load_moving or self._was_restless:
+        """Update the state of robots in contact and of objects that move."""
+        if self._active.is_any_held:
+            self._held = self._active.write_held(self._now)
+        elif self._is_load_moving or self._was_unpredictable:
             self._reader.read()
         else:
             return
         if self._loads:
-            self._settle_loads()
+            self._update_loads()
 
     def contacts(self) -> tuple[Contact, ...]:
         """All contacts, by robot and in the order in which they began."""
@@ -201,13 +203,13 @@ class Fleet:
             self._contacts = tuple(chain.from_iterable(touching))
         return self._contacts
 
-    def _glide(self) -> Values:
-        """As `RobotBody.glide`, whatever else may happen to them; the yaws before it."""
-        if self._driving is not None:
-            self._driving.driven[:] = self.driven
-            self._driving.go()
+    def _move_freely(self) -> Values:
+        """Integrate all robots as if nothing were in their way; returns the yaws before, shape (robots,)."""
+        if self._binding is not None:
+            self._binding.driven[:] = self.driven
+            self._binding.start_tick()
             yaws: Values = self._now[2]
-            self._now = self._driving.now.copy()
+            self._now = self._binding.now.copy()
             return yaws
         left, right = self.driven
         self._rolling = rolling = np.empty_like(self._rolling)
@@ -239,7 +241,7 @@ class Fleet:
         self._now[_COVERED] = self.driven
         return start
 
-    def _look_at_contacts(self) -> None:
+    def _update_contacts(self) -> None:
         if self.changed:
             self._contacts = None
             self._begun.update(self.changed)
@@ -247,43 +249,43 @@ class Fleet:
                 self._is_touching[self._index[body]] = bool(body.touching)
             self.changed.clear()
             self._touching = self._is_touching.nonzero()[0]
-            if self._driving is not None:
-                self._driving.is_touching[:] = self._is_touching
+            if self._binding is not None:
+                self._binding.is_touching[:] = self._is_touching
 
-    def _look_round(self, *, is_restless: bool) -> None:
-        """Engage those who may reach something; all when there is no telling. Let others go, though not every time."""
-        self._look_round_in = LOOK_ROUND_TICKS
-        is_engaged, self._looks = self._is_engaged, self._looks + 1
-        may_go = self._looks % _LOOKS_TO_GO == 0 or is_restless != self._was_restless
-        self._was_restless = is_restless
-        if is_restless:
+    def _update_active(self, *, is_unpredictable: bool) -> None:
+        """Activate the robots that may reach something, or all; deactivate others, but not each time."""
+        self._ticks_to_check = CHECK_INTERVAL_TICKS
+        is_active, self._checks = self._is_active, self._checks + 1
+        may_go = self._checks % _CHECKS_TO_DEACTIVATE == 0 or is_unpredictable != self._was_unpredictable
+        self._was_unpredictable = is_unpredictable
+        if is_unpredictable:
             is_wanted = self._stands
         else:
-            things = self._things
+            objects = self._objects
             if self._doors:
                 doors = [(door.pose.x_m, door.pose.y_m, door.reach_m) for door in self._doors]
-                things = np.concatenate((things, np.array(doors).T), axis=1)
-            is_wanted = self._lookout.near(self._now[_PLACE], self._stands, things) | self._is_touching
+                objects = np.concatenate((objects, np.array(doors).T), axis=1)
+            is_wanted = self._broadphase.near(self._now[_PLACE], self._stands, objects) | self._is_touching
             if not may_go:
-                is_wanted |= is_engaged
-        differs = np.flatnonzero(is_wanted != is_engaged).tolist()
+                is_wanted |= is_active
+        differs = np.flatnonzero(is_wanted != is_active).tolist()
         if not differs:
             return
         for number in differs:
             body = self._bodies[number]
-            if is_engaged[number]:
-                body.disengage(self._space)
+            if is_active[number]:
+                body.deactivate(self._space)
             else:
                 x_m, y_m, yaw, speed, spin = self._now[:5, number].tolist()
-                body.take_over(Pose(x_m, y_m, yaw), speed, spin, is_free=True)
-                body.engage(self._space)
-        self._is_engaged = is_wanted
-        self._engaged = self._engage(np.flatnonzero(is_wanted))
+                body.set_state(Pose(x_m, y_m, yaw), speed, spin, is_free=True)
+                body.activate(self._space)
+        self._is_active = is_wanted
+        self._active = self._make_active(np.flatnonzero(is_wanted))
 
-    def _take(self) -> None:
+    def _load(self) -> None:
         """Read what the bodies are."""
         self._is_released = False
-        self._look_round_in = 0
+        self._ticks_to_check = 0
         self._stands = np.array([not body.is_fallen for body in self._bodies], dtype=bool)
         self._fallen = np.flatnonzero(~self._stands)
         poses = [body.pose for body in self._bodies]
@@ -291,26 +293,26 @@ class Fleet:
         self._now[_PLACE] = np.array([(pose.x_m, pose.y_m, pose.yaw_rad) for pose in poses]).reshape(-1, 3).T
         self._now[_SPEED] = [body.speed_m_s for body in self._bodies]
         self._now[_SPIN] = [body.spin_rad_s for body in self._bodies]
-        self._is_engaged = np.array([body.is_engaged for body in self._bodies], dtype=bool)
-        self._engaged = self._engage(np.flatnonzero(self._is_engaged))
-        if self._driving is not None:
-            self._driving.now[:], self._driving.stands[:] = self._now, self._stands
+        self._is_active = np.array([body.is_active for body in self._bodies], dtype=bool)
+        self._active = self._make_active(np.flatnonzero(self._is_active))
+        if self._binding is not None:
+            self._binding.now[:], self._binding.stands[:] = self._now, self._stands
         self._loads = loads = [movable for movable in self._movables if not movable.is_fallen]
-        things = [(load.pose.x_m, load.pose.y_m, load.reach_m) for load in loads]
-        self._things = np.array(things).reshape(-1, 3).T
+        objects = [(load.pose.x_m, load.pose.y_m, load.reach_m) for load in loads]
+        self._objects = np.array(objects).reshape(-1, 3).T
         self._load_order = 0
         self._load_state = np.full((len(self._loads), 6), np.nan)
         self._is_load_moving = any(load.is_moving for load in self._loads)
         self._is_load_fast = any(load.is_fast for load in self._loads)
 
-    def _engage(self, numbers: Indices) -> Engaged | CompiledEngaged:
+    def _make_active(self, numbers: Indices) -> ActiveBodies | CompiledActiveBodies:
         """Those with these numbers."""
-        if self._driving is not None:
-            return CompiledEngaged(self._driving, self._bodies, numbers, self._setter)
-        return Engaged(self._bodies, numbers, self._setter)
+        if self._binding is not None:
+            return CompiledActiveBodies(self._binding, self._bodies, numbers, self._setter)
+        return ActiveBodies(self._bodies, numbers, self._setter)
 
-    def _settle_loads(self) -> None:
-        """Tell things that have moved."""
+    def _update_loads(self) -> None:
+        """Update the objects that have moved."""
         if self._load_order != self._reader.order:
             self._load_order = self._reader.order
             self._load_rows = self._reader.rows([movable.body for movable in self._loads])
@@ -322,8 +324,8 @@ class Fleet:
             return
         for index in changed:
             load = self._loads[index]
-            load.settle(*loads[index].tolist())
+            load.finish_sub_step(*loads[index].tolist())
             self._is_load_moving |= load.is_moving
             self._is_load_fast |= load.is_fast
-        self._things[:2] = loads[:, :2].T
+        self._objects[:2] = loads[:, :2].T
         self._load_state = loads

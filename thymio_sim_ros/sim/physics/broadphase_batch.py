@@ -1,7 +1,7 @@
-"""Which of many robots may reach something soon; the others need no engine.
+"""Finds the robots of a batch that may reach something soon; the others need not be in pymunk's space.
 
-Robots are taken as the smallest circle round their hull, things that move as circles round their origins, things that
-do not as the boxes round them. All of them are sorted by x; only those near each other are compared.
+A robot is bounded by the smallest circle around its hull, a moving object by a circle around its origin, a fixed
+obstacle by a box. Sweep and prune: all are sorted by x, and only neighbors are compared.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ import numpy.typing as npt
 from thymio_sim_ros.sim.kernel import broadphase_kernel
 from thymio_sim_ros.sim.kernel.memory import KernelMemory, is_available
 from thymio_sim_ros.sim.model import robot_constants
-from thymio_sim_ros.sim.physics.time_to_contact import LONGEST_WAY_M, SAFE_M, THING_SHARE
-from thymio_sim_ros.sim.raycast.obstacle_table import Frames
+from thymio_sim_ros.sim.physics.time_to_contact import MAX_TICK_DISTANCE_M, OBJECT_SPEED_FACTOR, SAFETY_MARGIN_M
+from thymio_sim_ros.sim.raycast.obstacle_table import ObstacleTable
 from thymio_sim_ros.sim.raycast.scalar import Obstacle
 
-__all__ = ["LOOK_ROUND_TICKS", "Lookout"]
+__all__ = ["CHECK_INTERVAL_TICKS", "BroadphaseBatch"]
 
 Values = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 
-LOOK_ROUND_TICKS = 8
-"""What is not near stays out of reach for so many ticks."""
-_WAY_M = LOOK_ROUND_TICKS * LONGEST_WAY_M
+CHECK_INTERVAL_TICKS = 8
+"""A robot that is not near anything stays so for this many ticks."""
+_INTERVAL_DISTANCE_M = CHECK_INTERVAL_TICKS * MAX_TICK_DISTANCE_M
 
 
 def _circle() -> tuple[float, float]:
@@ -37,46 +37,46 @@ def _circle() -> tuple[float, float]:
 
 
 _MIDDLE_M, _RADIUS_M = _circle()
-_THING_REACH_M = _RADIUS_M + (1.0 + THING_SHARE) * _WAY_M + SAFE_M
-_ROBOT_REACH_M = 2 * (_RADIUS_M + _WAY_M) + SAFE_M
+_OBJECT_REACH_M = _RADIUS_M + (1.0 + OBJECT_SPEED_FACTOR) * _INTERVAL_DISTANCE_M + SAFETY_MARGIN_M
+_ROBOT_REACH_M = 2 * (_RADIUS_M + _INTERVAL_DISTANCE_M) + SAFETY_MARGIN_M
 """What is beyond this from a thing's circle, or from another robot, is not near."""
 
 
-class Lookout:
-    """Looks round among fixed obstacles, which stay, robots and things, which are told."""
+class BroadphaseBatch:
+    """The broadphase of a batch: fixed obstacles are given once, robots and objects with every query."""
 
     def __init__(self, fixed: Sequence[Obstacle], *, is_compiled: bool | None = None) -> None:
         """`is_compiled`: by a kernel, or with numpy; None: by a kernel where there is one. Nothing else differs."""
         self._is_compiled = is_available() if is_compiled is None else is_compiled
-        self._watch: _Watch | None = None
-        rows = Frames(fixed).rows[:, :6]
-        reach_m = np.full((len(rows), 1), _RADIUS_M + _WAY_M + SAFE_M)
+        self._binding: _BroadphaseBinding | None = None
+        rows = ObstacleTable(fixed).rows[:, :6]
+        reach_m = np.full((len(rows), 1), _RADIUS_M + _INTERVAL_DISTANCE_M + SAFETY_MARGIN_M)
         x, y, cos, sin, half_x, half_y, far = self._fixed = np.concatenate((rows, reach_m), axis=1).T
         wide_x = np.abs(cos) * half_x + np.abs(sin) * half_y + far
         wide_y = np.abs(sin) * half_x + np.abs(cos) * half_y + far
         self._bounds = np.stack((x - wide_x, x + wide_x, y, wide_y))
 
-    def near(self, poses: Values, stands: Flags, things: Values) -> Flags:
-        """Who may reach anything within `LOOK_ROUND_TICKS`, while doors rest and nothing is fast.
+    def near(self, poses: Values, stands: Flags, objects: Values) -> Flags:
+        """Whether each robot may reach anything within `CHECK_INTERVAL_TICKS`, while doors rest and nothing is fast.
 
         `poses` has rows x, y, yaw, things rows x, y, radius; robots that do not stand are not there.
         """
-        fixed, loose, count = self._fixed.shape[1], things.shape[1], poses.shape[1]
+        fixed, loose, count = self._fixed.shape[1], objects.shape[1], poses.shape[1]
         x, y, yaw = poses
         x, y = x + np.cos(yaw) * _MIDDLE_M, y + np.sin(yaw) * _MIDDLE_M
         if self._is_compiled:
-            if self._watch is None or self._watch.room != (count, loose):
-                self._watch = _Watch(self._fixed, self._bounds, count, loose)
-            return self._watch.near(x, y, stands, things)
+            if self._binding is None or self._binding.room != (count, loose):
+                self._binding = _BroadphaseBinding(self._fixed, self._bounds, count, loose)
+            return self._binding.near(x, y, stands, objects)
         order = np.argsort(x, kind="stable")
         sorted_x = x[order]
 
         targets = np.zeros((7, fixed + loose + count))
         targets[2] = 1.0
         targets[:, :fixed] = self._fixed
-        targets[:2, fixed : fixed + loose], targets[0, fixed + loose :], targets[1, fixed + loose :] = things[:2], x, y
+        targets[:2, fixed : fixed + loose], targets[0, fixed + loose :], targets[1, fixed + loose :] = objects[:2], x, y
         reaches = targets[6]
-        np.add(things[2], _THING_REACH_M, out=reaches[fixed : fixed + loose])
+        np.add(objects[2], _OBJECT_REACH_M, out=reaches[fixed : fixed + loose])
         np.multiply(stands, _ROBOT_REACH_M, out=reaches[fixed + loose :])
         left, right, middle, wide = bounds = np.empty((4, targets.shape[1]))
         bounds[:, :fixed] = self._bounds
@@ -102,18 +102,18 @@ class Lookout:
         return found
 
 
-class _Watch:
+class _BroadphaseBinding:
     """The kernel for so many robots and things: its arrays, and how it is called."""
 
-    def __init__(self, fixed: Values, bounds: Values, robots: int, things: int) -> None:
-        floats = [(2,), (robots,), (robots,), fixed.shape, bounds.shape, (3, things)]
+    def __init__(self, fixed: Values, bounds: Values, robots: int, objects: int) -> None:
+        floats = [(2,), (robots,), (robots,), fixed.shape, bounds.shape, (3, objects)]
         ints = [(len(broadphase_kernel.COUNTS),), (robots,), (robots,), (robots,)]
         memory, float_arrays, int_arrays = KernelMemory.holding(floats, ints)
-        self.room = (robots, things)
-        sizes, self._x, self._y, own_fixed, own_bounds, self._things = float_arrays
+        self.room = (robots, objects)
+        sizes, self._x, self._y, own_fixed, own_bounds, self._objects = float_arrays
         counts, self._stands, order, self._found = int_arrays
-        counts[:] = robots, fixed.shape[1], things
-        sizes[:] = _ROBOT_REACH_M, _THING_REACH_M
+        counts[:] = robots, fixed.shape[1], objects
+        sizes[:] = _ROBOT_REACH_M, _OBJECT_REACH_M
         own_fixed[:], own_bounds[:], order[:] = fixed, bounds, np.arange(robots)
         self._memory = memory
         self._call = memory.bind(
@@ -126,14 +126,14 @@ class _Watch:
             self._stands,
             own_fixed,
             own_bounds,
-            self._things,
+            self._objects,
             order,
             self._found,
         )
 
-    def near(self, x: Values, y: Values, stands: Flags, things: Values) -> Flags:
-        """As `Lookout.near`, with the middles of the circles."""
-        self._x[:], self._y[:], self._stands[:], self._things[:] = x, y, stands, things
+    def near(self, x: Values, y: Values, stands: Flags, objects: Values) -> Flags:
+        """As `BroadphaseBatch.near`, with the middles of the circles."""
+        self._x[:], self._y[:], self._stands[:], self._objects[:] = x, y, stands, objects
         self._call()
         found: Flags = self._found.astype(bool)
         return found

@@ -1,4 +1,4 @@
-"""What two bodies that touch tell, and the constants of a step that all kinds of bodies share."""
+"""Contacts, and the constants of a step that all kinds of bodies share."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ SUB_STEP_S = TICK_S / SUB_STEPS
 
 
 ROBOT_BOUNCE = 2.0**-32
-"""Elasticity of robots. pymunk multiplies those of two shapes; things have theirs divided by this power of two, so that
-they bounce off robots as they should, and robots do not bounce off each other."""
+"""Elasticity of robots. pymunk multiplies the elasticities of two shapes. Those of objects are divided by this power of
+two, which is exact: objects bounce off robots by their own elasticity, and robots do not bounce off each other."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Who touches what: kept in each robot's `touching`, as pymunk tells contacts that begin and end."""
+"""Records contacts in each robot's `touching`, from pymunk's callbacks for contacts that begin and end."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ import pymunk
 from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE, Contact
 from thymio_sim_ros.sim.physics.robot_body import ROBOT_TYPE, RobotBody
 
-__all__ = ["Touches"]
+__all__ = ["ContactTracker"]
 
-_THING_TYPE = 2
+_OBJECT_TYPE = 2
 """pymunk's collision type of everything but robots."""
 
 
-class Touches:
+class ContactTracker:
     """The contacts in a space. Invariant: every shape in it has a name here, every robot's shape its robot.
 
-    `news` is called with a robot when a contact of it begins or ends.
+    `on_change` is called with a robot when a contact of it begins or ends.
     """
 
-    def __init__(self, space: pymunk.Space, news: Callable[[RobotBody], None], *, do_things_bounce: bool) -> None:
-        self._news = news
+    def __init__(self, space: pymunk.Space, on_change: Callable[[RobotBody], None], *, do_objects_bounce: bool) -> None:
+        self._on_change = on_change
         self._names: dict[pymunk.Shape, str] = {}
         self._robots: dict[pymunk.Shape, RobotBody] = {}
-        space.on_collision(ROBOT_TYPE, _THING_TYPE, self._on_begin, separate=self._on_separate)
+        space.on_collision(ROBOT_TYPE, _OBJECT_TYPE, self._on_begin, separate=self._on_separate)
         space.on_collision(ROBOT_TYPE, ROBOT_TYPE, self._on_begin, separate=self._on_separate)
-        if do_things_bounce:
-            space.on_collision(_THING_TYPE, _THING_TYPE, pre_solve=_bounce)
+        if do_objects_bounce:
+            space.on_collision(_OBJECT_TYPE, _OBJECT_TYPE, pre_solve=_bounce)
 
     def watch(self, shape: pymunk.Shape, owner: RobotBody | str) -> None:
         """A shape of a robot, or of a thing of this name, is going to be in the space."""
@@ -38,11 +38,11 @@ class Touches:
             self._robots[shape] = owner
             self._names[shape] = owner.name
         else:
-            shape.collision_type = _THING_TYPE
+            shape.collision_type = _OBJECT_TYPE
             self._names[shape] = owner
 
     def forget(self, shape: pymunk.Shape) -> None:
-        """Nobody touches a shape any more."""
+        """Remove the contacts with a shape."""
         for robot in self._robots.values():
             robot.touching.pop(shape, None)
 
@@ -60,7 +60,7 @@ class Touches:
         for mine, its in ((one, other), (other, one)):
             robot = self._robots.get(mine)
             if robot is not None:
-                self._news(robot)
+                self._on_change(robot)
                 robot.touching[its] = Contact(robot.name, self._names[its], x, y, speed, True)
 
     def _on_separate(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
@@ -68,12 +68,12 @@ class Touches:
         for mine, its in ((one, other), (other, one)):
             robot = self._robots.get(mine)
             if robot is not None:
-                self._news(robot)
+                self._on_change(robot)
                 robot.touching.pop(its, None)
 
 
 def _bounce(arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
-    """Things bounce off each other as their elasticities say."""
+    """Undo the division of elasticities (see `ROBOT_BOUNCE`) for two objects."""
     arbiter.restitution *= ROBOT_BOUNCE * ROBOT_BOUNCE
 
 

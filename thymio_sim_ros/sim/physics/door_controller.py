@@ -1,4 +1,4 @@
-"""All doors of a world, and who opens them."""
+"""The doors of a world, opened while a robot is on a pressure plate of them."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import pymunk
 from thymio_sim_ros.sim.model.primitives import Solid, Trigger
 from thymio_sim_ros.sim.physics.door_body import DoorBody
 from thymio_sim_ros.sim.physics.robot_body import RobotBody
-from thymio_sim_ros.sim.raycast.broadphase import Nearby
+from thymio_sim_ros.sim.raycast.broadphase import Broadphase
 
-__all__ = ["Gates"]
+__all__ = ["DoorController"]
 
 
-class Gates:
+class DoorController:
     """Doors by name, in the order of the playground, and the areas that open them."""
 
     def __init__(self, solids: Iterable[Solid], triggers: Iterable[Trigger], moved: set[Any]) -> None:
@@ -34,14 +34,14 @@ class Gates:
         """Whether no door moves."""
         return not any(door.is_moving for door in self._doors.values())
 
-    def begin_tick(self, nearby: Nearby) -> None:
+    def begin_tick(self, broadphase: Broadphase) -> None:
         """Doors set out: they open while a robot is in an area of theirs, and close again."""
         if not self._doors:
             return
         wanted_open = {
             area.door
             for area, x, y, reach_m in self._areas
-            for robot in nearby.movers(x, y, reach_m)
+            for robot in broadphase.movers(x, y, reach_m)
             if isinstance(robot, RobotBody) and area.holds(robot.pose.x_m, robot.pose.y_m)
         }
         for name, door in self._doors.items():

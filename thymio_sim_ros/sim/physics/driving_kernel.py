@@ -1,6 +1,10 @@
-"""Kernels: many robots drive. The sums of `Fleet` and `Engaged`, operation by operation; sines and such are numpy's.
+"""Kernels: many robots drive.
 
-Arrays of the fleet have a row for each value and a column for each robot, those of the engaged a row for each robot.
+They compute what `BatchDriver` and `ActiveBodies` do, operation by operation, so that the bits agree; sines and cosines
+are numpy's.
+
+Layout: arrays of the batch have shape (values, robots), so value v of robot r is at `v * robots + r`. Arrays of the
+active robots have shape (active, values), so value v of row i is at `values * i + v`.
 """
 
 from __future__ import annotations
@@ -10,13 +14,24 @@ from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.physics.contact import SUB_STEP_S, SUB_STEPS
 from thymio_sim_ros.sim.physics.robot_body import MOMENT_KG_M2, PUSH_N_S_M
 
-__all__ = ["COUNTS", "KERNELS", "go", "head", "lack", "push", "settle"]
+__all__ = ["COUNTS", "KERNELS", "compute_headings", "finish_sub_step", "missing_speeds", "push", "start_tick"]
 
-KERNELS = ("head", "glide", "begin", "aim", "go", "lack", "push", "take_over", "note", "settle")
+KERNELS = (
+    "compute_headings",
+    "move_freely",
+    "begin_tick",
+    "update_aims",
+    "start_tick",
+    "missing_speeds",
+    "push",
+    "read_back",
+    "write_held",
+    "finish_sub_step",
+)
 
-COUNTS = ("robots", "engaged", "earlier", "is_anybody_touching", "is_anybody_held")
+COUNTS = ("robots", "engaged", "earlier", "is_any_touching", "is_any_held")
 """What each of `counts` is: `earlier` sub-steps of this tick are done; the last two are answers, too."""
-_ROBOTS, _ENGAGED, _EARLIER, _TOUCHING, _HELD = range(len(COUNTS))
+_ROBOTS, _ACTIVE, _EARLIER, _TOUCHING, _HELD = range(len(COUNTS))
 
 _SUB_STEPS = SUB_STEPS
 _SUB_STEP_S = SUB_STEP_S
@@ -28,7 +43,9 @@ _DRIVE_N = robot_constants.DRIVE_FORCE_N
 _TURN_N_M_S = MOMENT_KG_M2 / SUB_STEP_S
 
 
-def head(counts: Ints, driven: Floats, now: Floats, stands: Ints, rolling: Floats, headings: Floats) -> None:
+def compute_headings(
+    counts: Ints, driven: Floats, now: Floats, stands: Ints, rolling: Floats, headings: Floats
+) -> None:
     """What the wheels give in this tick, and where each robot heads in each sub-step; the last row: its yaw now."""
     count = counts[_ROBOTS]
     for robot in range(count):
@@ -52,8 +69,8 @@ def head(counts: Ints, driven: Floats, now: Floats, stands: Ints, rolling: Float
             yaw = yaw + turn
 
 
-def glide(counts: Ints, driven: Floats, rolling: Floats, cosines: Floats, sines: Floats, now: Floats) -> None:
-    """All drive as if there were nothing else."""
+def move_freely(counts: Ints, driven: Floats, rolling: Floats, cosines: Floats, sines: Floats, now: Floats) -> None:
+    """Integrate all robots as if nothing were in their way."""
     count = counts[_ROBOTS]
     for robot in range(count):
         speed = rolling[robot]
@@ -74,14 +91,14 @@ def glide(counts: Ints, driven: Floats, rolling: Floats, cosines: Floats, sines:
         now[6 * count + robot] = driven[count + robot]
 
 
-def begin(
+def begin_tick(
     counts: Ints, headings: Floats, is_touching: Ints, numbers: Ints, touching: Ints, held: Ints, yaws: Floats,
     covered: Floats,
 ) -> None:  # fmt: skip
-    """The engaged begin a tick; those who touch something are held."""
+    """Start a tick of the active robots; those in contact are held."""
     count = counts[_ROBOTS]
     counts[_TOUCHING] = 0
-    for index in range(counts[_ENGAGED]):
+    for index in range(counts[_ACTIVE]):
         robot = numbers[index]
         touching[index] = is_touching[robot]
         held[index] = is_touching[robot]
@@ -93,36 +110,36 @@ def begin(
     counts[_HELD] = counts[_TOUCHING]
 
 
-def aim(
+def update_aims(
     counts: Ints, rolling: Floats, numbers: Ints, touching: Ints, yaws: Floats, state: Floats, aims: Floats
 ) -> None:
-    """Where the engaged head in a sub-step."""
+    """Headings of the active robots in the middle of a sub-step."""
     count = counts[_ROBOTS]
-    for index in range(counts[_ENGAGED]):
+    for index in range(counts[_ACTIVE]):
         heading = yaws[index] + rolling[2 * count + numbers[index]]
         if touching[index] != 0:
             heading = heading + state[6 * index + 5] * _SUB_STEP_S
         aims[index] = heading
 
 
-def go(
+def start_tick(
     counts: Ints, driven: Floats, rolling: Floats, cosines: Floats, sines: Floats, now: Floats, headings: Floats,
     is_touching: Ints, numbers: Ints, touching: Ints, held: Ints, yaws: Floats, covered: Floats, state: Floats,
     aims: Floats,
 ) -> None:  # fmt: skip
-    """All glide, and the engaged begin a tick and aim."""
-    glide(counts, driven, rolling, cosines, sines, now)
-    begin(counts, headings, is_touching, numbers, touching, held, yaws, covered)
-    aim(counts, rolling, numbers, touching, yaws, state, aims)
+    """Integrate all robots; start the tick of the active ones."""
+    move_freely(counts, driven, rolling, cosines, sines, now)
+    begin_tick(counts, headings, is_touching, numbers, touching, held, yaws, covered)
+    update_aims(counts, rolling, numbers, touching, yaws, state, aims)
 
 
-def lack(
+def missing_speeds(
     counts: Ints, rolling: Floats, numbers: Ints, touching: Ints, state: Floats, ways_x: Floats, ways_y: Floats,
     speeds: Floats, pushes_x: Floats, pushes_y: Floats,
 ) -> None:  # fmt: skip
-    """The speeds that the wheels want, and with what those push who do not have them."""
+    """Target velocities of the active robots, and the unlimited forces of those in contact."""
     count = counts[_ROBOTS]
-    for index in range(counts[_ENGAGED]):
+    for index in range(counts[_ACTIVE]):
         speed = rolling[numbers[index]]
         x = speed * ways_x[index]
         y = speed * ways_y[index]
@@ -140,8 +157,8 @@ def push(
     counts: Ints, touching: Ints, state: Floats, speeds: Floats, pushes_x: Floats, pushes_y: Floats, forces: Floats,
     wanted: Floats,
 ) -> None:  # fmt: skip
-    """Speed, rate of turn, force and torque for each of the engaged."""
-    for index in range(counts[_ENGAGED]):
+    """Velocity, turn rate, force and torque of each active robot, as `BodyWriter` expects them."""
+    for index in range(counts[_ACTIVE]):
         share = _DRIVE_N / max(forces[index], _DRIVE_N)
         wanted[6 * index + 3] = pushes_x[index] * share
         wanted[6 * index + 4] = pushes_y[index] * share
@@ -154,25 +171,25 @@ def push(
             wanted[6 * index + 5] = (speeds[3 * index + 2] - state[6 * index + 5]) * _TURN_N_M_S
 
 
-def take_over(
+def read_back(
     counts: Ints, driven: Floats, rolling: Floats, is_touching: Ints, numbers: Ints, rows: Ints, bodies: Floats,
     ways_x: Floats, ways_y: Floats, touching: Ints, held: Ints, yaws: Floats, covered: Floats, state: Floats,
     along: Floats,
 ) -> None:  # fmt: skip
-    """What contacts have made of the push. `bodies` count only when somebody is held."""
+    """Read back the motion that contacts allowed. `bodies`, as pymunk has them, are read only if a robot is held."""
     count = counts[_ROBOTS]
     counts[_TOUCHING] = 0
-    for index in range(counts[_ENGAGED]):
+    for index in range(counts[_ACTIVE]):
         touching[index] = is_touching[numbers[index]]
         if touching[index] != 0:
             counts[_TOUCHING] = 1
     if counts[_TOUCHING] == 0 and counts[_HELD] == 0:
-        for index in range(counts[_ENGAGED]):
+        for index in range(counts[_ACTIVE]):
             yaws[index] = yaws[index] + rolling[3 * count + numbers[index]]
         return
     counts[_HELD] = 1
     part = float(counts[_EARLIER]) / _SUB_STEPS
-    for index in range(counts[_ENGAGED]):
+    for index in range(counts[_ACTIVE]):
         if touching[index] != 0 and held[index] == 0:
             held[index] = 1
             covered[2 * index] = driven[numbers[index]] * part
@@ -187,10 +204,12 @@ def take_over(
         covered[2 * index + 1] = covered[2 * index + 1] + (speed + half) / _SUB_STEPS
 
 
-def note(counts: Ints, numbers: Ints, held: Ints, state: Floats, along: Floats, covered: Floats, now: Floats) -> None:
-    """What has become of those who are held."""
+def write_held(
+    counts: Ints, numbers: Ints, held: Ints, state: Floats, along: Floats, covered: Floats, now: Floats
+) -> None:
+    """Write the state of the held robots to `now`."""
     count = counts[_ROBOTS]
-    for index in range(counts[_ENGAGED]):
+    for index in range(counts[_ACTIVE]):
         if held[index] != 0:
             robot = numbers[index]
             for value in range(3):
@@ -201,16 +220,16 @@ def note(counts: Ints, numbers: Ints, held: Ints, state: Floats, along: Floats, 
             now[6 * count + robot] = covered[2 * index + 1]
 
 
-def settle(
+def finish_sub_step(
     counts: Ints, driven: Floats, rolling: Floats, is_touching: Ints, numbers: Ints, rows: Ints, bodies: Floats,
     ways_x: Floats, ways_y: Floats, touching: Ints, held: Ints, yaws: Floats, covered: Floats, state: Floats,
     along: Floats, now: Floats, aims: Floats,
 ) -> None:  # fmt: skip
-    """After a sub-step: take over what contacts have made of the push, and aim for the next one."""
-    take_over(
+    """After a sub-step: read back the motion, and compute the headings for the next one."""
+    read_back(
         counts, driven, rolling, is_touching, numbers, rows, bodies, ways_x, ways_y, touching, held, yaws, covered,
         state, along,
     )  # fmt: skip
     if counts[_HELD] != 0:
-        note(counts, numbers, held, state, along, covered, now)
-    aim(counts, rolling, numbers, touching, yaws, state, aims)
+        write_held(counts, numbers, held, state, along, covered, now)
+    update_aims(counts, rolling, numbers, touching, yaws, state, aims)

@@ -1,6 +1,6 @@
-"""A fleet and its engaged robots by kernels: `Driving` has their arrays, `CompiledEngaged` does what `Engaged` does.
+"""Binding of the driving kernels: `DrivingKernelBinding` owns their arrays.
 
-Both give the same bits (tests/sim/kernel/test_crowds.py).
+`CompiledActiveBodies` replaces `ActiveBodies` and gives the same bits (tests/sim/kernel/test_batch_kernels.py).
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from thymio_sim_ros.sim.kernel.compiler import Kernel, parameters
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.physics import driving_kernel
 from thymio_sim_ros.sim.physics.contact import SUB_STEPS
-from thymio_sim_ros.sim.physics.pymunk_batch_io import FORCES, SPEEDS, Reader, Setter
+from thymio_sim_ros.sim.physics.pymunk_batch_io import FORCES, SPEEDS, BodyReader, BodyWriter
 from thymio_sim_ros.sim.physics.robot_body import RobotBody
 
-__all__ = ["CompiledEngaged", "Driving"]
+__all__ = ["CompiledActiveBodies", "DrivingKernelBinding"]
 
 Values = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
 Flags = npt.NDArray[np.bool_]
 
-_ROBOTS, _ENGAGED, _EARLIER, _TOUCHING, _HELD = range(len(driving_kernel.COUNTS))
+_ROBOTS, _ACTIVE, _EARLIER, _TOUCHING, _HELD = range(len(driving_kernel.COUNTS))
 
 
-class Driving:
-    """The arrays of a fleet in the memory of kernels, by the names that the kernels give them."""
+class DrivingKernelBinding:
+    """The arrays of a batch in the memory of kernels, by the names of the parameters of the kernels."""
 
     def __init__(self, robots: int, bodies: int) -> None:
         """`bodies`: how many there may be in the engine's space."""
@@ -51,9 +51,13 @@ class Driving:
         self.stands, self.is_touching = self._arrays["stands"], self._arrays["is_touching"]
         self._headings = self._arrays["headings"][:SUB_STEPS]
         self._cosines, self._sines = self._arrays["cosines"], self._arrays["sines"]
-        self._head, self._go = self._bound(driving_kernel.head), self._bound(driving_kernel.go)
-        self.lack, self.push, self.settle = (
-            self._bound(one) for one in (driving_kernel.lack, driving_kernel.push, driving_kernel.settle)
+        self._compute_headings, self._start_tick = (
+            self._bound(driving_kernel.compute_headings),
+            self._bound(driving_kernel.start_tick),
+        )
+        self.missing_speeds, self.push, self.finish_sub_step = (
+            self._bound(one)
+            for one in (driving_kernel.missing_speeds, driving_kernel.push, driving_kernel.finish_sub_step)
         )
 
     def array(self, name: str) -> npt.NDArray[Any]:
@@ -64,84 +68,86 @@ class Driving:
         names = parameters(kernel)[0]
         return self._memory.bind(driving_kernel, kernel, *(self._arrays[name] for name in names))
 
-    def go(self) -> None:
-        """As `Fleet` without kernels: all of `now` after a tick with `driven`; and the engaged begin theirs."""
-        self._head()
+    def start_tick(self) -> None:
+        """Integrate all robots by a tick with `driven` into `now`, and start the tick of the active ones."""
+        self._compute_headings()
         np.cos(self._headings, out=self._cosines)
         np.sin(self._headings, out=self._sines)
-        self._go()
+        self._start_tick()
 
 
-class CompiledEngaged:
-    """As `Engaged`, of a fleet that glides by the same `Driving`; one at a time."""
+class CompiledActiveBodies:
+    """Does what `ActiveBodies` does, by kernels; only one may use a binding at a time."""
 
-    def __init__(self, driving_: Driving, bodies: Sequence[RobotBody], numbers: Indices, setter: Setter) -> None:
+    def __init__(
+        self, binding: DrivingKernelBinding, bodies: Sequence[RobotBody], numbers: Indices, setter: BodyWriter
+    ) -> None:
         self.numbers = numbers
-        self._driving, self._counts = driving_, driving_.counts
+        self._binding, self._counts = binding, binding.counts
         self._bodies = [bodies[number].body for number in numbers.tolist()]
         self._setter = setter
         setter.choose(self._bodies)
         self._order = 0
-        self._is_anybody_touching = False
+        self._is_any_touching = False
         count = len(numbers)
-        self._counts[_ENGAGED] = count
+        self._counts[_ACTIVE] = count
         self._counts[_TOUCHING] = self._counts[_HELD] = 0
-        driving_.array("numbers")[:count] = numbers
-        state = driving_.array("state")
+        binding.array("numbers")[:count] = numbers
+        state = binding.array("state")
         for row, number in enumerate(numbers.tolist()):
             if bodies[number].touching:
                 body = bodies[number].body
                 state[row, 3:] = *body.velocity, body.angular_velocity
-        self._rows = driving_.array("rows")[:count]
-        self._held = driving_.array("held")[:count]
-        self._speeds, self._wanted = driving_.array("speeds")[:count], driving_.array("wanted")[:count]
+        self._rows = binding.array("rows")[:count]
+        self._held = binding.array("held")[:count]
+        self._speeds, self._wanted = binding.array("speeds")[:count], binding.array("wanted")[:count]
         names = ("aims", "ways_x", "ways_y", "pushes_x", "pushes_y", "forces")
         self._aims, self._cos, self._sin, self._push_x, self._push_y, self._forces = (
-            driving_.array(name)[:count] for name in names
+            binding.array(name)[:count] for name in names
         )
-        self._space_bodies = driving_.array("bodies")
+        self._space_bodies = binding.array("bodies")
 
     def __len__(self) -> int:
         return len(self.numbers)
 
     @property
-    def is_anybody_held(self) -> bool:
-        """As `Engaged`."""
+    def is_any_held(self) -> bool:
+        """See the method of this name in `ActiveBodies`, which gives the same bits."""
         return bool(self._counts[_HELD])
 
     def begin_tick(self, _driven: Values, _rolling: Values, _yaw: Values, touching: Flags | None) -> None:
-        """As `Engaged`; what the fleet knows is in the arrays already, and they have begun."""
-        self._is_anybody_touching = touching is not None
+        """Start a tick; the arrays of the binding have the state already."""
+        self._is_any_touching = touching is not None
 
     def push(self) -> None:
-        """As `Engaged`."""
-        driving_ = self._driving
+        """See the method of this name in `ActiveBodies`, which gives the same bits."""
+        binding = self._binding
         np.cos(self._aims, out=self._cos)
         np.sin(self._aims, out=self._sin)
-        driving_.lack()
+        binding.missing_speeds()
         if not self._counts[_TOUCHING]:
             self._setter.set(SPEEDS, self._speeds)
             return
         np.hypot(self._push_x, self._push_y, out=self._forces)
-        driving_.push()
+        binding.push()
         self._setter.set(FORCES, self._wanted)
 
-    def settle(self, earlier: int, reader: Reader, touching: Flags | None) -> None:
-        """As `Engaged`."""
+    def finish_sub_step(self, earlier: int, reader: BodyReader, touching: Flags | None) -> None:
+        """See the method of this name in `ActiveBodies`, which gives the same bits."""
         if touching is not None:
-            self._is_anybody_touching = bool(np.count_nonzero(touching))
+            self._is_any_touching = bool(np.count_nonzero(touching))
         counts = self._counts
-        if self._is_anybody_touching or counts[_HELD]:
+        if self._is_any_touching or counts[_HELD]:
             reader.read()
             if reader.order != self._order:
                 self._order = reader.order
                 self._rows[:] = reader.rows(self._bodies)
             self._space_bodies[: len(reader.state)] = reader.state
         counts[_EARLIER] = earlier
-        self._driving.settle()
+        self._binding.finish_sub_step()
 
-    def note(self, now: Values) -> Indices:
-        """As `Engaged`."""
-        now[:] = self._driving.now
+    def write_held(self, now: Values) -> Indices:
+        """See the method of this name in `ActiveBodies`, which gives the same bits."""
+        now[:] = self._binding.now
         numbers: Indices = self.numbers[self._held.nonzero()[0]]
         return numbers

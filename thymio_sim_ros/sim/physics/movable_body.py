@@ -31,7 +31,7 @@ _FAST_M_S = 2.0 * robot_constants.MAX_SPEED_M_S
 class MovableBody:
     """One movable solid. Invariant: `pose` is the body's after the last tick; it changes only when it moves.
 
-    `is_fast` when it may hit a robot that has not looked round for a while (`quiet.THING_SHARE`).
+    `is_fast` when it may hit a robot that has not looked round for a while (`quiet.OBJECT_SPEED_FACTOR`).
     """
 
     __slots__ = (
@@ -93,9 +93,9 @@ class MovableBody:
     def place(self, pose: Pose) -> None:
         """Put it somewhere, at rest; what has fallen stands on the floor again."""
         self.is_fallen = False
-        self._rest()
+        self._stop()
         self.body.position, self.body.angle = (pose.x_m, pose.y_m), pose.yaw_rad
-        self._show(pose)
+        self._set_pose(pose)
         if self.body.space is not None:
             self.body.space.reindex_shapes_for_body(self.body)
 
@@ -108,24 +108,24 @@ class MovableBody:
         """Tell the new pose, if it has moved."""
         body = self.body
         if not (self.is_fallen or body.is_sleeping):
-            self.settle(*body.position, body.angle, *body.velocity, body.angular_velocity)
+            self.finish_sub_step(*body.position, body.angle, *body.velocity, body.angular_velocity)
 
-    def settle(self, x_m: float, y_m: float, angle: float, vx: float, vy: float, spin: float) -> None:
+    def finish_sub_step(self, x_m: float, y_m: float, angle: float, vx: float, vy: float, spin: float) -> None:
         """Be where the body is, with its speeds; slower than `AT_REST_M_S` it rests."""
         speed = math.hypot(vx, vy)
         self.is_fast = speed > _FAST_M_S
         speed += abs(spin) * self.reach_m
         self.is_moving = speed > AT_REST_M_S
         if not self.is_moving and speed > 0.0:
-            self._rest()
+            self._stop()
         if (x_m, y_m, angle) != (self.pose.x_m, self.pose.y_m, self.pose.yaw_rad):
-            self._show(Pose(x_m, y_m, angle))
+            self._set_pose(Pose(x_m, y_m, angle))
 
-    def _rest(self) -> None:
+    def _stop(self) -> None:
         self.is_moving = self.is_fast = False
         self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
 
-    def _show(self, pose: Pose) -> None:
+    def _set_pose(self, pose: Pose) -> None:
         self.pose = pose
         self._obstacle = None
         self._moved.add(self)

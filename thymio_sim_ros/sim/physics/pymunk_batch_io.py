@@ -1,7 +1,7 @@
-"""Single bodies of a space set, and all of them read, by the functions with which pymunk does so (`pymunk.batch`).
+"""Write single bodies of a pymunk space and read all of them, by the C functions behind `pymunk.batch`.
 
-The one that sets a single body is not public, nor is calling the one that reads without preparing it anew; where a
-pymunk has none, what is public does the same, more slowly.
+Two of these are not public: the function that writes a single body, and a prepared call of the function that reads all.
+If a version of pymunk lacks them, the public API does the same, more slowly.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy.typing as npt
 import pymunk
 from pymunk import _chipmunk_cffi, batch
 
-__all__ = ["FORCES", "SPEEDS", "Reader", "Setter", "set_by_properties"]
+__all__ = ["FORCES", "SPEEDS", "BodyReader", "BodyWriter", "set_by_properties"]
 
 Values = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
@@ -28,8 +28,8 @@ FORCES = SPEEDS | _Fields.FORCE | _Fields.TORQUE
 _STATE = _Fields.BODY_ID | _Fields.POSITION | _Fields.ANGLE | SPEEDS
 
 
-class Setter:
-    """Sets some bodies of a space; those that are not named sleep on."""
+class BodyWriter:
+    """Writes to chosen bodies of a space; the others stay asleep."""
 
     def __init__(self, bodies: Sequence[pymunk.Body] = ()) -> None:
         self._function = getattr(_chipmunk_cffi.lib, "pmSpaceBodySetIteratorFuncBatched", None)
@@ -37,12 +37,12 @@ class Setter:
         self.choose(bodies)
 
     def choose(self, bodies: Sequence[pymunk.Body]) -> None:
-        """Set these from now on."""
+        """Write to these bodies from now on."""
         self._bodies = bodies
         self._handles = [] if self._function is None else [body._body for body in bodies]
 
     def set(self, fields: batch.BodyFields, motion: Values) -> None:
-        """As `set_by_properties`; `fields` are those of the columns."""
+        """Write a row of `motion` to each chosen body; `fields` are its columns, as in `set_by_properties`."""
         if self._function is None:
             set_by_properties(self._bodies, motion)
             return
@@ -51,7 +51,7 @@ class Setter:
             prepared = self._prepared[fields.value] = self._prepare(fields, motion)
         rows, buffer, data = prepared
         rows[: len(motion)] = motion
-        buffer._float_arr.num = 0  # it is read from its beginning
+        buffer._float_arr.num = 0  # rewinds the buffer: pymunk reads from the beginning
         deque(map(self._function, self._handles, repeat(data)), maxlen=0)
 
     def _prepare(self, fields: batch.BodyFields, motion: Values) -> tuple[Values, batch.Buffer, Any]:
@@ -61,7 +61,7 @@ class Setter:
         return rows, buffer, _data(fields, buffer)
 
 
-class Reader:
+class BodyReader:
     """Reads all bodies of a space."""
 
     def __init__(self, space: pymunk.Space) -> None:
@@ -70,12 +70,12 @@ class Reader:
         self._ids = b""
         self._id_of: dict[pymunk.Body, int] = {}
         self.order = 0
-        """Another number whenever the rows are in another order."""
+        """Changes whenever the order of the rows changes."""
         self.state = np.zeros((0, 6))
         """Columns x, y, angle, vx, vy, rate of turn, a row for each body."""
 
     def read(self) -> None:
-        """Read anew."""
+        """Update `state`."""
         self._buffer.clear()
         self._each()
         self.state = np.frombuffer(self._buffer.float_buf()).reshape(-1, 6)
@@ -104,7 +104,7 @@ def _prepared_reader(space: pymunk.Space, buffer: batch.Buffer) -> Callable[[], 
 
 
 def _data(fields: batch.BodyFields, buffer: batch.Buffer) -> Any:
-    """How pymunk is told to read from a buffer, or to write to it."""
+    """The C struct by which pymunk reads from a buffer or writes to it."""
     data = _chipmunk_cffi.ffi.new("pmBatchedData *")
     data.floatArray, data.intArray, data.fields = buffer._float_arr, buffer._int_arr, fields.value
     return data

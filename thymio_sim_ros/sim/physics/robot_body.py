@@ -3,8 +3,8 @@
 A free robot has the speed of its wheels; its velocity points along the heading in the middle of the sub-step, so that
 its path follows arcs to the third order. pymunk moves bodies first and solves contacts and forces afterwards; a robot
 that touches something is therefore pushed by a force, which that solution takes into account: it would give the robot
-the speed of its wheels within a tick, as the reference does by decree, but never exceeds what the tyres can hold, so
-that heavy things stall it. Wheels at rest resist a push in the same way, and two robots share the difference of their
+the speed of its wheels within a tick, as Enki imposes, but never exceeds the grip of the tires, so that heavy
+objects stall it. Wheels at rest resist a push in the same way, and two robots share the difference of their
 speeds. Wheels hold the heading (docs/spec/thymio-robot.md section 11).
 """
 
@@ -21,7 +21,7 @@ from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
 from thymio_sim_ros.sim.physics.contact import ROBOT_BOUNCE, SUB_STEP_S, SUB_STEPS, TICK_S, Contact
 from thymio_sim_ros.sim.raycast.scalar import ConvexObstacle
 
-__all__ = ["MOMENT_KG_M2", "PUSH_N_S_M", "ROBOT_TYPE", "RobotBody", "Teller"]
+__all__ = ["MOMENT_KG_M2", "PUSH_N_S_M", "ROBOT_TYPE", "BodyArrays", "RobotBody"]
 
 ROBOT_TYPE = 1
 """pymunk's collision type of robots."""
@@ -40,23 +40,23 @@ _set_velocity, _set_spin, _set_force, _set_torque = (
 """pymunk's own setters, without its check of the attribute's name, which takes half of the time."""
 
 
-class Teller(Protocol):
-    """What moves many robots at once."""
+class BodyArrays(Protocol):
+    """The owner of the state of many robots in arrays."""
 
     @property
-    def is_told(self) -> bool:
-        """Whether the bodies know what has become of them."""
+    def is_written_back(self) -> bool:
+        """Whether the bodies are up to date."""
         ...
 
-    def tell(self) -> None:
-        """Write to the bodies what has become of them."""
+    def write_back(self) -> None:
+        """Write the arrays back to the bodies."""
         ...
 
 
 class RobotBody:
     """One robot's body, pushed by its two wheels. Invariant: `pose` is the body's after the last tick.
 
-    In a fleet it moves with the others, and the methods of a tick are not called.
+    In a batch the driver moves it, and the methods of a tick are not called.
     """
 
     __slots__ = (
@@ -69,9 +69,9 @@ class RobotBody:
         "_pose",
         "_speed_m_s",
         "_spin_rad_s",
+        "batch_driver",
         "body",
-        "fleet",
-        "is_engaged",
+        "is_active",
         "is_fallen",
         "name",
         "shape",
@@ -83,12 +83,12 @@ class RobotBody:
         self._pose = pose
         self.touching: dict[pymunk.Shape, Contact] = {}
         self._speed_m_s = self._spin_rad_s = 0.0
-        self.fleet: Teller | None = None
-        """The robots with which it moves."""
-        self.is_engaged = False
-        """Whether the engine moves it; else its body is in no space."""
+        self.batch_driver: BodyArrays | None = None
+        """The driver of its batch, if it is in one."""
+        self.is_active = False
+        """Whether pymunk moves it; otherwise its body is in no space."""
         self.is_fallen = False
-        """Whether it lies below the floor, out of everybody's reach, until it is placed."""
+        """Whether it has fallen; nothing touches or sees it until it is placed."""
         self._driven = self._covered = (0.0, 0.0)
         self._is_free = True
         self._angle = self._heading = pose.yaw_rad
@@ -103,22 +103,22 @@ class RobotBody:
     @property
     def pose(self) -> Pose:
         """Where it is."""
-        if self.fleet is not None and not self.fleet.is_told:
-            self.fleet.tell()
+        if self.batch_driver is not None and not self.batch_driver.is_written_back:
+            self.batch_driver.write_back()
         return self._pose
 
     @property
     def speed_m_s(self) -> float:
         """Speed along the heading."""
-        if self.fleet is not None and not self.fleet.is_told:
-            self.fleet.tell()
+        if self.batch_driver is not None and not self.batch_driver.is_written_back:
+            self.batch_driver.write_back()
         return self._speed_m_s
 
     @property
     def spin_rad_s(self) -> float:
         """Rate of turn, counter-clockwise."""
-        if self.fleet is not None and not self.fleet.is_told:
-            self.fleet.tell()
+        if self.batch_driver is not None and not self.batch_driver.is_written_back:
+            self.batch_driver.write_back()
         return self._spin_rad_s
 
     @property
@@ -142,8 +142,8 @@ class RobotBody:
     @property
     def course_rad(self) -> float:
         """The direction in which it moves, in its own frame; 0 at rest."""
-        if self.fleet is not None and not self.fleet.is_told:
-            self.fleet.tell()
+        if self.batch_driver is not None and not self.batch_driver.is_written_back:
+            self.batch_driver.write_back()
         if self._is_free:
             return math.pi if self.speed_m_s < 0.0 else 0.0
         vx, vy = self.body.velocity
@@ -162,24 +162,27 @@ class RobotBody:
         self._speed_m_s = self._spin_rad_s = 0.0
         self._angle = pose.yaw_rad
         self._pose = pose
-        if self.is_engaged:
+        if self.is_active:
             assert body.space is not None
             body.space.reindex_shapes_for_body(body)
 
-    def take_over(self, pose: Pose, speed_m_s: float, spin_rad_s: float, *, is_free: bool) -> None:
-        """Be where the fleet has brought it."""
+    def set_state(self, pose: Pose, speed_m_s: float, spin_rad_s: float, *, is_free: bool) -> None:
+        """Set the state that the batch driver computed."""
         self._is_free = is_free
         self._pose, self._angle = pose, pose.yaw_rad
         self._speed_m_s, self._spin_rad_s = speed_m_s, spin_rad_s
 
     def fall(self) -> None:
-        """Lose the floor: from now on the wheels turn in the air."""
+        """Fall: from now on the wheels have no grip."""
         self.is_fallen = self._is_free = True
         self.touching.clear()
         self._speed_m_s = self._spin_rad_s = 0.0
 
-    def glide(self) -> None:
-        """A tick without the engine, for when nothing can be touched; the same sums in the same order."""
+    def move_freely(self) -> None:
+        """Integrate a tick without pymunk, for a robot that can touch nothing.
+
+        The operations and their order are those of the other path, so that both give the same bits.
+        """
         left, right = self._driven
         self._speed_m_s = speed = (left + right) / 2
         self._spin_rad_s = spin = (right - left) / robot_constants.WHEEL_TRACK_M
@@ -193,18 +196,18 @@ class RobotBody:
         self._angle = angle
         self._pose = Pose(x_m, y_m, angle)
 
-    def engage(self, space: pymunk.Space) -> None:
-        """Let the engine move it from where it is."""
-        if not self.is_engaged:
-            self.is_engaged = True
+    def activate(self, space: pymunk.Space) -> None:
+        """Add the body to pymunk's space."""
+        if not self.is_active:
+            self.is_active = True
             self.body.position = (self._pose.x_m, self._pose.y_m)
             self.body.angle = self._angle
             space.add(self.body, self.shape)
 
-    def disengage(self, space: pymunk.Space) -> None:
-        """Leave the engine."""
-        if self.is_engaged:
-            self.is_engaged = False
+    def deactivate(self, space: pymunk.Space) -> None:
+        """Remove the body from pymunk's space."""
+        if self.is_active:
+            self.is_active = False
             space.remove(self.shape, self.body)
 
     def begin_tick(self) -> None:
@@ -216,7 +219,7 @@ class RobotBody:
                 self.touching[key] = replace(contact, is_new=False)
 
     def push(self) -> None:
-        """Before a sub-step: take the speed of the wheels, as far as contacts let."""
+        """Before a sub-step: set the speed of the wheels, or in contact a force toward it, limited by the grip."""
         left, right = self._driven
         speed, spin = (left + right) / 2, (right - left) / robot_constants.WHEEL_TRACK_M
         body = self.body
@@ -235,8 +238,8 @@ class RobotBody:
         _set_force(body, (push_x * share, push_y * share))
         _set_torque(body, (spin - turning) * (MOMENT_KG_M2 / SUB_STEP_S))
 
-    def settle(self, earlier: int) -> None:
-        """After a sub-step, `earlier` ones done: take over what contacts have made of the push."""
+    def finish_sub_step(self, earlier: int) -> None:
+        """After a sub-step, which follows `earlier` ones of this tick: read back the motion that contacts allowed."""
         if self._is_free and not self.touching:
             self._angle += self._spin_rad_s * SUB_STEP_S
             return
@@ -257,7 +260,7 @@ class RobotBody:
         )
 
     def end_tick(self) -> None:
-        """Tell the new pose."""
+        """Update the pose."""
         x_m, y_m = self.body.position
         self._angle = self.body.angle
         self._pose = Pose(x_m, y_m, self._angle)

@@ -1,4 +1,4 @@
-"""The robots of a space, one by one: those that can reach nothing glide, the others are moved by the engine."""
+"""Moves the robots of a space one by one: outside pymunk while they can reach nothing, else by pymunk."""
 
 from __future__ import annotations
 
@@ -9,92 +9,92 @@ import pymunk
 from thymio_sim_ros.sim.physics.contact import Contact
 from thymio_sim_ros.sim.physics.movable_body import MovableBody
 from thymio_sim_ros.sim.physics.robot_body import RobotBody
-from thymio_sim_ros.sim.physics.time_to_contact import quiet_ticks
-from thymio_sim_ros.sim.raycast.broadphase import Nearby
+from thymio_sim_ros.sim.physics.time_to_contact import ticks_to_contact
+from thymio_sim_ros.sim.raycast.broadphase import Broadphase
 
-__all__ = ["Singles"]
+__all__ = ["ScalarDriver"]
 
-_LOOK_ROUND_TICKS = 10
-"""How often it is worth while to look whether a robot is in nobody's reach any more, and for how long it must be."""
+_CHECK_INTERVAL_TICKS = 10
+"""Interval at which active robots are checked, and the time without contact after which they are deactivated."""
 
 
-class Singles:
-    """Robots that move one by one."""
+class ScalarDriver:
+    """Moves robots one by one."""
 
     def __init__(
         self,
         space: pymunk.Space,
         robots: Mapping[RobotBody, None],
         movables: Mapping[str, MovableBody],
-        nearby: Nearby,
+        broadphase: Broadphase,
     ) -> None:
-        """Of the robots those move that have not fallen, whoever they are in a tick."""
-        self._space, self._robots, self._movables, self._nearby = space, robots, movables, nearby
-        self._engaged: list[RobotBody] = []
+        """`robots` may change between ticks; fallen robots do not move."""
+        self._space, self._robots, self._movables, self._broadphase = space, robots, movables, broadphase
+        self._active: list[RobotBody] = []
         self._is_anything_moving = False
-        self._calm: dict[RobotBody, int] = {}
-        """For how many ticks each can reach nothing; below 0 it is engaged and looks round again after so many."""
+        self._free_ticks: dict[RobotBody, int] = {}
+        """Ticks in which a robot can reach nothing; negative: ticks until an active robot is checked again."""
 
     @property
     def needs_engine(self) -> bool:
-        """Whether there is anything for the engine to do in this tick."""
-        return self._is_anything_moving or bool(self._engaged)
+        """Whether pymunk has to step in this tick."""
+        return self._is_anything_moving or bool(self._active)
 
     def interrupt(self) -> None:
-        """Somebody may be somewhere else now, or gone."""
-        self._calm.clear()
+        """Discard cached times: a body may have been moved or removed."""
+        self._free_ticks.clear()
 
     def begin_tick(self, *, do_doors_move: bool) -> None:
-        """Let those glide who can reach nothing."""
+        """Integrate the robots that can reach nothing; activate the others."""
         moving = [movable for movable in self._movables.values() if movable.is_moving]
-        is_restless = do_doors_move or any(movable.is_fast for movable in moving)
+        is_unpredictable = do_doors_move or any(movable.is_fast for movable in moving)
         self._is_anything_moving = do_doors_move or bool(moving)
-        if is_restless:
-            self._calm.clear()
-        self._engaged = []
+        if is_unpredictable:
+            self._free_ticks.clear()
+        self._active = []
         for robot in self._robots:
             if robot.is_fallen:
                 continue
-            ticks = self._calm.get(robot, 0)
+            ticks = self._free_ticks.get(robot, 0)
             if ticks == 0:
-                ticks = self._look_round(robot, is_restless=is_restless)
+                ticks = self._update_active(robot, is_unpredictable=is_unpredictable)
             if ticks > 0:
-                robot.glide()
-                self._calm[robot] = ticks - 1
+                robot.move_freely()
+                self._free_ticks[robot] = ticks - 1
             else:
                 robot.begin_tick()
-                self._engaged.append(robot)
-                self._calm[robot] = ticks + 1
+                self._active.append(robot)
+                self._free_ticks[robot] = ticks + 1
 
     def push(self) -> None:
-        """Before a sub-step: let all engaged ones take the speeds of their wheels."""
-        for robot in self._engaged:
+        """Before a sub-step: apply the wheels of all active robots."""
+        for robot in self._active:
             robot.push()
 
-    def settle(self, earlier: int) -> None:
-        """After a sub-step, `earlier` ones done."""
-        for robot in self._engaged:
-            robot.settle(earlier)
+    def finish_sub_step(self, earlier: int) -> None:
+        """After a sub-step, which follows `earlier` ones of this tick."""
+        for robot in self._active:
+            robot.finish_sub_step(earlier)
 
     def end_tick(self) -> None:
-        """Tell new poses."""
-        for robot in self._engaged:
+        """Update poses."""
+        for robot in self._active:
             robot.end_tick()
         for movable in self._movables.values():
             movable.end_tick()
 
     def contacts(self) -> tuple[Contact, ...]:
         """All contacts, by robot and in the order in which they began."""
-        return tuple(contact for robot in self._engaged for contact in robot.touching.values())
+        return tuple(contact for robot in self._active for contact in robot.touching.values())
 
-    def _look_round(self, robot: RobotBody, *, is_restless: bool) -> int:
-        """A number for `_calm`."""
-        if not (robot.touching or is_restless):
+    def _update_active(self, robot: RobotBody, *, is_unpredictable: bool) -> int:
+        """Activate or deactivate a robot; returns its number for `_free_ticks`."""
+        if not (robot.touching or is_unpredictable):
             is_alone = len(self._robots) == 1 and not self._is_anything_moving
-            at_least = _LOOK_ROUND_TICKS if robot.is_engaged else 1
-            ticks = quiet_ticks(robot, self._nearby, at_least=at_least, is_alone=is_alone)
+            at_least = _CHECK_INTERVAL_TICKS if robot.is_active else 1
+            ticks = ticks_to_contact(robot, self._broadphase, at_least=at_least, is_alone=is_alone)
             if ticks > 0:
-                robot.disengage(self._space)
+                robot.deactivate(self._space)
                 return ticks
-        robot.engage(self._space)
-        return -_LOOK_ROUND_TICKS
+        robot.activate(self._space)
+        return -_CHECK_INTERVAL_TICKS

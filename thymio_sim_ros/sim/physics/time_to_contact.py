@@ -1,4 +1,4 @@
-"""For how long a robot can reach nothing: so long it glides, and the engine need not know where it is."""
+"""A lower bound of the time until a robot can touch anything; for so long it is integrated outside pymunk."""
 
 from __future__ import annotations
 
@@ -8,43 +8,43 @@ from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.physics.contact import TICK_S
 from thymio_sim_ros.sim.physics.movable_body import MovableBody
 from thymio_sim_ros.sim.physics.robot_body import RobotBody
-from thymio_sim_ros.sim.raycast.broadphase import Nearby
+from thymio_sim_ros.sim.raycast.broadphase import Broadphase
 
-__all__ = ["LONGEST_WAY_M", "SAFE_M", "THING_SHARE", "quiet_ticks"]
+__all__ = ["MAX_TICK_DISTANCE_M", "OBJECT_SPEED_FACTOR", "SAFETY_MARGIN_M", "ticks_to_contact"]
 
-LONGEST_WAY_M = robot_constants.MAX_SPEED_M_S * TICK_S
-"""Of a robot in a tick."""
-SAFE_M = 0.005
-"""So much farther than it may be, nothing is near."""
-THING_SHARE = 2.0
-"""A thing that is pushed goes at most so many times as far as a robot; else it is fast (`MovableBody.is_fast`)."""
+MAX_TICK_DISTANCE_M = robot_constants.MAX_SPEED_M_S * TICK_S
+"""Longest distance of a robot in a tick."""
+SAFETY_MARGIN_M = 0.005
+"""Safety margin of all distances."""
+OBJECT_SPEED_FACTOR = 2.0
+"""A pushed object moves at most this many times as far as a robot; otherwise it is fast (`MovableBody.is_fast`)."""
 _MOST_TICKS = 100
-_FAR_M = robot_constants.HULL_RADIUS_M + SAFE_M + _MOST_TICKS * LONGEST_WAY_M
-"""What is farther away does not shorten the quiet."""
+_FAR_M = robot_constants.HULL_RADIUS_M + SAFETY_MARGIN_M + _MOST_TICKS * MAX_TICK_DISTANCE_M
+"""Bodies farther away than this need no check."""
 
 
-def quiet_ticks(robot: RobotBody, nearby: Nearby, *, at_least: int, is_alone: bool) -> int:
-    """For how many ticks it can reach nothing, however it and all others drive, while doors rest and nothing is fast.
+def ticks_to_contact(robot: RobotBody, broadphase: Broadphase, *, at_least: int, is_alone: bool) -> int:
+    """Number of ticks in which the robot can touch nothing, however robots drive, if no door moves and nothing is fast.
 
-    0 when they are fewer than `at_least`. `is_alone` when nothing else moves, or could be moved by anybody else.
+    0 if they are fewer than `at_least`. `is_alone`: no other body moves or could be moved by another robot.
     """
-    reach_m = robot_constants.HULL_RADIUS_M + SAFE_M
+    reach_m = robot_constants.HULL_RADIUS_M + SAFETY_MARGIN_M
     x, y = robot.pose.x_m, robot.pose.y_m
-    free_m, least_m = _FAR_M - reach_m, at_least * LONGEST_WAY_M
-    for obstacle in nearby.fixed(x, y, _FAR_M):
+    free_m, least_m = _FAR_M - reach_m, at_least * MAX_TICK_DISTANCE_M
+    for obstacle in broadphase.fixed(x, y, _FAR_M):
         left, bottom, right, top = obstacle.bounds
         free_m = min(free_m, math.hypot(max(left - x, 0.0, x - right), max(bottom - y, 0.0, y - top)) - reach_m)
         if free_m < least_m:
             return 0
-    for mover in nearby.movers(x, y, (1.0 + THING_SHARE) * _FAR_M):
+    for mover in broadphase.movers(x, y, (1.0 + OBJECT_SPEED_FACTOR) * _FAR_M):
         if mover is robot:
             continue
         away_m = math.hypot(mover.pose.x_m - x, mover.pose.y_m - y) - mover.reach_m - reach_m
         if isinstance(mover, RobotBody):
             away_m /= 2
         elif isinstance(mover, MovableBody) and not is_alone:
-            away_m /= 1.0 + THING_SHARE
+            away_m /= 1.0 + OBJECT_SPEED_FACTOR
         free_m = min(free_m, away_m)
         if free_m < least_m:
             return 0
-    return max(0, int(free_m / LONGEST_WAY_M))
+    return max(0, int(free_m / MAX_TICK_DISTANCE_M))

@@ -10,7 +10,7 @@ from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.model import robot_constants
 from thymio_sim_ros.sim.model.geometry import Point, Pose, convex_hulls_overlap, disc_overlaps_hull
 from thymio_sim_ros.sim.model.primitives import Disc, Solid
-from thymio_sim_ros.sim.model.spatial_grid import Bounds, Squares
+from thymio_sim_ros.sim.model.spatial_grid import Bounds, SpatialGrid
 
 __all__ = ["Footprint", "Occupied", "PlacementError", "footprint_of", "footprint_of_robot"]
 
@@ -67,7 +67,7 @@ class Occupied:
     """Footprints by place."""
 
     def __init__(self, footprints: Iterable[Footprint] = ()) -> None:
-        self._squares: Squares[Footprint] = Squares()
+        self._squares: SpatialGrid[Footprint] = SpatialGrid()
         for footprint in footprints:
             self.add(footprint)
 

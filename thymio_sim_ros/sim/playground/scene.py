@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.model.primitives import Floor, Mark, Solid, Stroke
@@ -27,18 +29,34 @@ class Scene:
 
 @dataclass(frozen=True, slots=True)
 class RobotSnapshot:
-    """One robot: true pose and lean, wheel angles left and right, levels 0…32 of its lights by group, buttons held.
+    """One robot: its true pose and tilt, the angles of the left and right wheel, and what its plug-ins show.
 
-    `strokes` are what its pen drew, the oldest first.
+    `shown` holds the items of all plug-ins that declare `shows`, by name.
     """
 
     name: str
     pose: Pose
     wheel_angles_rad: tuple[float, float]
-    leds: tuple[tuple[str, tuple[int, ...]], ...]
-    pressed: tuple[str, ...]
-    strokes: tuple[Stroke, ...] = ()
+    shown: Mapping[str, Any] = field(default_factory=dict)
     tilt: Tilt = LEVEL
+
+    @property
+    def leds(self) -> tuple[tuple[str, tuple[int, ...]], ...]:
+        """Levels 0…32 of the LEDs, by group."""
+        leds: tuple[tuple[str, tuple[int, ...]], ...] = self.shown.get("leds", ())
+        return leds
+
+    @property
+    def pressed(self) -> tuple[str, ...]:
+        """Names of the buttons that are pressed."""
+        pressed: tuple[str, ...] = self.shown.get("pressed", ())
+        return pressed
+
+    @property
+    def strokes(self) -> tuple[Stroke, ...]:
+        """What the pen has drawn, oldest stroke first."""
+        strokes: tuple[Stroke, ...] = self.shown.get("strokes", ())
+        return strokes
 
 
 @dataclass(frozen=True, slots=True)

@@ -67,7 +67,7 @@ def _nearest(robot: RobotStart, occupied: Occupied, floors: Sequence[Floor]) -> 
 
 
 def _places(middle: Point) -> Iterator[Point]:
-    """Places around a point, the nearest first, in whole tenths of a millimetre."""
+    """Places around a point, the nearest first, in whole tenths of a millimeter."""
     ring = 0
     while True:
         ring += 1

@@ -1,4 +1,4 @@
-"""What a sensor or an actuator looks like to an Aseba program; `device/` derives its bindings from it."""
+"""How Aseba programs see a sensor or an actuator; `device/` derives variables, events and native functions from it."""
 
 from __future__ import annotations
 
@@ -66,9 +66,9 @@ class Native:
 
 @dataclass(frozen=True, slots=True)
 class ActuatorFace:
-    """An actuator: the variables it obeys, the native functions that reach it, and what a reset of the robot tells it.
+    """An actuator: variables and native functions that command it, and its commands at a reset of the robot.
 
-    A reset also tells it what its variables, now all zero, mean.
+    A reset also sends the commands of its variables, which are then all zero.
     """
 
     outputs: tuple[Output, ...] = ()

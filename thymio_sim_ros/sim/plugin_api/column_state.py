@@ -1,4 +1,4 @@
-"""What one sensor remembers of many robots, in columns."""
+"""The stored values of a sensor on a batch of robots, as columns."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Notes"]
+__all__ = ["ColumnState"]
 
 Column = npt.NDArray[Any]
 
 
-class Notes:
-    """The memories of a sensor on many robots. Invariant: a column is the truth until it is given back or lent.
+class ColumnState:
+    """The memories of a sensor on a batch of robots.
+
+    Invariant: a column is authoritative until `release` or `write_row`, and again after `read_row`.
 
     Values are numbers, or tuples of as many numbers on each robot.
     """
@@ -27,29 +29,29 @@ class Notes:
 
     @property
     def memories(self) -> Sequence[dict[str, Any]]:
-        """For notes that are not kept in columns, by robot."""
+        """By robot, for values that are not stored in columns."""
         return self._memories
 
     def column(self, name: str, first: object) -> Column:
-        """A note of all robots, to be written to; `first` is that of a robot that has none."""
+        """The values of all robots by name, writable; `first` is the value of a robot that has none."""
         found = self._columns.get(name)
         if found is None:
             found = self._columns[name] = np.array([memory.get(name, first) for memory in self._memories])
         return found
 
-    def give_back(self) -> None:
-        """Write all columns to the memories."""
+    def release(self) -> None:
+        """Write all columns to the memories and drop them."""
         for robot in range(len(self._memories)):
-            self.lend(robot)
+            self.write_row(robot)
         self._columns.clear()
 
-    def lend(self, robot: int) -> None:
-        """Let one robot's memory be the truth until it is taken back."""
+    def write_row(self, robot: int) -> None:
+        """Write one robot's values to its memory, which is authoritative until `read_row`."""
         for name, column in self._columns.items():
             value = column[robot].tolist()
             self._memories[robot][name] = tuple(value) if isinstance(value, list) else value
 
-    def take_back(self, robot: int) -> None:
-        """Read one robot's memory again."""
+    def read_row(self, robot: int) -> None:
+        """Read one robot's values from its memory."""
         for name, column in self._columns.items():
             column[robot] = self._memories[robot][name]

@@ -1,54 +1,60 @@
-"""Lets a plug-in of another package break alone: what it raises is logged, then it keeps quiet on that robot.
+"""Isolates plug-ins of other packages: an error is logged, and the plug-in is switched off on that robot.
 
-Ours have no such guard: an error of theirs is a defect, and stops the world with its trace.
+Plug-ins of this package are not isolated: an error stops the world with its traceback.
 """
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-__all__ = ["Broken", "Guard", "quiet_sensor"]
+__all__ = ["DisabledState", "PluginGuard", "guarded_sensor"]
 
 R = TypeVar("R")
 
 _BROKEN = "guards.broken"
 
 
-class Broken:
-    """The state of an actuator that could not even begin."""
+class DisabledState:
+    """The state of a plug-in whose `begin` has raised."""
 
 
-class Guard:
-    """The functions of one actuator on all robots of a world: each robot's stops with its first error."""
+class PluginGuard:
+    """Runs the functions of one actuator or stimulus; on each robot it is switched off by its first error."""
 
-    def __init__(self, name: str) -> None:
-        self._name = name
+    def __init__(self, kind: str, name: str) -> None:
+        self._kind, self._name = kind, name
         self._broken: dict[int, Any] = {}
-        """States by their identity; held, so that no other takes it over."""
+        """States by identity; the references keep an id from being used again."""
 
     def begin(self, make: Callable[[], Any]) -> Any:
         """A state for one robot."""
         try:
             return make()
         except Exception:
-            _tell("actuator", self._name)
-            return Broken()
+            _log(self._kind, self._name)
+            return DisabledState()
 
     def run(self, act: Callable[..., None], state: Any, *arguments: Any) -> None:
-        """Do it unless this robot's is broken."""
-        if isinstance(state, Broken) or id(state) in self._broken:
+        """Call `act` unless the plug-in is switched off on this robot."""
+        if isinstance(state, DisabledState) or id(state) in self._broken:
             return
         try:
             act(state, *arguments)
         except Exception:
             self._broken[id(state)] = state
-            _tell("actuator", self._name)
+            _log(self._kind, self._name)
+
+    def show(self, shows: Callable[[Any], Mapping[str, Any]], state: Any) -> Mapping[str, Any]:
+        """What `shows` returns for a state; nothing once the plug-in is switched off."""
+        shown: dict[str, Any] = {}
+        self.run(lambda state: shown.update(shows(state)), state)
+        return shown
 
 
-def quiet_sensor(name: str, measure: Callable[[Any], R]) -> Callable[[Any], R | None]:
-    """`measure` of a sensor, which returns nothing any more once it has raised on that robot."""
+def guarded_sensor(name: str, measure: Callable[[Any], R]) -> Callable[[Any], R | None]:
+    """`measure` of a sensor, which returns None once it has raised on that robot."""
 
     def guarded(view: Any) -> R | None:
         if _BROKEN in view.memory:
@@ -57,11 +63,11 @@ def quiet_sensor(name: str, measure: Callable[[Any], R]) -> Callable[[Any], R | 
             return measure(view)
         except Exception:
             view.memory[_BROKEN] = True
-            _tell("sensor", name)
+            _log("sensor", name)
             return None
 
     return guarded
 
 
-def _tell(kind: str, name: str) -> None:
+def _log(kind: str, name: str) -> None:
     logging.getLogger(__name__).exception("the %s '%s' of another package is switched off on a robot", kind, name)

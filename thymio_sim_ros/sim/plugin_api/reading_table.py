@@ -1,4 +1,4 @@
-"""What one tick's sensors have read, kept by sensor and taken apart by robot only when somebody looks."""
+"""The readings of one tick, stored by sensor and converted to rows by robot on demand."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import Any, overload
 
 from thymio_sim_ros.sim.model.readings import Reading
 
-__all__ = ["Columns", "Later", "rows_of"]
+__all__ = ["LazyReadings", "ReadingTable", "select_rows"]
 
 Row = tuple[str, str, Reading]
 
 
-class Later(Sequence[Reading | None]):
-    """Readings of all robots by one sensor, made one by one when asked for. `make` keeps what it needs for ever."""
+class LazyReadings(Sequence[Reading | None]):
+    """Readings of one sensor on all robots, made on access. `make` must not depend on state that changes later."""
 
     __slots__ = ("_count", "_make")
 
@@ -35,7 +35,7 @@ class Later(Sequence[Reading | None]):
         return map(self._make, range(self._count))
 
 
-class Columns(Sequence[Row]):
+class ReadingTable(Sequence[Row]):
     """Readings as (robot, sensor, reading), by robot and then by sensor; equal to a tuple of the same."""
 
     __slots__ = ("_columns", "_robots", "_rows")
@@ -58,7 +58,7 @@ class Columns(Sequence[Row]):
         return self._all()[index]
 
     def __eq__(self, other: Any) -> bool:
-        return isinstance(other, Columns | tuple) and self._all() == tuple(other)
+        return isinstance(other, ReadingTable | tuple) and self._all() == tuple(other)
 
     def __hash__(self) -> int:
         return hash(self._all())
@@ -67,15 +67,17 @@ class Columns(Sequence[Row]):
         return repr(self._all())
 
     def of(self, sensors: Collection[str]) -> Iterable[Row]:
-        """The rows of some sensors, in the same order; readings of the others are not made for that."""
+        """The rows of some sensors, in the same order, without making the readings of the others."""
         if self._rows is not None:
             return (row for row in self._rows if row[1] in sensors)
         wanted = [column for column in self._columns if column[0] in sensors]
-        return Columns(self._robots, wanted) if wanted else ()
+        return ReadingTable(self._robots, wanted) if wanted else ()
 
     def _all(self) -> tuple[Row, ...]:
         if self._rows is None:
-            full = [(sensor, column) for sensor, column in self._columns if isinstance(column, Later) or any(column)]
+            full = [
+                (sensor, column) for sensor, column in self._columns if isinstance(column, LazyReadings) or any(column)
+            ]
             names = [sensor for sensor, _ in full]
             made = zip(*(column for _, column in full), strict=True) if names else ()
             self._rows = tuple(
@@ -90,8 +92,8 @@ class Columns(Sequence[Row]):
         return self._rows
 
 
-def rows_of(readings: Sequence[Row], sensors: Collection[str]) -> Iterable[Row]:
-    """Those of some sensors among the readings of one tick."""
-    if isinstance(readings, Columns):
+def select_rows(readings: Sequence[Row], sensors: Collection[str]) -> Iterable[Row]:
+    """The rows of some sensors among the readings of one tick."""
+    if isinstance(readings, ReadingTable):
         return readings.of(sensors)
     return (row for row in readings if row[1] in sensors)

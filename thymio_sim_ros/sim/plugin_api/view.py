@@ -1,4 +1,7 @@
-"""What a plug-in sees of its robot and the world: sensors read, actuators also act."""
+"""What a plug-in sees of its robot and of the world. The views of sensors are read-only; those of actuators also act.
+
+Views of a batch give arrays with one entry per robot, in the order of the world.
+"""
 
 from __future__ import annotations
 
@@ -12,64 +15,64 @@ from thymio_sim_ros.sim.model.geometry import Point, Pose, Tilt, Twist
 from thymio_sim_ros.sim.model.noise import Noise, NormalBank, UniformBank
 from thymio_sim_ros.sim.model.primitives import Color
 from thymio_sim_ros.sim.physics import Contact
-from thymio_sim_ros.sim.plugin_api.column_state import Notes
+from thymio_sim_ros.sim.plugin_api.column_state import ColumnState
 from thymio_sim_ros.sim.raycast.batch import Fan, Indices, Values
 from thymio_sim_ros.sim.raycast.scalar import Surroundings
 
-__all__ = ["ActuatorView", "GroupActuatorView", "GroupView", "OtherRobot", "SensorView"]
+__all__ = ["ActuatorView", "BatchActuatorView", "BatchSensorView", "OtherRobot", "SensorView"]
 
 S = TypeVar("S")
 
 
 class OtherRobot(Protocol):
-    """Another robot as a sensor notices it; nothing of it may be changed."""
+    """Another robot as a sensor sees it; read-only."""
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """Name of the robot."""
         ...
 
     @property
     def pose(self) -> Pose:
-        """Where it really is."""
+        """Its true pose."""
         ...
 
     @property
     def is_fallen(self) -> bool:
-        """Whether it lies below the floor, out of everybody's sight."""
+        """Whether it has fallen off an edge; it is then invisible to sensors."""
         ...
 
     def state(self, kind: type[S]) -> S:
-        """The state of its actuator whose state is a `kind`; KeyError when there is none."""
+        """The state of type `kind` of one of its actuators or stimuli; raises KeyError if there is none."""
         ...
 
 
 class SensorView(Protocol):
-    """A robot as one of its sensors sees it; nothing here can be changed but the sensor's own `memory`."""
+    """A robot as one of its sensors sees it; read-only except for the sensor's own `memory`."""
 
     @property
     def now_ns(self) -> int:
-        """Simulated time."""
+        """Simulated time in ns."""
         ...
 
     @property
     def pose(self) -> Pose:
-        """Where the robot really is."""
+        """True pose of the robot."""
         ...
 
     @property
     def twist(self) -> Twist:
-        """How its body really moves."""
+        """True velocity of the body, in its own frame."""
         ...
 
     @property
     def tilt(self) -> Tilt:
-        """How the robot leans: as the operator's hand holds it, or as it falls off an edge and lies there."""
+        """Tilt of the robot: held by an operator, or falling off an edge and lying there."""
         ...
 
     @property
     def is_falling(self) -> bool:
-        """Whether it is in the air, on its way down from an edge."""
+        """Whether the robot is in the air after an edge."""
         ...
 
     @property
@@ -79,27 +82,27 @@ class SensorView(Protocol):
 
     @property
     def is_fallen(self) -> bool:
-        """Whether it has fallen off an edge, falling still or not, and is out of everybody's sight."""
+        """Whether it has fallen off an edge, still falling or not; it is then invisible to others."""
         ...
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
-        """What the robot touches."""
+        """Present contacts of the robot."""
         ...
 
     @property
     def noise(self) -> Noise:
-        """The sensor's own generator."""
+        """Random numbers of this sensor on this robot."""
         ...
 
     @property
     def memory(self) -> dict[str, Any]:
-        """The sensor's own notes on this robot, empty at the start."""
+        """What the sensor stores for this robot; empty after a reset."""
         ...
 
     @property
     def proximity_model(self) -> str:
-        """One of `thymio2.PROXIMITY_MODELS`."""
+        """One of `robot_constants.PROXIMITY_MODELS`."""
         ...
 
     @property
@@ -109,82 +112,82 @@ class SensorView(Protocol):
 
     @property
     def sounds(self) -> Sequence[Sound]:
-        """All that sounds in the world now, this robot's own included."""
+        """All sounds in the world now, including those of this robot."""
         ...
 
     def surroundings(self, reach_m: float, height_m: float) -> Surroundings:
-        """What rays may meet within `reach_m` of the robot's origin, at least `height_m` high."""
+        """Obstacles, other robots included, within `reach_m` of the robot's origin and at least `height_m` high."""
         ...
 
     def ground_at(self, x_m: float, y_m: float) -> GroundSample:
-        """The ground under a point of the robot's frame."""
+        """The ground under a point in the robot's frame, in m."""
         ...
 
     def state(self, kind: type[S]) -> S:
-        """The state of the actuator whose state is a `kind`; KeyError when there is none."""
+        """The state of type `kind` of an actuator or stimulus; raises KeyError if there is none."""
         ...
 
 
-class GroupView(Protocol):
-    """All robots of a world as one sensor of theirs sees them at once; robots are counted in the world's order."""
+class BatchSensorView(Protocol):
+    """All robots of a batch as one sensor sees them; robots are numbered in the order of the world."""
 
     def __len__(self) -> int:
-        """How many robots there are."""
+        """Number of robots."""
         ...
 
     @property
     def now_ns(self) -> int:
-        """Simulated time."""
+        """Simulated time in ns."""
         ...
 
     @property
     def noise(self) -> NormalBank:
-        """The sensor's own generators for normal numbers; users are robots. A sensor uses this or `evens`, not both."""
+        """Normal random numbers of this sensor, one stream per robot. A sensor uses this or `uniforms`, not both."""
         ...
 
     @property
-    def evens(self) -> UniformBank:
-        """The sensor's own generators for even numbers."""
+    def uniforms(self) -> UniformBank:
+        """Uniform random numbers of this sensor, one stream per robot."""
         ...
 
     @property
     def memory(self) -> dict[str, Any]:
-        """What the sensor keeps for as long as these robots are together, empty at the start; it is not given back."""
+        """What the sensor stores while the batch exists, empty at the start; it is not copied to the robots."""
         ...
 
     @property
-    def notes(self) -> Notes:
-        """The sensor's own notes on all robots."""
+    def column_state(self) -> ColumnState:
+        """What the sensor stores per robot, as columns; the same values as `SensorView.memory`."""
         ...
 
     @property
     def proximity_model(self) -> str:
-        """As in `SensorView`."""
+        """One of `robot_constants.PROXIMITY_MODELS`."""
         ...
 
     @property
     def poses(self) -> Values:
-        """Where the robots really are now: rows x, y, yaw."""
+        """True poses, shape (robots, 3): x and y in m, yaw in rad."""
         ...
 
     @property
     def motion(self) -> tuple[Values, Values]:
-        """How their bodies really move now: speeds along the headings, m/s, and rates of turn, rad/s."""
+        """True speeds along the headings in m/s and turn rates in rad/s, each of shape (robots,)."""
         ...
 
     @property
     def tilts(self) -> Sequence[Tilt]:
-        """How they lean."""
+        """Tilts by robot."""
         ...
 
     @property
     def fallen(self) -> Sequence[int]:
-        """Who has fallen off an edge, falling still or not."""
+        """Numbers of the robots that have fallen off an edge, still falling or not."""
         ...
 
     @property
     def falling(self) -> Sequence[int]:
-        """Who is in the air, on the way down from an edge."""
+        """Numbers of the robots that are in the air after an edge."""
         ...
 
     @property
@@ -194,82 +197,88 @@ class GroupView(Protocol):
 
     @property
     def contacts(self) -> Mapping[int, tuple[Contact, ...]]:
-        """What those touch that touch anything."""
+        """Contacts of the robots that have any, by robot number."""
         ...
 
     @property
     def sounds(self) -> Sequence[Sound]:
-        """All that sounds in the world now."""
+        """All sounds in the world now."""
         ...
 
     def states(self, kind: type[S]) -> Sequence[S]:
-        """The state of one actuator of every robot."""
+        """The state of type `kind` of every robot."""
         ...
 
     def cast(self, fan: Fan) -> tuple[Indices, Values]:
-        """Rays of all robots: the numbers of the sensors that see anything, and how far their rays go (`Raycaster`)."""
+        """Casts the rays of all robots; returns what `BatchRaycaster.cast` returns."""
         ...
 
     def ground_at(self, places: Values) -> tuple[Values, Values]:
-        """Reflectance and floor under points of the robots' frames, by robot and point; rows of `places` are x, y."""
+        """Reflectance and share of floor under points, each of shape (robots, points).
+
+        `places` has shape (points, 2): x and y in the robots' frames, in m.
+        """
         ...
 
 
-class GroupActuatorView(Protocol):
-    """All robots of a world as one actuator of theirs sees them at once."""
+class BatchActuatorView(Protocol):
+    """All robots of a batch as one actuator sees them."""
 
     @property
     def now_ns(self) -> int:
-        """Simulated time."""
+        """Simulated time in ns."""
         ...
 
     @property
     def memory(self) -> dict[str, Any]:
-        """The actuator's own notes on all robots, empty at the start."""
+        """What the actuator stores while the batch exists, empty at the start."""
         ...
 
     @property
     def noise(self) -> UniformBank:
-        """The actuator's own generators; users are robots."""
+        """Uniform random numbers of this actuator, one stream per robot."""
         ...
 
     @property
     def wheels(self) -> WheelArrays:
-        """The wheels of all robots, to be driven."""
+        """The wheels of all robots."""
         ...
 
 
 class ActuatorView(Protocol):
-    """A robot as one of its actuators sees it."""
+    """A robot as one of its actuators or stimuli sees it."""
 
     @property
     def now_ns(self) -> int:
-        """Simulated time."""
+        """Simulated time in ns."""
         ...
 
     @property
     def noise(self) -> Noise:
-        """The actuator's own generator."""
+        """Random numbers of this actuator on this robot."""
         ...
 
     @property
     def wheels(self) -> Wheels:
-        """The wheels, to be driven."""
+        """The wheels of the robot."""
         ...
 
     @property
     def pose(self) -> Pose:
-        """Where the robot really is."""
+        """True pose of the robot."""
         ...
 
     def draw(self, start: Point, end: Point, width_m: float, color: Color | None) -> Color | None:
-        """Draw on the ground, or erase with None; the color that is now seen at the end, None where no floor is."""
+        """Draw a line on the ground, or erase it if `color` is None.
+
+        Returns the color that is now at `end`; None if there is no floor.
+        """
         ...
 
     def wake(self, kind: type[Any]) -> None:
-        """Let the sensors that wake on this type measure at the end of the tick."""
+        """Wake the sensors that have this type in `wakes_on`; they measure at the end of the tick."""
         ...
 
     def place(self, pose: Pose) -> None:
-        """Put the robot somewhere, at rest."""
+        """Place the robot at a pose, at rest."""
         ...

@@ -1,7 +1,8 @@
-"""Rays of all robots at once: the sums of `rays` on arrays, equal to 1e-9.
+"""Ray casts of all robots of a batch: the computations of `raycast.scalar` on arrays, equal to 1e-9.
 
-What may be near is kept as a list of pairs (robot, obstacle) with a margin, made anew when something has moved through
-half of it. From the pairs those in the robot's reach remain, then those near a sensor; only their rays are computed.
+Candidates are a list of pairs (robot, obstacle) that are near each other with a margin; the list is rebuilt when
+something has moved by a third of the margin. The pairs are reduced to those in the robot's reach, then to those near a
+sensor and in front of it. Only their rays are computed, in the frame of the obstacle.
 """
 
 from __future__ import annotations
@@ -13,18 +14,26 @@ import numpy as np
 import numpy.typing as npt
 
 from thymio_sim_ros.sim.kernel.memory import is_available
-from thymio_sim_ros.sim.kernel.raycast_binding import Casting
+from thymio_sim_ros.sim.kernel.raycast_binding import RaycastBinding
 from thymio_sim_ros.sim.model import robot_constants
-from thymio_sim_ros.sim.raycast.obstacle_table import BOX, DISC, HEIGHT, NOWHERE_M, Frames, Values, polygon_in_frame
+from thymio_sim_ros.sim.raycast.obstacle_table import (
+    BOX,
+    DISC,
+    HEIGHT,
+    NOWHERE_M,
+    ObstacleTable,
+    Values,
+    polygon_in_frame,
+)
 from thymio_sim_ros.sim.raycast.scalar import Obstacle
 
-__all__ = ["Fan", "Indices", "Raycaster", "Values"]
+__all__ = ["BatchRaycaster", "Fan", "Indices", "Values"]
 
 _MARGIN_M = 0.15
 _SAME_M = 1e-9
 """Sizes closer than this are those of the same thing."""
 _TINY = 1e-300
-"""Stands for 0 where a ray runs along a side."""
+"""Replaces 0 in a division, where a ray is parallel to a side."""
 _HULL_FRAME, _planes = polygon_in_frame(robot_constants.hull())
 assert _planes is not None  # it is no box
 _HULL_PLANES = _planes
@@ -34,7 +43,7 @@ _NOTHING: Indices = np.zeros(0, dtype=np.intp)
 
 
 class Fan:
-    """Sensors on a robot: places and unit directions of their rays in its frame, and how far and how high they look."""
+    """The rays of sensors of a robot: origins and unit directions in its frame, range, height above the floor."""
 
     __slots__ = ("axes", "cos", "directions", "height_m", "is_narrow", "places", "range_m", "reach_m", "sin")
 
@@ -53,49 +62,50 @@ class Fan:
         """x and y of the middle one of each sensor's rays."""
         self.cos = (self.axes[:, :, None] * self.directions).sum(axis=0).min(axis=1)
         self.sin = np.sqrt(np.maximum(0.0, 1.0 - self.cos**2))
-        """Of the angle between that and the outermost ray, by sensor."""
+        """Sine of the angle between the axis and the outermost ray, by sensor; `cos` is its cosine."""
         self.is_narrow = bool((self.cos > 0.0).all())
         self.range_m, self.height_m = range_m, height_m
         self.reach_m = range_m + max(math.hypot(x, y) for x, y in places)
 
 
-class Raycaster:
-    """What rays meet in a world with always the same robots.
+class BatchRaycaster:
+    """Casts the rays of a fixed set of robots.
 
-    Their poses are told with every cast; other things that move, when they may have moved.
+    Poses of robots are given with every cast; objects and doors are updated by `move`.
     """
 
     def __init__(
         self, fixed: Sequence[Obstacle], loose: Sequence[Obstacle | None] = (), *, is_compiled: bool | None = None
     ) -> None:
-        """`is_compiled`: by kernels, or with numpy; None: by kernels where they are available. Nothing else differs."""
+        """`is_compiled`: use kernels, or numpy; None: kernels if available. The results are the same."""
         self._is_compiled = is_available() if is_compiled is None else is_compiled
-        self._kernels: dict[Fan, Casting] = {}
-        self._frames = Frames([*fixed, *loose])
+        self._kernels: dict[Fan, RaycastBinding] = {}
+        self._table = ObstacleTable([*fixed, *loose])
         self._fixed = len(fixed)
         self._fallen: frozenset[int] = frozenset()
         self._lists: dict[Fan, tuple[Values, Indices, Indices]] = {}
         """For each fan: where loose things and robots were, and the pairs that were near then."""
 
     def move(self, moved: Mapping[int, Obstacle | None], fallen: Collection[int] = ()) -> None:
-        """Loose things that are elsewhere now, by their numbers; None for what is gone.
+        """Update movable obstacles, by their numbers; None removes one.
 
-        Robots with the numbers in `fallen` neither see anything nor are seen.
+        Robots with the numbers in `fallen` neither detect anything nor are detected.
         """
         if len(fallen) != len(self._fallen) or not self._fallen.issuperset(fallen):
             self._fallen = frozenset(fallen)
             self._lists.clear()
         for number, obstacle in moved.items():
-            row = self._frames.rows[self._fixed + number]
+            row = self._table.rows[self._fixed + number]
             size = row[4:].copy()
-            self._frames.put(self._fixed + number, obstacle)
+            self._table.put(self._fixed + number, obstacle)
             if np.abs(row[4:] - size).max() > _SAME_M:
                 self._lists.clear()
 
     def cast(self, poses: Values, fan: Fan) -> tuple[Indices, Values]:
-        """Rays of robots at `poses` (rows x, y, yaw): which sensors see anything, and how far each of their rays goes.
+        """Cast the rays of robots at `poses`, shape (robots, 3): x, y, yaw.
 
-        Sensors are counted robot by robot; distances are in m by sensor and ray, inf where a ray meets nothing.
+        Returns the sorted numbers of the sensors that detect something, shape (hits,), and the distances of their rays
+        in m, shape (hits, rays), inf for a ray that meets nothing. Sensor s of robot r has the number r * sensors + s.
         """
         if self._is_compiled:
             return self._cast_compiled(poses, fan)
@@ -104,7 +114,7 @@ class Raycaster:
         robot, thing = self._near(poses, frames, fan)
         cos, sin = np.cos(poses[:, 2]), np.sin(poses[:, 2])
 
-        # the robot in the frame of the thing
+        # the robot's position and heading in the frame of the obstacle
         near = frames[thing]
         dx, dy = poses[robot, 0] - near[:, 0], poses[robot, 1] - near[:, 1]
         x, y = near[:, 2] * dx + near[:, 3] * dy, near[:, 2] * dy - near[:, 3] * dx
@@ -115,7 +125,7 @@ class Raycaster:
         c = cos[robot] * near[:, 2] + sin[robot] * near[:, 3]
         s = sin[robot] * near[:, 2] - cos[robot] * near[:, 3]
 
-        # its sensors
+        # the sensors of these robots in the same frame; drop those beyond the range or facing away
         px, py = fan.places
         sx = x[:, None] + c[:, None] * px - s[:, None] * py
         sy = y[:, None] + s[:, None] * px + c[:, None] * py
@@ -142,17 +152,17 @@ class Raycaster:
     def _cast_compiled(self, poses: Values, fan: Fan) -> tuple[Indices, Values]:
         kernel = self._kernels.get(fan)
         if kernel is None:
-            things = len(self._frames.rows)
-            kernel = Casting(fan, len(poses), things, self._fixed, _HULL_FRAME, _MARGIN_M / 3)
+            things = len(self._table.rows)
+            kernel = RaycastBinding(fan, len(poses), things, self._fixed, _HULL_FRAME, _MARGIN_M / 3)
             self._kernels[fan] = kernel
-        found = kernel.cast(poses, self._frames.rows) if fan in self._lists else None
+        found = kernel.cast(poses, self._table.rows) if fan in self._lists else None
         while found is None:
             frames, kinds = self._with_robots(poses)
             robot, thing = self._pairs(poses, frames, fan)
             places = self._places(poses, frames)
             self._lists[fan] = (places, robot, thing)
-            kernel.begin(frames, kinds, [*self._frames.polygons, _HULL_PLANES], robot, thing, places)
-            found = kernel.cast(poses, self._frames.rows)
+            kernel.begin(frames, kinds, [*self._table.polygons, _HULL_PLANES], robot, thing, places)
+            found = kernel.cast(poses, self._table.rows)
         return found
 
     def _places(self, poses: Values, frames: Values) -> Values:
@@ -170,11 +180,11 @@ class Raycaster:
         robots[:, 3] = s * cos + c * sin
         robots[:, 4:] = half_x, half_y, robot_constants.HULL_HEIGHT_M
         robots[list(self._fallen), HEIGHT] = NOWHERE_M
-        kinds = np.full(len(poses), len(self._frames.polygons), dtype=np.intp)
-        return np.concatenate([self._frames.rows, robots]), np.concatenate([self._frames.kinds, kinds])
+        kinds = np.full(len(poses), len(self._table.polygons), dtype=np.intp)
+        return np.concatenate([self._table.rows, robots]), np.concatenate([self._table.kinds, kinds])
 
     def _near(self, poses: Values, frames: Values, fan: Fan) -> tuple[Indices, Indices]:
-        """Pairs of robots and things, at least as high as the rays, that may be in reach: robot by robot."""
+        """Candidate pairs of robots and obstacles that are at least as high as the rays, sorted by robot."""
         found = self._lists.get(fan)
         places = self._places(poses, frames)
         if found is None or np.abs(places - found[0]).max(initial=0.0) > _MARGIN_M / 3:
@@ -182,7 +192,10 @@ class Raycaster:
         return found[1:]
 
     def _pairs(self, poses: Values, frames: Values, fan: Fan) -> tuple[Indices, Indices]:
-        """Pairs whose boxes are in reach and a margin, found among things sorted by x."""
+        """Pairs whose bounding boxes are within reach and margin: sweep and prune along x.
+
+        Robots are sorted by x; for each obstacle, `first` and `last` delimit the robots that overlap it in x. Repeat
+        and cumsum expand these ranges to pairs, which are then filtered by y."""
         reach = fan.reach_m + _MARGIN_M
         half = np.hypot(frames[:, 4], frames[:, 5])
         wide_x = np.minimum(half, np.abs(frames[:, 2]) * frames[:, 4] + np.abs(frames[:, 3]) * frames[:, 5]) + reach
@@ -205,7 +218,7 @@ class Raycaster:
         return robot[order], thing[order]
 
     def _meet(self, x: Values, y: Values, dx: Values, dy: Values, near: Values, kind: Indices) -> Values:
-        """How far rays go until they enter the obstacle in whose frame they are; inf if they don't."""
+        """Distances at which rays enter the obstacle in whose frame they are; inf if they do not."""
         distances = np.empty(dx.shape)
         for this in (np.flatnonzero(np.bincount(kind - DISC)) + DISC).tolist():
             rows = (kind == this).nonzero()[0]
@@ -215,7 +228,7 @@ class Raycaster:
             elif this == BOX:
                 distances[rows] = _meet_boxes(*ray, near[rows, 4, None], near[rows, 5, None])
             else:
-                polygons = self._frames.polygons
+                polygons = self._table.polygons
                 planes = polygons[this] if this < len(polygons) else _HULL_PLANES
                 distances[rows] = _meet_polygon(*ray, planes)
         return distances
@@ -224,7 +237,7 @@ class Raycaster:
 def _facing(
     fan: Fan, pair: Indices, sensor: Indices, x: Values, y: Values, c: Values, s: Values, near: Values
 ) -> tuple[Indices, Indices]:
-    """Those whose rays may meet the circle round the thing, in whose frame the sensors are at x, y, turned by c, s."""
+    """Pairs whose rays may meet the circle around the obstacle; sensors are at x, y in its frame, turned by c, s."""
     ax, ay = fan.axes[:, sensor]
     ax, ay = c * ax - s * ay, s * ax + c * ay
     radius = np.sqrt(near[:, 4] * near[:, 4] + near[:, 5] * near[:, 5])

@@ -1,6 +1,6 @@
-"""Obstacles as rows of arrays: a frame each, the half size of the box round it there, and what it is inside.
+"""Obstacles as rows of arrays: a frame, the half size of the bounding box in that frame, and the exact outline.
 
-Rays are taken into an obstacle's own frame, where a box is four numbers and the hull of every robot the same.
+Rays are transformed into the frame of an obstacle, where a box has only a half size and all hulls of robots are equal.
 """
 
 from __future__ import annotations
@@ -13,20 +13,20 @@ import numpy.typing as npt
 
 from thymio_sim_ros.sim.raycast.scalar import DiscObstacle, Obstacle
 
-__all__ = ["BOX", "DISC", "HEIGHT", "NOWHERE_M", "Frames", "Values", "polygon_in_frame"]
+__all__ = ["BOX", "DISC", "HEIGHT", "NOWHERE_M", "ObstacleTable", "Values", "polygon_in_frame"]
 
 Values = npt.NDArray[np.float64]
 
 DISC, BOX = -2, -1
 """Kinds; a number from 0 up is that of a polygon."""
 HEIGHT = 6
-"""Where in a row the height stands."""
+"""Column of the height."""
 NOWHERE_M = -1.0
-"""Height of what is not there."""
+"""Height of a missing obstacle."""
 _RIGHT_ANGLE = 1e-9
 
 
-class Frames:
+class ObstacleTable:
     """Rows: middle x, y; cosine and sine of the heading; half size along and across; height. `kinds` beside them."""
 
     __slots__ = ("kinds", "polygons", "rows")
@@ -40,7 +40,7 @@ class Frames:
             self.put(row, obstacle)
 
     def put(self, row: int, obstacle: Obstacle | None) -> None:
-        """Write an obstacle into a row; None for one that is not there."""
+        """Write an obstacle to a row; None for a missing one."""
         if obstacle is None:
             self.rows[row, HEIGHT] = NOWHERE_M
             return

@@ -1,4 +1,4 @@
-"""Straight rays against convex things: the scalar reference that sensors use.
+"""Ray casts against convex obstacles, one by one; also the reference for the batch.
 
 A convex polygon is kept as half planes n·p <= c; a ray o + t d is inside from the largest entering to the
 smallest leaving t = (c - n·o) / (n·d). Faster engines may come behind `Surroundings` with equal values.
@@ -41,7 +41,7 @@ class ConvexObstacle:
         return True
 
     def distance(self, x_m: float, y_m: float, dx: float, dy: float, limit_m: float) -> float:
-        """How far along a unit direction its surface is met from outside; `limit_m` when it isn't."""
+        """Distance along a unit direction at which a ray enters the obstacle; `limit_m` if it does not, or later."""
         enter, leave = -math.inf, limit_m
         for nx, ny, c in self.planes:
             along = nx * dx + ny * dy
@@ -73,7 +73,7 @@ class DiscObstacle:
         return math.hypot(self.x_m - x_m, self.y_m - y_m) <= reach_m + self.radius_m
 
     def distance(self, x_m: float, y_m: float, dx: float, dy: float, limit_m: float) -> float:
-        """How far along a unit direction its surface is met from outside; `limit_m` when it isn't."""
+        """Distance along a unit direction at which a ray enters the obstacle; `limit_m` if it does not, or later."""
         px, py = self.x_m - x_m, self.y_m - y_m
         middle = px * dx + py * dy
         square = self.radius_m * self.radius_m - (px * px + py * py - middle * middle)
@@ -87,14 +87,14 @@ Obstacle = ConvexObstacle | DiscObstacle
 
 
 def obstacle_of(solid: Solid) -> Obstacle:
-    """What rays see of a solid."""
+    """The obstacle of a solid."""
     if isinstance(solid.outline, Disc):
         return DiscObstacle(solid.pose.x_m, solid.pose.y_m, solid.outline.radius_m, solid.height_m)
     return ConvexObstacle(solid.vertices, solid.height_m)
 
 
 class Surroundings:
-    """The obstacles that rays from some place may meet."""
+    """The obstacles around a robot."""
 
     __slots__ = ("_obstacles",)
 
@@ -103,17 +103,17 @@ class Surroundings:
 
     @property
     def is_empty(self) -> bool:
-        """Whether no ray can hit anything."""
+        """Whether there are no obstacles."""
         return not self._obstacles
 
     def near(self, x_m: float, y_m: float, reach_m: float) -> Surroundings:
-        """Those of them that may be nearer to a point than `reach_m`."""
+        """The obstacles that may be within `reach_m` of a point."""
         return Surroundings([obstacle for obstacle in self._obstacles if obstacle.is_within(x_m, y_m, reach_m)])
 
     def fan(
         self, x_m: float, y_m: float, directions: Sequence[tuple[float, float]], range_m: float
     ) -> tuple[float, ...]:
-        """Distance along each unit direction from one point to the nearest thing, `inf` beyond the range."""
+        """Distances in m from a point to the nearest obstacle along each unit direction; `inf` beyond `range_m`."""
         found = []
         limit = range_m * (1.0 + 1e-12)
         for dx, dy in directions:

@@ -1,39 +1,34 @@
-"""One robot: a body, two wheels, the state of its actuators, and a view for each plug-in."""
+"""One robot: a body, two wheels, the states of its actuators and stimuli, and a view for each plug-in."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
-from thymio_sim_ros.sim.actuators import Actuator
-from thymio_sim_ros.sim.actuators.buttons import ButtonState
-from thymio_sim_ros.sim.actuators.hand import HandState
-from thymio_sim_ros.sim.actuators.leds import LedState
-from thymio_sim_ros.sim.actuators.pen import PenState
-from thymio_sim_ros.sim.actuators.room import RoomState
-from thymio_sim_ros.sim.audio.propagation import SPEAKER_SHARE, Sound, Sounding
+from thymio_sim_ros.sim.audio.propagation import Sound, SoundSource
 from thymio_sim_ros.sim.ground.sampling import NO_FLOOR, Ground, GroundSample
-from thymio_sim_ros.sim.mechanics.edge_fall import Balance
+from thymio_sim_ros.sim.mechanics.edge_fall import EdgeFall
 from thymio_sim_ros.sim.mechanics.wheels import WheelArrays, Wheels
 from thymio_sim_ros.sim.model.clock import SimClock
-from thymio_sim_ros.sim.model.geometry import Point, Pose, Tilt, Twist
+from thymio_sim_ros.sim.model.geometry import LEVEL, Point, Pose, Tilt, Twist
 from thymio_sim_ros.sim.model.noise import Noise
 from thymio_sim_ros.sim.model.primitives import Color
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.physics import Contact, Physics, RobotBody
 from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.playground.scene import RobotSnapshot
+from thymio_sim_ros.sim.plugin_api.command_plugin import CommandPlugin, Tilting
 from thymio_sim_ros.sim.raycast.scalar import Surroundings
-from thymio_sim_ros.sim.robot.actuator_instance import Task
+from thymio_sim_ros.sim.robot.plugin_instance import PluginInstance
 from thymio_sim_ros.sim.sensors import Sensor
 
-__all__ = ["Robot", "Shared"]
+__all__ = ["Robot", "SharedState"]
 
 S = TypeVar("S")
 
 
-class Shared:
-    """What all robots of a world share."""
+class SharedState:
+    """State that all robots of a world share."""
 
     __slots__ = ("_sounds", "_sounds_ns", "busy", "clock", "ground", "physics", "proximity_model", "robots", "woken")
 
@@ -43,7 +38,7 @@ class Shared:
         self.clock, self.ground, self.physics, self.proximity_model = clock, ground, physics, proximity_model
         self.robots = robots
         self.busy: dict[Robot, None] = {}
-        """Robots with something to do in the next tick beside what all do at once."""
+        """Robots with plug-ins to update in the next tick that are not updated as a batch."""
         self.woken: dict[Robot, None] = {}
         """Robots with a sensor that was woken."""
         self._sounds: list[Sound] = []
@@ -55,24 +50,24 @@ class Shared:
         self.woken.pop(robot, None)
 
     def sounds(self) -> list[Sound]:
-        """All that sounds now; every robot is asked once per tick, however many listen."""
+        """All sounds now; computed once per tick."""
         now_ns = self.clock.now_ns
         if self._sounds_ns != now_ns:
             self._sounds_ns = now_ns
             self._sounds = [
                 Sound(robot.pose.x_m, robot.pose.y_m, level)
                 for robot in self.robots.values()
-                for level in robot.levels(now_ns)
+                for level in robot.sound_levels(now_ns)
             ]
         return self._sounds
 
 
-class _View:
+class _PluginView:
     """A robot as one plug-in sees it; satisfies `SensorView` and `ActuatorView`."""
 
     __slots__ = ("_clock", "_robot", "_states", "_world", "memory", "noise", "proximity_model")
 
-    def __init__(self, robot: Robot, world: Shared, noise: Noise) -> None:
+    def __init__(self, robot: Robot, world: SharedState, noise: Noise) -> None:
         self._robot, self._world, self._states, self._clock = robot, world, robot.states, world.clock
         self.noise = noise
         self.memory: dict[str, Any] = {}
@@ -147,8 +142,8 @@ class Robot:
     def __init__(
         self,
         start: RobotStart,
-        shared: Shared,
-        actuators: Iterable[Actuator],
+        shared: SharedState,
+        plugins: Iterable[CommandPlugin],
         sensors: Iterable[Sensor],
         *,
         seed: int,
@@ -158,29 +153,33 @@ class Robot:
         self.body: RobotBody = shared.physics.add_robot(start.name, start.pose)
         self._wheels = Wheels()
         self.shared_wheels: WheelArrays | None = None
-        """The wheels of all robots, when they roll as one."""
+        """The wheels of the batch, if the robot is in one."""
         self._clock, self._physics = shared.clock, shared.physics
-        self.balance = Balance(shared.clock, shared.physics, self.body)
-        """Whether it stands."""
+        self.edge_fall = EdgeFall(shared.clock, shared.physics, self.body)
+        """Detects when it falls off an edge."""
         self.states: dict[type[Any], Any] = {}
-        """The state of every actuator, by its type."""
-        self._accepting: dict[type[Any], tuple[Actuator, Any]] = {}
+        """The states of actuators and stimuli, by type."""
+        self._accepting: dict[type[Any], tuple[CommandPlugin, Any]] = {}
+        self._shown: list[tuple[Callable[[Any], Mapping[str, Any]], Any]] = []
         self._shared = shared
-        self.tasks: list[Task] = []
-        """What acts in a tick, in name order."""
-        for actuator in actuators:
-            state = actuator.begin()
+        self.instances: list[PluginInstance] = []
+        """The actuators and stimuli with `update`, in name order."""
+        for plugin in plugins:
+            state = plugin.begin()
             self.states[type(state)] = state
-            for kind in actuator.accepts:
-                self._accepting[kind] = (actuator, state)
-            if actuator.update is not None:
-                view = _View(self, shared, Noise(seed, self.name, actuator.name, enabled=noise))
-                self.tasks.append(Task(actuator, state, view))
+            for kind in plugin.accepts:
+                self._accepting[kind] = (plugin, state)
+            if plugin.shows is not None:
+                self._shown.append((plugin.shows, state))
+            if plugin.update is not None:
+                view = _PluginView(self, shared, Noise(seed, self.name, plugin.name, enabled=noise))
+                self.instances.append(PluginInstance(plugin, state, view))
         self._list_busy()
-        self._hand, self._room = self.state(HandState), self.state(RoomState)
-        self._speakers = [state for state in self.states.values() if isinstance(state, Sounding)]
+        self._tilting = [state for state in self.states.values() if isinstance(state, Tilting)]
+        self._sound_sources = [state for state in self.states.values() if isinstance(state, SoundSource)]
         self.sensors = [
-            (sensor, _View(self, shared, Noise(seed, self.name, sensor.name, enabled=noise))) for sensor in sensors
+            (sensor, _PluginView(self, shared, Noise(seed, self.name, sensor.name, enabled=noise)))
+            for sensor in sensors
         ]
         self._wakes: dict[type[Any], list[int]] = {}
         for number, (sensor, _) in enumerate(self.sensors):
@@ -191,13 +190,13 @@ class Robot:
     @property
     def wheels(self) -> Wheels:
         """Its wheels."""
-        if self.shared_wheels is not None and not self.shared_wheels.is_told:
-            self.shared_wheels.tell()
+        if self.shared_wheels is not None and not self.shared_wheels.is_written_back:
+            self.shared_wheels.write_back()
         return self._wheels
 
     @property
     def pose(self) -> Pose:
-        """Where it really is."""
+        """True pose."""
         return self.body.pose
 
     @property
@@ -207,97 +206,103 @@ class Robot:
 
     @property
     def tilt(self) -> Tilt:
-        """How it leans: as the operator's hand holds it, or as it falls off an edge and lies there."""
-        return self.balance.tilt or self._hand.tilt
+        """Tilt: held by an operator, or falling off an edge and lying there."""
+        return self.edge_fall.tilt or self.held_tilt
+
+    @property
+    def held_tilt(self) -> Tilt:
+        """The angle at which a plug-in holds the robot; level if none does."""
+        for state in self._tilting:
+            if state.tilt != LEVEL:
+                return state.tilt
+        return LEVEL
 
     @property
     def is_falling(self) -> bool:
         """Whether it is in the air, on its way down from an edge."""
-        return self.balance.is_falling
+        return self.edge_fall.is_falling
 
     @property
     def is_fallen(self) -> bool:
         """Whether it has fallen off an edge, falling still or not."""
         return self.body.is_fallen
 
-    def levels(self, now_ns: int) -> list[float]:
-        """How loud is what sounds on it."""
-        levels = [SPEAKER_SHARE * speaker.sounding_level for speaker in self._speakers if speaker.sounding_level]
-        if now_ns <= self._room.clap_ends_ns:
-            levels.append(self._room.clap_level)
-        return levels
+    def sound_levels(self, now_ns: int) -> list[float]:
+        """Levels of the sounds that it makes now."""
+        levels = (source.sound_level(now_ns) for source in self._sound_sources)
+        return [level for level in levels if level]
 
     def accepts(self, command: object) -> bool:
-        """Whether an actuator takes this type of command."""
+        """Whether an actuator or stimulus accepts this type of command."""
         return type(command) in self._accepting
 
     def apply(self, command: object) -> None:
-        """Hand a command to its actuator."""
-        actuator, state = self._accepting[type(command)]
-        actuator.apply(state, command, self._clock.now_ns)
+        """Pass a command to its actuator or stimulus."""
+        plugin, state = self._accepting[type(command)]
+        plugin.apply(state, command, self._clock.now_ns)
         self.wake(type(command))
-        for task in self.tasks:
-            if task.state is state and not task.is_busy:
-                task.is_busy = True
+        for instance in self.instances:
+            if instance.state is state and not instance.is_busy:
+                instance.is_busy = True
                 self._list_busy()
 
     def wake(self, kind: type[Any]) -> None:
-        """Let the sensors that wait for this type of thing measure at the end of the tick."""
+        """Wake the sensors that have this type in `wakes_on`."""
         numbers = self._wakes.get(kind)
         if numbers:
             self._woken.update(numbers)
             self._shared.woken[self] = None
 
-    def act(self, dt_s: float, *, is_in_crowd: bool = False) -> None:
-        """Run for one tick the actuators that are busy; in a crowd those that the crowd does not run for all."""
+    def act(self, dt_s: float, *, is_batched: bool = False) -> None:
+        """Update the busy actuators and stimuli for one tick; in a batch, those without `update_all`."""
         has_rested = False
-        for task in self._busy:
-            if not (is_in_crowd and task.update_all is not None):
-                task.update(task.state, task.view, dt_s)
-            if task.is_idle is not None and task.is_idle(task.state):
-                task.is_busy, has_rested = False, True
+        for instance in self._busy:
+            if not (is_batched and instance.update_all is not None):
+                instance.update(instance.state, instance.view, dt_s)
+            if instance.is_idle is not None and instance.is_idle(instance.state):
+                instance.is_busy, has_rested = False, True
         if has_rested:
             self._list_busy()
-        if not is_in_crowd:
+        if not is_batched:
             self.body.drive(self.wheels.ground)
 
     def _list_busy(self) -> None:
-        """What is to be updated, in name order; and whether the crowd has to ask."""
-        self._busy = tuple(task for task in self.tasks if task.is_busy)
-        if all(task.update_all is not None for task in self._busy):
+        """Collect what has to be updated, in name order, and register the robot as busy."""
+        self._busy = tuple(instance for instance in self.instances if instance.is_busy)
+        if all(instance.update_all is not None for instance in self._busy):
             self._shared.busy.pop(self, None)
         else:
             self._shared.busy[self] = None
 
     def roll(self, dt_s: float) -> None:
-        """Count on the wheels what the body has moved."""
+        """Advance the wheels by the motion of the body."""
         self.wheels.roll(self.body.covered_m_s, dt_s)
 
-    def take_woken(self) -> list[int]:
-        """The numbers of the sensors that were woken to measure, in order; those that only feel do so."""
+    def pop_woken(self) -> list[int]:
+        """Remove and return the numbers of the woken sensors, in order; those with `on_wake` are called instead."""
         if not self._woken:
             return []
         woken, self._woken = sorted(self._woken), set()
         self._shared.woken.pop(self, None)
         for number in woken:
             sensor, view = self.sensors[number]
-            if sensor.feel is not None:
-                sensor.feel(view)
-        return [number for number in woken if self.sensors[number][0].feel is None]
+            if sensor.on_wake is not None:
+                sensor.on_wake(view)
+        return [number for number in woken if self.sensors[number][0].on_wake is None]
 
-    def sense(self, number: int) -> Reading | None:
-        """What the sensor with this number reads now."""
+    def measure_one(self, number: int) -> Reading | None:
+        """The reading of the sensor with this number now."""
         sensor, view = self.sensors[number]
         return sensor.measure(view)
 
     def place(self, pose: Pose) -> None:
-        """Put it somewhere, at rest; from where it has fallen too."""
+        """Place it at a pose, at rest, also after a fall."""
         self._physics.place(self.body, pose)
-        self.balance.regain()
+        self.edge_fall.clear()
 
     def measure(self, due: Sequence[int]) -> list[tuple[str, str, Reading]]:
         """The readings of the sensors with these numbers, and of those woken: (robot, sensor, reading)."""
-        woken = self.take_woken() if self._woken else ()
+        woken = self.pop_woken() if self._woken else ()
         readings = []
         for number in sorted({*woken, *due}) if woken else due:
             sensor, view = self.sensors[number]
@@ -307,18 +312,16 @@ class Robot:
         return readings
 
     def state(self, kind: type[S]) -> S:
-        """The state of the actuator whose state is a `kind`; KeyError when there is none."""
+        """The state of type `kind` of an actuator or stimulus; raises KeyError if there is none."""
         state: S = self.states[kind]
         return state
 
     def snapshot(self) -> RobotSnapshot:
-        """How it looks now."""
+        """The visible state now."""
         return RobotSnapshot(
             name=self.name,
             pose=self.body.pose,
             tilt=self.tilt,
             wheel_angles_rad=self.wheels.angles_rad,
-            leds=tuple(self.state(LedState).levels.items()),
-            strokes=self.state(PenState).strokes,
-            pressed=tuple(button for button, held in self.state(ButtonState).pressed.items() if held),
+            shown={name: value for shows, state in self._shown for name, value in shows(state).items()},
         )

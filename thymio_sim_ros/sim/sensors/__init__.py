@@ -1,8 +1,8 @@
-"""Sensors, one file each: how often they measure, what they return, what an Aseba program sees of it.
+"""Sensors, one module each: how often a sensor measures, what it returns, and what an Aseba program sees.
 
-A module exports SENSOR. `measure` reads a view and returns a reading, or None when there is nothing new. All
-sensors that are due in a tick measure in name order, so `ground` comes before `proximity`, whose `prox` event
-then finds both stored. A sensor of rare things measures every `NEVER_NS` and is woken by what it `wakes_on`.
+A module exports SENSOR. All sensors that are due in a tick measure in name order: `ground` therefore measures before
+`proximity`, and a handler of the event `prox` finds both readings. A sensor of rare events has the period `NEVER_NS`
+and is woken by the types in `wakes_on`.
 """
 
 from __future__ import annotations
@@ -16,19 +16,26 @@ from thymio_sim_ros import registry
 from thymio_sim_ros.sim.model.clock import NEVER_NS
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import NO_SENSOR_FACE, AsebaFace
-from thymio_sim_ros.sim.plugin_api.plugin_isolation import quiet_sensor
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.plugin_isolation import guarded_sensor
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 
 __all__ = ["NEVER_NS", "Sensor", "all_sensors"]
 
 
 @dataclass(frozen=True, slots=True)
 class Sensor:
-    """One sensor; it measures every `period_ns`, counted from `phase_ns`.
+    """One sensor.
 
-    A tick in which its robot got a command of a type in `wakes_on`, or, with `Contact` in it, began to touch something,
-    wakes it: then it measures too, or, if it has `feel`, only takes note of what happened. `measure_all`, if there is
-    one, gives in one go what `measure` gives one by one.
+    Args:
+        name: Name of the sensor, unique among sensors; it also seeds the noise.
+        period_ns: Period of the measurement in simulated time; NEVER_NS for a sensor that only measures when woken.
+        measure: Returns the reading, or None if there is nothing new to report.
+        aseba: The variables and the event by which Aseba programs see the reading.
+        phase_ns: Time of the first measurement, before the period applies.
+        wakes_on: Types of commands that wake the sensor in the tick in which its robot gets one; `Contact` wakes it
+            when a contact begins. A woken sensor measures in that tick, unless it has `on_wake`.
+        measure_all: Returns for all robots of a batch, in order, what `measure` returns for one.
+        on_wake: Called instead of `measure` when the sensor is woken; it usually writes to `view.memory`.
     """
 
     name: str
@@ -37,20 +44,20 @@ class Sensor:
     aseba: AsebaFace = NO_SENSOR_FACE
     phase_ns: int = 0
     wakes_on: tuple[type[Any], ...] = ()
-    measure_all: Callable[[GroupView], Sequence[Reading | None]] | None = None
-    feel: Callable[[SensorView], None] | None = None
+    measure_all: Callable[[BatchSensorView], Sequence[Reading | None]] | None = None
+    on_wake: Callable[[SensorView], None] | None = None
 
-    def every(self, period_ns: int) -> Sensor:
-        """The same, measuring so often; with another period than its own, from 0 on like all others."""
+    def with_period(self, period_ns: int) -> Sensor:
+        """This sensor with another period; with a period other than its own its phase is 0."""
         return self if period_ns == self.period_ns else replace(self, period_ns=period_ns, phase_ns=0)
 
 
 def all_sensors() -> tuple[Sensor, ...]:
-    """Every sensor of this folder and of other packages, in name order."""
+    """All sensors of this folder and of other packages, in name order."""
     return registry.collect(sys.modules[__name__], "SENSOR", Sensor, guard=_guarded)
 
 
 def _guarded(sensor: Sensor) -> Sensor:
-    """One of another package: its errors do not stop the world."""
-    feel = None if sensor.feel is None else quiet_sensor(sensor.name, sensor.feel)
-    return replace(sensor, measure=quiet_sensor(sensor.name, sensor.measure), measure_all=None, feel=feel)
+    """The sensor of another package, guarded so that its errors do not stop the world."""
+    on_wake = None if sensor.on_wake is None else guarded_sensor(sensor.name, sensor.on_wake)
+    return replace(sensor, measure=guarded_sensor(sensor.name, sensor.measure), measure_all=None, on_wake=on_wake)

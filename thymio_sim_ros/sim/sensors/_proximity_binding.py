@@ -1,4 +1,4 @@
-"""The kernel of proximity counts for the sensors of always the same robots: its arrays, and how it is called."""
+"""Binding of the kernel of proximity counts for a fixed set of robots."""
 
 from __future__ import annotations
 

@@ -37,11 +37,11 @@ def proximity(counts: Ints, cosines: Floats, numbers: Ints, distances: Floats, n
             value = value / rays
         else:
             right = distances[3 * row]
-            centre = distances[3 * row + 1]
+            center = distances[3 * row + 1]
             left = distances[3 * row + 2]
             if counts[_MODEL] == _DEFAULT:
-                value = proximity_response(min(min(right * COS_CONE, centre), left * COS_CONE))
+                value = proximity_response(min(min(right * COS_CONE, center), left * COS_CONE))
             else:
-                value = proximity_response(right) + proximity_response(centre) + proximity_response(left)
-                value = value - 2.0 * proximity_response(centre / COS_CONE)
+                value = proximity_response(right) + proximity_response(center) + proximity_response(left)
+                value = value - 2.0 * proximity_response(center / COS_CONE)
         found[numbers[row]] = round(min(max(value + noise[row], 0.0), _FULL))

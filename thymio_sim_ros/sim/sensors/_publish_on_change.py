@@ -1,35 +1,35 @@
-"""What changes rarely is told when it changes, and once a second for programs that were reset meanwhile."""
+"""Values that change rarely are reported on change, and once per second for programs that were reset meanwhile."""
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
 
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 
-__all__ = ["REFRESH_NS", "are_news", "is_news"]
+__all__ = ["REFRESH_NS", "should_publish", "should_publish_all"]
 
 REFRESH_NS = 1_000_000_000
 
 
-def is_news(view: SensorView, value: object) -> bool:
-    """Whether a value differs from the one told last, or that was told a second ago; it then counts as told.
+def should_publish(view: SensorView, value: object) -> bool:
+    """Whether a value differs from the one reported last, or that was a second ago; if so, it is stored as reported.
 
-    `memory["refresh_ns"]` is when it will be told again anyway.
+    `memory["refresh_ns"]` is when it is reported again without a change.
     """
     memory, now_ns = view.memory, view.now_ns
-    if value == memory.get("told") and now_ns < memory["refresh_ns"]:
+    if value == memory.get("reported") and now_ns < memory["refresh_ns"]:
         return False
-    memory["told"], memory["refresh_ns"] = value, now_ns + REFRESH_NS
+    memory["reported"], memory["refresh_ns"] = value, now_ns + REFRESH_NS
     return True
 
 
-def are_news(group: GroupView, values: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
-    """`is_news` for each row of values, or for each value."""
-    now_ns, notes = group.now_ns, group.notes
-    told = notes.column("told", tuple(values[0].tolist()) if values.ndim > 1 else 0)
-    refresh_ns = notes.column("refresh_ns", 0)
-    differ = told != values
-    news: npt.NDArray[np.bool_] = (differ.any(axis=1) if values.ndim > 1 else differ) | (now_ns >= refresh_ns)
-    told[news], refresh_ns[news] = values[news], now_ns + REFRESH_NS
-    return news
+def should_publish_all(batch: BatchSensorView, values: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
+    """`should_publish` for each robot: `values` has shape (robots,) or (robots, words); returns shape (robots,)."""
+    now_ns, column_state = batch.now_ns, batch.column_state
+    reported = column_state.column("reported", tuple(values[0].tolist()) if values.ndim > 1 else 0)
+    refresh_ns = column_state.column("refresh_ns", 0)
+    differ = reported != values
+    is_due: npt.NDArray[np.bool_] = (differ.any(axis=1) if values.ndim > 1 else differ) | (now_ns >= refresh_ns)
+    reported[is_due], refresh_ns[is_due] = values[is_due], now_ns + REFRESH_NS
+    return is_due

@@ -1,18 +1,18 @@
 """The battery, once a second and when it is set (docs/spec/thymio-robot.md section 7.4), no noise.
 
-Two words are V * 198.9 each, a third tells whether a charger is connected. `charge` grows evenly from 3.4 V, where
-the last light goes out, to 4.1 V of a full lithium cell (own choice of the upper end; section 8.4 gives the lower).
+Two words are V * 198.9 each, the third is 1 while a charger is connected. `charge` is linear from 3.4 V, where
+the last light goes out, to 4.1 V of a full lithium cell (the upper end is an assumption; section 8.4 gives the lower).
 """
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.actuators.power import PowerState
 from thymio_sim_ros.sim.commands import ConnectCharger, SetBattery
 from thymio_sim_ros.sim.model import units
 from thymio_sim_ros.sim.model.readings import BatteryReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.stimuli.battery import BatteryState
 
 __all__ = ["SENSOR"]
 
@@ -20,10 +20,12 @@ _EMPTY_V, _FULL_V = 3.4, 4.1
 
 
 def _measure(view: SensorView) -> BatteryReading:
-    power = view.state(PowerState)
-    word = units.volts_to_units(power.volts)
-    charge = max(0.0, min(1.0, (power.volts - _EMPTY_V) / (_FULL_V - _EMPTY_V)))
-    return BatteryReading(view.now_ns, (word, word, int(power.is_charging)), power.volts, charge, power.is_charging)
+    battery = view.state(BatteryState)
+    word = units.volts_to_units(battery.volts)
+    charge = max(0.0, min(1.0, (battery.volts - _EMPTY_V) / (_FULL_V - _EMPTY_V)))
+    return BatteryReading(
+        view.now_ns, (word, word, int(battery.is_charging)), battery.volts, charge, battery.is_charging
+    )
 
 
 SENSOR = Sensor(

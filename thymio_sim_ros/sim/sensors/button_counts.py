@@ -1,20 +1,21 @@
-"""The capacitive buttons as the firmware sees them inside: count, slow mean and noise of each.
+"""The capacitive buttons as measured by the firmware: count, slow mean and noise of each.
 
 A finger lowers the count; the firmware takes a button for touched while count < mean - max(noise, 130) - 20
 (docs/spec/thymio-robot.md section 7.4). Here a button at rest counts what its mean says, a touched one TOUCH less, and
 the mean waits while it is touched. Rest counts and noise estimates differ a little from button to button; they are
-drawn once, for counts jitter by less than the rule notices. Own choices: rest 2000 ± 100, noise 10…30, touch 400. The
-firmware's wait for a fourth scan is left out: an operator's finger does not bounce. Told on change and once a second.
+drawn once, for counts jitter by less than the rule notices. Assumptions: rest 2000 ± 100, noise 10…30, touch 400. The
+firmware's wait for a fourth scan is left out, as simulated buttons do not bounce. Reported on change and once per
+second.
 """
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.actuators.buttons import ButtonState
 from thymio_sim_ros.sim.commands import BUTTONS, PressButton
 from thymio_sim_ros.sim.model.readings import ButtonCountsReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.stimuli.buttons import ButtonState
 
 __all__ = ["SENSOR", "is_touched"]
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.actuators.buttons import ButtonState
 from thymio_sim_ros.sim.commands import BUTTONS
 from thymio_sim_ros.sim.model.readings import ButtonsReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
-from thymio_sim_ros.sim.plugin_api.reading_table import Later
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.reading_table import LazyReadings
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.stimuli.buttons import ButtonState
 
 __all__ = ["SENSOR"]
 
@@ -17,9 +17,9 @@ def _measure(view: SensorView) -> ButtonsReading:
     return ButtonsReading(view.now_ns, view.state(ButtonState).words)
 
 
-def _measure_all(group: GroupView) -> Later:
-    now_ns, words = group.now_ns, [state.words for state in group.states(ButtonState)]
-    return Later(len(group), lambda robot: ButtonsReading(now_ns, words[robot]))
+def _measure_all(batch: BatchSensorView) -> LazyReadings:
+    now_ns, words = batch.now_ns, [state.words for state in batch.states(ButtonState)]
+    return LazyReadings(len(batch), lambda robot: ButtonsReading(now_ns, words[robot]))
 
 
 SENSOR = Sensor(

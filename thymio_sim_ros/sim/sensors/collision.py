@@ -1,4 +1,4 @@
-"""Whether the robot touches anything but the floor: told when it changes, the first time at the start."""
+"""Whether the robot touches anything but the floor, reported at the start and on change."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import numpy as np
 
 from thymio_sim_ros.sim.model.readings import CollisionReading
 from thymio_sim_ros.sim.physics import Contact
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 
 __all__ = ["SENSOR"]
 
 _UNKNOWN = -1
-"""Neither: nothing was told yet."""
+"""Neither true nor false: nothing was reported yet."""
 
 
 def _measure(view: SensorView) -> CollisionReading | None:
@@ -25,13 +25,13 @@ def _measure(view: SensorView) -> CollisionReading | None:
     return CollisionReading(view.now_ns, (), is_touching)
 
 
-def _measure_all(group: GroupView) -> Sequence[CollisionReading | None]:
-    told, are_touching = group.notes.column("is_touching", _UNKNOWN), np.zeros(len(group), dtype=int)
-    are_touching[list(group.contacts)] = True
-    readings: list[CollisionReading | None] = [None] * len(group)
-    for robot in np.flatnonzero(told != are_touching).tolist():
-        readings[robot] = CollisionReading(group.now_ns, (), bool(are_touching[robot]))
-    told[:] = are_touching
+def _measure_all(batch: BatchSensorView) -> Sequence[CollisionReading | None]:
+    reported, are_touching = batch.column_state.column("is_touching", _UNKNOWN), np.zeros(len(batch), dtype=int)
+    are_touching[list(batch.contacts)] = True
+    readings: list[CollisionReading | None] = [None] * len(batch)
+    for robot in np.flatnonzero(reported != are_touching).tolist():
+        readings[robot] = CollisionReading(batch.now_ns, (), bool(are_touching[robot]))
+    reported[:] = are_touching
     return readings
 
 

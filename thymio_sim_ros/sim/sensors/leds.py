@@ -1,4 +1,4 @@
-"""What the lights show, looked at 25 times a second and told when it changed; the first time at the start."""
+"""The LEDs, polled 25 times per second, reported at the start and on change."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.model.readings import LedReading
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 
 __all__ = ["SENSOR"]
@@ -18,15 +18,15 @@ def _measure(view: SensorView) -> LedReading | None:
     return None if state.changes == memory.get("changes") else _changed(state, memory, view.now_ns)
 
 
-def _measure_all(group: GroupView) -> Sequence[LedReading | None]:
-    now_ns, pairs = group.now_ns, zip(group.states(LedState), group.notes.memories, strict=True)
+def _measure_all(batch: BatchSensorView) -> Sequence[LedReading | None]:
+    now_ns, pairs = batch.now_ns, zip(batch.states(LedState), batch.column_state.memories, strict=True)
     return [
         None if state.changes == memory.get("changes") else _changed(state, memory, now_ns) for state, memory in pairs
     ]
 
 
 def _changed(state: LedState, memory: dict[str, Any], now_ns: int) -> LedReading | None:
-    """A reading, unless what was set meanwhile has come back to what was told."""
+    """A reading; None if the levels are again those reported last."""
     memory["changes"], groups = state.changes, tuple(state.levels.items())
     if groups == memory.get("groups"):
         return None

@@ -1,4 +1,4 @@
-"""What the loudspeaker says now, told whenever that changed, so that a page can play it and others can draw it."""
+"""The present sound of the loudspeaker, reported on change, so that viewers can play or draw it."""
 
 from __future__ import annotations
 

@@ -11,8 +11,8 @@ from thymio_sim_ros.sim.model import units
 from thymio_sim_ros.sim.model.readings import MotorReading
 from thymio_sim_ros.sim.model.robot_constants import WHEEL_RADIUS_M
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
-from thymio_sim_ros.sim.plugin_api.reading_table import Later
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.reading_table import LazyReadings
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
 
 __all__ = ["SENSOR"]
@@ -36,15 +36,15 @@ def _faces(left_m_s: float, right_m_s: float) -> tuple[tuple[int, int, int, int]
     return words, (left_m_s / WHEEL_RADIUS_M, right_m_s / WHEEL_RADIUS_M)
 
 
-def _measure_all(group: GroupView) -> Later:
-    now_ns, wheels = group.now_ns, group.wheels
+def _measure_all(batch: BatchSensorView) -> LazyReadings:
+    now_ns, wheels = batch.now_ns, batch.wheels
     speeds = units.speeds_to_units(wheels.speeds)
     words = list(zip(*np.concatenate((speeds, units.units_to_pwms(speeds))).tolist(), strict=True))
     for robot, loops in wheels.controls.items():
         words[robot] = (*words[robot][:2], *(round(loop.output) for loop in loops))
     angles = list(zip(*wheels.angles.tolist(), strict=True))
     velocities = list(zip(*(wheels.speeds / WHEEL_RADIUS_M).tolist(), strict=True))
-    return Later(len(group), lambda robot: MotorReading(now_ns, words[robot], angles[robot], velocities[robot]))
+    return LazyReadings(len(batch), lambda robot: MotorReading(now_ns, words[robot], angles[robot], velocities[robot]))
 
 
 SENSOR = Sensor(

@@ -1,4 +1,4 @@
-"""The pen and its trail, looked at 5 times a second and told when something changed. Programs see nothing of it."""
+"""The pen and its trail, polled 5 times per second and reported on change. Aseba programs do not see it."""
 
 from __future__ import annotations
 

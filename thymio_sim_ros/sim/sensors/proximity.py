@@ -2,16 +2,16 @@
 
 F is `units.proximity_response`; d are the distances of a sensor's rays, from right to left, and a the angles between
 ray and axis. Noise is added, then the count is clamped. A wall across the axis gives F of its distance in every model.
-Model "default": three rays, the largest F(d cos a), since the strongest echo outweighs the others. Every term falls
+Model "default": three rays, the largest F(d cos a), since the strongest echo dominates. Every term falls
 with d, so the count of a flat wall falls with its distance at every angle; whatever is seen gives at least F of the
 range, 1226, as a real sensor gives at least 1000.
-Model "enki": three rays, F(left) + F(centre) + F(right) - 2 F(centre / cos 15°), the last term only when the centre ray
+Model "enki": three rays, F(left) + F(center) + F(right) - 2 F(center / cos 15°), the last term only when the center ray
 hits; a thin post straight ahead is invisible. The subtracted term ends at 13.5 cm and the others at 14 cm, so the count
 of a slanted wall jumps there.
 Model "cone": nine rays, the mean of F(d cos a); it has no jumps, and an object that fills a part of the cone gives that
 part of F.
-An operator can say what a sensor counts instead (`actuators/cover.py`).
-`ranges_m` is the distance of a wall across the axis that would give the same count, as the robot's driver has it.
+An operator can override counts (`stimuli/sensor_override.py`).
+`ranges_m` is the distance of a wall across the axis that would give the same count, as in the robot's ROS driver.
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from functools import reduce
 
 import numpy as np
 
-from thymio_sim_ros.sim.actuators.cover import CoverState, covered
 from thymio_sim_ros.sim.kernel.memory import is_available
 from thymio_sim_ros.sim.model import robot_constants, units
 from thymio_sim_ros.sim.model.readings import ProximityReading
@@ -33,12 +32,13 @@ from thymio_sim_ros.sim.model.robot_constants import (
     PROXIMITY_RANGE_M,
 )
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
-from thymio_sim_ros.sim.plugin_api.reading_table import Later
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.reading_table import LazyReadings
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.raycast.batch import Fan, Values
 from thymio_sim_ros.sim.sensors import Sensor
 from thymio_sim_ros.sim.sensors._proximity_binding import ProximityCounts
 from thymio_sim_ros.sim.sensors._proximity_kernel import COS_CONE
+from thymio_sim_ros.sim.stimuli.sensor_override import SensorOverrideState, overridden
 
 __all__ = ["SENSOR", "response", "responses"]
 
@@ -69,11 +69,11 @@ def response(distances_m: Sequence[float], model: str) -> float:
     if model == "cone":
         straight = map(float.__mul__, distances_m, _COSINES[model])
         return math.fsum(map(_within_range, distances_m, straight)) / len(distances_m)
-    right, centre, left = distances_m
+    right, center, left = distances_m
     if model == "default":
-        return units.proximity_response(min(right * COS_CONE, centre, left * COS_CONE))
-    slanted = centre / COS_CONE
-    total = units.proximity_response(right) + units.proximity_response(centre) + units.proximity_response(left)
+        return units.proximity_response(min(right * COS_CONE, center, left * COS_CONE))
+    slanted = center / COS_CONE
+    total = units.proximity_response(right) + units.proximity_response(center) + units.proximity_response(left)
     return total - 2.0 * units.proximity_response(slanted)
 
 
@@ -84,11 +84,11 @@ def responses(distances_m: Values, model: str) -> Values:
         found[distances_m > PROXIMITY_RANGE_M] = 0.0
         mean: Values = reduce(np.add, found.T) / distances_m.shape[1]  # one after the other, as the kernel does
         return mean
-    right, centre, left = distances_m.T
+    right, center, left = distances_m.T
     if model == "default":
-        return units.proximity_responses(np.minimum(np.minimum(right * COS_CONE, centre), left * COS_CONE))
-    slanted = centre / COS_CONE
-    of = units.proximity_responses(np.stack((right, centre, left, slanted)))
+        return units.proximity_responses(np.minimum(np.minimum(right * COS_CONE, center), left * COS_CONE))
+    slanted = center / COS_CONE
+    of = units.proximity_responses(np.stack((right, center, left, slanted)))
     total: Values = of[0] + of[1] + of[2] - 2.0 * of[3]
     return total
 
@@ -100,8 +100,8 @@ def _within_range(distance_m: float, straight_m: float) -> float:
 def _measure(view: SensorView) -> ProximityReading:
     model = view.proximity_model
     around = view.surroundings(_FANS[model].reach_m, PROXIMITY_HEIGHT_M)
-    cover = view.state(CoverState).proximity
-    if around.is_empty and not cover:
+    override = view.state(SensorOverrideState).proximity
+    if around.is_empty and not override:
         return ProximityReading(view.now_ns, *_NOTHING)
     pose, noise = view.pose, view.noise
     x, y, cos, sin = pose.x_m, pose.y_m, math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
@@ -117,7 +117,7 @@ def _measure(view: SensorView) -> ProximityReading:
                 value = response(distances, model) + noise.gauss(PROXIMITY_NOISE)
                 count = round(max(0.0, min(float(units.PROXIMITY_FULL), value)))
         counts.append(count)
-    counts = covered(counts, cover)
+    counts = overridden(counts, override)
     return ProximityReading(view.now_ns, tuple(counts), _ranges(counts))
 
 
@@ -126,26 +126,26 @@ def _ranges(counts: Sequence[int]) -> tuple[float, ...]:
     return tuple([units.proximity_distance(count) if count else math.inf for count in counts])
 
 
-def _measure_all(group: GroupView) -> Later:
-    now_ns, model = group.now_ns, group.proximity_model
-    sensors, distances = group.cast(_FANS[model])
-    noise = group.noise.draw(sensors // _COUNT, PROXIMITY_NOISE)
+def _measure_all(batch: BatchSensorView) -> LazyReadings:
+    now_ns, model = batch.now_ns, batch.proximity_model
+    sensors, distances = batch.cast(_FANS[model])
+    noise = batch.noise.draw(sensors // _COUNT, PROXIMITY_NOISE)
     if is_available():
-        kernel = group.memory.get("counts")
+        kernel = batch.memory.get("counts")
         if kernel is None:
-            kernel = group.memory["counts"] = ProximityCounts(len(group) * _COUNT, model, _COSINES[model])
+            kernel = batch.memory["counts"] = ProximityCounts(len(batch) * _COUNT, model, _COSINES[model])
         counts = kernel.count(sensors, distances, noise).reshape(-1, _COUNT)
     else:
-        counts = np.zeros((len(group), _COUNT), dtype=np.int32)
+        counts = np.zeros((len(batch), _COUNT), dtype=np.int32)
         values = responses(distances, model) + noise
         counts.ravel()[sensors] = np.rint(np.minimum(np.maximum(values, 0.0), units.PROXIMITY_FULL))
-    covers = [state.proximity for state in group.states(CoverState)]
+    overrides = [state.proximity for state in batch.states(SensorOverrideState)]
 
     def make(robot: int) -> ProximityReading:
-        words = covered(counts[robot].tolist(), covers[robot])
+        words = overridden(counts[robot].tolist(), overrides[robot])
         return ProximityReading(now_ns, tuple(words), _ranges(words))
 
-    return Later(len(group), make)
+    return LazyReadings(len(batch), make)
 
 
 SENSOR = Sensor(

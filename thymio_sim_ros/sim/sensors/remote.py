@@ -5,12 +5,12 @@ Source: docs/spec/thymio-robot.md section 5.
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.actuators.remote import RemoteState
 from thymio_sim_ros.sim.commands import RemoteKey
 from thymio_sim_ros.sim.model.readings import RemoteReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import NEVER_NS, Sensor
+from thymio_sim_ros.sim.stimuli.remote import RemoteState
 
 __all__ = ["SENSOR"]
 

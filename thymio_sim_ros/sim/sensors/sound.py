@@ -1,9 +1,9 @@
 """The microphone, 61 blocks a second of 128 8-bit samples (docs/spec/thymio-robot.md sections 3 and 7.4), no noise.
 
 mic.intensity is the largest minus the smallest sample of a block, 0…255, mic._mean their sum; in silence all samples
-are 128. What is heard: the operator's noise and all sounds of the world by their distances
+are 128. The level is that of the background noise and of all sounds of the world, attenuated by distance
 (`sim/audio/propagation.py`), energies added. The event `mic` comes with every block that is louder than mic.threshold,
-unless that is 0. Quieter blocks are told when they differ from the last one told, and once a second.
+unless that is 0. Quieter blocks are reported on change and once per second.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from thymio_sim_ros.sim.actuators.microphone import MicrophoneState
-from thymio_sim_ros.sim.actuators.room import RoomState
-from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL, heard
+from thymio_sim_ros.sim.audio.propagation import FULL_LEVEL, level_at
 from thymio_sim_ros.sim.model.readings import SoundReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
-from thymio_sim_ros.sim.sensors._publish_on_change import are_news, is_news
+from thymio_sim_ros.sim.sensors._publish_on_change import should_publish, should_publish_all
+from thymio_sim_ros.sim.stimuli.environment import EnvironmentState
 
 __all__ = ["BLOCK_NS", "SENSOR"]
 
@@ -28,16 +28,16 @@ BLOCK_NS = 16_384_000
 """128 samples at 7812.5 Hz (docs/spec/thymio-robot.md section 9)."""
 
 _SILENCE = 128
-"""A sample at rest: the middle of 8 bits. Own choice."""
+"""A sample in silence: the middle of 8 bits. Assumption."""
 
 
 def _measure(view: SensorView) -> SoundReading | None:
-    level = float(view.state(RoomState).noise_level)
+    level = float(view.state(EnvironmentState).noise_level)
     if sounds := view.sounds:
-        level = math.hypot(level, heard(sounds, view.pose.x_m, view.pose.y_m))
+        level = math.hypot(level, level_at(sounds, view.pose.x_m, view.pose.y_m))
     intensity = min(FULL_LEVEL, round(level))
     is_loud = view.state(MicrophoneState).is_exceeded(intensity)
-    if not is_news(view, intensity) and not is_loud:
+    if not should_publish(view, intensity) and not is_loud:
         return None
     return _reading(view.now_ns, intensity, is_loud=is_loud)
 
@@ -47,17 +47,17 @@ def _reading(now_ns: int, intensity: int, *, is_loud: bool) -> SoundReading:
     return SoundReading(now_ns, (intensity, 2 * smallest + intensity), is_loud)
 
 
-def _measure_all(group: GroupView) -> Sequence[SoundReading | None]:
-    levels = [float(room.noise_level) for room in group.states(RoomState)]
-    if sounds := group.sounds:
-        places = zip(levels, group.poses.tolist(), strict=True)
-        levels = [math.hypot(level, heard(sounds, x, y)) for level, (x, y, _) in places]
+def _measure_all(batch: BatchSensorView) -> Sequence[SoundReading | None]:
+    levels = [float(environment.noise_level) for environment in batch.states(EnvironmentState)]
+    if sounds := batch.sounds:
+        places = zip(levels, batch.poses.tolist(), strict=True)
+        levels = [math.hypot(level, level_at(sounds, x, y)) for level, (x, y, _) in places]
     intensities = [min(FULL_LEVEL, round(level)) for level in levels]
-    microphones = zip(group.states(MicrophoneState), intensities, strict=True)
+    microphones = zip(batch.states(MicrophoneState), intensities, strict=True)
     loud = [microphone.is_exceeded(intensity) for microphone, intensity in microphones]
-    readings: list[SoundReading | None] = [None] * len(group)
-    for robot in np.flatnonzero(are_news(group, np.array(intensities)) | loud).tolist():
-        readings[robot] = _reading(group.now_ns, intensities[robot], is_loud=loud[robot])
+    readings: list[SoundReading | None] = [None] * len(batch)
+    for robot in np.flatnonzero(should_publish_all(batch, np.array(intensities)) | loud).tolist():
+        readings[robot] = _reading(batch.now_ns, intensities[robot], is_loud=loud[robot])
     return readings
 
 

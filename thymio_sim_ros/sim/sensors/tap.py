@@ -1,6 +1,6 @@
-"""A knock: a contact that begins faster than 2 cm/s, or the operator's hand (docs/spec/thymio-robot.md section 7.3).
+"""Taps: a contact that begins faster than 2 cm/s, or a tap by an operator (docs/spec/thymio-robot.md section 7.3).
 
-So is the landing after a fall, for which it looks as often as the accelerometer measures. acc._tap becomes 1; a program
+The landing after a fall is a tap, too; it is detected at the rate of the accelerometer. acc._tap becomes 1; a program
 clears it.
 """
 
@@ -10,20 +10,20 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from thymio_sim_ros.sim.actuators.hand import HandState
 from thymio_sim_ros.sim.commands import Tap
 from thymio_sim_ros.sim.model.readings import TapReading
 from thymio_sim_ros.sim.model.robot_constants import TAP_SPEED_M_S
 from thymio_sim_ros.sim.physics import Contact
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
-from thymio_sim_ros.sim.plugin_api.view import GroupView, SensorView
+from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.stimuli.handling import HandlingState
 
 __all__ = ["SENSOR"]
 
 
 def _measure(view: SensorView) -> TapReading | None:
-    memory, taps, is_falling = view.memory, view.state(HandState).taps, view.is_falling
+    memory, taps, is_falling = view.memory, view.state(HandlingState).taps, view.is_falling
     has_landed = memory.get("is_falling", False) and not is_falling and view.is_fallen
     is_knocked = taps != memory.get("taps", 0)
     memory["taps"], memory["is_falling"] = taps, is_falling
@@ -36,17 +36,17 @@ def _is_knock(contact: Contact) -> bool:
     return contact.is_new and contact.speed_m_s > TAP_SPEED_M_S
 
 
-def _measure_all(group: GroupView) -> Sequence[TapReading | None]:
-    told, was_falling = group.notes.column("taps", 0), group.notes.column("is_falling", first=False)
-    taps, is_falling = [hand.taps for hand in group.states(HandState)], np.zeros(len(group), dtype=bool)
-    is_falling[group.falling] = True
-    is_tapped = told != taps
-    for robot in group.fallen:
+def _measure_all(batch: BatchSensorView) -> Sequence[TapReading | None]:
+    reported, was_falling = batch.column_state.column("taps", 0), batch.column_state.column("is_falling", first=False)
+    taps, is_falling = [handling.taps for handling in batch.states(HandlingState)], np.zeros(len(batch), dtype=bool)
+    is_falling[batch.falling] = True
+    is_tapped = reported != taps
+    for robot in batch.fallen:
         is_tapped[robot] |= was_falling[robot] and not is_falling[robot]
-    for robot, contacts in group.contacts.items():
+    for robot, contacts in batch.contacts.items():
         is_tapped[robot] |= any(map(_is_knock, contacts))
-    told[:], was_falling[:] = taps, is_falling
-    reading = TapReading(group.now_ns, (1,))
+    reported[:], was_falling[:] = taps, is_falling
+    reading = TapReading(batch.now_ns, (1,))
     return [reading if tapped else None for tapped in is_tapped.tolist()]
 
 

@@ -5,18 +5,18 @@ Source: docs/spec/thymio-robot.md section 7.4.
 
 from __future__ import annotations
 
-from thymio_sim_ros.sim.actuators.room import RoomState
 from thymio_sim_ros.sim.model import units
 from thymio_sim_ros.sim.model.readings import TemperatureReading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import AsebaFace
 from thymio_sim_ros.sim.plugin_api.view import SensorView
 from thymio_sim_ros.sim.sensors import Sensor
+from thymio_sim_ros.sim.stimuli.environment import EnvironmentState
 
 __all__ = ["SENSOR"]
 
 
 def _measure(view: SensorView) -> TemperatureReading:
-    celsius = view.state(RoomState).temperature_c
+    celsius = view.state(EnvironmentState).temperature_c
     return TemperatureReading(view.now_ns, (units.celsius_to_units(celsius),), celsius)
 
 

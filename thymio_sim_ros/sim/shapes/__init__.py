@@ -38,5 +38,5 @@ def all_shapes() -> tuple[ShapeKind, ...]:
 
 
 def _check(kind: ShapeKind) -> None:
-    """Refuse a form that no file can be read into: its schema tells."""
+    """Raise TypeError for a class that no file can be read into."""
     json_schema(kind.form)

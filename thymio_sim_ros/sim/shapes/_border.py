@@ -10,7 +10,7 @@ from thymio_sim_ros.sim.model.fields import Extent, Shade
 
 @dataclass(frozen=True, slots=True)
 class Walls:
-    """Walls centred on the border of a ground, half of the thickness inside; the ground's color unless given."""
+    """Walls centered on the border of a ground, half of the thickness inside; the ground's color unless given."""
 
     height_m: Extent = 0.12
     thickness_m: Extent = 0.02

@@ -24,7 +24,7 @@ from thymio_sim_ros.sim.shapes import ShapeKind
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A box of a size, centred on its pose; movable when it has a mass. `friction` is that with the floor."""
+    """A box of a size, centered on its pose; movable when it has a mass. `friction` is that with the floor."""
 
     x_m: Coordinate
     y_m: Coordinate

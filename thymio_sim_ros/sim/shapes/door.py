@@ -1,4 +1,4 @@
-"""A door that slides between two places while somebody stands on an activation of it.
+"""A door that slides between two places while a robot is on a pressure plate of it.
 
 Source: docs/spec/playground-formats.md section 1.2.
 """

@@ -16,7 +16,7 @@ _EIGHTH = math.pi / 4
 
 @dataclass(frozen=True, slots=True)
 class Octagon:
-    """Ground with eight sides of one length, two of them along its x axis, centred on its pose."""
+    """Ground with eight sides of one length, two of them along its x axis, centered on its pose."""
 
     side_m: Extent
     color: Shade

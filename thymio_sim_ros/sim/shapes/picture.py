@@ -1,4 +1,4 @@
-"""A picture on the ground: a printed track, a map, a sheet of greys. Paint, neither an obstacle nor a floor."""
+"""A picture on the ground: a printed track, a map, a sheet of grays. Paint, neither an obstacle nor a floor."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from thymio_sim_ros.sim.shapes import ShapeKind
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture centred on its pose, as wide as `size_x_m`; without `size_y_m` it keeps its proportions.
+    """A picture centered on its pose, as wide as `size_x_m`; without `size_y_m` it keeps its proportions.
 
     Unturned it lies as on a page: to the right is +x, upwards is +y.
     """

@@ -13,7 +13,7 @@ from thymio_sim_ros.sim.shapes._border import Walls, wall_name
 
 @dataclass(frozen=True, slots=True)
 class Rectangle:
-    """Ground of a size, centred on its pose."""
+    """Ground of a size, centered on its pose."""
 
     size_x_m: Extent
     size_y_m: Extent

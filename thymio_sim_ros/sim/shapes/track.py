@@ -33,7 +33,7 @@ class Track:
     corner_radius_m: Radius = 0.0
 
     def primitives(self, name: str) -> tuple[Primitive, ...]:
-        """Quadrangles of paint along the middle line; an arc shares its edges with its neighbours."""
+        """Quadrangles of paint along the middle line; an arc shares its edges with its neighbors."""
         half, color = self.width_m / 2, as_color(self.color)
         patches = []
         for (ax, ay, a), (bx, by, b) in itertools.pairwise(self.stations()):

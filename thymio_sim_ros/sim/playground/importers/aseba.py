@@ -269,7 +269,7 @@ def _height(element: Element) -> float:
 
 
 def _length(element: Element, attribute: str) -> float:
-    """Centimetres as metres."""
+    """Centimetres as meters."""
     return rounded(_number(element, attribute) / 100)
 
 

@@ -57,7 +57,7 @@ class _Item:
         return float(value)
 
     def length(self, name: str, default: float | None = None) -> float:
-        """Units as metres."""
+        """Units as meters."""
         return rounded(self.number(name, default) * UNIT_M)
 
     def place(self, *, otherwise: float | None = None) -> dict[str, float]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.sim.actuators.buttons import ACTUATOR, ButtonState
 from thymio_sim_ros.sim.commands import BUTTONS, PressButton
+from thymio_sim_ros.sim.stimuli.buttons import STIMULUS, ButtonState
 
 
 def test_no_button_is_held_at_the_start() -> None:
@@ -14,11 +14,11 @@ def test_no_button_is_held_at_the_start() -> None:
 
 def test_several_buttons_can_be_held_at_once() -> None:
     state = ButtonState()
-    ACTUATOR.apply(state, PressButton("left", pressed=True), 0)
-    ACTUATOR.apply(state, PressButton("right", pressed=True), 0)
+    STIMULUS.apply(state, PressButton("left", pressed=True), 0)
+    STIMULUS.apply(state, PressButton("right", pressed=True), 0)
     assert [button for button, held in state.pressed.items() if held] == ["left", "right"]
 
 
 def test_an_unknown_button_is_our_mistake() -> None:
     with pytest.raises(ValueError, match="expected one of backward, left, center, forward, right"):
-        ACTUATOR.apply(ButtonState(), PressButton("top", pressed=True), 0)
+        STIMULUS.apply(ButtonState(), PressButton("top", pressed=True), 0)

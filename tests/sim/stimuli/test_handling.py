@@ -4,42 +4,42 @@ from __future__ import annotations
 
 from tests.sim.builders import FLOOR, make, send
 from tests.sim.fake_view import FakeView
-from thymio_sim_ros.sim.actuators.hand import ACTUATOR, HandState
 from thymio_sim_ros.sim.commands import MoveRobot, ResetOdometry, Tilt
 from thymio_sim_ros.sim.model import geometry
 from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.stimuli.handling import STIMULUS, HandlingState
 from thymio_sim_ros.sim.world import World
 
 
 def test_the_hand_puts_the_robot_down_once() -> None:
-    assert ACTUATOR.update is not None
-    state, view = HandState(), FakeView()
-    ACTUATOR.apply(state, MoveRobot(1.0, 2.0, 3.0), 0)
-    ACTUATOR.update(state, view, 0.01)
+    assert STIMULUS.update is not None
+    state, view = HandlingState(), FakeView()
+    STIMULUS.apply(state, MoveRobot(1.0, 2.0, 3.0), 0)
+    STIMULUS.update(state, view, 0.01)
     assert view.pose == Pose(1.0, 2.0, 3.0)
     view.pose = Pose(0.0, 0.0, 0.0)
-    ACTUATOR.update(state, view, 0.01)
+    STIMULUS.update(state, view, 0.01)
     assert view.pose == Pose(0.0, 0.0, 0.0)
 
 
 def test_what_the_hand_does_within_a_tick_it_does_once_and_in_order() -> None:
-    assert ACTUATOR.update is not None
-    state, view = HandState(), FakeView()
+    assert STIMULUS.update is not None
+    state, view = HandlingState(), FakeView()
     for command in (MoveRobot(1.0, 2.0, 3.0), ResetOdometry(), MoveRobot(4.0, 5.0, 6.0)):
-        ACTUATOR.apply(state, command, 0)
-    ACTUATOR.update(state, view, 0.01)
+        STIMULUS.apply(state, command, 0)
+    STIMULUS.update(state, view, 0.01)
     assert view.pose == Pose(4.0, 5.0, 6.0)
     view.pose = Pose(0.0, 0.0, 0.0)
-    ACTUATOR.update(state, view, 0.01)
+    STIMULUS.update(state, view, 0.01)
     assert view.pose == Pose(0.0, 0.0, 0.0)
 
 
 def test_the_hand_zeroes_the_odometry() -> None:
-    assert ACTUATOR.update is not None
-    state, view = HandState(), FakeView()
+    assert STIMULUS.update is not None
+    state, view = HandlingState(), FakeView()
     view.wheels.roll((0.1, 0.1), 0.01)
-    ACTUATOR.apply(state, ResetOdometry(), 0)
-    ACTUATOR.update(state, view, 0.01)
+    STIMULUS.apply(state, ResetOdometry(), 0)
+    STIMULUS.update(state, view, 0.01)
     assert view.wheels.odometry == Pose(0.0, 0.0, 0.0)
 
 

@@ -1,22 +1,22 @@
-"""The remote control in the operator's hand (docs/spec/thymio-robot.md section 7.4).
+"""Key presses on an RC5 remote control (docs/spec/thymio-robot.md section 7.4).
 
-While a key is held, a remote control repeats its frame; every new press turns the toggle bit over, which is how the
-receiver tells a repeated frame, to be ignored, from a key pressed again.
+While a key is held, a remote control repeats its frame. The toggle bit flips with every new press, so that the receiver
+can tell a key pressed again from a repeated frame, which it ignores.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.sim.actuators import Actuator
 from thymio_sim_ros.sim.commands import RemoteKey
+from thymio_sim_ros.sim.stimuli import Stimulus
 
-__all__ = ["ACTUATOR", "RemoteState"]
+__all__ = ["STIMULUS", "RemoteState"]
 
 
 @dataclass(slots=True)
 class RemoteState:
-    """The last frame received, and how many that were no repetition there have been."""
+    """The last frame received, and the number of frames so far, without repetitions."""
 
     address: int = 0
     command: int = 0
@@ -32,4 +32,4 @@ def _apply(state: RemoteState, key: RemoteKey, _now_ns: int) -> None:
     state.frames += 1
 
 
-ACTUATOR = Actuator(name="remote", accepts=(RemoteKey,), begin=RemoteState, apply=_apply)
+STIMULUS = Stimulus(name="remote", accepts=(RemoteKey,), begin=RemoteState, apply=_apply)

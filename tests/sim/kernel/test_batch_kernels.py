@@ -13,7 +13,7 @@ from tests.sim.builders import shipped
 from thymio_sim_ros.sim.commands import MotorTargets, MoveRobot
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.primitives import Box, Solid
-from thymio_sim_ros.sim.physics.broadphase_batch import Lookout
+from thymio_sim_ros.sim.physics.broadphase_batch import BroadphaseBatch
 from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.raycast.scalar import obstacle_of
 from thymio_sim_ros.sim.world import World
@@ -37,11 +37,16 @@ def steps(monkeypatch: pytest.MonkeyPatch, scene: Playground, elsewhere: Pose, *
             world.post(names[0], MoveRobot(here.x_m, here.y_m, here.yaw_rad))
             world.post(names[1], MoveRobot(elsewhere.x_m, elsewhere.y_m, elsewhere.yaw_rad))
         result = world.step()
-        crowd = world._crowd
-        assert crowd is not None
+        batch = world._batch
+        assert batch is not None
         told = repr([(contact.robot, contact.other, contact.is_new) for contact in result.contacts])
-        values = [crowd.fleet.poses, *crowd.fleet.motion, crowd.fleet.covered, crowd.wheels.odometry]
-        values += [crowd.wheels.speeds, crowd.wheels.angles]
+        values = [
+            batch.batch_driver.poses,
+            *batch.batch_driver.motion,
+            batch.batch_driver.covered,
+            batch.wheels.odometry,
+        ]
+        values += [batch.wheels.speeds, batch.wheels.angles]
         yield told.encode() + b"".join(np.ascontiguousarray(part + 0.0).tobytes() for part in values)
         if tick % 50 == 7:
             yield repr([(robot.pose, robot.wheels.odometry) for robot in world.robots.values()]).encode()
@@ -75,14 +80,14 @@ def test_the_same_robots_are_near_something(seed: int) -> None:
         obstacle_of(Solid(f"{n}", Pose(*place()), Box(dice.uniform(0.01, 0.6), 0.05), 0.1, (0, 0, 0)))
         for n in range(dice.randint(0, 6))
     ]
-    both = [Lookout(fixed, is_compiled=is_compiled) for is_compiled in (False, True)]
+    both = [BroadphaseBatch(fixed, is_compiled=is_compiled) for is_compiled in (False, True)]
     things = dice.randint(0, 5)
     seen = set[bool]()
     for _ in range(10):
         poses = np.array([place() for _ in range(25)]).T
         stands = np.array([dice.random() < 0.9 for _ in range(25)])
         loose = np.array([(*place()[:2], 0.05) for _ in range(things)]).reshape(-1, 3).T
-        one, other = (lookout.near(poses, stands, loose).tolist() for lookout in both)
+        one, other = (broadphase.near(poses, stands, loose).tolist() for broadphase in both)
         assert one == other
         seen.update(one)
     assert seen == {True, False}

@@ -1,0 +1,22 @@
+"""An actuator or stimulus on one robot."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from thymio_sim_ros.sim.plugin_api.command_plugin import CommandPlugin
+from thymio_sim_ros.sim.plugin_api.view import ActuatorView
+
+__all__ = ["PluginInstance"]
+
+
+class PluginInstance:
+    """An actuator or stimulus with its state; it acts in every tick in which it is busy."""
+
+    __slots__ = ("is_busy", "is_idle", "state", "update", "update_all", "view")
+
+    def __init__(self, plugin: CommandPlugin, state: Any, view: ActuatorView) -> None:
+        assert plugin.update is not None
+        self.update, self.is_idle, self.state, self.view = plugin.update, plugin.is_idle, state, view
+        self.update_all = plugin.update_all
+        self.is_busy = self.is_idle is None or not self.is_idle(state)
