@@ -1,4 +1,4 @@
-"""Ready-made target descriptions: the Thymio II (firmware 14)."""
+"""Predefined target descriptions: the Thymio II (firmware 14)."""
 
 from __future__ import annotations
 

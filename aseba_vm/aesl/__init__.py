@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from aseba_vm.aesl.network import Network, Node, Plugin
 from aseba_vm.aesl.reader import MAX_CHARACTERS, MAX_NODES, checked_length, read
-from aseba_vm.aesl.text_decoding import decoded
-from aseba_vm.aesl.writer import written
+from aseba_vm.aesl.text_decoding import decode
+from aseba_vm.aesl.writer import write
 from aseba_vm.errors import AeslError, TextError
 
 __all__ = ["MAX_CHARACTERS", "MAX_NODES", "Network", "Node", "Plugin", "bare", "dumps", "is_aesl", "loads"]
@@ -30,7 +30,7 @@ def loads(text: str | bytes, *, strict: bool = False) -> Network:
     """
     if isinstance(text, bytes):
         try:
-            text = decoded(text).text
+            text = decode(text).text
         except TextError as error:
             raise AeslError(error.kind, error.arguments, error.line, error.column) from error
     return read(text, is_strict=strict)
@@ -43,4 +43,4 @@ def bare(text: str, name: str) -> Network:
 
 def dumps(network: Network) -> str:
     """Return the text of a file: as it was read but for what is new, or all as the reference writes it."""
-    return written(network)
+    return write(network)

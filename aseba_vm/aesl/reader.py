@@ -8,7 +8,7 @@ from dataclasses import replace
 from xml.parsers import expat
 
 from aseba_vm.aesl.network import Network, Node, Piece, Plugin
-from aseba_vm.aesl.xml_errors import fault_of_xml, place_of
+from aseba_vm.aesl.xml_errors import error_of_xml, position_at
 from aseba_vm.errors import AeslError, Argument
 from aseba_vm.frontend.lexer import is_name
 
@@ -89,13 +89,13 @@ class _Reader:
         self.parser.SkippedEntityHandler = self.unknown_entity
         self.parser.StartElementHandler = self.start
         self.parser.EndElementHandler = self.end
-        self.parser.CommentHandler = lambda _: self.aside(b"-->")
-        self.parser.ProcessingInstructionHandler = lambda *_: self.aside(b"?>")
+        self.parser.CommentHandler = lambda _: self.keep_markup(b"-->")
+        self.parser.ProcessingInstructionHandler = lambda *_: self.keep_markup(b"?>")
         self.path: list[str] = []
         self.starts: list[int] = []  # where each open element begins, in bytes
         self.pieces: list[Piece] = []
-        self.told = 0  # bytes that are in a piece already
-        self.firsts: dict[tuple[object, ...], int] = {}  # where a name or number was first given, in bytes
+        self.consumed = 0  # bytes that are in a piece already
+        self.first_uses: dict[tuple[object, ...], int] = {}  # where a name or number was first given, in bytes
         self.events: list[tuple[str, int]] = []
         self.constants: list[tuple[str, int]] = []
         self.keywords: bool | None = None
@@ -107,7 +107,7 @@ class _Reader:
             self.parser.Parse(self.data, True)
         except expat.ExpatError as error:
             open_elements = list(zip(self.path, self.starts, strict=True))
-            raise fault_of_xml(error.code, self.data, self.parser.ErrorByteIndex, open_elements) from error
+            raise error_of_xml(error.code, self.data, self.parser.ErrorByteIndex, open_elements) from error
         if self.is_strict and not self.nodes:
             raise self.error("aesl-no-node", (), self.data.rfind(b"<"))
         return Network(tuple(self.events), tuple(self.constants), self.keywords, tuple(self.nodes), tuple(self.pieces))
@@ -159,7 +159,9 @@ class _Reader:
         start = self.starts.pop()
         depth = len(self.path)
         if depth == 0:
-            self.piece("closing", self.parser.CurrentByteIndex if self.is_open(start) else self.told, len(self.data))
+            self.piece(
+                "closing", self.parser.CurrentByteIndex if self.is_open(start) else self.consumed, len(self.data)
+            )
         elif depth == 1:
             self.finish(name, start)
         elif depth == _INSIDE_NODE and self.path[1] == "node":
@@ -189,7 +191,7 @@ class _Reader:
     def characters(self, text: str) -> None:
         self.open_node.add(text, self.parser.CurrentLineNumber - 1, self.parser.CurrentColumnNumber)
 
-    def aside(self, closing: bytes) -> None:
+    def keep_markup(self, closing: bytes) -> None:
         """Keep a comment or an instruction for another program if it stands in a node."""
         if len(self.path) == _INSIDE_NODE and self.path[1] == "node":
             start = self.parser.CurrentByteIndex
@@ -201,20 +203,20 @@ class _Reader:
         name = self.name("event", attributes)
         size = self.number(attributes, "size")
         if size < 0 or (self.is_strict and size > MAX_EVENT_WORDS):
-            raise self.wrong("aesl-event-size", "size", (name, size, MAX_EVENT_WORDS))
+            raise self.attribute_error("aesl-event-size", "size", (name, size, MAX_EVENT_WORDS))
         return name, size
 
     def constant(self, attributes: Mapping[str, str]) -> tuple[str, int]:
         name = self.name("constant", attributes)
         value = self.number(attributes, "value")
         if self.is_strict and not -0x8000 <= value <= 0x7FFF:
-            raise self.wrong("aesl-constant-value", "value", (name, value))
+            raise self.attribute_error("aesl-constant-value", "value", (name, value))
         return name, value
 
     def flag(self, attributes: Mapping[str, str]) -> bool:
         flag = attributes.get("flag", "").strip()
         if self.is_strict and flag not in ("true", "false"):
-            raise self.wrong("aesl-keywords", "flag", (flag,))
+            raise self.attribute_error("aesl-keywords", "flag", (flag,))
         return flag == "true"
 
     def node(self, attributes: Mapping[str, str]) -> _OpenNode:
@@ -223,9 +225,9 @@ class _Reader:
         node_id = int(written_id) if _NUMBER.fullmatch(written_id) else written_id
         if self.is_strict:
             if not (0 <= node_id <= 0xFFFF if isinstance(node_id, int) else _UUID.fullmatch(node_id)):
-                raise self.wrong("aesl-node-id", "nodeId", (written_id,))
+                raise self.attribute_error("aesl-node-id", "nodeId", (written_id,))
             if node_id != 0:
-                self.check_first("node", "nodeId", name, written_id)
+                self.check_unique("node", "nodeId", name, written_id)
             if len(self.nodes) == MAX_NODES:
                 raise self.error("aesl-many-nodes", (MAX_NODES,))
         start = self.starts[-1]
@@ -240,16 +242,16 @@ class _Reader:
         name = self.attribute(attributes, "name")
         if self.is_strict:
             if not is_name(name):
-                raise self.wrong("aesl-name", "name", (name,))
-            self.check_first(kind, "name", name)
+                raise self.attribute_error("aesl-name", "name", (name,))
+            self.check_unique(kind, "name", name)
         return name
 
-    def check_first(self, kind: str, attribute: str, *names: str) -> None:
+    def check_unique(self, kind: str, attribute: str, *names: str) -> None:
         """Refuse what a file says twice."""
-        first = self.firsts.setdefault((kind, *names), self.starts[-1])
+        first = self.first_uses.setdefault((kind, *names), self.starts[-1])
         if first != self.starts[-1]:
-            line = place_of(self.data, first)[0] + 1
-            raise self.wrong(f"aesl-{kind}-twice", attribute, (*names, line))
+            line = position_at(self.data, first)[0] + 1
+            raise self.attribute_error(f"aesl-{kind}-twice", attribute, (*names, line))
 
     def attribute(self, attributes: Mapping[str, str], name: str) -> str:
         if name not in attributes:
@@ -262,7 +264,7 @@ class _Reader:
             return 0
         text = self.attribute(attributes, name)
         if not _NUMBER.fullmatch(text):
-            raise self.wrong("aesl-number", name, (name, text))
+            raise self.attribute_error("aesl-number", name, (name, text))
         return int(text)
 
     # -- places
@@ -288,16 +290,16 @@ class _Reader:
 
     def piece(self, kind: str, start: int, end: int, value: object = None, *parts: str) -> None:
         """Keep a part of the file, and before it what lies between it and the part before."""
-        if start > self.told:
-            self.pieces.append(Piece("text", self.text(self.told, start)))
+        if start > self.consumed:
+            self.pieces.append(Piece("text", self.text(self.consumed, start)))
         self.pieces.append(Piece(kind, self.text(start, end), value, *parts))
-        self.told = end
+        self.consumed = end
 
     def error(self, kind: str, arguments: tuple[Argument, ...], at: int | None = None) -> AeslError:
-        row, col = place_of(self.data, self.parser.CurrentByteIndex if at is None else max(at, 0))
+        row, col = position_at(self.data, self.parser.CurrentByteIndex if at is None else max(at, 0))
         return AeslError(kind, arguments, row + 1, col + 1)
 
-    def wrong(self, kind: str, attribute: str, arguments: tuple[Argument, ...]) -> AeslError:
+    def attribute_error(self, kind: str, attribute: str, arguments: tuple[Argument, ...]) -> AeslError:
         """An error at the value of an attribute of the element that begins here."""
         start = self.starts[-1]
         tag = self.data[start : self.tag_end(start)]

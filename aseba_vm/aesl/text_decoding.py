@@ -26,7 +26,7 @@ class TextFile:
         return text.encode(self.encoding)
 
 
-def decoded(data: bytes) -> TextFile:
+def decode(data: bytes) -> TextFile:
     """Return the text of a file. Raises TextError with the place of the first byte that is wrong."""
     encoding = next((name for mark, name in (*_MARKS, *_UNMARKED) if data.startswith(mark)), None)
     if encoding is None:

@@ -16,7 +16,7 @@ _HEADINGS = {
 _ORDER = tuple(_HEADINGS)
 
 
-def written(network: Network) -> str:
+def write(network: Network) -> str:
     """Return the text of a file."""
     return "".join(_edited(network)) if network.pieces else _new(network)
 

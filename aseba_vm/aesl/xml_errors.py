@@ -25,13 +25,13 @@ _KINDS: Mapping[int, str] = {
 }
 
 
-def place_of(data: bytes, at: int) -> tuple[int, int]:
+def position_at(data: bytes, at: int) -> tuple[int, int]:
     """Return row and column, from 0, of a byte of UTF-8 text."""
     before = data[: max(at, 0)]
     return before.count(b"\n"), len(before[before.rfind(b"\n") + 1 :].decode("utf-8", "replace"))
 
 
-def fault_of_xml(code: int, data: bytes, at: int, open_elements: Sequence[tuple[str, int]]) -> AeslError:
+def error_of_xml(code: int, data: bytes, at: int, open_elements: Sequence[tuple[str, int]]) -> AeslError:
     """Return the error for a code of expat at a byte; elements that are open there: name and first byte of each."""
     kind = _KINDS.get(code, "xml-other")
     arguments: tuple[Argument, ...] = ()
@@ -42,13 +42,13 @@ def fault_of_xml(code: int, data: bytes, at: int, open_elements: Sequence[tuple[
         at = data.rfind(b"</", 0, at + 1)
         found = data[at + 2 : data.find(b">", at)].decode("utf-8", "replace").strip()
         name, start = open_elements[-1]
-        arguments = (found, name, place_of(data, start)[0] + 1)
+        arguments = (found, name, position_at(data, start)[0] + 1)
     elif kind == "xml-empty" and open_elements:
         name, start = open_elements[-1]
-        kind, arguments = "xml-unclosed", (name, place_of(data, start)[0] + 1)
+        kind, arguments = "xml-unclosed", (name, position_at(data, start)[0] + 1)
     elif kind == "xml-other":
         arguments = (errors.messages[code],)
-    row, col = place_of(data, at)
+    row, col = position_at(data, at)
     return AeslError(kind, arguments, row + 1, col + 1)
 
 

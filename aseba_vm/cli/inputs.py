@@ -9,8 +9,8 @@ from pathlib import Path
 
 from aseba_vm import aesl
 from aseba_vm.aesl.network import select, with_vpl_events
-from aseba_vm.aesl.text_decoding import TextFile, decoded
-from aseba_vm.cli.output import named
+from aseba_vm.aesl.text_decoding import TextFile, decode
+from aseba_vm.cli.output import named_errors
 from aseba_vm.errors import AeslError, CompileError
 from aseba_vm.frontend.pipeline import Stages, compile_stages
 from aseba_vm.target import TargetDescription
@@ -55,9 +55,9 @@ class SourceError(Exception):
 
 def read_text(name: str) -> TextFile:
     """Return the text of a file; ``-`` is the standard input. Raises OSError, TextError."""
-    with named(name):
+    with named_errors(name):
         data = sys.stdin.buffer.read() if name == "-" else Path(name).read_bytes()
-    return decoded(data)
+    return decode(data)
 
 
 def network_of(text: str, name: str) -> aesl.Network:

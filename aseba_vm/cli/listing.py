@@ -78,7 +78,7 @@ class _Names:
 def _heading(entry: EventEntry | SubEntry) -> str:
     if isinstance(entry, SubEntry):
         return f"sub {entry.name}"
-    return f"onevent {entry.name}" if entry.name else "initialisation"
+    return f"onevent {entry.name}" if entry.name else "initialization"
 
 
 def _use(program: Program, target: TargetDescription) -> Iterator[str]:

@@ -18,7 +18,7 @@ from aseba_vm.bytecode import describe
 from aseba_vm.cli import check_and_format
 from aseba_vm.cli.inputs import Source, SourceError, network_of, read_text, sources_of
 from aseba_vm.cli.listing import listing
-from aseba_vm.cli.output import end_by, open_standard_streams, standard_output, write_file
+from aseba_vm.cli.output import exit_by_signal, open_standard_streams, standard_output, write_file
 from aseba_vm.cli.report import (
     WARNING,
     Finding,
@@ -32,7 +32,7 @@ from aseba_vm.errors import AeslError, CompileError, TargetError, TextError
 from aseba_vm.frontend.lexer import is_name
 from aseba_vm.frontend.pipeline import Program, assemble
 from aseba_vm.machine.machine_messages import Emitted, NativeCalled
-from aseba_vm.messages import LANGUAGES, wording
+from aseba_vm.messages import LANGUAGES, format_message
 from aseba_vm.target import TargetDescription
 from aseba_vm.targets import THYMIO_II
 from aseba_vm.vm import VirtualMachine
@@ -41,7 +41,7 @@ DONE = 0
 WRONG_PROGRAM = 1
 WRONG_USE = 2
 
-_STAGES = ("tokens", "tree", "expanded", "optimised", "code", "words")
+_STAGES = ("tokens", "tree", "expanded", "optimized", "code", "words")
 
 _EXAMPLES = """\
 examples:
@@ -89,7 +89,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (_UseError, TargetError) as error:
         print(f"aseba: {error}", file=sys.stderr)
     except KeyboardInterrupt:
-        end_by(signal.SIGINT)
+        exit_by_signal(signal.SIGINT)
     return WRONG_USE
 
 
@@ -163,7 +163,7 @@ def _run(options: argparse.Namespace) -> int:
 def _execute(machine: VirtualMachine, program: Program, source: Source, options: argparse.Namespace) -> None:
     """Run the active event to its end or to the limit, and tell what it said."""
     machine.run(options.limit)
-    for message in machine.take_messages():
+    for message in machine.pop_messages():
         if isinstance(message, Emitted):
             print("emit", source.events[message.number][0], *message.arguments)
         elif isinstance(message, NativeCalled):
@@ -172,7 +172,7 @@ def _execute(machine: VirtualMachine, program: Program, source: Source, options:
     if fault is not None:
         row = program.row_of(fault.pc)
         place = options.file if row is None else f"{options.file}:{source.node.rows_in_file()[row] + 1}"
-        print(f"{place}: stopped: {fault.sentence_in(options.language)}", file=sys.stderr)
+        print(f"{place}: stopped: {fault.message_in(options.language)}", file=sys.stderr)
     elif machine.is_active:
         print(f"{options.file}: still running after {options.limit} instructions", file=sys.stderr)
         machine.stop()
@@ -217,13 +217,13 @@ def _compile_source(options: argparse.Namespace, source: Source, *, with_warning
         raise SourceError(source, error) from error
     for warning in program.warnings if with_warnings else ():
         row, col = source.place(warning.pos.offset)
-        sentence = wording(warning.kind, warning.arguments, table_of(options.language))
+        sentence = format_message(warning.kind, warning.arguments, table_of(options.language))
         _print(options, Finding(options.file, row + 1, col + 1, WARNING, warning.kind, sentence))
     return program
 
 
 def _print(options: argparse.Namespace, finding: Finding) -> None:
-    label = wording("label-hint", (), table_of(options.language))
+    label = format_message("label-hint", (), table_of(options.language))
     print(finding.text(options.text, label=label, is_colored=is_colored()), file=sys.stderr)
 
 
@@ -261,8 +261,8 @@ def _parser() -> argparse.ArgumentParser:
     compiling.add_argument("--format", choices=("hex", "json", "listing"), default="hex", help="default: %(default)s")
     compiling.add_argument("-o", "--output", metavar="FILE", help="default: standard output")
     dis = _command(commands, "dis", _dis, "show the bytecode or another stage of the compiler")
-    dis.add_argument("--stage", choices=_STAGES, default="words", help="default: %(default)s")
-    run = _command(commands, "run", _run, "execute the initialisation and events, then show variables")
+    dis.add_argument("--stage", type=_stage, choices=_STAGES, default="words", help="default: %(default)s")
+    run = _command(commands, "run", _run, "execute the initialization and events, then show variables")
     run.add_argument(
         "--raise",
         dest="raised",
@@ -324,6 +324,10 @@ def _command(
     command = commands.add_parser(name, help=about, description=f"{about[0].upper()}{about[1:]}.")
     command.set_defaults(command=function)
     return command
+
+
+def _stage(text: str) -> str:
+    return {"optimised": "optimized"}.get(text, text)  # the former spelling is still accepted
 
 
 def _number(text: str, lowest: int, highest: int) -> int:

@@ -17,13 +17,13 @@ STANDARD_OUTPUT = "standard output"
 
 def write_file(name: str, data: bytes) -> None:
     """Write a file. Raises OSError."""
-    with named(name):
+    with named_errors(name):
         Path(name).write_bytes(data)
 
 
 def rewrite_file(name: str, data: bytes) -> None:
     """Give a file another content; where that fails, it keeps its own, or is not there as before. Raises OSError."""
-    with named(name):
+    with named_errors(name):
         path = Path(name).resolve()  # what a link leads to
         is_new = not path.exists()
         handle, new = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
@@ -78,14 +78,14 @@ def open_standard_streams() -> None:
             setattr(sys, name, open(number, mode, encoding="utf-8", closefd=False))  # noqa: SIM115
 
 
-def end_by(number: int) -> None:
+def exit_by_signal(number: int) -> None:
     """End the process as this signal does, without a word: on SIGINT the loop of a shell around it ends, too."""
     signal.signal(number, signal.SIG_DFL)
     signal.raise_signal(number)
 
 
 @contextmanager
-def named(name: str) -> Iterator[None]:
+def named_errors(name: str) -> Iterator[None]:
     """Meanwhile errors have the name of this file. Raises OSError."""
     try:
         yield

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from aseba_vm.cli.inputs import Source
-from aseba_vm.cli.source_snippet import excerpt
+from aseba_vm.cli.source_snippet import source_snippet
 from aseba_vm.errors import CompileError, Edit, Hint, TextError
-from aseba_vm.messages import LANGUAGES, MESSAGES, wording
+from aseba_vm.messages import LANGUAGES, MESSAGES, format_message
 
 PROGRAM_ENDINGS = (".aesl", ".aseba")
 """Files of a folder that are programs."""
@@ -46,7 +46,7 @@ class Finding:
         """Return the finding for people: one line, the line of the file with a mark, the hint."""
         lines = [self.located]
         if source and self.line is not None and self.column is not None and self.severity != NOTE:
-            lines.append(excerpt(source, self.line - 1, self.column - 1, is_coloured=is_colored))
+            lines.append(source_snippet(source, self.line - 1, self.column - 1, is_colored=is_colored))
         if self.hint:
             lines.append(f"{label}: {self.hint}")
         return "\n".join(lines)
@@ -69,14 +69,14 @@ class Finding:
 def finding_of_compile_error(source: Source, error: CompileError, messages: Mapping[str, str]) -> Finding:
     """Return the finding for a program that is refused."""
     line, column = (None, None) if error.pos is None else _from_1(source.place(error.pos.offset))
-    message = wording(error.kind, error.arguments, messages)
+    message = format_message(error.kind, error.arguments, messages)
     hint, edit = _hint(source, error.hint, messages)
     return Finding(source.name, line, column, ERROR, error.kind, message, hint, edit)
 
 
 def finding_of_text_error(file: str, error: TextError, messages: Mapping[str, str]) -> Finding:
     """Return the finding for a file that cannot be read as text or as an .aesl file."""
-    message = wording(error.kind, error.arguments, messages)
+    message = format_message(error.kind, error.arguments, messages)
     return Finding(file, error.line, error.column, ERROR, error.kind, message)
 
 
@@ -85,7 +85,7 @@ def _hint(
 ) -> tuple[str, tuple[int, int, int, int, str] | None]:
     if hint is None:
         return "", None
-    sentence = hint.worded(messages, source.node.rows_in_file())
+    sentence = hint.message(messages, source.node.rows_in_file())
     return sentence, None if hint.edit is None else _edit(source, hint.edit)
 
 

@@ -7,7 +7,7 @@ _RED = "\x1b[31m"
 _PLAIN = "\x1b[0m"
 
 
-def excerpt(text: str, row: int, col: int, *, is_coloured: bool = False) -> str:
+def source_snippet(text: str, row: int, col: int, *, is_colored: bool = False) -> str:
     """Return a line of ``text`` and, below it, a caret under the column; row and column count from 0.
 
     A very long line is cut around the place; a place after the end of the text shows its last line.
@@ -20,5 +20,5 @@ def excerpt(text: str, row: int, col: int, *, is_coloured: bool = False) -> str:
         letter if letter.isprintable() or letter == "\t" else "?" for letter in line[first : first + _WIDTH]
     )
     indent = "".join("\t" if letter == "\t" else " " for letter in shown[: col - first])
-    caret = f"{_RED}^{_PLAIN}" if is_coloured else "^"
+    caret = f"{_RED}^{_PLAIN}" if is_colored else "^"
     return f"{shown}\n{indent}{caret}"

@@ -35,22 +35,22 @@ from aseba_vm.frontend.syntax_tree import (
 )
 from aseba_vm.frontend.trampoline import Task, run
 
-_FARTHEST = 2047
+_MAX_JUMP = 2047
 """Words that the 12 bits of a jump can lead over."""
 
 
-def emit(tree: Tree) -> tuple[Segment, ...]:
+def generate(tree: Tree) -> tuple[Segment, ...]:
     """Return the code of each event that has any, in source order, and of every subroutine, ended and measured."""
-    initial = _Builder(is_sub=False, number=INIT_EVENT, name="", row=0)
+    initial = _SegmentBuilder(is_sub=False, number=INIT_EVENT, name="", row=0)
     builders = [initial]
     numbers = {sub.name: sub.index for sub in tree.subs}
     current = initial
     for statement in tree.body.statements:
         if isinstance(statement, OnEvent):
-            current = _Builder(False, statement.number, statement.name, statement.pos.row)
+            current = _SegmentBuilder(False, statement.number, statement.name, statement.pos.row)
             builders.append(current)
         elif isinstance(statement, Sub):
-            current = _Builder(True, statement.index, statement.name, statement.pos.row)
+            current = _SegmentBuilder(True, statement.index, statement.name, statement.pos.row)
             current.last_row = statement.pos.row
             builders.append(current)
         else:
@@ -92,7 +92,7 @@ def check_stack(segments: Sequence[Segment], stack_size: int) -> int:
 
 
 @dataclass(slots=True)
-class _Builder:
+class _SegmentBuilder:
     """Code in the making. Methods append code and return its depth as a task."""
 
     is_sub: bool
@@ -241,7 +241,7 @@ class _Builder:
             otherwise_depth: int = yield self.statement(statement.otherwise)
             depth = max(depth, otherwise_depth)
             self.code[jump] = replace(self.code[jump], operand=self.size - jump_at)
-            if self.size - jump_at > _FARTHEST:
+            if self.size - jump_at > _MAX_JUMP:
                 self.far_blocks.append(statement.pos)
         else:
             self.code[branch] = replace(self.code[branch], more=(self.size - start,))
@@ -257,7 +257,7 @@ class _Builder:
         depth, branch = yield self.condition(loop.condition, 0, row)
         start = self.size - 2
         body_depth: int = yield self.statement(loop.body)
-        if self.size - begin > _FARTHEST:
+        if self.size - begin > _MAX_JUMP:
             self.far_blocks.append(loop.pos)
         self.add(Op.JUMP, (begin - self.size) & 0xFFF, row)
         self.code[branch] = replace(self.code[branch], more=(self.size - start,))

@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from aseba_vm.errors import CompileError, SourcePos
 from aseba_vm.frontend.folding import simplify
 from aseba_vm.frontend.lexer import Token
-from aseba_vm.frontend.symbols import Symbols
-from aseba_vm.frontend.syntax_tree import Access, Binary, Expression, Listing, Number, Subscript, Unary
+from aseba_vm.frontend.symbols import SymbolTable
+from aseba_vm.frontend.syntax_tree import Access, Binary, Expression, ListLiteral, Number, Subscript, Unary
 from aseba_vm.frontend.token_stream import TokenStream
 from aseba_vm.frontend.trampoline import Task
 from aseba_vm.frontend.vectors import first_constant
@@ -36,7 +36,7 @@ _PRIMARY = ("(", "[", "-", "~", "abs", "identifier", "integer")
 class ExpressionParser:
     """Reads expressions from a stream of tokens; shares stream and symbols with the parser of statements."""
 
-    def __init__(self, stream: TokenStream, symbols: Symbols) -> None:
+    def __init__(self, stream: TokenStream, symbols: SymbolTable) -> None:
         self.stream = stream
         self.symbols = symbols
 
@@ -76,7 +76,7 @@ class ExpressionParser:
             variable: Expression = yield self.variable(token)
             return variable
         if kind == "[":
-            listing: Listing = yield self.listing()
+            listing: ListLiteral = yield self.listing()
             return listing
         if kind == "(":
             self.stream.advance()
@@ -91,7 +91,7 @@ class ExpressionParser:
             return literal(number, -number.value)
         return Unary(kind, (yield self.unary()), token.pos)
 
-    def listing(self) -> Task[Listing]:
+    def listing(self) -> Task[ListLiteral]:
         """list = "[" , element , { "," , element } , "]\""""
         start = self.stream.expect("[")
         items: list[Expression] = [(yield self.element())]
@@ -99,7 +99,7 @@ class ExpressionParser:
             self.stream.advance()
             items.append((yield self.element()))
         self.stream.expect("]")
-        return Listing(tuple(items), start.pos)
+        return ListLiteral(tuple(items), start.pos)
 
     def element(self) -> Task[Expression]:
         """element = list | expr"""

@@ -29,7 +29,7 @@ from aseba_vm.frontend.syntax_tree import (
 from aseba_vm.frontend.trampoline import Task, run
 
 
-def optimise(tree: Tree) -> Tree:
+def optimize(tree: Tree) -> Tree:
     """Return the tree without what is constant or has no effect. Raises CompileError."""
     return replace(tree, body=run(_block(tree.body)))
 

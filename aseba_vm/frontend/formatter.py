@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 
-from aseba_vm.frontend.lexer import tokenise
-from aseba_vm.frontend.token_spacing import spaced
+from aseba_vm.frontend.lexer import tokenize
+from aseba_vm.frontend.token_spacing import space_line
 
 _COMMENT = re.compile(r"\#\*[\s\S]*?\*\#|\#[^\r\n]*")
 _OPENING = frozenset(("if", "when", "while", "for"))
@@ -15,14 +15,14 @@ _MARKERS = frozenset(("onevent", "sub"))
 _BRACKETS = {"(": 1, "[": 1, ")": -1, "]": -1}
 
 
-def formatted(source: str, indent: str = "\t") -> str:
+def format_program(source: str, indent: str = "\t") -> str:
     """Return a program with each line indented by its depth, regular spaces in it, and no repeated empty lines.
 
     The tokens are the same, so the bytecode is too. Lines that begin inside a block comment are kept.
     Raises CompileError if the text has no tokens.
     """
     text = source.replace("\r\n", "\n").replace("\r", "\n")
-    tokens = tokenise(text)[:-1]
+    tokens = tokenize(text)[:-1]
     kept = _rows_inside_comments(text)
     lines: list[str] = []
     section = depth = brackets = start = first = 0
@@ -35,7 +35,7 @@ def formatted(source: str, indent: str = "\t") -> str:
             lines.append(line)
         else:
             level = section + depth - _closers(kinds) + (1 if brackets > 0 else 0)
-            regular = spaced(text, start, start + len(line), tokens, first, last)
+            regular = space_line(text, start, start + len(line), tokens, first, last)
             lines.append(indent * max(level, 0) + regular if regular else "")
         for kind in kinds:
             depth += (kind in _OPENING) - (kind == "end")

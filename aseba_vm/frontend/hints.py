@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from aseba_vm.errors import CompileError, Edit, Hint
-from aseba_vm.frontend.lexer import KEYWORDS, Token, tokenise
+from aseba_vm.frontend.lexer import KEYWORDS, Token, tokenize
 from aseba_vm.frontend.parser import COMPOUND
 from aseba_vm.frontend.token_spacing import token_begin, token_end
 from aseba_vm.target import NativeFunction, TargetDescription
@@ -73,7 +73,7 @@ class _Word:
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
+class _Context:
     """An error in its surroundings: the text, the tokens (up to the error if one of them is wrong), where it is."""
 
     source: str
@@ -138,7 +138,7 @@ class _Place:
         return None
 
 
-Recognizer = Callable[[_Place], Hint | None]
+Recognizer = Callable[[_Context], Hint | None]
 
 
 def find_hint(
@@ -153,7 +153,7 @@ def find_hint(
         compile_again: compiles another text, to try an edit; None is success.
     """
     recognizers = _RECOGNIZERS.get(attempt.error.kind, ())
-    place = _place(source, target, attempt) if recognizers and attempt.error.pos is not None else None
+    place = _context(source, target, attempt) if recognizers and attempt.error.pos is not None else None
     if place is None:
         return None
     for recognize in recognizers:
@@ -168,11 +168,11 @@ def find_hint(
     return None
 
 
-def _place(source: str, target: TargetDescription, attempt: Attempt) -> _Place | None:
+def _context(source: str, target: TargetDescription, attempt: Attempt) -> _Context | None:
     error, offset = attempt.error, attempt.offset
     is_token = attempt.stage == _TOKENS
     try:
-        tokens = tokenise(source[:offset] if is_token else source)
+        tokens = tokenize(source[:offset] if is_token else source)
     except CompileError:
         return None
     words = [_word(source, token) for token in tokens[:-1]]
@@ -186,7 +186,7 @@ def _place(source: str, target: TargetDescription, attempt: Attempt) -> _Place |
     if at is None:
         return None
     natives = {native.name: native for native in target.natives}
-    return _Place(source, words, at, offset if is_token else words[at].start, error, natives)
+    return _Context(source, words, at, offset if is_token else words[at].start, error, natives)
 
 
 def _word(source: str, token: Token) -> _Word:
@@ -209,7 +209,7 @@ def _is_better(before: Attempt, after: Attempt | None, edit: Edit) -> bool:
 # -- characters that begin no token ------------------------------------------------------------------------------------
 
 
-def _foreign_comment(place: _Place) -> Hint | None:
+def _foreign_comment(place: _Context) -> Hint | None:
     """``//`` before the error in the same line, or ``/*`` around it."""
     for first, second in reversed(list(pairwise(place.words))):
         if first.kind != "/" or first.end != second.start or second.kind not in ("/", "*", "*="):
@@ -233,7 +233,7 @@ def _comment(source: str, start: int) -> Hint | None:
     return Hint("hint-comment", ("/*", "#*"), Edit(start, end + 2, f"#*{source[start + 2 : end]}*#"))
 
 
-def _semicolon(place: _Place) -> Hint | None:
+def _semicolon(place: _Context) -> Hint | None:
     """``;``: the edit removes all of them."""
     source = place.source
     if source[place.offset] != ";" or sum((word.kind == "[") - (word.kind == "]") for word in place.words) > 0:
@@ -247,7 +247,7 @@ def _semicolon(place: _Place) -> Hint | None:
     return Hint("hint-semicolon", (), Edit(first, last + 1, text))
 
 
-def _brace(place: _Place) -> Hint | None:
+def _brace(place: _Context) -> Hint | None:
     source, at = place.source, place.offset
     if source[at] not in "{}":
         return None
@@ -265,11 +265,11 @@ def _brace(place: _Place) -> Hint | None:
     return replace(hint, edit=Edit(at, at + 1, _spaced(source, at, at + 1, word)))
 
 
-def _text(place: _Place) -> Hint | None:
+def _text(place: _Context) -> Hint | None:
     return Hint("hint-text", ()) if place.source[place.offset] in _QUOTES else None
 
 
-def _look_alike(place: _Place) -> Hint | None:
+def _look_alike(place: _Context) -> Hint | None:
     letter = place.source[place.offset]
     right = _LOOK_ALIKE.get(letter)
     if right is None:
@@ -280,7 +280,7 @@ def _look_alike(place: _Place) -> Hint | None:
     return Hint("hint-look-alike", (right,), edit)
 
 
-def _negation(place: _Place) -> Hint | None:
+def _negation(place: _Context) -> Hint | None:
     """``!`` in a condition, or ``! =``."""
     source, at = place.source, place.offset
     spaced = re.match(r"![ \t]+=(?!=)", source[at:])
@@ -294,7 +294,7 @@ def _negation(place: _Place) -> Hint | None:
     return Hint("hint-not", (), Edit(at, at + 1, "not " if source[at + 1 : at + 2] == "(" else "not"))
 
 
-def _decimals(place: _Place) -> Hint | None:
+def _decimals(place: _Context) -> Hint | None:
     number = _DECIMAL.match(place.source, place.offset)
     return Hint("hint-decimals", (number[0],)) if number is not None else None
 
@@ -302,7 +302,7 @@ def _decimals(place: _Place) -> Hint | None:
 # -- operators ---------------------------------------------------------------------------------------------------------
 
 
-def _equals_in_condition(place: _Place) -> Hint | None:
+def _equals_in_condition(place: _Context) -> Hint | None:
     """``if a = 1``, ``if a => 1``."""
     if place.kind() != "=" or not place.condition():
         return None
@@ -312,7 +312,7 @@ def _equals_in_condition(place: _Place) -> Hint | None:
     return place.replaced("hint-equals-in-condition", 0, 0, "==")
 
 
-def _doubled(place: _Place) -> Hint | None:
+def _doubled(place: _Context) -> Hint | None:
     """``&&``, ``||``, ``<>``, ``===``, ``!==``: the second half is what was refused."""
     if not place.is_adjacent(-1):
         return None
@@ -327,7 +327,7 @@ def _doubled(place: _Place) -> Hint | None:
     return None
 
 
-def _comparison_as_statement(place: _Place) -> Hint | None:
+def _comparison_as_statement(place: _Context) -> Hint | None:
     """``a == 1`` or ``a := 1`` in place of an assignment."""
     if place.kind() == "==":
         return place.replaced("hint-assignment", 0, 0, "=")
@@ -336,11 +336,11 @@ def _comparison_as_statement(place: _Place) -> Hint | None:
     return None
 
 
-def _declared_with_comparison(place: _Place) -> Hint | None:
+def _declared_with_comparison(place: _Context) -> Hint | None:
     return _comparison_as_statement(place) if place.kind(-1) in ("identifier", "]") else None
 
 
-def _step_in_front(place: _Place) -> Hint | None:
+def _step_in_front(place: _Context) -> Hint | None:
     """``++i``."""
     if place.kind() not in ("++", "--") or place.kind(1) != "identifier" or not place.is_statement_expected:
         return None
@@ -348,7 +348,7 @@ def _step_in_front(place: _Place) -> Hint | None:
     return place.replaced("hint-step", 0, 1, f"{name.text}{mark.kind}", f"{name.text}{mark.kind}")
 
 
-def _comment_as_statement(place: _Place) -> Hint | None:
+def _comment_as_statement(place: _Context) -> Hint | None:
     """``// comment``: the first half is refused where a statement may begin, the second in an expression."""
     at = 0 if place.kind() == "/" and place.is_adjacent(0) else -1
     if place.kind(at) != "/" or not place.is_adjacent(at) or place.kind(at + 1) not in ("/", "*", "*="):
@@ -359,7 +359,7 @@ def _comment_as_statement(place: _Place) -> Hint | None:
 # -- names -------------------------------------------------------------------------------------------------------------
 
 
-def _other_keyword(place: _Place) -> Hint | None:
+def _other_keyword(place: _Context) -> Hint | None:
     """``elif``, ``If``."""
     name = place.word().text
     if name in _ELSEIF:
@@ -370,7 +370,7 @@ def _other_keyword(place: _Place) -> Hint | None:
     return None
 
 
-def _truth(place: _Place) -> Hint | None:
+def _truth(place: _Context) -> Hint | None:
     value = _TRUTH.get(place.word().text.lower())
     if value is None or place.kind(-1) not in _BEFORE_VALUE:
         return None
@@ -380,12 +380,12 @@ def _truth(place: _Place) -> Hint | None:
     return Hint("hint-truth", (place.word().text,))
 
 
-def _called_name(place: _Place) -> int:
+def _called_name(place: _Context) -> int:
     """The distance of the name that is refused, or before the parenthesis that is."""
     return -1 if place.kind() == "(" else 0
 
 
-def _native_as_statement(place: _Place) -> Hint | None:
+def _native_as_statement(place: _Context) -> Hint | None:
     """``sound.freq(440, 1)`` without ``call``."""
     at = _called_name(place)
     if place.kind(at) != "identifier" or place.kind(at + 1) != "(" or not place.is_statement(at):
@@ -396,12 +396,12 @@ def _native_as_statement(place: _Place) -> Hint | None:
     return None
 
 
-def _native_with_variable(place: _Place) -> Hint | None:
+def _native_with_variable(place: _Context) -> Hint | None:
     """The same where a variable has the name of the function, as ``leds.top`` has."""
     return _native_as_statement(place) if place.kind() == "(" else None
 
 
-def _sub_as_statement(place: _Place) -> Hint | None:
+def _sub_as_statement(place: _Context) -> Hint | None:
     """``turn`` or ``turn()`` without ``callsub``."""
     at = _called_name(place)
     if place.kind(at) != "identifier" or place.word(at).text not in place.subs or not place.is_statement(at):
@@ -415,7 +415,7 @@ def _sub_as_statement(place: _Place) -> Hint | None:
     return Hint("hint-sub-arguments", (name,))
 
 
-def _native_in_expression(place: _Place) -> Hint | None:
+def _native_in_expression(place: _Context) -> Hint | None:
     """``x = math.sqrt(y)``."""
     name = place.word()
     if name.text not in place.natives or place.kind(1) != "(" or place.kind(-1) not in _BEFORE_VALUE:
@@ -435,7 +435,7 @@ def _native_in_expression(place: _Place) -> Hint | None:
     return replace(hint, edit=Edit(left.start, place.word(close).end, text))
 
 
-def _call_of_sub(place: _Place) -> Hint | None:
+def _call_of_sub(place: _Context) -> Hint | None:
     """``call turn`` or ``call turn()``."""
     if place.kind() != "call" or place.kind(1) != "identifier" or place.word(1).text not in place.subs:
         return None
@@ -447,7 +447,7 @@ def _call_of_sub(place: _Place) -> Hint | None:
     return place.replaced("hint-callsub", 0, 0, "callsub", name)
 
 
-def _callsub_with_parentheses(place: _Place) -> Hint | None:
+def _callsub_with_parentheses(place: _Context) -> Hint | None:
     """``callsub turn()``, ``callsub sound.freq(440, 1)``."""
     if place.kind() != "(" or place.kind(-1) != "identifier" or place.kind(-2) != "callsub":
         return None
@@ -461,13 +461,13 @@ def _callsub_with_parentheses(place: _Place) -> Hint | None:
     return None
 
 
-def _callsub_of_native(place: _Place) -> Hint | None:
+def _callsub_of_native(place: _Context) -> Hint | None:
     if place.kind() != "callsub" or place.kind(1) != "identifier" or place.word(1).text not in place.natives:
         return None
     return Hint("hint-call", (place.word(1).text,))
 
 
-def _call_without_parentheses(place: _Place) -> Hint | None:
+def _call_without_parentheses(place: _Context) -> Hint | None:
     if place.kind(-1) != "identifier" or place.kind(-2) != "call":
         return None
     name = place.word(-1)
@@ -504,7 +504,7 @@ def _blocks(words: Sequence[_Word]) -> tuple[list[_Block], list[tuple[_Block, in
     return stack, closed
 
 
-def _else_if(place: _Place) -> Hint | None:
+def _else_if(place: _Context) -> Hint | None:
     """``else if`` that lacks an ``end`` of its own."""
     if not place.is_statement_expected or place.kind() not in _MARKERS:
         return None
@@ -524,7 +524,7 @@ def _else_if(place: _Place) -> Hint | None:
     return Hint("hint-else-if", (), Edit(pairs[0][0].start, previous, text), pairs[0][0].row)
 
 
-def _missing_end(place: _Place) -> Hint | None:
+def _missing_end(place: _Context) -> Hint | None:
     """A block that is open where a handler, a subroutine or the end of the text comes.
 
     It is the last one opened, unless the ``end`` of a block inside it is indented as an outer block is: then that block
@@ -551,7 +551,7 @@ def _missing_end(place: _Place) -> Hint | None:
     return Hint("hint-missing-end", (word.kind,), edit, word.row)
 
 
-def _new_end(place: _Place, indent: str, before: int) -> Edit:
+def _new_end(place: _Context, indent: str, before: int) -> Edit:
     """Put ``end`` between two tokens, on a line of its own if they are on different lines."""
     last = place.words[before - 1]
     if place.words[before].row == last.row:
@@ -562,7 +562,7 @@ def _new_end(place: _Place, indent: str, before: int) -> Edit:
     return Edit(line_end, line_end, f"{newline}{indent}end")
 
 
-def _extra_end(place: _Place) -> Hint | None:
+def _extra_end(place: _Context) -> Hint | None:
     """An ``end`` where no block is open, often that of an ``onevent``."""
     if place.kind() != "end" or not place.is_statement_expected or _blocks(place.words[: place.at])[0]:
         return None
@@ -574,7 +574,7 @@ def _extra_end(place: _Place) -> Hint | None:
     return Hint("hint-extra-end", (), Edit(start, end, ""))
 
 
-def _block_word(place: _Place) -> Hint | None:
+def _block_word(place: _Context) -> Hint | None:
     """``then`` or ``do`` that is missing, or written as ``:``, or one in place of the other."""
     wanted, found = place.error.arguments[0], place.kind()
     if not isinstance(wanted, str) or wanted not in ("then", "do"):
@@ -590,7 +590,7 @@ def _block_word(place: _Place) -> Hint | None:
     return None
 
 
-def _loop_form(place: _Place) -> Hint | None:
+def _loop_form(place: _Context) -> Hint | None:
     """``for i = 0 to 9``, ``for (i = 0; …)``."""
     is_head = place.kind(-1) == "for" or place.kind(-2) == "for"
     return Hint("hint-for", ()) if is_head and place.kind() in ("=", "(", "identifier", "integer") else None
@@ -605,7 +605,7 @@ def _is_loop_head(words: Sequence[_Word]) -> bool:
     return False
 
 
-def _late_declaration(place: _Place) -> Hint | None:
+def _late_declaration(place: _Context) -> Hint | None:
     """``var`` behind the first statement: declared above, its value set where it stands."""
     keyword = place.kind()
     is_refused = place.error.kind == "misplaced-var" or place.is_statement_expected
@@ -637,7 +637,7 @@ def _late_declaration(place: _Place) -> Hint | None:
     return replace(hint, edit=Edit(top, end, f"{declared}{head}"))
 
 
-def _end_of_declarations(place: _Place) -> int:
+def _end_of_declarations(place: _Context) -> int:
     """The end of the last line of declarations at the beginning; 0 if there are none."""
     top = depth = 0
     row = -1
@@ -656,7 +656,7 @@ def _end_of_declarations(place: _Place) -> int:
     return len(place.source) if line_end < 0 else line_end - (place.source[line_end - 1] == "\r")
 
 
-def _truth_of_number(place: _Place) -> Hint | None:
+def _truth_of_number(place: _Context) -> Hint | None:
     """``if a then`` where ``a`` is a number."""
     if place.kind() not in _CONDITIONS or place.error.arguments != ("boolean", "integer"):
         return None

@@ -62,7 +62,7 @@ class Token:
         return f"{self.pos} {' '.join(map(str, self.described))}"
 
 
-def tokenise(text: str) -> tuple[Token, ...]:
+def tokenize(text: str) -> tuple[Token, ...]:
     """Return the tokens of a program, end of input included. Raises CompileError."""
     tokens: list[Token] = []
     match = _TOKEN.match

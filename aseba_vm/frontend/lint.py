@@ -22,7 +22,7 @@ from aseba_vm.frontend.syntax_tree import (
     position_of,
     walk,
 )
-from aseba_vm.messages import wording
+from aseba_vm.messages import format_message
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class CompileWarning:
     pos: SourcePos
 
     def __str__(self) -> str:
-        return wording(self.kind, self.arguments)
+        return format_message(self.kind, self.arguments)
 
     def located(self, name: str) -> str:
         """Return the message after the name of the file and the place, counted from 1."""

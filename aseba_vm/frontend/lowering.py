@@ -22,7 +22,7 @@ from aseba_vm.frontend.syntax_tree import (
     Expression,
     For,
     If,
-    Listing,
+    ListLiteral,
     Memory,
     Number,
     Statement,
@@ -33,20 +33,20 @@ from aseba_vm.frontend.syntax_tree import (
     Word,
 )
 from aseba_vm.frontend.trampoline import Task, run
-from aseba_vm.frontend.vectors import elements, first_element, needed, size_of
+from aseba_vm.frontend.vectors import elements, first_element, require, size_of
 
 #: Own limit on the scalar operations of a program; far more than any node has words of bytecode.
 MAX_ELEMENTS = 300_000
 
 
-def expand(tree: Tree, memory_size: int) -> Tree:
+def lower(tree: Tree, memory_size: int) -> Tree:
     """Return the tree of scalars. Raises CompileError."""
-    expander = _Expander(memory_size, tree.allocated, tree.temporaries)
-    body: Block = run(expander.block(tree.body))
-    return replace(tree, body=body, temporaries=expander.temporaries)
+    lowering = _Lowering(memory_size, tree.allocated, tree.temporaries)
+    body: Block = run(lowering.block(tree.body))
+    return replace(tree, body=body, temporaries=lowering.temporaries)
 
 
-class _Expander:
+class _Lowering:
     def __init__(self, memory_size: int, allocated: int, temporaries: int) -> None:
         self.memory_size = memory_size
         self.allocated = allocated
@@ -65,7 +65,7 @@ class _Expander:
                 return list(self.assign(left, right, pos))
             case Compound(operator, left, right, pos):
                 if right is None:
-                    right = Listing((Number(1, pos),) * size_of(left), pos)
+                    right = ListLiteral((Number(1, pos),) * size_of(left), pos)
                 return list(self.assign(left, Binary(operator, left, right, pos), pos))
             case If():
                 return [(yield self.conditional(statement))]
@@ -143,8 +143,8 @@ class _Expander:
         values = elements(right, size)
         places = elements(left, size)
         for value, place in zip(values, places, strict=True):
-            source = needed(value)
-            destination = needed(place)
+            source = require(value)
+            destination = require(place)
             if isinstance(destination, Number):
                 raise CompileError("not-assignable", ("constant-list",), pos)
             if not isinstance(destination, Word | Element):
@@ -164,7 +164,7 @@ def _weight(expression: Expression) -> Task[int]:
             weight = yield _weight(left)
             other: int = yield _weight(right)
             return weight + other + 1
-        case Listing(items):
+        case ListLiteral(items):
             weight = 1
             for item in items:
                 weight = max(weight, (yield _weight(item)))
@@ -188,6 +188,6 @@ def _occurs(name: str, expression: Expression) -> bool:
                 stack.append(operand)
             case Binary(_, left, right):
                 stack += (left, right)
-            case Listing(items):
+            case ListLiteral(items):
                 stack += items
     return False

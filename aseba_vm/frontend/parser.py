@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from aseba_vm.errors import CompileError, SourcePos
 from aseba_vm.frontend.expression_parser import ExpressionParser, constant_value, literal
 from aseba_vm.frontend.lexer import Token
-from aseba_vm.frontend.symbols import Symbols
+from aseba_vm.frontend.symbols import SymbolTable
 from aseba_vm.frontend.syntax_tree import (
     Access,
     Argument,
@@ -25,7 +25,7 @@ from aseba_vm.frontend.syntax_tree import (
     Expression,
     For,
     If,
-    Listing,
+    ListLiteral,
     Memory,
     Number,
     OnEvent,
@@ -51,11 +51,11 @@ def parse(
     constants: Sequence[tuple[str, int]] = (),
 ) -> Tree:
     """Return the tree of a program. Raises CompileError."""
-    return run(_Parser(tokens, Symbols(target, events, constants)).program())
+    return run(_Parser(tokens, SymbolTable(target, events, constants)).program())
 
 
 class _Parser:
-    def __init__(self, tokens: Sequence[Token], symbols: Symbols) -> None:
+    def __init__(self, tokens: Sequence[Token], symbols: SymbolTable) -> None:
         self.stream = TokenStream(tokens)
         self.symbols = symbols
         self.expressions = ExpressionParser(self.stream, symbols)
@@ -153,7 +153,7 @@ class _Parser:
         while self.stream.token.kind == ",":
             self.stream.advance()
             items.append((yield self.expressions.element()))
-        return Listing(tuple(items), start)
+        return ListLiteral(tuple(items), start)
 
     def onevent(self) -> OnEvent:
         """onevent = "onevent" , IDENT"""

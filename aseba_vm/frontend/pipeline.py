@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 from aseba_vm.bytecode import EventEntry, Segment, SubEntry, instructions, link
 from aseba_vm.errors import CompileError
-from aseba_vm.frontend.codegen import check_stack, emit
-from aseba_vm.frontend.folding import optimise
+from aseba_vm.frontend.codegen import check_stack, generate
+from aseba_vm.frontend.folding import optimize
 from aseba_vm.frontend.hints import Attempt, find_hint
-from aseba_vm.frontend.lexer import Token, tokenise
+from aseba_vm.frontend.lexer import Token, tokenize
 from aseba_vm.frontend.lint import CompileWarning, find_warnings
-from aseba_vm.frontend.lowering import expand
+from aseba_vm.frontend.lowering import lower
 from aseba_vm.frontend.parser import parse
 from aseba_vm.frontend.syntax_tree import Memory, Tree
 from aseba_vm.frontend.type_check import check_sizes, check_types
@@ -27,11 +27,11 @@ class Stages:
     tokens: tuple[Token, ...]
     tree: Tree
     expanded: Tree
-    optimised: Tree
+    optimized: Tree
     segments: tuple[Segment, ...]
 
     def dump(self, stage: str) -> str:
-        """Return a stage as text: ``tokens``, ``tree``, ``expanded``, ``optimised`` or ``code``."""
+        """Return a stage as text: ``tokens``, ``tree``, ``expanded``, ``optimized`` or ``code``."""
         match stage:
             case "tokens":
                 return "\n".join(map(str, self.tokens))
@@ -39,8 +39,8 @@ class Stages:
                 return self.tree.dump()
             case "expanded":
                 return self.expanded.dump()
-            case "optimised":
-                return self.optimised.dump()
+            case "optimized":
+                return self.optimized.dump()
             case "code":
                 return "\n".join(segment.dump() for segment in self.segments)
         raise ValueError(f"no stage is called {stage!r}")
@@ -118,19 +118,19 @@ def _attempt(
     try:
         if target.variables_end > target.variables_size:
             raise CompileError("target-too-small")
-        tokens = tokenise(source)
+        tokens = tokenize(source)
         stage = 1
         tree = parse(tokens, target, events, constants)
         stage = 2
         check_sizes(tree)
-        expanded = expand(tree, target.variables_size)
+        expanded = lower(tree, target.variables_size)
         check_types(expanded)
-        optimised = optimise(expanded)
-        segments = emit(optimised)
+        optimized = optimize(expanded)
+        segments = generate(optimized)
         check_stack(segments, target.stack_size)
     except CompileError as error:
         return Attempt(stage, error)
-    return Stages(tokens, tree, expanded, optimised, segments)
+    return Stages(tokens, tree, expanded, optimized, segments)
 
 
 def compile(  # noqa: A001  # the word of the field; hides the built-in one in this module only

@@ -9,7 +9,7 @@ from aseba_vm.errors import CompileError, SourcePos
 _MAX_DISTANCE = 2
 
 
-def not_found(kind: str, name: str, known: Iterable[str], pos: SourcePos) -> CompileError:
+def unknown_name_error(kind: str, name: str, known: Iterable[str], pos: SourcePos) -> CompileError:
     """Return the error ``kind``, or ``kind-hint`` with the nearest known name."""
     hint = suggestion(name, known)
     return CompileError(kind, (name,), pos) if hint is None else CompileError(f"{kind}-hint", (name, hint), pos)

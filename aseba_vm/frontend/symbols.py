@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from aseba_vm.errors import CompileError, SourcePos
-from aseba_vm.frontend.suggestions import not_found
+from aseba_vm.frontend.suggestions import unknown_name_error
 from aseba_vm.frontend.syntax_tree import Memory, Number, OnEvent, Sub
 from aseba_vm.target import NativeFunction, TargetDescription
 
@@ -13,7 +13,7 @@ from aseba_vm.target import NativeFunction, TargetDescription
 INIT_EVENT = 0xFFFF
 
 
-class Symbols:
+class SymbolTable:
     """All that a name may mean, in the order of its declaration. A name given twice means its last meaning."""
 
     def __init__(
@@ -70,13 +70,13 @@ class Symbols:
     def variable(self, name: str, pos: SourcePos) -> Memory:
         """Return a variable of the target or the program. Raises CompileError."""
         if name not in self.variables:
-            raise not_found("unknown-variable", name, self.variables, pos)
+            raise unknown_name_error("unknown-variable", name, self.variables, pos)
         return self.variables[name]
 
     def constant(self, name: str, pos: SourcePos) -> Number:
         """Return the value of a constant in use. Raises CompileError."""
         if name not in self.constants:
-            raise not_found("unknown-constant", name, self.constants, pos)
+            raise unknown_name_error("unknown-constant", name, self.constants, pos)
         value = self.constants[name]
         if not -32768 <= value <= 32767:
             raise CompileError("constant-range", (name, value), pos)
@@ -85,7 +85,7 @@ class Symbols:
     def native(self, name: str, pos: SourcePos) -> tuple[int, NativeFunction]:
         """Return number and description of a native function. Raises CompileError."""
         if name not in self.natives:
-            raise not_found("unknown-function", name, self.natives, pos)
+            raise unknown_name_error("unknown-function", name, self.natives, pos)
         number = self.natives[name]
         return number, self.native_functions[number]
 
@@ -95,7 +95,7 @@ class Symbols:
             return self.events[name]
         if name in self.local_events:
             raise CompileError("emit-of-local-event", (name,), pos)
-        raise not_found("unknown-event", name, self.events, pos)
+        raise unknown_name_error("unknown-event", name, self.events, pos)
 
     def open_event(self, name: str, pos: SourcePos) -> OnEvent:
         """Return the marker of an event that has no handler yet. Raises CompileError."""
@@ -104,7 +104,7 @@ class Symbols:
         elif name in self.events:
             number = self.events[name][0]
         else:
-            raise not_found("unknown-event", name, self.events.keys() | self.local_events.keys(), pos)
+            raise unknown_name_error("unknown-event", name, self.events.keys() | self.local_events.keys(), pos)
         if number in self.handled:
             raise CompileError("duplicate-event-handler", (name,), pos)
         self.handled.add(number)

@@ -2,7 +2,7 @@
 
 The parser builds a tree in which an expression is a vector; :mod:`aseba_vm.frontend.lowering` turns it into a tree of
 scalars: ``Assignment`` takes the place of ``Compound`` and of the assignments of ``For``, ``Word`` that of ``Access``,
-``Element`` that of ``Subscript``, and ``Listing`` is gone. Positions are those that errors and rows of words need.
+``Element`` that of ``Subscript``, and ``ListLiteral`` is gone. Positions are those that errors and rows of words need.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Subscript:
 
 
 @dataclass(frozen=True, slots=True)
-class Listing:
+class ListLiteral:
     """A list: the words of its items one after the other."""
 
     items: tuple[Expression, ...]
@@ -105,7 +105,7 @@ class Element:
     pos: SourcePos
 
 
-Expression = Number | Access | Subscript | Listing | Unary | Binary | Word | Element
+Expression = Number | Access | Subscript | ListLiteral | Unary | Binary | Word | Element
 
 
 # -- statements --------------------------------------------------------------------------------------------------------

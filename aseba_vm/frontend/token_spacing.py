@@ -18,7 +18,7 @@ _TIGHT_AFTER = frozenset(("(", "[", ":", "~"))
 _SHIFTS = frozenset(("<<", ">>", "<<=", ">>="))
 
 
-def spaced(text: str, start: int, end: int, tokens: Sequence[Token], first: int, last: int) -> str:
+def space_line(text: str, start: int, end: int, tokens: Sequence[Token], first: int, last: int) -> str:
     """Return the line text[start:end], which holds the tokens first..last-1 of the program, with regular spaces."""
     parts: list[str] = []
     at = start

@@ -6,7 +6,7 @@ Source: docs/spec/aseba-language.md sections 8 and 11.
 from __future__ import annotations
 
 from aseba_vm.errors import CompileError, SourcePos
-from aseba_vm.frontend.suggestions import not_found
+from aseba_vm.frontend.suggestions import unknown_name_error
 from aseba_vm.frontend.syntax_tree import (
     COMPARISONS,
     CONNECTIVES,
@@ -94,7 +94,7 @@ def _types(statement: Statement, subs: dict[str, Sub]) -> Task[None]:
             yield _types(body, subs)
         case CallSub(name, pos):
             if name not in subs:
-                raise not_found("unknown-subroutine", name, subs, pos)
+                raise unknown_name_error("unknown-subroutine", name, subs, pos)
 
 
 def _type_of(expression: Expression) -> Task[str]:

@@ -3,7 +3,7 @@
 Source: docs/spec/aseba-language.md sections 6 and 11.
 
 Used while parsing (sizes of arguments, constants) and by the passes that check and expand. An element that does not
-exist stays in place as ``Missing`` until the scalar assignment that needs it, so that errors keep their order.
+exist stays in place as ``MissingElement`` until the scalar assignment that needs it, so that errors keep their order.
 """
 
 from __future__ import annotations
@@ -11,18 +11,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from aseba_vm.errors import CompileError, SourcePos
-from aseba_vm.frontend.syntax_tree import Access, Binary, Element, Expression, Listing, Subscript, Unary, Word
+from aseba_vm.frontend.syntax_tree import Access, Binary, Element, Expression, ListLiteral, Subscript, Unary, Word
 from aseba_vm.frontend.trampoline import Task, run
 
 
 @dataclass(frozen=True, slots=True)
-class Missing:
+class MissingElement:
     """In place of an element: the error of whoever needs it."""
 
     error: CompileError
 
 
-Scalar = Expression | Missing
+Scalar = Expression | MissingElement
 
 
 def size_of(expression: Expression) -> int:
@@ -36,7 +36,7 @@ def _size(expression: Expression) -> Task[int]:
             if is_slice and not 0 <= last < variable.size:
                 raise CompileError("index-out-of-bounds", (variable.name, last, variable.size), pos)
             return last - first + 1
-        case Subscript(_, Listing(items), _, pos):
+        case Subscript(_, ListLiteral(items), _, pos):
             total = 0
             for item in items:
                 total += yield _size(item)
@@ -50,7 +50,7 @@ def _size(expression: Expression) -> Task[int]:
             if size != other:
                 raise CompileError("size-mismatch", (size, other), pos)
             return size
-        case Listing(items):
+        case ListLiteral(items):
             size = 0
             for item in items:
                 size += yield _size(item)
@@ -66,7 +66,7 @@ def check_address(expression: Expression) -> None:
                 expression = operand
             case Binary(_, left, _, _):
                 expression = left
-            case Listing(items):
+            case ListLiteral(items):
                 expression = items[0]
             case Access():
                 missing = out_of_bounds(expression)
@@ -91,7 +91,7 @@ def elements(expression: Expression, count: int) -> list[Scalar]:
 
 def first_element(expression: Expression) -> Expression:
     """Return element 0. Raises CompileError if it does not exist."""
-    return needed(elements(expression, 1)[0])
+    return require(elements(expression, 1)[0])
 
 
 def first_constant(expression: Expression) -> Expression:
@@ -100,12 +100,12 @@ def first_constant(expression: Expression) -> Expression:
     Those indexes were evaluated when they were read; doing it again at each level would take quadratic time.
     Raises CompileError if the element does not exist or one of the indexes could not be evaluated.
     """
-    return needed(run(_elements(expression, 1, True))[0])
+    return require(run(_elements(expression, 1, True))[0])
 
 
-def needed(scalar: Scalar) -> Expression:
-    """Return an element that is now needed. Raises CompileError if it does not exist."""
-    if isinstance(scalar, Missing):
+def require(scalar: Scalar) -> Expression:
+    """Return an element that is now require. Raises CompileError if it does not exist."""
+    if isinstance(scalar, MissingElement):
         raise scalar.error
     return scalar
 
@@ -115,26 +115,26 @@ def _elements(expression: Expression, count: int, is_opaque: bool) -> Task[list[
         case Access(variable, first, last, pos):
             error = out_of_bounds(expression)
             if error is not None:
-                return [Missing(error)] * min(count, last - first + 1)
+                return [MissingElement(error)] * min(count, last - first + 1)
             end = min(last + 1, variable.size, first + count)
             return [Word(variable.address + index, pos) for index in range(first, end)]
         case Subscript(variable, index, fault, pos):
-            if isinstance(index, Listing):
+            if isinstance(index, ListLiteral):
                 total = yield _size(index)
-                return [Missing(CompileError("illegal-index" if total > 2 else "list-as-index", (), pos))]
+                return [MissingElement(CompileError("illegal-index" if total > 2 else "list-as-index", (), pos))]
             if is_opaque:
-                return [Word(variable.address, pos) if fault is None else Missing(fault)]
+                return [Word(variable.address, pos) if fault is None else MissingElement(fault)]
             first_index: list[Scalar] = yield _elements(index, 1, False)
             inner = first_index[0]
-            return [inner if isinstance(inner, Missing) else Element(variable, inner, pos)]
+            return [inner if isinstance(inner, MissingElement) else Element(variable, inner, pos)]
         case Unary(operator, operand, pos):
             operands: list[Scalar] = yield _elements(operand, count, is_opaque)
-            return [item if isinstance(item, Missing) else Unary(operator, item, pos) for item in operands]
+            return [item if isinstance(item, MissingElement) else Unary(operator, item, pos) for item in operands]
         case Binary(operator, left, right, pos):
             lefts: list[Scalar] = yield _elements(left, count, is_opaque)
             rights: list[Scalar] = yield _elements(right, count, is_opaque)
             return [_paired(operator, one, two, pos) for one, two in zip(lefts, rights, strict=False)]
-        case Listing(items):
+        case ListLiteral(items):
             gathered: list[Scalar] = []
             for item in items:
                 gathered += yield _elements(item, count - len(gathered), is_opaque)
@@ -145,6 +145,6 @@ def _elements(expression: Expression, count: int, is_opaque: bool) -> Task[list[
 
 
 def _paired(operator: str, left: Scalar, right: Scalar, pos: SourcePos) -> Scalar:
-    if isinstance(left, Missing):
+    if isinstance(left, MissingElement):
         return left
-    return right if isinstance(right, Missing) else Binary(operator, left, right, pos)
+    return right if isinstance(right, MissingElement) else Binary(operator, left, right, pos)

@@ -15,19 +15,19 @@ from aseba_vm.bytecode import EDGE, LENGTH, MAX_EMITTED, Op, signed, signed12
 from aseba_vm.jit.ir import (
     Assign,
     AssignIndex,
+    BailOut,
     Binary,
     Branch,
     Call,
     Const,
     Emit,
     End,
-    Enter,
+    EnterSub,
     Expr,
     Index,
     Jump,
-    Leave,
     Load,
-    Place,
+    ProgramPoint,
     Return,
     Statement,
     Stop,
@@ -146,7 +146,7 @@ class _Builder:
     def block(self, start: int) -> Block:
         self.stack: list[Expr] = []
         self.statements: list[Statement] = []
-        self.place = Place(start, ())
+        self.place = ProgramPoint(start, ())
         self.cost = 0
         self.depth = 0
         self.temps = 0
@@ -154,9 +154,9 @@ class _Builder:
         end: End | None = None
         while end is None:
             if pc >= self.size:
-                end = Leave(self.place, 0)
+                end = BailOut(self.place, 0)
             elif pc != start and pc in self.leaders:
-                end = Leave(self.place, 0) if self.cost or self.stack else Jump(self.place, 0, -1, pc)
+                end = BailOut(self.place, 0) if self.cost or self.stack else Jump(self.place, 0, -1, pc)
             else:
                 self.cost += 1
                 end = self._instruction(pc)
@@ -179,15 +179,15 @@ class _Builder:
                 stack.append(Load(operand))
             case Op.STORE if stack and operand < memory:
                 value = stack.pop()
-                self.statements.append(Assign(self.place, self.cost, self._keep(), operand, value))
-                self._begin(pc + 1)
+                self.statements.append(Assign(self.place, self.cost, self._spill(), operand, value))
+                self._start_statement(pc + 1)
             case Op.LOADX if stack and operand + second <= memory:
                 stack.append(Index(operand, second, stack.pop()))
             case Op.STOREX if len(stack) > 1 and operand + second <= memory:
                 index, value = stack.pop(), stack.pop()
-                place, keep = self.place, self._keep()
+                place, keep = self.place, self._spill()
                 self.statements.append(AssignIndex(place, self.cost, keep, operand, second, index, value))
-                self._begin(pc + 2)
+                self._start_statement(pc + 2)
             case Op.UNARY if stack and operand < _UNARY_COUNT:
                 stack.append(Unary(operand, stack.pop()))
             case Op.BINARY if len(stack) > 1 and operand < _BINARY_COUNT:
@@ -195,8 +195,8 @@ class _Builder:
                 stack.append(Binary(operand, left, right))
             case Op.EMIT if second + third <= memory and third <= MAX_EMITTED:
                 self.cost += self.memories.emit.of(third)
-                self.statements.append(Emit(self.place, self.cost, self._keep(), operand, second, third))
-                self._begin(pc + 3)
+                self.statements.append(Emit(self.place, self.cost, self._spill(), operand, second, third))
+                self._start_statement(pc + 3)
             case Op.NATIVE if operand < len(self.memories.natives):
                 return self._native(pc, operand)
             case _:
@@ -207,18 +207,18 @@ class _Builder:
         signature = self.memories.natives[number]
         count = signature.count
         if len(self.stack) < count:
-            return Leave(self.place, 0)
+            return BailOut(self.place, 0)
         popped = tuple(self.stack[len(self.stack) - count :][::-1])
         del self.stack[len(self.stack) - count :]
         words = words_of(popped, signature) if signature.cost.per_word else 0
         if words is None:  # only the call itself knows what it costs
-            return Leave(self.place, 0)
+            return BailOut(self.place, 0)
         place, cost = self.place, self.cost + signature.cost.of(words)
         known = arguments(popped, signature) or ()
         if any(address + size > self.memories.variables for address, size in known):
-            return Leave(place, 0)
-        keep = self._keep()
-        self._begin(pc + 1)
+            return BailOut(place, 0)
+        keep = self._spill()
+        self._start_statement(pc + 1)
         self.statements.append(Call(place, cost, keep, number, popped, pc, self.place))
         return None
 
@@ -236,12 +236,12 @@ class _Builder:
                 return Jump(place, cost, pc, target)
             if op == Op.CALL and word & 0xFFF < self.size:
                 self.depth = max(self.depth, 1)
-                return Enter(place, cost, word & 0xFFF, pc + 1)
+                return EnterSub(place, cost, word & 0xFFF, pc + 1)
             if op == Op.RET:
                 return Return(place, cost)
-        return Leave(place, 0)
+        return BailOut(place, 0)
 
-    def _keep(self) -> tuple[tuple[Temp, Expr], ...]:
+    def _spill(self) -> tuple[tuple[Temp, Expr], ...]:
         """Replace what is still on the stack by temporaries; return their values. Constants stay."""
         kept: list[tuple[Temp, Expr]] = []
         for place, expression in enumerate(self.stack):
@@ -252,7 +252,7 @@ class _Builder:
                 self.stack[place] = temp
         return tuple(kept)
 
-    def _begin(self, pc: int) -> None:
+    def _start_statement(self, pc: int) -> None:
         """Begin the next statement."""
-        self.place = Place(pc, tuple(atom for atom in self.stack if isinstance(atom, Const | Temp)))
+        self.place = ProgramPoint(pc, tuple(atom for atom in self.stack if isinstance(atom, Const | Temp)))
         self.cost = 0

@@ -11,7 +11,7 @@ Run = Callable[[int], tuple[int, int, int, Any]]
 """Run with a budget. Returns the budget left, the address, the kind of exit, and the words to push, false if none."""
 
 
-class Machine(Protocol):
+class TranslatedMachine(Protocol):
     """What translated code needs of its machine; none of it may raise."""
 
     random_state: int
@@ -26,23 +26,23 @@ class Machine(Protocol):
         Return 0 if the event goes on, 1 if translated code must be left, 2 if nothing was done.
         """
 
-    def refuse_translated(self, pc: int, reason: int) -> None:
+    def stop_on_translated_fault(self, pc: int, reason: int) -> None:
         """Let the event end at an address for what went wrong in a native that is translated itself."""
 
     def emit(self, number: int, words: tuple[int, ...]) -> None:
         """Emit an event."""
 
 
-class Host(Protocol):
+class JitHost(Protocol):
     """One machine's side of translated code."""
 
-    memory: MutableSequence[int]
+    edges: MutableSequence[int]
     """What branches remember, 0 or 1."""
 
-    def begin(self, branches: int) -> None:
+    def reserve_edges(self, branches: int) -> None:
         """Make room for what the branches of a program remember."""
 
-    def make(self, code: Any) -> Run:
+    def instantiate(self, code: Any) -> Run:
         """Return what runs a translation on this machine."""
 
     def close(self) -> None:
@@ -52,19 +52,19 @@ class Host(Protocol):
 class PythonHost:
     """What the functions of one machine work on."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: TranslatedMachine) -> None:
         """Use the variables where they are."""
         self._machine = machine
-        self.memory: MutableSequence[int] = []
+        self.edges: MutableSequence[int] = []
 
     def close(self) -> None:
         """Nothing is held."""
 
-    def begin(self, branches: int) -> None:
+    def reserve_edges(self, branches: int) -> None:
         """Make room for what the branches of a program remember."""
-        self.memory = [0] * branches
+        self.edges = [0] * branches
 
-    def make(self, code: Callable[..., Run]) -> Run:
+    def instantiate(self, code: Callable[..., Run]) -> Run:
         """Return the function of a structure for this machine."""
         machine = self._machine
-        return code(machine.variables.words, self.memory, machine.call_native, machine.emit)
+        return code(machine.variables.words, self.edges, machine.call_native, machine.emit)

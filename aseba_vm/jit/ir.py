@@ -56,7 +56,7 @@ Expr = Const | Load | Temp | Index | Unary | Binary
 Atom = Const | Temp
 
 
-class Place(NamedTuple):
+class ProgramPoint(NamedTuple):
     """A point between statements: address, words on the stack."""
 
     pc: int
@@ -66,7 +66,7 @@ class Place(NamedTuple):
 class Assign(NamedTuple):
     """Store a value, after keeping aside what the stack still holds. ``cost`` is in instructions."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     keep: tuple[tuple[Temp, Expr], ...]
     address: int
@@ -76,7 +76,7 @@ class Assign(NamedTuple):
 class AssignIndex(NamedTuple):
     """Store a value in an array; leaves if the element is not below the size."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     keep: tuple[tuple[Temp, Expr], ...]
     base: int
@@ -88,7 +88,7 @@ class AssignIndex(NamedTuple):
 class Emit(NamedTuple):
     """Send an event with words of memory."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     keep: tuple[tuple[Temp, Expr], ...]
     number: int
@@ -99,16 +99,16 @@ class Emit(NamedTuple):
 class Call(NamedTuple):
     """Call native ``number`` with the words popped; ``pc`` is that of the instruction."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     keep: tuple[tuple[Temp, Expr], ...]
     number: int
     popped: tuple[Expr, ...]
     pc: int
-    after: Place
+    after: ProgramPoint
 
 
-class Known(NamedTuple):
+class KnownNative(NamedTuple):
     """A native as far as a translator may rely on it.
 
     ``is_confined``: it touches nothing but its arguments. ``is_standard``: it is the function of
@@ -126,7 +126,7 @@ Statement = Assign | AssignIndex | Emit | Call
 class Branch(NamedTuple):
     """Compare and go to ``then`` or ``otherwise``; the word at ``pc`` remembers the condition."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     pc: int
     operator: int
@@ -140,16 +140,16 @@ class Branch(NamedTuple):
 class Jump(NamedTuple):
     """Go to ``target``; ``pc`` is that of the JUMP, or -1 where a block just runs into the next (cost 0)."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     pc: int
     target: int
 
 
-class Enter(NamedTuple):
+class EnterSub(NamedTuple):
     """Call the subroutine at ``target``, which returns to ``back``."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     target: int
     back: int
@@ -158,25 +158,25 @@ class Enter(NamedTuple):
 class Return(NamedTuple):
     """Return from a subroutine."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
 
 
 class Stop(NamedTuple):
     """End the event."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
 
 
-class Leave(NamedTuple):
+class BailOut(NamedTuple):
     """Let the interpreter go on from here."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
 
 
-End = Branch | Jump | Enter | Return | Stop | Leave
+End = Branch | Jump | EnterSub | Return | Stop | BailOut
 
 
 def words_of(popped: Sequence[Expr], signature: Signature) -> int | None:

@@ -14,7 +14,7 @@ from aseba_vm.jit.ir import (
     Emit,
     Expr,
     Index,
-    Known,
+    KnownNative,
     Load,
     Statement,
     Temp,
@@ -23,14 +23,14 @@ from aseba_vm.jit.ir import (
 )
 from aseba_vm.jit.structured_ir import If, Loop, Node
 
-LONGEST_EMIT = 8
+MAX_SCALAR_EMIT = 8
 """Words of an event that are looked at one by one."""
 
 
-class Survey:
+class MemoryUsage:
     """Which words and branches a function uses, and how."""
 
-    def __init__(self, natives: Sequence[Known]) -> None:
+    def __init__(self, natives: Sequence[KnownNative]) -> None:
         self.natives = natives
         self.scalars: set[int] = set()
         self.stored: set[int] = set()
@@ -68,7 +68,7 @@ class Survey:
                 self._expressions(index, value)
             case Emit(address=address, length=count):
                 words = range(address, address + count)
-                (self.scalars if count <= LONGEST_EMIT else self.shared).update(words)
+                (self.scalars if count <= MAX_SCALAR_EMIT else self.shared).update(words)
             case Call(popped=popped):
                 self._expressions(*popped)
                 if not needs_barrier(node, self.natives):
@@ -92,13 +92,13 @@ class Survey:
                     pass
 
 
-def needs_barrier(node: Call, natives: Sequence[Known]) -> bool:
+def needs_barrier(node: Call, natives: Sequence[KnownNative]) -> bool:
     """Tell whether a native may touch more of memory than arguments known beforehand."""
     native = natives[node.number]
     return not native.is_confined or arguments(node.popped, native.signature) is None
 
 
-def runs(places: Iterable[int]) -> list[tuple[int, int]]:
+def contiguous_ranges(places: Iterable[int]) -> list[tuple[int, int]]:
     """Return first and last of each run of neighbours."""
     found: list[tuple[int, int]] = []
     for place in sorted(places):

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from aseba_vm.jit.basic_blocks import Blocks
-from aseba_vm.jit.ir import Branch, Enter, Jump, Leave, Place, Return, Statement, Stop
+from aseba_vm.jit.ir import BailOut, Branch, EnterSub, Jump, ProgramPoint, Return, Statement, Stop
 
 MAX_NESTING = 14
 MAX_NODES = 4000
@@ -21,20 +21,20 @@ _CHECK_EVERY = 250
 
 STOPPED = 0
 INTERPRET = 1
-GO_ON = 2
+CONTINUE = 2
 
 
 @dataclass(slots=True)
 class Exit:
-    """Leave translated code: the event ends, the interpreter has to go on, or other translated code may."""
+    """BailOut translated code: the event ends, the interpreter has to go on, or other translated code may."""
 
-    place: Place
+    place: ProgramPoint
     kind: int
     cost: int = 0
 
 
 @dataclass(slots=True)
-class Cost:
+class Charge:
     """Instructions without an effect of their own: jumps."""
 
     cost: int
@@ -42,7 +42,7 @@ class Cost:
 
 @dataclass(slots=True)
 class Check:
-    """Leave unless ``need`` instructions are left."""
+    """BailOut unless ``need`` instructions are left."""
 
     pc: int
     need: int
@@ -75,20 +75,20 @@ class Loop:
 
 
 @dataclass(slots=True)
-class Visit:
+class SubCall:
     """A call of a subroutine."""
 
-    end: Enter
+    end: EnterSub
 
 
 @dataclass(slots=True)
-class Back:
+class SubReturn:
     """The end of a subroutine."""
 
     cost: int
 
 
-Node = Statement | Exit | Cost | Check | If | Loop | Visit | Back
+Node = Statement | Exit | Charge | Check | If | Loop | SubCall | SubReturn
 
 
 @dataclass(slots=True)
@@ -103,7 +103,7 @@ class Routine:
     has_checks: bool = False
 
 
-class Structure:
+class StructuredProgram:
     """Builds the routine at ``entry`` and the subroutines it calls, into ``routines``; the first is the entry's."""
 
     def __init__(self, blocks: Blocks, entry: int) -> None:
@@ -134,7 +134,7 @@ class Structure:
         while pc != end:
             block = self.blocks.by_address.get(pc)
             if block is None or nesting > MAX_NESTING or self._nodes > MAX_NODES:
-                nodes.append(Exit(Place(pc, ()), GO_ON))
+                nodes.append(Exit(ProgramPoint(pc, ()), CONTINUE))
                 return nodes, False
             self._nodes += 1 + len(block.statements)
             routine.depth = max(routine.depth, block.depth)
@@ -146,31 +146,31 @@ class Structure:
             match last:
                 case Jump(_, cost, at, target):
                     if cost:
-                        nodes.append(Cost(cost))
+                        nodes.append(Charge(cost))
                     if cost and (at == jump or target == end):
                         return nodes, True
                     if cost:
-                        nodes.append(Exit(Place(target, ()), GO_ON))
+                        nodes.append(Exit(ProgramPoint(target, ()), CONTINUE))
                         return nodes, False
                     pc = target
-                case Enter(place, _, target, back):
-                    if not self._visit(routine, target):
+                case EnterSub(place, _, target, back):
+                    if not self._prepare_sub(routine, target):
                         nodes.append(Exit(place, INTERPRET))
                         return nodes, False
-                    nodes.append(Visit(last))
+                    nodes.append(SubCall(last))
                     pc = back
                 case Stop(place, cost):
                     nodes.append(Exit(place, STOPPED, cost))
                     return nodes, False
                 case Return(place, cost):
-                    nodes.append(Back(cost) if routine.is_sub else Exit(place, INTERPRET))
+                    nodes.append(SubReturn(cost) if routine.is_sub else Exit(place, INTERPRET))
                     return nodes, False
-                case Leave(place):
+                case BailOut(place):
                     nodes.append(Exit(place, INTERPRET))
                     return nodes, False
         return nodes, True
 
-    def _visit(self, routine: Routine, target: int) -> bool:
+    def _prepare_sub(self, routine: Routine, target: int) -> bool:
         """Make the subroutine at ``target`` available; tell whether it can be called."""
         if target in self._open or len(self._open) > _MAX_CALLS:
             return False
@@ -185,7 +185,7 @@ class Structure:
         branch = block.end
         assert isinstance(branch, Branch)
         target = branch.otherwise
-        outside: list[Node] = [Exit(Place(target, ()), GO_ON)]
+        outside: list[Node] = [Exit(ProgramPoint(target, ()), CONTINUE)]
         if target not in self.blocks.by_address:
             outside = [Exit(branch.place, INTERPRET, -branch.cost)]
         if target < branch.then or (end is not None and target > end) or target not in self.blocks.by_address:
@@ -221,16 +221,16 @@ class Structure:
         for place in range(len(nodes) - 1, -1, -1):
             node = nodes[place]
             match node:
-                case Exit() | Back():
+                case Exit() | SubReturn():
                     need = max(node.cost, 0)
                 case If():
                     then = self._need(routine, node.then, need)
                     need = node.branch.cost + max(then, self._need(routine, node.otherwise, need))
                 case Loop():
-                    turn = max(self._need(routine, node.body, 0), need)
-                    node.need = self._need(routine, node.before, node.branch.cost + turn)
+                    iteration = max(self._need(routine, node.body, 0), need)
+                    node.need = self._need(routine, node.before, node.branch.cost + iteration)
                     need = 0
-                case Visit():
+                case SubCall():
                     sub = self.subs[node.end.target]
                     if sub.has_checks:
                         nodes.insert(place + 1, Check(node.end.back, need))
@@ -241,7 +241,7 @@ class Structure:
                     need = 0
                 case _:
                     need += node.cost
-                    if need > _CHECK_EVERY and not isinstance(node, Cost) and not node.place.pending:
+                    if need > _CHECK_EVERY and not isinstance(node, Charge) and not node.place.pending:
                         nodes.insert(place, Check(node.place.pc, need))
                         need = 0
                         routine.has_checks = True

@@ -3,7 +3,7 @@
 Translated code runs whole statements. It leaves before a statement that it cannot do, that would fail, or that the
 budget does not cover; the interpreter then does that statement as always, so that every fault, every address and every
 count is the interpreter's own. What branches remember is kept beside the bytecode while translated code runs
-and written into it (:meth:`Engine.settle`) before anybody else looks.
+and written into it (:meth:`Tiering.settle`) before anybody else looks.
 
 Programs start interpreted; a place where runs begin often, or a run that is long, is translated. Machines with the same
 program share its translation.
@@ -19,9 +19,9 @@ from typing import Any, NamedTuple, Protocol
 from aseba_vm.bytecode import WAS_TRUE
 from aseba_vm.jit import python_backend, wasm_backend
 from aseba_vm.jit.basic_blocks import Blocks, Memories, find_blocks
-from aseba_vm.jit.host import Host, PythonHost, Run
-from aseba_vm.jit.ir import Known
-from aseba_vm.jit.structured_ir import GO_ON, INTERPRET, STOPPED, Structure
+from aseba_vm.jit.host import JitHost, PythonHost, Run
+from aseba_vm.jit.ir import KnownNative
+from aseba_vm.jit.structured_ir import CONTINUE, INTERPRET, STOPPED, StructuredProgram
 from aseba_vm.jit.wasm_host import WasmHost
 from aseba_vm.jit.wasm_natives import FAULTS
 from aseba_vm.machine.code_memory import CodeMemory
@@ -42,15 +42,15 @@ ENGINES = (AUTO, INTERPRETER, PYTHON, WASM)
 WebAssembly (which needs wasmtime)."""
 
 
-_KEPT_PROGRAMS = 64
+_CACHE_SIZE = 64
 _WARM_RUNS = 2
 _WARM_INSTRUCTIONS = 2000
-_WEIRD_STRETCH = 256
-_LONGEST_STRETCH = 10_000_000
+_UNTRANSLATED_SLICE = 256
+_MAX_SLICE = 10_000_000
 """Instructions after which translated code comes back, so that a user can interrupt a program without an end."""
 
 
-class Machine(Protocol):
+class TieredMachine(Protocol):
     """What the engine needs of a machine: its state, its interpreter, its natives."""
 
     target: TargetDescription
@@ -61,7 +61,7 @@ class Machine(Protocol):
     sp: int
     flags: int
     instructions: int
-    surcharge: int
+    extra_cost: int
     random_state: int
     outbox: list[Message]
     code: CodeMemory
@@ -76,19 +76,19 @@ class Machine(Protocol):
     def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
         """Call a native; return False if its arguments lie outside memory."""
 
-    def refuse(self, pc: int, fault: NativeFault) -> None:
+    def stop_on_native_fault(self, pc: int, fault: NativeFault) -> None:
         """Stop for what a native at ``pc`` refused."""
 
 
-class Entry(NamedTuple):
-    """Translated code for :meth:`Host.make`, the budget it needs to begin, the words it may push."""
+class EntryCode(NamedTuple):
+    """Translated code for :meth:`JitHost.instantiate`, the budget it needs to begin, the words it may push."""
 
     code: Any
     need: int
     depth: int
 
 
-class Ready(NamedTuple):
+class ReadyCode(NamedTuple):
     """Translated code of one machine: what runs it, the budget it needs, the highest stack it may begin with."""
 
     run: Run
@@ -100,31 +100,31 @@ class Translation:
     """A program and its translations by address; None where it cannot be translated."""
 
     def __init__(
-        self, words: tuple[int, ...], memories: Memories, natives: tuple[Known, ...], *, is_wasm: bool
+        self, words: tuple[int, ...], memories: Memories, natives: tuple[KnownNative, ...], *, is_wasm: bool
     ) -> None:
         """Find the blocks of a program; what they become is made when asked for."""
         self._is_wasm = is_wasm
         self.natives = natives
         self.blocks: Blocks | None = find_blocks(words, memories)
-        self._entries: dict[int, Entry | None] = {}
-        self.canonical = self.without_memory(words)
+        self._entries: dict[int, EntryCode | None] = {}
+        self.canonical = self.without_edges(words)
 
-    def without_memory(self, words: tuple[int, ...]) -> tuple[int, ...]:
+    def without_edges(self, words: tuple[int, ...]) -> tuple[int, ...]:
         """Return words as they are when no branch remembers anything."""
         kept = list(words)
         for pc in self.blocks.branches if self.blocks is not None else ():
             kept[pc] &= ~WAS_TRUE
         return tuple(kept)
 
-    def entry(self, pc: int) -> Entry | None:
+    def entry(self, pc: int) -> EntryCode | None:
         """Return the translation of the block at ``pc`` and what follows."""
         if pc not in self._entries:
             self._entries[pc] = self._translate(pc)
         return self._entries[pc]
 
-    def _translate(self, pc: int) -> Entry | None:
+    def _translate(self, pc: int) -> EntryCode | None:
         assert self.blocks is not None
-        structure = Structure(self.blocks, pc)
+        structure = StructuredProgram(self.blocks, pc)
         if structure.is_too_large:
             return None
         translate = wasm_backend.translate if self._is_wasm else python_backend.translate
@@ -133,39 +133,39 @@ class Translation:
         except Exception:  # a defect of ours, or a wasmtime that we don't know: the interpreter can run everything
             logging.getLogger(__name__).exception("no translation at %d: the interpreter runs it", pc)
             return None
-        return Entry(code, structure.main.need, structure.main.depth)
+        return EntryCode(code, structure.main.need, structure.main.depth)
 
 
-_NOTHING = Translation((), Memories(0, 0, 0, ()), (), is_wasm=False)
+_NO_TRANSLATION = Translation((), Memories(0, 0, 0, ()), (), is_wasm=False)
 _translations: OrderedDict[object, Translation] = OrderedDict()
 
 
 def _translation(
-    words: tuple[int, ...], memories: Memories, natives: tuple[Known, ...], *, is_wasm: bool
+    words: tuple[int, ...], memories: Memories, natives: tuple[KnownNative, ...], *, is_wasm: bool
 ) -> Translation:
     """Return the translation of a program, the same for the same program."""
     key = (words, memories, natives, is_wasm)
     found = _translations.pop(key, None)
     if found is None:
         found = Translation(words, memories, natives, is_wasm=is_wasm)
-        while len(_translations) >= _KEPT_PROGRAMS:
+        while len(_translations) >= _CACHE_SIZE:
             _translations.popitem(last=False)
     _translations[key] = found
     return found
 
 
-def _known(signature: Signature, functions: Mapping[str, Native]) -> Known:
+def _known(signature: Signature, functions: Mapping[str, Native]) -> KnownNative:
     name = signature.native.name
     function = functions.get(name)
     is_standard = function is not None and function is NATIVES.get(name)
-    return Known(signature, function is None or (is_standard and name.startswith("math.")), is_standard)
+    return KnownNative(signature, function is None or (is_standard and name.startswith("math.")), is_standard)
 
 
-class Engine:
+class Tiering:
     """Runs the events of one machine."""
 
     def __init__(
-        self, machine: Machine, natives: Mapping[str, Native], *, is_eager: bool, is_wasm: bool | None
+        self, machine: TieredMachine, natives: Mapping[str, Native], *, is_eager: bool, is_wasm: bool | None
     ) -> None:
         """``is_eager``: translate at once. ``is_wasm``: to WebAssembly; None: if that is possible."""
         self._machine = machine
@@ -177,33 +177,33 @@ class Engine:
         self._memories = Memories(
             target.variables_size, target.bytecode_size, target.stack_size, signatures, machine.costs.emit
         )
-        self._translation = _NOTHING
-        self._host: Host | None = None
-        self._is_known = False
-        self._is_settled = True
-        self._heat: dict[int, int] = {}
-        self._made: dict[int, Ready] = {}
-        self._ready: dict[int, Ready] = {}
+        self._translation = _NO_TRANSLATION
+        self._host: JitHost | None = None
+        self._is_current = False
+        self._is_flushed = True
+        self._run_counts: dict[int, int] = {}
+        self._instances: dict[int, ReadyCode] = {}
+        self._ready: dict[int, ReadyCode] = {}
         self._failure: BaseException | None = None
 
-    def forget(self) -> None:
+    def invalidate(self) -> None:
         """The bytecode may have changed."""
-        self.doubt()
-        self._heat.clear()
+        self.mark_stale()
+        self._run_counts.clear()
 
-    def settle(self) -> None:
+    def flush_edges(self) -> None:
         """Write into the bytecode what the branches remember."""
-        if self._is_settled:
+        if self._is_flushed:
             return
-        self._is_settled = True
+        self._is_flushed = True
         assert self._translation.blocks is not None
         assert self._host is not None
-        self._machine.code.remember(zip(self._translation.blocks.branches, self._host.memory, strict=True))
+        self._machine.code.store_edges(zip(self._translation.blocks.branches, self._host.edges, strict=True))
 
     def close(self) -> None:
         """Settle and give the machine's memory back."""
-        self.settle()
-        self.forget()
+        self.flush_edges()
+        self.invalidate()
         if self._host is not None:
             self._host.close()
             self._host = None
@@ -218,48 +218,50 @@ class Engine:
             ready = None
         while left > 0 and machine.flags & ACTIVE:
             if ready is None:
-                ready = self._ready.get(machine.pc) or self._prepared(machine.pc)
+                ready = self._ready.get(machine.pc) or self._ready_code(machine.pc)
             if ready is None or machine.sp > ready.highest:
-                left -= self._interpret(min(left, _WEIRD_STRETCH))
+                left -= self._interpret(min(left, _UNTRANSLATED_SLICE))
             elif left < ready.need:
                 left -= self._interpret(left)
             else:
-                left -= self._translated(ready.run, left if left < _LONGEST_STRETCH else _LONGEST_STRETCH)
+                left -= self._run_translated(ready.run, left if left < _MAX_SLICE else _MAX_SLICE)
             ready = None
         return limit - left
 
-    def _prepared(self, pc: int) -> Ready | None:
+    def _ready_code(self, pc: int) -> ReadyCode | None:
         """Return the translation from an address on; None if there has to be another way."""
-        translation = self._translation if self._is_known else self._prepare()
+        translation = self._translation if self._is_current else self._update_translation()
         entry = (
             translation.entry(pc) if translation.blocks is not None and pc in translation.blocks.by_address else None
         )
         if entry is None:
             return None
-        if pc not in self._made:
+        if pc not in self._instances:
             assert self._host is not None
-            self._made[pc] = Ready(self._host.make(entry.code), entry.need, self._memories.stack - entry.depth - 1)
-        self._ready[pc] = self._made[pc]
-        return self._made[pc]
+            self._instances[pc] = ReadyCode(
+                self._host.instantiate(entry.code), entry.need, self._memories.stack - entry.depth - 1
+            )
+        self._ready[pc] = self._instances[pc]
+        return self._instances[pc]
 
-    def _prepare(self) -> Translation:
+    def _update_translation(self) -> Translation:
         """Return the translation of the program that is in the machine now."""
-        self._is_known = True
+        self._is_current = True
         words = self._machine.bytecode
         known = self._translation
-        if known.blocks is None or self._host is None or known.without_memory(words) != known.canonical:
+        if known.blocks is None or self._host is None or known.without_edges(words) != known.canonical:
             if self._is_wasm is None:
                 self._is_wasm = wasm_backend.is_available()
             self._translation = _translation(words, self._memories, self._natives, is_wasm=self._is_wasm)
-            self._made.clear()
+            self._instances.clear()
             if self._translation.blocks is not None:
                 if self._host is None:
                     self._host = self._new_host(words)
-                self._host.begin(len(self._translation.blocks.branches))
-        self._load()
+                self._host.reserve_edges(len(self._translation.blocks.branches))
+        self._load_edges()
         return self._translation
 
-    def _new_host(self, words: tuple[int, ...]) -> Host:
+    def _new_host(self, words: tuple[int, ...]) -> JitHost:
         """Return where translated code is to run; in Python if WebAssembly was not asked for by name and fails."""
         if self._is_wasm:
             try:
@@ -272,46 +274,46 @@ class Engine:
                 self._translation = _translation(words, self._memories, self._natives, is_wasm=False)
         return PythonHost(self)
 
-    def _load(self) -> None:
+    def _load_edges(self) -> None:
         """Read from the bytecode what the branches remember."""
         if self._translation.blocks is not None and self._host is not None:
             words = self._machine.code.words
-            self._host.memory[:] = [words[pc] >> 9 & 1 for pc in self._translation.blocks.branches]
+            self._host.edges[:] = [words[pc] >> 9 & 1 for pc in self._translation.blocks.branches]
 
-    def doubt(self) -> None:
+    def mark_stale(self) -> None:
         """Look at the bytecode anew before translated code runs again: somebody else has executed, or changed it."""
-        self._is_known = False
+        self._is_current = False
         self._ready.clear()
 
     def _is_warm(self, pc: int) -> bool:
         """Count a run that begins at ``pc``; tell whether there were many."""
-        heat = self._heat.get(pc, 0) + 1
-        self._heat[pc] = heat
-        return heat > _WARM_RUNS
+        count = self._run_counts.get(pc, 0) + 1
+        self._run_counts[pc] = count
+        return count > _WARM_RUNS
 
     def _interpret(self, limit: int) -> int:
-        self.settle()
+        self.flush_edges()
         try:
             return self._machine.interpret(limit)
         finally:
-            self._look_again()
+            self._resync()
 
-    def _look_again(self) -> None:
+    def _resync(self) -> None:
         """Take over what the interpreter has changed in the bytecode."""
         blocks = self._translation.blocks
-        if blocks is not None and self._is_known:
-            self._load()
+        if blocks is not None and self._is_current:
+            self._load_edges()
             if blocks.is_fragile and any(self._machine.code.words[pc] != word for pc, word in blocks.operands.items()):
-                self.doubt()
+                self.mark_stale()
 
-    def _translated(self, run: Run, left: int) -> int:
+    def _run_translated(self, run: Run, left: int) -> int:
         machine = self._machine
-        self._is_settled = False
+        self._is_flushed = False
         rest, pc, kind, words = run(left)
         machine.pc = pc
-        if machine.surcharge:
-            rest -= machine.surcharge
-            machine.surcharge = 0
+        if machine.extra_cost:
+            rest -= machine.extra_cost
+            machine.extra_cost = 0
         done = left - rest
         machine.instructions += done
         if words:
@@ -326,11 +328,11 @@ class Engine:
                 raise failure
             if machine.flags & ACTIVE and rest > 0:
                 done += self._interpret(1)
-        elif kind != GO_ON:
+        elif kind != CONTINUE:
             raise RuntimeError(f"translated code trapped at {pc}: a defect of the translator")
         return done
 
-    # -- what translated code needs (aseba_vm.jit.host.Machine)
+    # -- what translated code needs (aseba_vm.jit.host.TranslatedMachine)
 
     @property
     def variables(self) -> Variables:
@@ -355,19 +357,19 @@ class Engine:
         except BaseException as failure:
             self._failure = failure
             return 1
-        return 0 if machine.flags & ACTIVE and self._is_known and not machine.surcharge else 1
+        return 0 if machine.flags & ACTIVE and self._is_current and not machine.extra_cost else 1
 
-    def refuse_translated(self, pc: int, reason: int) -> None:
+    def stop_on_translated_fault(self, pc: int, reason: int) -> None:
         """Let the event end with one of ``FAULTS``, counted from 1."""
         for fault in FAULTS[reason - 1]():
-            self._machine.refuse(pc, fault)
+            self._machine.stop_on_native_fault(pc, fault)
 
     def emit(self, number: int, words: tuple[int, ...]) -> None:
         """Emit an event."""
         self._machine.outbox.append(Emitted(number, words))
 
 
-def new_engine(name: str, machine: Machine, natives: Mapping[str, Native]) -> Engine | None:
+def create_tiering(name: str, machine: TieredMachine, natives: Mapping[str, Native]) -> Tiering | None:
     """Return an engine by name, None to interpret. Raises ValueError for a name that cannot be used."""
     if name not in ENGINES:
         raise ValueError(f"engine {name!r} is not one of {', '.join(ENGINES)}")
@@ -375,4 +377,4 @@ def new_engine(name: str, machine: Machine, natives: Mapping[str, Native]) -> En
         raise ValueError(f"engine {name!r} needs the package wasmtime, which the extra [fast] installs")
     if name == INTERPRETER:
         return None
-    return Engine(machine, natives, is_eager=name != AUTO, is_wasm=None if name == AUTO else name == WASM)
+    return Tiering(machine, natives, is_eager=name != AUTO, is_wasm=None if name == AUTO else name == WASM)

@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any
 
 
-def caller(wasmtime: Any, store: Any, function: Any, arguments: Sequence[float] = ()) -> Callable[[], object]:
+def make_caller(wasmtime: Any, store: Any, function: Any, arguments: Sequence[float] = ()) -> Callable[[], object]:
     """Return what calls a function of a module, always with the same arguments: an int is an i32, a float an f64.
 
     It holds Python's lock; whoever makes the function bounds for how long.
@@ -33,7 +33,7 @@ def caller(wasmtime: Any, store: Any, function: Any, arguments: Sequence[float] 
     return call
 
 
-def callee(wasmtime: Any, store: Any, function: Callable[[], None]) -> Any:
+def make_import(wasmtime: Any, store: Any, function: Callable[[], None]) -> Any:
     """Return a function for modules to import. It must not raise."""
     kind = wasmtime.FuncType([], [])
     try:

@@ -24,7 +24,7 @@ FAULTS: tuple[Callable[[], tuple[NativeFault, ...]], ...] = (
 )
 """What went wrong, from 1 on."""
 
-_LONGEST_UNROLLED = 16
+_MAX_UNROLLED = 16
 _ARCTANGENTS = TABLES + 2 * len(SINE)
 
 Argument = tuple[int, int]
@@ -35,7 +35,7 @@ def unrolled(name: str, arguments: Sequence[Argument]) -> list[str] | None:
     """Return the code of a call on few words, or None."""
     addresses = [address for address, _ in arguments]
     size = arguments[0][1] if arguments else 0
-    if size > _LONGEST_UNROLLED:
+    if size > _MAX_UNROLLED:
         return None
     if name in _ELEMENTWISE:
         function, _ = _ELEMENTWISE[name]
@@ -50,7 +50,7 @@ def unrolled(name: str, arguments: Sequence[Argument]) -> list[str] | None:
             head,
             *(_store(addresses[0] + n, f"(i32.add {_load(addresses[1] + n)} (local.get $h))") for n in range(size)),
         ]
-    if name == "math.dot" and arguments[1][1] <= _LONGEST_UNROLLED:
+    if name == "math.dot" and arguments[1][1] <= _MAX_UNROLLED:
         total = "(i32.const 0)"
         for n in range(arguments[1][1]):
             total = f"(i32.add {total} (i32.mul {_load(addresses[1] + n)} {_load(addresses[2] + n)}))"
@@ -83,7 +83,7 @@ def functions(names: Iterable[str], memory_words: int) -> str:
     return "\n".join(own.get(name) or _FUNCTIONS[name] for name in needed)
 
 
-def is_usual(signature: Signature) -> bool:
+def has_standard_parameters(signature: Signature) -> bool:
     """Tell whether a native is declared with the parameters that the code here expects."""
     return _shape(signature) == _SHAPES.get(signature.native.name)
 
@@ -100,15 +100,15 @@ def _store(address: int, value: str) -> str:
     return f"(i32.store16 offset={2 * address} (i32.const 0) {value})"
 
 
-def _of(name: str) -> Callable[..., str]:
+def _binary_operation(name: str) -> Callable[..., str]:
     return lambda *values: f"(i32.{name} {' '.join(values)})"
 
 
-def _least(one: str, two: str) -> str:
+def _minimum(one: str, two: str) -> str:
     return f"(select {one} {two} (i32.lt_s {one} {two}))"
 
 
-def _greatest(one: str, two: str) -> str:
+def _maximum(one: str, two: str) -> str:
     return f"(select {one} {two} (i32.gt_s {one} {two}))"
 
 
@@ -120,11 +120,11 @@ def _clamped(value: str, low: str, high: str) -> str:
 
 _ELEMENTWISE: dict[str, tuple[Callable[..., str], int]] = {
     "math.copy": (lambda value: value, 1),
-    "math.add": (_of("add"), 2),
-    "math.sub": (_of("sub"), 2),
-    "math.mul": (_of("mul"), 2),
-    "math.min": (_least, 2),
-    "math.max": (_greatest, 2),
+    "math.add": (_binary_operation("add"), 2),
+    "math.sub": (_binary_operation("sub"), 2),
+    "math.mul": (_binary_operation("mul"), 2),
+    "math.min": (_minimum, 2),
+    "math.max": (_maximum, 2),
     "math.clamp": (_clamped, 3),
 }
 """Value of an element, and the number of arguments that it is made of; may be evaluated more than once."""

@@ -36,7 +36,7 @@ def is_usable() -> bool:
 
 
 def _try() -> None:
-    runtime = Runtime.get()
+    runtime = WasmRuntime.get()
     wasmtime = runtime.wasmtime
     with mmap.mmap(-1, _HEADROOM):
         store = wasmtime.Store(runtime.engine)
@@ -53,7 +53,7 @@ def _log(error: Exception) -> None:
     logging.getLogger(__name__).warning("wasmtime cannot be used, programs and crowds run slower: %s", reason)
 
 
-class Closable(Protocol):
+class StoreOwner(Protocol):
     """What holds a store."""
 
     def close(self) -> None:
@@ -61,17 +61,17 @@ class Closable(Protocol):
         ...
 
 
-class Runtime:
+class WasmRuntime:
     """The compiler, one for the process."""
 
-    _instance: Runtime | None = None
+    _instance: WasmRuntime | None = None
 
     def __init__(self) -> None:
         """Load ``wasmtime``."""
         self.wasmtime: Any = importlib.import_module("wasmtime")
         self.engine = self.wasmtime.Engine(self._config())
         self._modules: weakref.WeakSet[Any] = weakref.WeakSet()
-        self._served: weakref.WeakSet[Closable] = weakref.WeakSet()
+        self._store_owners: weakref.WeakSet[StoreOwner] = weakref.WeakSet()
         atexit.register(self._close)
 
     def _config(self) -> Any:
@@ -96,16 +96,16 @@ class Runtime:
         self._modules.add(module)
         return module
 
-    def serve(self, served: Closable) -> None:
+    def register(self, owner: StoreOwner) -> None:
         """Note what lives in a store of its own; it is closed before the process takes ``wasmtime`` itself apart."""
-        self._served.add(served)
+        self._store_owners.add(owner)
 
     def _close(self) -> None:
-        for made in [*self._served, *self._modules, self.engine]:
+        for made in [*self._store_owners, *self._modules, self.engine]:
             made.close()
 
     @classmethod
-    def get(cls) -> Runtime:
+    def get(cls) -> WasmRuntime:
         """Return the compiler, started when first asked for."""
         if cls._instance is None:
             cls._instance = cls()

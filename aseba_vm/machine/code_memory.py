@@ -1,11 +1,11 @@
-"""Bytecode memory: words, decoded when they are written, so that the machine meets operations ready to be executed."""
+"""Bytecode memory: words, decode when they are written, so that the machine meets operations ready to be executed."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
 from aseba_vm.bytecode import LENGTH, WAS_TRUE, Op
-from aseba_vm.machine.operations import STOP, Decoded, decoded
+from aseba_vm.machine.operations import STOP, Decoded, decode
 
 
 class CodeMemory:
@@ -32,16 +32,16 @@ class CodeMemory:
         self.words[start : start + len(words)] = [word & 0xFFFF for word in words]
         self._decode(start, start + len(words))
 
-    def turn(self, pc: int) -> None:
+    def toggle_edge(self, pc: int) -> None:
         """Turn what the BRANCH at ``pc`` remembers over."""
         self.words[pc] ^= WAS_TRUE
         self._decode(pc, pc + 1)
 
-    def remember(self, memories: Iterable[tuple[int, int]]) -> None:
+    def store_edges(self, edges: Iterable[tuple[int, int]]) -> None:
         """Let BRANCHes remember their conditions: address, 0 or 1."""
-        for pc, value in memories:
+        for pc, value in edges:
             if self.words[pc] >> 9 & 1 != value:
-                self.turn(pc)
+                self.toggle_edge(pc)
 
     def clear_edges(self) -> None:
         """Let branches forget, from the word on where the reference starts its scan.
@@ -53,7 +53,7 @@ class CodeMemory:
         while pc < len(words):
             word = words[pc]
             if word >> 12 == Op.BRANCH and word & WAS_TRUE:
-                self.turn(pc)
+                self.toggle_edge(pc)
             pc += LENGTH[word >> 12]
 
     def _decode(self, start: int, end: int) -> None:
@@ -62,4 +62,4 @@ class CodeMemory:
             self._events = None
         words = [*self.words[max(start - 2, 0) : end], *self.words[end : end + 2], 0, 0]
         for place, pc in enumerate(range(max(start - 2, 0), end)):
-            self.operations[pc] = decoded(words[place], words[place + 1], words[place + 2])
+            self.operations[pc] = decode(words[place], words[place + 1], words[place + 2])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, MutableSequence, Sequence
 from typing import Any, overload
 
-LOWEST, HIGHEST = -32768, 32767
+MIN_WORD, MAX_WORD = -32768, 32767
 
 
 class Variables(Sequence[int]):
@@ -14,24 +14,24 @@ class Variables(Sequence[int]):
     ``words`` is the storage, quicker to use and unchecked; ask for it anew after every run, an engine may move it.
     """
 
-    __slots__ = ("_keeper", "words")
+    __slots__ = ("_owner", "words")
 
     words: MutableSequence[int]
 
     def __init__(self, size: int) -> None:
         """Build a memory of ``size`` zeros."""
         self.words = [0] * size
-        self._keeper: object = None
+        self._owner: object = None
 
-    def move_to(self, words: MutableSequence[int], keeper: object = None) -> None:
-        """Copy the words to a storage of the same size and use that; ``keeper`` lives as long as it is used."""
+    def move_to(self, words: MutableSequence[int], owner: object = None) -> None:
+        """Copy the words to a storage of the same size and use that; ``owner`` lives as long as it is used."""
         words[:] = self.words[:]
-        self.words, self._keeper = words, keeper
+        self.words, self._owner = words, owner
 
-    def move_home(self) -> None:
+    def move_back(self) -> None:
         """Take the words back from the storage of an engine."""
-        if self._keeper is not None:
-            self.words, self._keeper = self.words[:], None
+        if self._owner is not None:
+            self.words, self._owner = self.words[:], None
 
     @overload
     def __getitem__(self, place: int) -> int: ...
@@ -52,11 +52,11 @@ class Variables(Sequence[int]):
             expected = len(range(*place.indices(len(self.words))))
             if len(value) != expected:
                 raise ValueError(f"{len(value)} words found, expected {expected}")
-            wrong = [word for word in value if not LOWEST <= word <= HIGHEST]
+            wrong = [word for word in value if not MIN_WORD <= word <= MAX_WORD]
         else:
-            wrong = [] if LOWEST <= value <= HIGHEST else [value]
+            wrong = [] if MIN_WORD <= value <= MAX_WORD else [value]
         if wrong:
-            raise ValueError(f"{wrong[0]} found, expected {LOWEST} to {HIGHEST}")
+            raise ValueError(f"{wrong[0]} found, expected {MIN_WORD} to {MAX_WORD}")
         self.words[place] = value
 
     def __len__(self) -> int:

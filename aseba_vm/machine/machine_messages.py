@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 from aseba_vm.bytecode import signed
-from aseba_vm.messages import LANGUAGES, MESSAGES, wording
+from aseba_vm.messages import LANGUAGES, MESSAGES, format_message
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,17 +64,17 @@ class _Fault(ABC):
 
     @property
     @abstractmethod
-    def words(self) -> tuple[str, tuple[object, ...]]:
+    def kind_and_arguments(self) -> tuple[str, tuple[object, ...]]:
         """The kind, and what its sentence is about; a kind that no table has is its own sentence."""
 
     @property
-    def sentence(self) -> str:
+    def message(self) -> str:
         """The fault in words."""
-        return self.sentence_in("en")
+        return self.message_in("en")
 
-    def sentence_in(self, language: str) -> str:
+    def message_in(self, language: str) -> str:
         """The fault in words of a language of `LANGUAGES`; others get English."""
-        return wording(*self.words, LANGUAGES.get(language, MESSAGES))
+        return format_message(*self.kind_and_arguments, LANGUAGES.get(language, MESSAGES))
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ class OutOfBounds(_Fault):
     index: int | None = None
 
     @property
-    def words(self) -> tuple[str, tuple[object, ...]]:
+    def kind_and_arguments(self) -> tuple[str, tuple[object, ...]]:
         """See `_Fault`."""
         if self.size is None or self.index is None:
             return "fault-deque", ()
@@ -100,7 +100,7 @@ class DivisionByZero(_Fault):
     pc: int
 
     @property
-    def words(self) -> tuple[str, tuple[object, ...]]:
+    def kind_and_arguments(self) -> tuple[str, tuple[object, ...]]:
         """See `_Fault`."""
         return "fault-division-by-zero", ()
 
@@ -113,7 +113,7 @@ class NodeSpecific(_Fault):
     reason: str
 
     @property
-    def words(self) -> tuple[str, tuple[object, ...]]:
+    def kind_and_arguments(self) -> tuple[str, tuple[object, ...]]:
         """See `_Fault`."""
         return _kind(self.reason), ()
 
@@ -129,7 +129,7 @@ class BadCode(_Fault):
     reason: str
 
     @property
-    def words(self) -> tuple[str, tuple[object, ...]]:
+    def kind_and_arguments(self) -> tuple[str, tuple[object, ...]]:
         """See `_Fault`."""
         return _kind(self.reason), ()
 

@@ -44,7 +44,7 @@ class DequeFault(NativeFault):
         super().__init__("deque")
 
 
-class Machine(Protocol):
+class NativeMachine(Protocol):
     """The part of the machine that natives may touch."""
 
     variables: Variables
@@ -80,7 +80,7 @@ class Signature:
         )
         return cls(native, count + len(places), sizes, cost)
 
-    def price(self, popped: Sequence[int]) -> int:
+    def call_cost(self, popped: Sequence[int]) -> int:
         """Return what a call with the words it pops takes of the budget, beyond its instruction."""
         if not self.cost.per_word:
             return self.cost.base
@@ -100,7 +100,7 @@ class NativeCall:
 
     __slots__ = ("addresses", "faults", "machine", "memory", "native", "sizes")
 
-    def __init__(self, machine: Machine, signature: Signature, popped: Sequence[int]) -> None:
+    def __init__(self, machine: NativeMachine, signature: Signature, popped: Sequence[int]) -> None:
         """``popped`` are the words of the stack from the top: addresses, then sizes in list order."""
         self.machine = machine
         self.memory = machine.variables.words

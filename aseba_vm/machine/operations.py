@@ -76,7 +76,7 @@ _UNARY_FUNCTIONS: Sequence[Callable[[int], int]] = (
 )
 
 
-def decoded(word: int, second: int, third: int) -> Decoded:
+def decode(word: int, second: int, third: int) -> Decoded:
     """Return kind and operands of the operation that begins with ``word``, given the two words after it."""
     op, operand = word >> 12, word & 0xFFF
     match op:

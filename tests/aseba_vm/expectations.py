@@ -115,17 +115,17 @@ class _Play:
 
     def _run(self) -> Iterator[str]:
         self.machine.run(LIMIT)
-        said = [self._told(message) for message in self.machine.take_messages()]
+        said = [self._told(message) for message in self.machine.pop_messages()]
         fault = self.machine.fault
         if fault is not None:
             row = self.program.row_of(fault.pc)
             line = "?" if row is None else self.rows[row] + 1
-            said.append(f"#! stops at {line}: {fault.sentence}")
+            said.append(f"#! stops at {line}: {fault.message}")
         elif self.machine.is_active:
             said.append("#! goes on")
         self.machine.stop()
         self.machine.resume()
-        self.machine.take_messages()
+        self.machine.pop_messages()
         return iter([text for text in said if text])
 
     def _told(self, message: Message) -> str:

@@ -109,7 +109,7 @@ def test_damaged_files_are_read_or_refused(seed):
                 assert aesl.dumps(aesl.loads(text)) == text
 
 
-@pytest.mark.parametrize("stage", ["tokens", "tree", "expanded", "optimised", "code"])
+@pytest.mark.parametrize("stage", ["tokens", "tree", "expanded", "optimized", "code"])
 def test_every_stage_of_a_deep_program_can_be_shown(stage):
     source = f"var a\na = {'(' * 3000}a + {'-' * 0}1{')' * 3000}\n{'if a == 1 then ' * 1500}{'end ' * 1500}"
     assert compile_stages(source, THYMIO_II).dump(stage)

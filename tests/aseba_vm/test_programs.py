@@ -4,7 +4,7 @@ import pytest
 
 from aseba_vm.bytecode import BINARY_OPERATORS, UNARY_OPERATORS, Op, instructions
 from aseba_vm.errors import CompileError
-from aseba_vm.frontend.lexer import KEYWORDS, SYMBOLS, tokenise
+from aseba_vm.frontend.lexer import KEYWORDS, SYMBOLS, tokenize
 from aseba_vm.frontend.pipeline import compile
 from aseba_vm.machine.natives import NATIVES
 from aseba_vm.messages import MESSAGES
@@ -37,7 +37,7 @@ def compiled():
 
 
 def test_every_word_and_symbol_of_the_language_is_used():
-    used = {token.kind for one, _ in compiled() for token in tokenise(one.node.code)}
+    used = {token.kind for one, _ in compiled() for token in tokenize(one.node.code)}
     assert (KEYWORDS | set(SYMBOLS)) - used == set()
 
 

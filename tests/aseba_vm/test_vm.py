@@ -16,7 +16,7 @@ def machine_with(source, **options):
     machine = VirtualMachine(THYMIO_II, **options)
     machine.load(program)
     machine.run()
-    machine.take_messages()
+    machine.pop_messages()
     return machine, program
 
 
@@ -54,7 +54,7 @@ def test_a_fresh_machine_does_nothing():
     assert not machine.is_active
 
 
-def test_loading_starts_the_initialisation_and_keeps_the_variables():
+def test_loading_starts_the_initialization_and_keeps_the_variables():
     machine = VirtualMachine(THYMIO_II)
     machine.variables[200] = 5
     machine.load(compile("acc[0] = 3", THYMIO_II))
@@ -78,15 +78,15 @@ def test_a_long_event_may_be_killed_instead():
     machine.start_local(8)
     machine.run(50)
     assert not machine.is_active
-    assert isinstance(machine.take_messages()[-1], machine_messages.EventKilled)
+    assert isinstance(machine.pop_messages()[-1], machine_messages.EventKilled)
 
 
 def test_an_emitted_event_is_left_in_the_outbox():
     machine, _ = machine_with("onevent tap emit ping [3, -4] emit pong")
     machine.start_local(8)
     machine.run()
-    assert machine.take_messages() == (machine_messages.Emitted(0, (3, -4)), machine_messages.Emitted(1, ()))
-    assert machine.take_messages() == ()
+    assert machine.pop_messages() == (machine_messages.Emitted(0, (3, -4)), machine_messages.Emitted(1, ()))
+    assert machine.pop_messages() == ()
 
 
 def test_a_global_event_brings_source_and_arguments():
@@ -101,7 +101,7 @@ def test_a_global_event_kills_the_running_one():
     machine.receive(0, 1, [])
     machine.run(10)
     machine.receive(0, 1, [])
-    assert [type(message) for message in machine.take_messages()] == [machine_messages.EventKilled]
+    assert [type(message) for message in machine.pop_messages()] == [machine_messages.EventKilled]
 
 
 def test_a_local_event_waits_for_the_running_one():
@@ -137,7 +137,7 @@ def test_when_remembers_between_events():
 )
 def test_a_fault_stops_the_machine_and_says_why_and_where(source, reason, row):
     machine, program = machine_with(source)
-    assert machine.fault.sentence == reason
+    assert machine.fault.message == reason
     assert program.row_of(machine.fault.pc) == row
     assert machine.flags == STEP_BY_STEP
     machine.start_local(8)
@@ -151,9 +151,9 @@ def test_every_fault_has_a_sentence():
         )
     )
     assert "stack-underflow" in reasons
-    assert {machine_messages.BadCode(0, reason).sentence for reason in reasons} & reasons == set()
-    assert machine_messages.NodeSpecific(0, "sqrt-of-negative").sentence == "square root of a negative number"
-    assert machine_messages.NodeSpecific(0, "no card").sentence == "no card"
+    assert {machine_messages.BadCode(0, reason).message for reason in reasons} & reasons == set()
+    assert machine_messages.NodeSpecific(0, "sqrt-of-negative").message == "square root of a negative number"
+    assert machine_messages.NodeSpecific(0, "no card").message == "no card"
 
 
 def test_resuming_forgets_the_fault():
@@ -216,7 +216,7 @@ def test_a_machine_has_room_for_sixteen_breakpoints():
     machine = VirtualMachine(THYMIO_II)
     for pc in range(17):
         machine.set_breakpoint(pc)
-    assert machine.take_messages()[-1] == machine_messages.BreakpointSet(16, is_set=False)
+    assert machine.pop_messages()[-1] == machine_messages.BreakpointSet(16, is_set=False)
     machine.clear_breakpoint(0)
     assert machine.breakpoints == tuple(range(1, 16))
     machine.clear_breakpoints()
@@ -232,7 +232,7 @@ def test_a_tracer_sees_every_instruction():
     assert seen == [3, 4, 5]
 
 
-def test_reset_calls_the_node_before_the_initialisation():
+def test_reset_calls_the_node_before_the_initialization():
     states = []
     machine = VirtualMachine(THYMIO_II, on_reset=lambda machine: states.append(machine.flags))
     machine.load(compile("acc[0] = 1", THYMIO_II))
@@ -246,7 +246,7 @@ def test_the_commands_answer_with_the_state():
     machine.resume()
     machine.stop()
     machine.report_state()
-    flags = [message.flags for message in machine.take_messages()]
+    flags = [message.flags for message in machine.pop_messages()]
     assert flags == [STEP_BY_STEP, 0, STEP_BY_STEP, STEP_BY_STEP]
 
 

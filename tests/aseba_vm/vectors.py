@@ -158,7 +158,7 @@ class Replay:
         """Obey one operation; return its record."""
         self.trace.clear()
         record = self._obey(operation)
-        record["out"] = [said(message) for message in self.machine.take_messages()]
+        record["out"] = [said(message) for message in self.machine.pop_messages()]
         record["changed"] = _runs(self.memory, self.machine.variables)
         self.memory = list(self.machine.variables)
         record["memory_crc"] = zlib.crc32(struct.pack(f"<{len(self.memory)}h", *self.memory))

@@ -19,7 +19,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import thymio_sim_ros
-from aseba_vm.cli.output import STANDARD_OUTPUT, end_by, standard_output
+from aseba_vm.cli.output import STANDARD_OUTPUT, exit_by_signal, standard_output
 from thymio_sim_ros import resources
 from thymio_sim_ros.banner import greeting, patience, qr_code
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
@@ -85,7 +85,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except UsageError as error:
         print(f"thymio-sim: {error}", file=sys.stderr)
     except KeyboardInterrupt:
-        end_by(signal.SIGINT)
+        exit_by_signal(signal.SIGINT)
     return USAGE_ERROR
 
 
@@ -193,7 +193,7 @@ def run_without_ros(argv: Sequence[str]) -> int:
     _report({"seconds": seconds, "real_time_factor": round(factor, 1), "robots": robots})
     if interruption.number is not None:
         print(f"thymio-sim: stopped after {seconds:g} of {options.seconds:g} seconds", file=sys.stderr)
-        end_by(interruption.number)
+        exit_by_signal(interruption.number)
     return FAULTY if faults.first else 0
 
 

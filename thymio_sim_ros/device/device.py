@@ -425,7 +425,7 @@ class AsebaDevice:
 
     def _listen(self) -> bool:
         """Take what the machine has said; whether the robot began anew or was switched off by it."""
-        for message in self._vm.take_messages():
+        for message in self._vm.pop_messages():
             if isinstance(message, Emitted):
                 if message.number < len(self._names):
                     self._meter.count_event(self._names[message.number], len(message.arguments))
@@ -433,8 +433,8 @@ class AsebaDevice:
             elif isinstance(message, OutOfBounds | DivisionByZero | NodeSpecific | BadCode) and not self.body.wanted:
                 line = self._program.line_of(message.pc)
                 self._state = FAULT
-                told = {language: message.sentence_in(language) for language in LANGUAGES}
-                self._fault = DeviceStatus(FAULT, self._event, line, message.sentence, message.pc, told)
+                told = {language: message.message_in(language) for language in LANGUAGES}
+                self._fault = DeviceStatus(FAULT, self._event, line, message.message, message.pc, told)
                 self._queue.clear()
                 self._halt()
         if self._state == RUNNING and self._vm.is_step_by_step:

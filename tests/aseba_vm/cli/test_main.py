@@ -86,7 +86,7 @@ def test_a_program_is_written_as_json(file, tmp_path):
     assert data["variables"] == [["n", 128, 1]]
 
 
-@pytest.mark.parametrize("stage", ["tokens", "tree", "expanded", "optimised", "code", "words"])
+@pytest.mark.parametrize("stage", ["tokens", "tree", "expanded", "optimized", "optimised", "code", "words"])
 def test_every_stage_can_be_shown(stage, file, capsys):
     assert main(["dis", file(GOOD), "--global", "ping=1", "--stage", stage]) == 0
     assert capsys.readouterr().out.strip()

@@ -7,7 +7,7 @@ from aseba_vm.targets import THYMIO_II
 
 
 def code(source):
-    """Instructions of the initialisation without the final stop."""
+    """Instructions of the initialization without the final stop."""
     stages = compile_stages(f"var a var b {source}", THYMIO_II, events=[("e", 1)])
     return [str(instruction) for segment in stages.segments for instruction in segment.code][:-1]
 

@@ -212,8 +212,8 @@ def test_an_error_that_is_not_understood_has_no_hint(source):
 def test_a_hint_names_the_line_of_the_open_block_in_the_file():
     hint = refused("var a\nif a == 1 then\n a = 2").hint
     assert str(hint) == "the 'if' of line 2 has no 'end'"
-    assert hint.worded(rows=(10, 11, 12)) == "the 'if' of line 12 has no 'end'"
-    assert hint.worded(LANGUAGES["de"]) == "dem 'if' von Zeile 2 fehlt ein 'end'"
+    assert hint.message(rows=(10, 11, 12)) == "the 'if' of line 12 has no 'end'"
+    assert hint.message(LANGUAGES["de"]) == "dem 'if' von Zeile 2 fehlt ein 'end'"
 
 
 # -- every edit helps --------------------------------------------------------------------------------------------------

@@ -1,14 +1,14 @@
 import pytest
 
 from aseba_vm import CompileError
-from aseba_vm.frontend.lexer import tokenise
+from aseba_vm.frontend.lexer import tokenize
 from aseba_vm.frontend.parser import parse
 from aseba_vm.frontend.syntax_tree import For, If, Number
 from aseba_vm.targets import THYMIO_II
 
 
 def tree(source, **definitions):
-    return parse(tokenise(source), THYMIO_II, **definitions)
+    return parse(tokenize(source), THYMIO_II, **definitions)
 
 
 def shape(source):

@@ -35,7 +35,7 @@ def _state(machine):
         machine.instructions,
         machine.random_state,
         machine.fault,
-        machine.take_messages(),
+        machine.pop_messages(),
     )
 
 

@@ -68,7 +68,7 @@ def test_a_native_does_the_same_in_every_engine(name, engine):
                 quick.instructions,
                 quick.random_state,
             )
-            assert plain.take_messages() == quick.take_messages()
+            assert plain.pop_messages() == quick.pop_messages()
 
 
 @pytest.mark.parametrize("engine", AVAILABLE)

@@ -113,6 +113,6 @@ def test_a_version_without_these_options_works_too(monkeypatch):
     class Config:
         pass
 
-    runtime = wasm_runtime.Runtime.get()
+    runtime = wasm_runtime.WasmRuntime.get()
     monkeypatch.setattr(runtime, "wasmtime", type("Old", (), {"Config": Config}))
     assert vars(runtime._config()) == {}

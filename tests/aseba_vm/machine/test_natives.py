@@ -6,7 +6,7 @@ from aseba_vm.targets import THYMIO_II
 
 
 def after(source, address=128, count=1, **options):
-    """Words of the memory after the initialisation."""
+    """Words of the memory after the initialization."""
     machine = VirtualMachine(THYMIO_II, **options)
     machine.load(compile(source, THYMIO_II))
     machine.run()
@@ -85,7 +85,7 @@ def test_a_function_that_nobody_has_pops_its_arguments_and_is_told():
     machine = VirtualMachine(THYMIO_II)
     machine.load(compile("call leds.top(1, 2, 3) acc[0] = 4", THYMIO_II))
     machine.run()
-    call = next(message for message in machine.take_messages() if isinstance(message, machine_messages.NativeCalled))
+    call = next(message for message in machine.pop_messages() if isinstance(message, machine_messages.NativeCalled))
     assert call.name == "leds.top"
     assert [words for _, _, words in call.arguments] == [(1,), (2,), (3,)]
     assert machine.variables[THYMIO_II.addresses["acc"][0]] == 4
@@ -115,7 +115,7 @@ def test_a_failing_pop_tells_two_faults():
     machine = VirtualMachine(THYMIO_II)
     machine.load(compile("var q[5] var d call deque.pop_front(q, d)", THYMIO_II))
     machine.run()
-    assert [type(message) for message in machine.take_messages()][-2:] == [machine_messages.OutOfBounds] * 2
+    assert [type(message) for message in machine.pop_messages()][-2:] == [machine_messages.OutOfBounds] * 2
 
 
 def test_a_deque_that_the_reference_never_finishes_is_a_fault():
