@@ -335,8 +335,8 @@ class VirtualMachine:
             return True
         try:
             function(call)
-        except NativeFault as fault:
-            call.report(fault)
+        except NativeFault as error:
+            call.report(error)
         for fault in call.faults:
             self.stop_on_native_fault(pc, fault)
         return True

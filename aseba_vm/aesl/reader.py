@@ -1,4 +1,4 @@
-"""Reads an .aesl file: expat walks through it, and what it finds becomes a Network or one located error."""
+"""Reader of .aesl files: expat events become a Network, or one error with a position."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from aseba_vm.errors import AeslError, Argument
 from aseba_vm.frontend.lexer import is_name
 
 MAX_CHARACTERS = 1_000_000
-"""Own limit: a hundred times the longest program that fits a Thymio."""
+"""Own limit: a hundred times the longest program that fits into a Thymio."""
 MAX_NODES = 64
 """Own limit: more robots than a class has."""
 MAX_EVENT_WORDS = 258
-"""Words that a message on the Aseba network holds (docs/spec/aseba-language.md sections 12 and 13)."""
+"""Words that fit into a message of the Aseba network (docs/spec/aseba-language.md sections 12 and 13)."""
 
 _MARK = "\ufeff"  # byte order mark
 _NUMBER = re.compile(r"\s*[+-]?[0-9]{1,10}\s*")
@@ -29,7 +29,7 @@ _INSIDE_PLUGIN = 4
 
 
 def checked_length(text: str) -> str:
-    """Return a text that is no longer than allowed. Raises AeslError."""
+    """Return the text. Raises AeslError if it is longer than MAX_CHARACTERS."""
     if len(text) > MAX_CHARACTERS:
         row = text.count("\n", 0, MAX_CHARACTERS)
         col = MAX_CHARACTERS - text.rfind("\n", 0, MAX_CHARACTERS) - 1
@@ -38,13 +38,13 @@ def checked_length(text: str) -> str:
 
 
 def read(text: str, *, is_strict: bool) -> Network:
-    """Return what a file says; ``is_strict`` refuses what the reference would let pass. Raises AeslError."""
+    """Parse a file; ``is_strict`` also rejects what the reference accepts. Raises AeslError."""
     network = _Reader(checked_length(text.removeprefix(_MARK)), is_strict=is_strict).read()
     return replace(network, pieces=(Piece("text", _MARK), *network.pieces)) if text.startswith(_MARK) else network
 
 
 class _OpenNode:
-    """A node whose end has not come yet."""
+    """A node whose end tag has not been read yet."""
 
     def __init__(self, name: str, node_id: int | str, row: int = 0, col: int = 0) -> None:
         self.name = name
@@ -59,7 +59,7 @@ class _OpenNode:
         self.tools: list[str] = []  # XML of the plug-ins' elements
 
     def add(self, text: str, row: int, col: int) -> None:
-        """Go on with the code; expat ends a text at each line end and entity."""
+        """Append text to the code; expat splits text at each line end and entity."""
         if (row, col) != self.next_place:
             if self.anchors[-1][0] == self.size:
                 self.anchors.pop()
@@ -77,13 +77,13 @@ class _OpenNode:
 
 
 class _Reader:
-    """Collects the parts of a file while expat walks through it."""
+    """Collects the parts of a file from the events of expat."""
 
     def __init__(self, text: str, *, is_strict: bool) -> None:
         self.data = text.encode("utf-8", "surrogatepass")
         self.is_strict = is_strict
         self.parser = expat.ParserCreate("utf-8")
-        self.parser.buffer_text = False  # so that the place of a text is that of its first character
+        self.parser.buffer_text = False  # so the position of a text is that of its first character
         self.parser.StartDoctypeDeclHandler = self.document_type
         self.parser.EntityDeclHandler = self.entity
         self.parser.SkippedEntityHandler = self.unknown_entity
@@ -92,10 +92,10 @@ class _Reader:
         self.parser.CommentHandler = lambda _: self.keep_markup(b"-->")
         self.parser.ProcessingInstructionHandler = lambda *_: self.keep_markup(b"?>")
         self.path: list[str] = []
-        self.starts: list[int] = []  # where each open element begins, in bytes
+        self.starts: list[int] = []  # byte offset of each open element
         self.pieces: list[Piece] = []
-        self.consumed = 0  # bytes that are in a piece already
-        self.first_uses: dict[tuple[object, ...], int] = {}  # where a name or number was first given, in bytes
+        self.consumed = 0  # bytes that are already in a piece
+        self.first_uses: dict[tuple[object, ...], int] = {}  # byte offset of the first use of a name or number
         self.events: list[tuple[str, int]] = []
         self.constants: list[tuple[str, int]] = []
         self.keywords: bool | None = None
@@ -112,7 +112,7 @@ class _Reader:
             raise self.error("aesl-no-node", (), self.data.rfind(b"<"))
         return Network(tuple(self.events), tuple(self.constants), self.keywords, tuple(self.nodes), tuple(self.pieces))
 
-    # -- what expat finds
+    # -- expat handlers
 
     def document_type(self, name: str, system: str | None, public: str | None, _: object) -> None:
         if self.is_strict and (system is not None or public is not None):
@@ -123,7 +123,7 @@ class _Reader:
         raise self.error("aesl-entity", (name,), at)
 
     def unknown_entity(self, *_: object) -> None:
-        """An entity that another document might declare; no other document is ever read."""
+        """Reject an entity that another document might declare; no other document is ever read."""
         raise self.error("xml-entity", ())
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
@@ -172,7 +172,7 @@ class _Reader:
             self.open_node.finish_plugin(name, self.text(start, self.element_end(start)))
 
     def finish(self, name: str, start: int) -> None:
-        """Keep a definition with its text; what is unknown stays between the pieces."""
+        """Keep a definition with its text; unknown elements become part of the text between the pieces."""
         end = self.element_end(start)
         match name:
             case "event":
@@ -192,12 +192,12 @@ class _Reader:
         self.open_node.add(text, self.parser.CurrentLineNumber - 1, self.parser.CurrentColumnNumber)
 
     def keep_markup(self, closing: bytes) -> None:
-        """Keep a comment or an instruction for another program if it stands in a node."""
+        """Keep a comment or a processing instruction that is inside a node."""
         if len(self.path) == _INSIDE_NODE and self.path[1] == "node":
             start = self.parser.CurrentByteIndex
             self.open_node.others.append(self.text(start, self.data.index(closing, start) + len(closing)))
 
-    # -- our elements
+    # -- known elements
 
     def event(self, attributes: Mapping[str, str]) -> tuple[str, int]:
         name = self.name("event", attributes)
@@ -247,7 +247,7 @@ class _Reader:
         return name
 
     def check_unique(self, kind: str, attribute: str, *names: str) -> None:
-        """Refuse what a file says twice."""
+        """Reject a name or number that the file already uses."""
         first = self.first_uses.setdefault((kind, *names), self.starts[-1])
         if first != self.starts[-1]:
             line = position_at(self.data, first)[0] + 1
@@ -259,7 +259,7 @@ class _Reader:
         return attributes[name]
 
     def number(self, attributes: Mapping[str, str], name: str) -> int:
-        """Return the value of an attribute; a missing one is 0 unless the reading is strict."""
+        """Return the value of an attribute; a missing one is 0 unless reading is strict."""
         if name not in attributes and not self.is_strict:
             return 0
         text = self.attribute(attributes, name)
@@ -267,7 +267,7 @@ class _Reader:
             raise self.attribute_error("aesl-number", name, (name, text))
         return int(text)
 
-    # -- places
+    # -- positions
 
     def is_in_tools(self) -> bool:
         return self.path[1:_INSIDE_TOOLS] == ["node", "toolsPlugins"]
@@ -277,7 +277,7 @@ class _Reader:
         return found.end() if found else start
 
     def is_open(self, start: int) -> bool:
-        """Tell whether the element that ends here has a closing tag."""
+        """Return whether the element that ends here has a closing tag."""
         return not self.data.endswith(b"/>", start, self.tag_end(start))
 
     def element_end(self, start: int) -> int:
@@ -289,7 +289,7 @@ class _Reader:
         return self.data[start:end].decode("utf-8", "surrogatepass")
 
     def piece(self, kind: str, start: int, end: int, value: object = None, *parts: str) -> None:
-        """Keep a part of the file, and before it what lies between it and the part before."""
+        """Append a part of the file, preceded by the text since the part before it."""
         if start > self.consumed:
             self.pieces.append(Piece("text", self.text(self.consumed, start)))
         self.pieces.append(Piece(kind, self.text(start, end), value, *parts))
@@ -300,7 +300,7 @@ class _Reader:
         return AeslError(kind, arguments, row + 1, col + 1)
 
     def attribute_error(self, kind: str, attribute: str, arguments: tuple[Argument, ...]) -> AeslError:
-        """An error at the value of an attribute of the element that begins here."""
+        """Return an error at the value of an attribute of the current element."""
         start = self.starts[-1]
         tag = self.data[start : self.tag_end(start)]
         found = re.search(rb"\s" + attribute.encode() + rb"\s*=\s*[\"']", tag)

@@ -1,4 +1,4 @@
-"""Where XML is broken, and how to say so to somebody who has never heard of XML."""
+"""Errors of malformed XML: position and a message for readers who do not know XML."""
 
 from __future__ import annotations
 
@@ -32,7 +32,10 @@ def position_at(data: bytes, at: int) -> tuple[int, int]:
 
 
 def error_of_xml(code: int, data: bytes, at: int, open_elements: Sequence[tuple[str, int]]) -> AeslError:
-    """Return the error for a code of expat at a byte; elements that are open there: name and first byte of each."""
+    """Return the error for an expat error code at byte ``at``.
+
+    ``open_elements`` are the name and the first byte of each element that is open there.
+    """
     kind = _KINDS.get(code, "xml-other")
     arguments: tuple[Argument, ...] = ()
     at = min(at, len(data)) if at >= 0 else len(data)
@@ -53,7 +56,7 @@ def error_of_xml(code: int, data: bytes, at: int, open_elements: Sequence[tuple[
 
 
 def _unexpected(kind: str, data: bytes, at: int) -> tuple[str, int, tuple[Argument, ...]]:
-    """Blame the bare ``<`` or ``&`` before a wrong character where there is one."""
+    """Report the bare ``<`` or ``&`` before an invalid character, if there is one, instead of the character."""
     if kind == "xml-character":
         before = data[max(at - 200, 0) : at]
         mark = max(before.rfind(b"<"), before.rfind(b"&"))

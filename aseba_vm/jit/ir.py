@@ -1,6 +1,6 @@
-"""What blocks of bytecode are made of: expressions, the statements that use them, and the ends of blocks.
+"""Intermediate representation of basic blocks: expressions, statements, and the ends of blocks.
 
-A statement is the least that has an effect; see :mod:`aseba_vm.jit.basic_blocks` for what holds between two of them.
+A statement is the smallest unit with an effect; :mod:`aseba_vm.jit.basic_blocks` states what holds between two of them.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ class Load(NamedTuple):
 
 
 class Temp(NamedTuple):
-    """A value kept aside while a statement changes memory."""
+    """A value saved while a statement changes memory."""
 
     number: int
 
 
 class Index(NamedTuple):
-    """A word of an array; leaves if the place is not below the size."""
+    """An element of an array; bails out if the index is not below the size."""
 
     base: int
     size: int
@@ -38,14 +38,14 @@ class Index(NamedTuple):
 
 
 class Unary(NamedTuple):
-    """An operator by number over one value."""
+    """A unary operation; ``operator`` is its number."""
 
     operator: int
     operand: Expr
 
 
 class Binary(NamedTuple):
-    """An operator by number over two values; 5 and 6 leave if the right one is 0."""
+    """A binary operation; ``operator`` is its number. Division (5) and remainder (6) bail out if the divisor is 0."""
 
     operator: int
     left: Expr
@@ -57,14 +57,14 @@ Atom = Const | Temp
 
 
 class ProgramPoint(NamedTuple):
-    """A point between statements: address, words on the stack."""
+    """A point between statements: the address and the words on the stack."""
 
     pc: int
     pending: tuple[Atom, ...]
 
 
 class Assign(NamedTuple):
-    """Store a value, after keeping aside what the stack still holds. ``cost`` is in instructions."""
+    """Store a value in a word. ``keep`` is evaluated first; ``cost`` is in instructions."""
 
     place: ProgramPoint
     cost: int
@@ -74,7 +74,7 @@ class Assign(NamedTuple):
 
 
 class AssignIndex(NamedTuple):
-    """Store a value in an array; leaves if the element is not below the size."""
+    """Store a value in an array element; bails out if the index is not below the size."""
 
     place: ProgramPoint
     cost: int
@@ -86,7 +86,7 @@ class AssignIndex(NamedTuple):
 
 
 class Emit(NamedTuple):
-    """Send an event with words of memory."""
+    """Emit an event with words of memory."""
 
     place: ProgramPoint
     cost: int
@@ -97,7 +97,7 @@ class Emit(NamedTuple):
 
 
 class Call(NamedTuple):
-    """Call native ``number`` with the words popped; ``pc`` is that of the instruction."""
+    """Call native ``number`` with the popped words; ``pc`` is the address of the instruction."""
 
     place: ProgramPoint
     cost: int
@@ -109,9 +109,9 @@ class Call(NamedTuple):
 
 
 class KnownNative(NamedTuple):
-    """A native as far as a translator may rely on it.
+    """What a translator may assume about a native.
 
-    ``is_confined``: it touches nothing but its arguments. ``is_standard``: it is the function of
+    ``is_confined``: it accesses nothing but its arguments. ``is_standard``: it is the function of
     docs/spec/aseba-bytecode-vm.md section 12.
     """
 
@@ -124,7 +124,7 @@ Statement = Assign | AssignIndex | Emit | Call
 
 
 class Branch(NamedTuple):
-    """Compare and go to ``then`` or ``otherwise``; the word at ``pc`` remembers the condition."""
+    """Compare and continue at ``then`` or ``otherwise``; the word at ``pc`` holds the edge flag."""
 
     place: ProgramPoint
     cost: int
@@ -138,7 +138,7 @@ class Branch(NamedTuple):
 
 
 class Jump(NamedTuple):
-    """Go to ``target``; ``pc`` is that of the JUMP, or -1 where a block just runs into the next (cost 0)."""
+    """Continue at ``target``. ``pc`` is the address of the JUMP, or -1 (cost 0) if a block runs into the next one."""
 
     place: ProgramPoint
     cost: int
@@ -170,7 +170,7 @@ class Stop(NamedTuple):
 
 
 class BailOut(NamedTuple):
-    """Let the interpreter go on from here."""
+    """Continue in the interpreter from here."""
 
     place: ProgramPoint
     cost: int
@@ -180,7 +180,7 @@ End = Branch | Jump | EnterSub | Return | Stop | BailOut
 
 
 def words_of(popped: Sequence[Expr], signature: Signature) -> int | None:
-    """Return the words of all arguments of a native together, or None if a size is not constant."""
+    """Return the total number of words of all arguments of a native, None if a size is not constant."""
     total = 0
     for size in signature.sizes:
         length = Const(size) if size > 0 else popped[-size]
@@ -191,7 +191,7 @@ def words_of(popped: Sequence[Expr], signature: Signature) -> int | None:
 
 
 def arguments(popped: Sequence[Expr], signature: Signature) -> list[tuple[int, int]] | None:
-    """Return address and size of each argument of a native, or None if they are not all constant."""
+    """Return address and size of each argument of a native, None if not all are constant."""
     found: list[tuple[int, int]] = []
     for place, size in enumerate(signature.sizes):
         address = popped[place]

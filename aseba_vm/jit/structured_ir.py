@@ -1,10 +1,10 @@
-"""Blocks as structured code: loops and conditions again, from the shapes that the compiler makes.
+"""Structured control flow from basic blocks: loops and conditions, recovered from the patterns of the compiler.
 
 Source: docs/spec/aseba-bytecode-vm.md section 6.
 
-What has another shape becomes an :class:`Exit` to an address, where other translated code or the interpreter goes on;
-so any program can be translated, only some profit less. The budget of instructions is checked at :class:`Check` and
-at the head of each loop, for the longest way to the next check.
+Any other control flow becomes an :class:`Exit` to an address, where other translated code or the interpreter continues.
+So every program can be translated, though some gain less. The instruction budget is checked at each :class:`Check` and
+at the head of each loop, for the longest path to the next check.
 """
 
 from __future__ import annotations
@@ -26,7 +26,11 @@ CONTINUE = 2
 
 @dataclass(slots=True)
 class Exit:
-    """BailOut translated code: the event ends, the interpreter has to go on, or other translated code may."""
+    """Leave translated code.
+
+    ``kind`` is STOPPED (the event has ended), INTERPRET (the interpreter must continue) or CONTINUE (other translated
+    code may continue).
+    """
 
     place: ProgramPoint
     kind: int
@@ -42,7 +46,7 @@ class Charge:
 
 @dataclass(slots=True)
 class Check:
-    """BailOut unless ``need`` instructions are left."""
+    """Exit unless ``need`` instructions are left."""
 
     pc: int
     need: int
@@ -50,7 +54,7 @@ class Check:
 
 @dataclass(slots=True)
 class If:
-    """A condition; each arm is a list of nodes."""
+    """A condition with two arms, each a list of nodes."""
 
     branch: Branch
     then: list[Node]
@@ -58,14 +62,14 @@ class If:
 
     @property
     def is_broken(self) -> bool:
-        """Tell whether there is no code to go to if the condition is false."""
+        """Whether the target of a false condition does not exist."""
         first = self.otherwise[0] if self.otherwise else None
         return isinstance(first, Exit) and first.cost < 0
 
 
 @dataclass(slots=True)
 class Loop:
-    """``before`` and the condition, then ``body``, again and again; ``need`` is that of the longest turn."""
+    """``before``, the condition and ``body``, repeated while true; ``need`` is the budget of the longest iteration."""
 
     pc: int
     before: list[Node]
@@ -93,7 +97,7 @@ Node = Statement | Exit | Charge | Check | If | Loop | SubCall | SubReturn
 
 @dataclass(slots=True)
 class Routine:
-    """The code of a subroutine, or of an event (``is_sub`` false), with what running it takes."""
+    """The code of a subroutine, or of an event (``is_sub`` is false), with the budget and stack depth it needs."""
 
     pc: int
     is_sub: bool
@@ -104,7 +108,7 @@ class Routine:
 
 
 class StructuredProgram:
-    """Builds the routine at ``entry`` and the subroutines it calls, into ``routines``; the first is the entry's."""
+    """The routine at ``entry`` (``main``) and the subroutines it calls (``subs``, by address)."""
 
     def __init__(self, blocks: Blocks, entry: int) -> None:
         self.blocks = blocks
@@ -115,7 +119,7 @@ class StructuredProgram:
 
     @property
     def is_too_large(self) -> bool:
-        """Tell whether the code grew beyond reason, as only odd programs make it."""
+        """Whether the code exceeds MAX_NODES, which only artificial programs do."""
         return self._nodes > MAX_NODES
 
     def _routine(self, pc: int, *, is_sub: bool) -> Routine:
@@ -129,7 +133,7 @@ class StructuredProgram:
     def _sequence(
         self, routine: Routine, pc: int, end: int | None, jump: int | None, nesting: int
     ) -> tuple[list[Node], bool]:
-        """Return the nodes from ``pc`` to ``end`` (or to the JUMP at ``jump``), and whether they run to there."""
+        """Return the nodes from ``pc`` to ``end`` (or to the JUMP at ``jump``), and whether control reaches it."""
         nodes: list[Node] = []
         while pc != end:
             block = self.blocks.by_address.get(pc)
@@ -171,7 +175,7 @@ class StructuredProgram:
         return nodes, True
 
     def _prepare_sub(self, routine: Routine, target: int) -> bool:
-        """Make the subroutine at ``target`` available; tell whether it can be called."""
+        """Translate the subroutine at ``target`` if necessary; return whether it can be called (not recursive)."""
         if target in self._open or len(self._open) > _MAX_CALLS:
             return False
         if target not in self.subs:
@@ -180,7 +184,12 @@ class StructuredProgram:
         return True
 
     def _condition(self, routine: Routine, nodes: list[Node], pc: int, end: int | None, nesting: int) -> int:
-        """Append the block at ``pc`` that ends in a branch, with what hangs on it; return where the code goes on."""
+        """Append the block at ``pc``, which ends in a branch, and its arms; return the address after them.
+
+        The compiler emits three patterns (docs/spec/aseba-bytecode-vm.md section 6). The word before the branch target
+        tells them apart: a JUMP back to ``pc`` closes a loop, a JUMP forward ends a then-arm with an else-arm, anything
+        else is an ``if`` without ``else``.
+        """
         block = self.blocks.by_address[pc]
         branch = block.end
         assert isinstance(branch, Branch)
@@ -216,7 +225,10 @@ class StructuredProgram:
         return target
 
     def _need(self, routine: Routine, nodes: list[Node], after: int) -> int:
-        """Return the most instructions to the next check, given those ``after`` the nodes; insert checks."""
+        """Return the maximum number of instructions to the next check, and insert checks.
+
+        ``after`` is that number from the end of the nodes. The nodes are processed from last to first.
+        """
         need = after
         for place in range(len(nodes) - 1, -1, -1):
             node = nodes[place]

@@ -1,12 +1,12 @@
-"""The engine: decides what runs interpreted and what translated, and keeps the two at one state.
+"""Tiered execution: decides what is interpreted and what is translated, and keeps both at the same state.
 
-Translated code runs whole statements. It leaves before a statement that it cannot do, that would fail, or that the
-budget does not cover; the interpreter then does that statement as always, so that every fault, every address and every
-count is the interpreter's own. What branches remember is kept beside the bytecode while translated code runs
-and written into it (:meth:`Tiering.settle`) before anybody else looks.
+Translated code executes whole statements. It exits before a statement that cannot be translated, that would fail, or
+that the budget does not cover. The interpreter then executes that statement, so every fault, address and instruction
+count comes from the interpreter. While translated code runs, the edge flags of branches are kept beside the bytecode;
+:meth:`Tiering.flush_edges` writes them into it before anything else reads it.
 
-Programs start interpreted; a place where runs begin often, or a run that is long, is translated. Machines with the same
-program share its translation.
+Programs start in the interpreter. An address where runs often begin, or a long run, is translated. Machines with the
+same program share the translation.
 """
 
 from __future__ import annotations
@@ -38,8 +38,9 @@ INTERPRETER = "interpreter"
 PYTHON = "python"
 WASM = "wasm"
 ENGINES = (AUTO, INTERPRETER, PYTHON, WASM)
-"""Names of engines: the best there is, once a program proves hot; no translation; translation at once, to Python or
-WebAssembly (which needs wasmtime)."""
+"""Names of engines: ``auto`` translates hot code to the fastest form available, ``interpreter`` never translates,
+``python`` and ``wasm`` translate at once (``wasm`` needs wasmtime).
+"""
 
 
 _CACHE_SIZE = 64
@@ -47,11 +48,11 @@ _WARM_RUNS = 2
 _WARM_INSTRUCTIONS = 2000
 _UNTRANSLATED_SLICE = 256
 _MAX_SLICE = 10_000_000
-"""Instructions after which translated code comes back, so that a user can interrupt a program without an end."""
+"""Instructions after which translated code returns, so that a user can interrupt an endless program."""
 
 
 class TieredMachine(Protocol):
-    """What the engine needs of a machine: its state, its interpreter, its natives."""
+    """What the tiering needs of a machine: its state, interpreter and natives."""
 
     target: TargetDescription
     costs: Costs
@@ -68,20 +69,20 @@ class TieredMachine(Protocol):
 
     @property
     def bytecode(self) -> tuple[int, ...]:
-        """The words of the bytecode memory, settled."""
+        """The words of the bytecode memory, with all edge flags written back."""
 
     def interpret(self, limit: int) -> int:
-        """Execute until ``limit`` is spent; return what was."""
+        """Execute up to ``limit``; return the budget used."""
 
     def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
-        """Call a native; return False if its arguments lie outside memory."""
+        """Call a native; return False if an argument lies outside memory."""
 
     def stop_on_native_fault(self, pc: int, fault: NativeFault) -> None:
-        """Stop for what a native at ``pc`` refused."""
+        """Stop because a native called at ``pc`` raised ``fault``."""
 
 
 class EntryCode(NamedTuple):
-    """Translated code for :meth:`JitHost.instantiate`, the budget it needs to begin, the words it may push."""
+    """Translated code for :meth:`JitHost.instantiate`, the budget it needs to start, the words it may push."""
 
     code: Any
     need: int
@@ -89,7 +90,7 @@ class EntryCode(NamedTuple):
 
 
 class ReadyCode(NamedTuple):
-    """Translated code of one machine: what runs it, the budget it needs, the highest stack it may begin with."""
+    """Translated code of one machine: its function, the budget it needs, the highest stack index it may start with."""
 
     run: Run
     need: int
@@ -102,7 +103,7 @@ class Translation:
     def __init__(
         self, words: tuple[int, ...], memories: Memories, natives: tuple[KnownNative, ...], *, is_wasm: bool
     ) -> None:
-        """Find the blocks of a program; what they become is made when asked for."""
+        """Find the basic blocks of a program; each one is translated on demand."""
         self._is_wasm = is_wasm
         self.natives = natives
         self.blocks: Blocks | None = find_blocks(words, memories)
@@ -110,14 +111,14 @@ class Translation:
         self.canonical = self.without_edges(words)
 
     def without_edges(self, words: tuple[int, ...]) -> tuple[int, ...]:
-        """Return words as they are when no branch remembers anything."""
+        """Return the words with all edge flags cleared."""
         kept = list(words)
         for pc in self.blocks.branches if self.blocks is not None else ():
             kept[pc] &= ~WAS_TRUE
         return tuple(kept)
 
     def entry(self, pc: int) -> EntryCode | None:
-        """Return the translation of the block at ``pc`` and what follows."""
+        """Return the translation of the block at ``pc`` and of what follows it."""
         if pc not in self._entries:
             self._entries[pc] = self._translate(pc)
         return self._entries[pc]
@@ -130,8 +131,10 @@ class Translation:
         translate = wasm_backend.translate if self._is_wasm else python_backend.translate
         try:
             code = translate(self.blocks, structure, self.natives)
-        except Exception:  # a defect of ours, or a wasmtime that we don't know: the interpreter can run everything
-            logging.getLogger(__name__).exception("no translation at %d: the interpreter runs it", pc)
+        except Exception:  # a bug here or an unsupported wasmtime: the interpreter can run everything
+            logging.getLogger(__name__).exception(
+                "internal error (please report): no translation at %d, interpreting it", pc
+            )
             return None
         return EntryCode(code, structure.main.need, structure.main.depth)
 
@@ -143,7 +146,7 @@ _translations: OrderedDict[object, Translation] = OrderedDict()
 def _translation(
     words: tuple[int, ...], memories: Memories, natives: tuple[KnownNative, ...], *, is_wasm: bool
 ) -> Translation:
-    """Return the translation of a program, the same for the same program."""
+    """Return the translation of a program from the cache; least recently used ones are dropped."""
     key = (words, memories, natives, is_wasm)
     found = _translations.pop(key, None)
     if found is None:
@@ -155,6 +158,7 @@ def _translation(
 
 
 def _known(signature: Signature, functions: Mapping[str, Native]) -> KnownNative:
+    """Return what the translators may assume about a native."""
     name = signature.native.name
     function = functions.get(name)
     is_standard = function is not None and function is NATIVES.get(name)
@@ -162,12 +166,17 @@ def _known(signature: Signature, functions: Mapping[str, Native]) -> KnownNative
 
 
 class Tiering:
-    """Runs the events of one machine."""
+    """Executes the events of one machine.
+
+    ``_is_current``: the translation matches the bytecode memory. ``_is_flushed``: the edge flags in the bytecode memory
+    are up to date. ``_instances`` has the code instantiated for this machine; ``_ready`` is the part of it that may run
+    now.
+    """
 
     def __init__(
         self, machine: TieredMachine, natives: Mapping[str, Native], *, is_eager: bool, is_wasm: bool | None
     ) -> None:
-        """``is_eager``: translate at once. ``is_wasm``: to WebAssembly; None: if that is possible."""
+        """``is_eager``: translate at once. ``is_wasm``: to WebAssembly; None: to WebAssembly if it is available."""
         self._machine = machine
         self._is_eager = is_eager
         self._is_wasm = is_wasm
@@ -187,12 +196,12 @@ class Tiering:
         self._failure: BaseException | None = None
 
     def invalidate(self) -> None:
-        """The bytecode may have changed."""
+        """Handle a possible change of the bytecode: mark the translation as stale and reset the run counts."""
         self.mark_stale()
         self._run_counts.clear()
 
     def flush_edges(self) -> None:
-        """Write into the bytecode what the branches remember."""
+        """Write the edge flags of the branches into the bytecode."""
         if self._is_flushed:
             return
         self._is_flushed = True
@@ -201,7 +210,7 @@ class Tiering:
         self._machine.code.store_edges(zip(self._translation.blocks.branches, self._host.edges, strict=True))
 
     def close(self) -> None:
-        """Settle and give the machine's memory back."""
+        """Flush the edge flags and move the variables back to the machine's own memory."""
         self.flush_edges()
         self.invalidate()
         if self._host is not None:
@@ -209,7 +218,7 @@ class Tiering:
             self._host = None
 
     def run(self, limit: int) -> int:
-        """Execute the active event until ``limit`` is spent; return what was."""
+        """Execute the active event up to ``limit``; return the budget used."""
         machine = self._machine
         ready = self._ready.get(machine.pc)
         left = limit
@@ -229,7 +238,7 @@ class Tiering:
         return limit - left
 
     def _ready_code(self, pc: int) -> ReadyCode | None:
-        """Return the translation from an address on; None if there has to be another way."""
+        """Return the translated code that starts at ``pc``; None if it must be interpreted."""
         translation = self._translation if self._is_current else self._update_translation()
         entry = (
             translation.entry(pc) if translation.blocks is not None and pc in translation.blocks.by_address else None
@@ -262,36 +271,40 @@ class Tiering:
         return self._translation
 
     def _new_host(self, words: tuple[int, ...]) -> JitHost:
-        """Return where translated code is to run; in Python if WebAssembly was not asked for by name and fails."""
+        """Return the host for translated code.
+
+        If WebAssembly fails and was not requested by name, fall back to Python.
+        """
         if self._is_wasm:
             try:
                 return WasmHost(self)
             except Exception:
                 if self._is_eager:
                     raise
-                logging.getLogger(__name__).exception("no memory for WebAssembly: events are translated to Python")
+                logging.getLogger(__name__).exception("no memory for WebAssembly, translating to Python instead")
                 self._is_wasm = False
                 self._translation = _translation(words, self._memories, self._natives, is_wasm=False)
         return PythonHost(self)
 
     def _load_edges(self) -> None:
-        """Read from the bytecode what the branches remember."""
+        """Read the edge flags of the branches from the bytecode."""
         if self._translation.blocks is not None and self._host is not None:
             words = self._machine.code.words
             self._host.edges[:] = [words[pc] >> 9 & 1 for pc in self._translation.blocks.branches]
 
     def mark_stale(self) -> None:
-        """Look at the bytecode anew before translated code runs again: somebody else has executed, or changed it."""
+        """Compare the bytecode again before translated code runs: it may have been executed or changed elsewhere."""
         self._is_current = False
         self._ready.clear()
 
     def _is_warm(self, pc: int) -> bool:
-        """Count a run that begins at ``pc``; tell whether there were many."""
+        """Count a run that starts at ``pc``; return whether there were enough to translate it."""
         count = self._run_counts.get(pc, 0) + 1
         self._run_counts[pc] = count
         return count > _WARM_RUNS
 
     def _interpret(self, limit: int) -> int:
+        """Interpret up to ``limit`` with the edge flags written back; return the budget used."""
         self.flush_edges()
         try:
             return self._machine.interpret(limit)
@@ -299,7 +312,10 @@ class Tiering:
             self._resync()
 
     def _resync(self) -> None:
-        """Take over what the interpreter has changed in the bytecode."""
+        """Take over the changes that the interpreter made in the bytecode.
+
+        Interpreted code can overwrite operands only where an operand is executed as a BRANCH (``is_fragile``).
+        """
         blocks = self._translation.blocks
         if blocks is not None and self._is_current:
             self._load_edges()
@@ -307,6 +323,7 @@ class Tiering:
                 self.mark_stale()
 
     def _run_translated(self, run: Run, left: int) -> int:
+        """Run translated code with a budget of ``left`` and apply its exit to the machine; return the budget used."""
         machine = self._machine
         self._is_flushed = False
         rest, pc, kind, words = run(left)
@@ -329,19 +346,19 @@ class Tiering:
             if machine.flags & ACTIVE and rest > 0:
                 done += self._interpret(1)
         elif kind != CONTINUE:
-            raise RuntimeError(f"translated code trapped at {pc}: a defect of the translator")
+            raise RuntimeError(f"internal error (please report): translated code trapped at {pc}")
         return done
 
-    # -- what translated code needs (aseba_vm.jit.host.TranslatedMachine)
+    # -- called by translated code (aseba_vm.jit.host.TranslatedMachine)
 
     @property
     def variables(self) -> Variables:
-        """The machine's."""
+        """The variables of the machine."""
         return self._machine.variables
 
     @property
     def random_state(self) -> int:
-        """The machine's."""
+        """State of the random number generator of the machine."""
         return self._machine.random_state
 
     @random_state.setter
@@ -349,7 +366,7 @@ class Tiering:
         self._machine.random_state = value
 
     def call_native(self, number: int, pc: int, popped: tuple[int, ...]) -> int:
-        """Call a native; what it raises is raised when translated code has been left."""
+        """Call a native. An exception it raises is kept and raised again after translated code has exited."""
         machine = self._machine
         try:
             if not machine.invoke(number, pc, popped):
@@ -360,7 +377,7 @@ class Tiering:
         return 0 if machine.flags & ACTIVE and self._is_current and not machine.extra_cost else 1
 
     def stop_on_translated_fault(self, pc: int, reason: int) -> None:
-        """Let the event end with one of ``FAULTS``, counted from 1."""
+        """Stop the event with entry ``reason`` of ``FAULTS``, counted from 1."""
         for fault in FAULTS[reason - 1]():
             self._machine.stop_on_native_fault(pc, fault)
 
@@ -370,9 +387,12 @@ class Tiering:
 
 
 def create_tiering(name: str, machine: TieredMachine, natives: Mapping[str, Native]) -> Tiering | None:
-    """Return an engine by name, None to interpret. Raises ValueError for a name that cannot be used."""
+    """Return the tiering for an engine name, None for the interpreter.
+
+    Raises ValueError for an unknown name, or for ``wasm`` without wasmtime.
+    """
     if name not in ENGINES:
-        raise ValueError(f"engine {name!r} is not one of {', '.join(ENGINES)}")
+        raise ValueError(f"engine: found {name!r}, expected one of {', '.join(ENGINES)}")
     if name == WASM and not wasm_backend.is_available():
         raise ValueError(f"engine {name!r} needs the package wasmtime, which the extra [fast] installs")
     if name == INTERPRETER:

@@ -1,8 +1,12 @@
-"""Translation to WebAssembly with the optional ``wasmtime`` (extra ``[fast]``): one module for an event.
+"""Translation to WebAssembly with the optional ``wasmtime`` (extra ``[fast]``): one module per event.
 
-Modules work on the machine's own variables (:mod:`aseba_vm.jit.wasm_host`). A subroutine is a function that returns the
-budget left, or -1 if the code was left inside. Leaving writes what is left of the budget, address, kind and the words
-of the stack into memory. StructuredProgram and rules are those of :mod:`aseba_vm.jit.python_backend`.
+Modules work directly on the variables of the machine (:mod:`aseba_vm.jit.wasm_host`). A subroutine is a function that
+takes the budget and the stack depth, and returns the budget left, or -1 if translated code was left inside it. An exit
+writes the remaining budget, address, kind and the words of the stack into memory. Structure and rules are those of
+:mod:`aseba_vm.jit.python_backend`.
+
+Locals in the generated code: ``$n`` budget, ``$d`` stack depth, ``$h`` scratch, ``$t<number>`` temporaries of
+expressions, ``$s<number>`` temporaries of statements.
 """
 
 from __future__ import annotations
@@ -41,16 +45,16 @@ from aseba_vm.jit.wasm_natives import call, functions, has_standard_parameters, 
 from aseba_vm.jit.wasm_runtime import WasmRuntime, is_usable
 
 _TRAPPED = -1
-"""The kind of exit until there is one."""
+"""Kind of exit before there is one; it remains if the code traps."""
 
 
 def is_available() -> bool:
-    """Tell whether ``wasmtime`` works here."""
+    """Return whether ``wasmtime`` works here."""
     return is_usable()
 
 
 def translate(blocks: Blocks, structure: StructuredProgram, natives: Sequence[KnownNative]) -> WasmCode:
-    """Return the code of a structure, for :meth:`aseba_vm.jit.wasm_host.WasmHost.make`."""
+    """Return the code of a program, for :meth:`aseba_vm.jit.wasm_host.WasmHost.instantiate`."""
     order = {pc: place for place, pc in enumerate(blocks.branches)}
     writer = _Writer(structure, order, natives, blocks.memories.variables)
     module = WasmRuntime.get().compile(writer.text())
@@ -58,7 +62,7 @@ def translate(blocks: Blocks, structure: StructuredProgram, natives: Sequence[Kn
 
 
 class _Writer:
-    """Writes the text of a module."""
+    """Generates the text of a module."""
 
     def __init__(
         self, structure: StructuredProgram, order: dict[int, int], natives: Sequence[KnownNative], memory_words: int
@@ -79,7 +83,7 @@ class _Writer:
         self.lines.append(line)
 
     def text(self) -> str:
-        """Return the module: ``run`` finds the budget in memory and leaves there how it ended."""
+        """Return the module; its export ``run`` reads the budget from memory and writes the exit there."""
         self.is_emitting = emits(self.structure)
         subs = [self._routine(sub, f"$f{sub.pc}") for sub in self.structure.subs.values()]
         main = self._routine(self.structure.main, '$run (export "run")')
@@ -104,10 +108,10 @@ class _Writer:
         body = "\n".join(self.lines)
         return f"(func {name} {head} {local}\n{body}\n(unreachable))"
 
-    # -- exit_code
+    # -- exits
 
     def _exit(self, place: ProgramPoint, kind: int, uncharged: int) -> str:
-        """Return the code that notes where the code is left and returns."""
+        """Return the code that stores the exit and returns."""
         depth = "(local.get $d)" if self.is_sub else "(i32.const 0)"
         stores = [f"(i32.store (i32.const {EXIT + 8}) (i32.const {place.pc}))"]
         stores.append(f"(i32.store (i32.const {EXIT + 12}) (i32.const {kind}))")
@@ -133,7 +137,7 @@ class _Writer:
     # -- nodes
 
     def _nodes(self, nodes: Sequence[Node], uncharged: int) -> int | None:
-        """Write nodes; return the instructions not charged at their end, None if it is not reached."""
+        """Generate nodes; return the instructions not yet charged at their end, None if the end is unreachable."""
         for node in nodes:
             match node:
                 case Charge(cost):
@@ -174,7 +178,7 @@ class _Writer:
         emit_line(f"(if (i64.lt_s (local.get $n) (i64.const 0)) (then {leave}))")
 
     def _if(self, node: If, uncharged: int) -> int | None:
-        """Write a condition; see :class:`aseba_vm.jit.python_backend`."""
+        """Generate a condition; :class:`aseba_vm.jit.python_backend._Writer` explains edge flags and charging."""
         branch = node.branch
         self.expressions.bail_out = self._exit(branch.place, INTERPRET, uncharged)
         test = self.expressions.condition(branch.operator, branch.left, branch.right)
@@ -287,7 +291,7 @@ class _Writer:
 
 
 def emits(structure: StructuredProgram) -> bool:
-    """Tell whether a structure emits events."""
+    """Return whether the program emits events."""
     waiting: list[Node] = [*structure.main.nodes, *(node for sub in structure.subs.values() for node in sub.nodes)]
     while waiting:
         match waiting.pop():

@@ -1,4 +1,4 @@
-"""Variable memory: signed words at addresses, kept wherever the engine at work wants them."""
+"""Variable memory: signed words at addresses, in whatever storage the active engine needs."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ MIN_WORD, MAX_WORD = -32768, 32767
 
 
 class Variables(Sequence[int]):
-    """Words -32768…32767; the number of words never changes.
+    """A fixed number of words in -32768…32767.
 
-    ``words`` is the storage, quicker to use and unchecked; ask for it anew after every run, an engine may move it.
+    ``words`` is the storage: faster to access, and not range-checked. Read the attribute again after every run, since
+    an engine may have moved the words.
     """
 
     __slots__ = ("_owner", "words")
@@ -19,17 +20,17 @@ class Variables(Sequence[int]):
     words: MutableSequence[int]
 
     def __init__(self, size: int) -> None:
-        """Build a memory of ``size`` zeros."""
+        """Create a memory of ``size`` zeros."""
         self.words = [0] * size
         self._owner: object = None
 
     def move_to(self, words: MutableSequence[int], owner: object = None) -> None:
-        """Copy the words to a storage of the same size and use that; ``owner`` lives as long as it is used."""
+        """Copy the words to a storage of the same size and use it; ``owner`` is kept alive meanwhile."""
         words[:] = self.words[:]
         self.words, self._owner = words, owner
 
     def move_back(self) -> None:
-        """Take the words back from the storage of an engine."""
+        """Copy the words from the storage of an engine back into a list."""
         if self._owner is not None:
             self.words, self._owner = self.words[:], None
 
@@ -64,13 +65,13 @@ class Variables(Sequence[int]):
         return len(self.words)
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether the words are the same; any sequence of words may be compared."""
+        """Return whether the words are equal to those of any sequence."""
         if not isinstance(other, Sequence):
             return NotImplemented
         return self.words[:] == list(other)
 
-    __hash__ = None  # type: ignore[assignment]  # it changes
+    __hash__ = None  # type: ignore[assignment]  # mutable
 
     def __repr__(self) -> str:
-        """Show the words."""
+        """Return the words as text."""
         return f"Variables({self.words[:]})"

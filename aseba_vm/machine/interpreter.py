@@ -1,10 +1,12 @@
-"""The interpreter: one loop over decoded operations, the oracle of the translators.
+"""The interpreter: one loop over decoded operations, and the reference for the translators.
 
 Source: docs/spec/aseba-bytecode-vm.md sections 7 to 10.3.
 
-The loop meets operations with their operands ready (:mod:`aseba_vm.machine.code_memory`); a BRANCH that remembers its
-condition rewrites its own word. Arithmetic is exact in Python and cut to 16 bits in
-:func:`aseba_vm.machine.native_call.wrap`.
+The loop reads operations with decoded operands (:mod:`aseba_vm.machine.code_memory`). A BRANCH keeps its edge flag in
+its own word. Arithmetic is exact in Python and wrapped to 16 bits by :func:`aseba_vm.machine.native_call.wrap`.
+
+The loop is written for speed: stack checks are inline, and reads beyond a list raise IndexError, which the end of the
+function turns into a fault, instead of being checked in advance.
 """
 
 from __future__ import annotations
@@ -41,11 +43,11 @@ from aseba_vm.machine.operations import (
 from aseba_vm.target import TargetDescription
 
 ACTIVE = 1
-"""Flag of a machine that executes an event."""
+"""Flag of a machine that is executing an event."""
 
 
 class InterpretedMachine(Protocol):
-    """What the loop works on."""
+    """What the loop needs of a machine."""
 
     target: TargetDescription
     code: CodeMemory
@@ -62,22 +64,22 @@ class InterpretedMachine(Protocol):
         """Return how many words a native pops."""
 
     def native_cost(self, number: int, popped: Sequence[int]) -> int:
-        """Return what a call of a native takes of the budget, beyond its instruction."""
+        """Return the cost of a native call beyond its instruction."""
 
     def emit_cost(self, words: int) -> int:
-        """Return what an event takes of the budget, beyond its instruction."""
+        """Return the cost of an emitted event beyond its instruction."""
 
     def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
-        """Call a native; return False if its arguments lie outside memory."""
+        """Call a native; return False if an argument lies outside memory."""
 
     def stop_on(self, fault: Fault) -> None:
-        """End the event."""
+        """Stop the event because of a fault."""
 
 
 def interpret(machine: InterpretedMachine, limit: int) -> int:
-    """Execute instructions while the event is active and less than ``limit`` is spent; return what was spent.
+    """Execute instructions while the event is active and less than ``limit`` is spent; return the budget used.
 
-    An instruction takes one of the budget, a native or an event what it costs besides: the last may go beyond.
+    Each instruction costs one, natives and events also their own cost, so the last operation may exceed the limit.
     """
     spent = _run_slice(machine, limit)
     while spent < limit and machine.flags & ACTIVE:
@@ -86,14 +88,14 @@ def interpret(machine: InterpretedMachine, limit: int) -> int:
 
 
 def _run_slice(machine: InterpretedMachine, limit: int) -> int:
-    """Execute until ``limit`` is spent, the event ends, or an operation took more than its instruction."""
+    """Execute until ``limit`` is spent, the event ends, or an operation costs more than its instruction."""
     code, variables, stack = machine.code.operations, machine.variables.words, machine.stack
     size = len(code)
     pc, sp = machine.pc, machine.sp
     executed = 0
     kind = BAD
     try:
-        for executed in range(limit):  # counts for the lines after the loop
+        for executed in range(limit):  # also read after the loop, where it is the number of complete instructions
             kind, first, second = code[pc]
             if kind == LOAD:
                 stack[sp + 1] = variables[first]
@@ -202,7 +204,7 @@ def _run_slice(machine: InterpretedMachine, limit: int) -> int:
             elif kind == NATIVE:
                 try:
                     reason, sp = _call(machine, first, pc, sp)
-                except BaseException:  # the native failed after it took its arguments: the next is the one after it
+                except BaseException:  # its arguments are popped: continue after the native
                     machine.pc, machine.sp = pc + 1, sp - machine.count_popped(first)
                     machine.instructions += executed + 1 + machine.extra_cost
                     machine.extra_cost = 0
@@ -237,7 +239,7 @@ def _run_slice(machine: InterpretedMachine, limit: int) -> int:
 
 
 def _call(machine: InterpretedMachine, number: int, pc: int, sp: int) -> tuple[str, int]:
-    """Call a native; return why it could not be, or an empty text, and the new index of the stack."""
+    """Call a native; return the reason if that was impossible (empty otherwise), and the new stack index."""
     if number >= len(machine.target.natives):
         return "unknown-native", sp
     count = machine.count_popped(number)
