@@ -1,4 +1,4 @@
-"""Eighth to tenth pass: tree to instructions, terminators, stack check.
+"""Passes 8 to 10, code generation: tree to instructions, terminators, stack check.
 
 Source: docs/spec/aseba-bytecode-vm.md sections 4 to 9.
 """
@@ -36,11 +36,11 @@ from aseba_vm.frontend.syntax_tree import (
 from aseba_vm.frontend.trampoline import Task, run
 
 _MAX_JUMP = 2047
-"""Words that the 12 bits of a jump can lead over."""
+"""Longest jump in words that 12 bits can hold."""
 
 
 def generate(tree: Tree) -> tuple[Segment, ...]:
-    """Return the code of each event that has any, in source order, and of every subroutine, ended and measured."""
+    """Return the terminated code of each event that has any, in source order, and of every subroutine."""
     initial = _SegmentBuilder(is_sub=False, number=INIT_EVENT, name="", row=0)
     builders = [initial]
     numbers = {sub.name: sub.index for sub in tree.subs}
@@ -60,7 +60,7 @@ def generate(tree: Tree) -> tuple[Segment, ...]:
 
 
 def check_stack(segments: Sequence[Segment], stack_size: int) -> int:
-    """Return the estimate of the deepest stack, calls included. Raises CompileError if it does not fit.
+    """Return the estimated maximum stack depth, including calls. Raises CompileError if it exceeds the stack.
 
     Source: docs/spec/aseba-bytecode-vm.md section 8.
     """
@@ -93,7 +93,7 @@ def check_stack(segments: Sequence[Segment], stack_size: int) -> int:
 
 @dataclass(slots=True)
 class _SegmentBuilder:
-    """Code in the making. Methods append code and return its depth as a task."""
+    """Code of one segment. The methods append code and return its stack depth as a task."""
 
     is_sub: bool
     number: int
@@ -106,7 +106,7 @@ class _SegmentBuilder:
     subs: dict[str, int] = field(default_factory=dict)
     far_blocks: list[SourcePos] = field(default_factory=list)
     skips_to: int = -1
-    """Size of the code at the last place that a branch leads to."""
+    """Size of the code at the most recent branch target."""
 
     def add(self, op: Op, operand: int, row: int | None, *more: int) -> None:
         self.code.append(Instruction(op, operand, more, row))
@@ -162,7 +162,7 @@ class _SegmentBuilder:
         raise AssertionError(expression)
 
     def constant(self, value: int, row: int) -> None:
-        """Push a constant; the short form is chosen by the 32-bit value."""
+        """Push a constant. The 32-bit value decides whether the short form is used."""
         if abs(value) <= 2047:
             self.add(Op.PUSH, value & 0xFFF, row)
         else:
@@ -219,7 +219,7 @@ class _SegmentBuilder:
         return depth
 
     def condition(self, condition: Expression, flags: int, row: int) -> Task[tuple[int, int]]:
-        """Append both operands and a BRANCH without displacement; return depth and index of the BRANCH."""
+        """Append both operands and a BRANCH without offset; return the depth and the index of the BRANCH."""
         assert isinstance(condition, Binary)
         depth: int = yield self.expression(condition.left)
         depth += yield self.expression(condition.right)

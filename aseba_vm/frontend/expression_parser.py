@@ -1,7 +1,7 @@
-"""Second pass, expressions: tokens to vectors (docs/spec/aseba-language.md sections 4 and 6).
+"""Pass 2, expressions: tokens to vectors (docs/spec/aseba-language.md sections 4 and 6).
 
-A recursive-descent parser, one method per rule of the grammar, which stands above it. Names are looked up and constant
-indexes evaluated on the way.
+A recursive-descent parser with one method per grammar rule; the docstring of each method is its rule. Names are
+resolved and constant indexes evaluated while parsing.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _OPERATORS: Mapping[str, int] = {
     )
     for symbol in symbols.split()
 }
-"""How strongly each binary operator binds; ``not`` stands between ``and`` and the comparisons."""
+"""Precedence of each binary operator, lowest first; ``not`` is between ``and`` and the comparisons."""
 
 _CONDITION = _OPERATORS["or"]
 _NOT = _OPERATORS["and"] + 1
@@ -34,7 +34,7 @@ _PRIMARY = ("(", "[", "-", "~", "abs", "identifier", "integer")
 
 
 class ExpressionParser:
-    """Reads expressions from a stream of tokens; shares stream and symbols with the parser of statements."""
+    """Parses expressions from a token stream; shares stream and symbol table with the parser of statements."""
 
     def __init__(self, stream: TokenStream, symbols: SymbolTable) -> None:
         self.stream = stream
@@ -132,7 +132,7 @@ class ExpressionParser:
 
 
 def literal(token: Token, value: int) -> Number:
-    """Return a number that was written with or without a minus. Raises CompileError if it does not fit."""
+    """Return a number that was written with or without a minus sign. Raises CompileError if it is out of range."""
     if not -32768 <= value <= 32767:
         raise CompileError("int16-range", (abs(value),), token.pos)
     return Number(value, token.pos)
@@ -147,7 +147,7 @@ def constant_value(expression: Expression, pos: SourcePos) -> int:
 
 
 def _attempt(expression: Expression) -> tuple[int | None, CompileError | None]:
-    """Return the value of a constant index, or None and what went wrong, if anything did."""
+    """Return the value of a constant index; else None, and the error if the evaluation failed."""
     try:
         simple = simplify(first_constant(expression))
     except CompileError as error:

@@ -1,4 +1,4 @@
-"""Source text with regular indentation and spaces; the words, symbols and comments stay as they are."""
+"""Formatter: normalizes indentation and spaces; words, symbols and comments stay as they are."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _BRACKETS = {"(": 1, "[": 1, ")": -1, "]": -1}
 
 
 def format_program(source: str, indent: str = "\t") -> str:
-    """Return a program with each line indented by its depth, regular spaces in it, and no repeated empty lines.
+    """Return a program with each line indented by its depth, normalized spaces, and no repeated empty lines.
 
-    The tokens are the same, so the bytecode is too. Lines that begin inside a block comment are kept.
-    Raises CompileError if the text has no tokens.
+    The tokens and therefore the bytecode stay the same. Lines that start inside a block comment are kept. Raises
+    CompileError if the text cannot be tokenized.
     """
     text = source.replace("\r\n", "\n").replace("\r", "\n")
     tokens = tokenize(text)[:-1]
@@ -47,7 +47,7 @@ def format_program(source: str, indent: str = "\t") -> str:
 
 
 def _closers(kinds: list[str]) -> int:
-    """How many levels a line goes back by the words it begins with."""
+    """Return by how many levels the first words of a line reduce its indentation."""
     count = 0
     for kind in kinds:
         if kind != "end":
@@ -57,7 +57,7 @@ def _closers(kinds: list[str]) -> int:
 
 
 def _rows_inside_comments(text: str) -> set[int]:
-    """Rows whose beginning belongs to a block comment."""
+    """Return the rows that start inside a block comment."""
     rows: set[int] = set()
     row = at = 0
     for comment in _COMMENT.finditer(text):

@@ -1,4 +1,4 @@
-"""Fourth and fifth pass: compound assignments and loops to plain ones, vectors to scalars.
+"""Passes 4 and 5, lowering: compound assignments and loops to plain ones, vectors to scalars.
 
 Source: docs/spec/aseba-bytecode-vm.md section 3.
 """
@@ -35,18 +35,20 @@ from aseba_vm.frontend.syntax_tree import (
 from aseba_vm.frontend.trampoline import Task, run
 from aseba_vm.frontend.vectors import elements, first_element, require, size_of
 
-#: Own limit on the scalar operations of a program; far more than any node has words of bytecode.
+#: Own limit on the scalar operations of a program, far above the bytecode size of any node.
 MAX_ELEMENTS = 300_000
 
 
 def lower(tree: Tree, memory_size: int) -> Tree:
-    """Return the tree of scalars. Raises CompileError."""
+    """Return the scalar tree. Raises CompileError."""
     lowering = _Lowering(memory_size, tree.allocated, tree.temporaries)
     body: Block = run(lowering.block(tree.body))
     return replace(tree, body=body, temporaries=lowering.temporaries)
 
 
 class _Lowering:
+    """Lowers statements; counts temporary words and the remaining budget of operations."""
+
     def __init__(self, memory_size: int, allocated: int, temporaries: int) -> None:
         self.memory_size = memory_size
         self.allocated = allocated
@@ -122,7 +124,7 @@ class _Lowering:
         )
 
     def assign(self, left: Expression, right: Expression, pos: SourcePos) -> tuple[Assignment, ...]:
-        """Expand an assignment, through temporary words if the right side reads what the left side writes."""
+        """Lower an assignment, through temporary words if the right side reads what the left side writes."""
         size = size_of(left)
         if size == 1 or not isinstance(left, Access) or not _occurs(left.variable.name, right):
             return self.copy(left, right, pos)
@@ -134,7 +136,7 @@ class _Lowering:
         return self.copy(temporary, right, pos) + self.copy(left, temporary, pos)
 
     def copy(self, left: Expression, right: Expression, pos: SourcePos) -> tuple[Assignment, ...]:
-        """Return one assignment for each element; the right side of each is looked at first."""
+        """Return one assignment per element. The right side of each is checked first, which fixes the error order."""
         size = size_of(right)
         self.budget -= size * run(_weight(right))
         if self.budget < 0:
@@ -154,7 +156,7 @@ class _Lowering:
 
 
 def _weight(expression: Expression) -> Task[int]:
-    """Return how many nodes one element of the expression can have."""
+    """Return the maximum number of nodes in one element of the expression."""
     weight: int
     match expression:
         case Unary(_, operand, _):
@@ -173,7 +175,7 @@ def _weight(expression: Expression) -> Task[int]:
 
 
 def _occurs(name: str, expression: Expression) -> bool:
-    """Tell whether a variable of this name is read anywhere, also inside an index."""
+    """Return whether a variable of this name is read anywhere, including inside indexes."""
     stack = [expression]
     while stack:
         match stack.pop():

@@ -1,9 +1,9 @@
-"""Expressions as vectors: their size, their address, their scalar elements.
+"""Expressions as vectors: size, address, scalar elements.
 
 Source: docs/spec/aseba-language.md sections 6 and 11.
 
-Used while parsing (sizes of arguments, constants) and by the passes that check and expand. An element that does not
-exist stays in place as ``MissingElement`` until the scalar assignment that needs it, so that errors keep their order.
+The parser (sizes of arguments, constants), the size check and lowering use this module. An element that does not exist
+is represented by ``MissingElement`` until a scalar assignment needs it, which preserves the order of errors.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from aseba_vm.frontend.trampoline import Task, run
 
 @dataclass(frozen=True, slots=True)
 class MissingElement:
-    """In place of an element: the error of whoever needs it."""
+    """Placeholder for an element that does not exist, with the error to raise when it is needed."""
 
     error: CompileError
 
@@ -26,7 +26,7 @@ Scalar = Expression | MissingElement
 
 
 def size_of(expression: Expression) -> int:
-    """Return the number of words. Raises CompileError for unequal operands and the end of a slice."""
+    """Return the number of words. Raises CompileError for operands of different sizes and for an invalid slice end."""
     return run(_size(expression))
 
 
@@ -59,7 +59,7 @@ def _size(expression: Expression) -> Task[int]:
 
 
 def check_address(expression: Expression) -> None:
-    """Check the start of the leftmost part, as asking for its address does. Raises CompileError."""
+    """Check the start of the leftmost part, as taking its address does. Raises CompileError."""
     while True:
         match expression:
             case Unary(_, operand, _):
@@ -85,7 +85,7 @@ def out_of_bounds(access: Access) -> CompileError | None:
 
 
 def elements(expression: Expression, count: int) -> list[Scalar]:
-    """Return the first ``count`` elements as scalar expressions, or fewer if there are fewer."""
+    """Return the first ``count`` elements as scalar expressions, or all if there are fewer."""
     return run(_elements(expression, count, False))
 
 
@@ -95,16 +95,16 @@ def first_element(expression: Expression) -> Expression:
 
 
 def first_constant(expression: Expression) -> Expression:
-    """Return element 0 with a word that is never constant in place of each element at a computed index.
+    """Return element 0, where each element at a computed index is replaced by a word that is never constant.
 
-    Those indexes were evaluated when they were read; doing it again at each level would take quadratic time.
-    Raises CompileError if the element does not exist or one of the indexes could not be evaluated.
+    Those indexes were evaluated when they were parsed; repeating it at each level would take quadratic time. Raises
+    CompileError if the element does not exist or an index could not be evaluated.
     """
     return require(run(_elements(expression, 1, True))[0])
 
 
 def require(scalar: Scalar) -> Expression:
-    """Return an element that is now require. Raises CompileError if it does not exist."""
+    """Return an element. Raises CompileError if it does not exist."""
     if isinstance(scalar, MissingElement):
         raise scalar.error
     return scalar

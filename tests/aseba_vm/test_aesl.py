@@ -180,8 +180,8 @@ def test_strict_reading_takes_what_is_right(text):
 
 
 def test_every_complaint_about_a_file_tells_what_was_found_and_expected():
-    told = {kind: text for kind, text in MESSAGES.items() if kind.startswith(("aesl-", "xml-"))}
-    assert {kind for kind, text in told.items() if not ("found" in text and "expected" in text)} == set()
+    texts = {kind: text for kind, text in MESSAGES.items() if kind.startswith(("aesl-", "xml-"))}
+    assert {kind for kind, text in texts.items() if not ("found" in text and "expected" in text)} == set()
 
 
 @pytest.mark.parametrize("data", [b'<?xml version="1.0" encoding="nonsense"?><network/>', b"<network>\xff</network>"])

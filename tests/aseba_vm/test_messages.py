@@ -47,8 +47,8 @@ def test_an_unknown_kind_is_shown_as_it_is():
 def test_a_language_says_everything_and_of_every_sentence_all_that_english_says(language):
     table = LANGUAGES[language]
     assert table.keys() == MESSAGES.keys()
-    told = {kind: arguments(text) for kind, text in table.items()}
-    assert told == {kind: arguments(text) for kind, text in MESSAGES.items()}
+    found = {kind: arguments(text) for kind, text in table.items()}
+    assert found == {kind: arguments(text) for kind, text in MESSAGES.items()}
 
 
 @pytest.mark.parametrize("language", sorted(LANGUAGES.keys() - {"en"}))

@@ -47,7 +47,7 @@ COSTS = Costs(
 
 
 def _light(call):
-    """A native whose cost depends on what it is told."""
+    """A native whose cost depends on its argument."""
     call.charge(call.value(0) % 7 * 10)
 
 
@@ -288,7 +288,7 @@ def _run_traced(machine):
 
 @pytest.mark.parametrize("watched", [_step_through, _run_with_a_breakpoint, _run_traced])
 @pytest.mark.parametrize("engine", AVAILABLE)
-def test_what_was_true_while_somebody_watched_is_remembered_afterwards(engine, watched):
+def test_edge_flags_of_a_watched_run_are_kept(engine, watched):
     program = compile("var a\nvar n\nonevent ping\nwhen a == 1 do\nn += 1\nend", THYMIO_II, [("ping", 0)])
     address, counter = program.addresses["a"][0], program.addresses["n"][0]
     machine = VirtualMachine(THYMIO_II, engine=engine)

@@ -58,17 +58,17 @@ def test_a_native_does_the_same_in_every_engine(name, engine):
                 machine.resume()
                 machine.setup(0xFFFF)
                 machine.run()
-            plain, quick = machines
+            plain, translated = machines
             assert not isinstance(plain.fault, BadCode)
-            assert plain.variables == quick.variables
+            assert plain.variables == translated.variables
             assert (plain.pc, plain.flags, plain.fault, plain.instructions, plain.random_state) == (
-                quick.pc,
-                quick.flags,
-                quick.fault,
-                quick.instructions,
-                quick.random_state,
+                translated.pc,
+                translated.flags,
+                translated.fault,
+                translated.instructions,
+                translated.random_state,
             )
-            assert plain.pop_messages() == quick.pop_messages()
+            assert plain.pop_messages() == translated.pop_messages()
 
 
 @pytest.mark.parametrize("engine", AVAILABLE)

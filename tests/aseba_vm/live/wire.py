@@ -21,7 +21,7 @@ GET_VARIABLES, GET_NODE_DESCRIPTION, LIST_NODES = 0xA00B, 0xA010, 0xA011
 
 
 class Frame(NamedTuple):
-    """A message: who sent it, its type, its bytes."""
+    """A message: source node, type, payload."""
 
     source: int
     kind: int
