@@ -1,4 +1,4 @@
-"""A program seen by lines."""
+"""Debugging by source row."""
 
 import pytest
 
@@ -106,7 +106,7 @@ def test_a_step_goes_to_the_next_row_and_into_subroutines(debugger):
     assert [row for row in rows if row in {7, 8, 4, 10}] == [7, 8, 4, 10]
 
 
-def test_a_step_tells_one_state(debugger):
+def test_a_step_reports_one_state(debugger):
     debugger.machine.pause()
     _press(debugger)
     debugger.machine.pop_messages()
@@ -128,7 +128,7 @@ def test_a_fault_ends_a_step():
     assert isinstance(debugger.machine.fault, DivisionByZero)
 
 
-def test_use_of_the_memories_is_told(debugger):
+def test_memory_use_is_reported(debugger):
     target = THYMIO_II
     assert debugger.memory_use == Usage(target.variables_end + 2, target.variables_size)
     assert debugger.bytecode_use == Usage(len(debugger.program.words), target.bytecode_size)

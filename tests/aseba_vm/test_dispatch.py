@@ -1,4 +1,4 @@
-"""Events, without a robot: the robot lets them wait, the reference's simulator lets them kill."""
+"""Event dispatch without a robot: the robot queues events, the reference's simulator kills the active handler."""
 
 import pytest
 
@@ -85,7 +85,7 @@ def test_a_new_event_kills_the_handler_of_the_playground():
     assert machine.variables[log : log + 2] == [2, 1]
 
 
-def test_a_long_handler_of_the_playground_goes_on_in_the_next_step():
+def test_a_long_handler_of_the_playground_continues_in_the_next_step():
     program = compile("var n\nonevent prox\nwhile n < 300 do\nn++\nend", THYMIO_II)
     machine = VirtualMachine(THYMIO_II)
     machine.load(program)

@@ -1,4 +1,4 @@
-"""Whatever the text, a program or one located error; whatever the words, a machine that stops and says why."""
+"""Any text compiles or has one error with a position; any words run, or stop the machine with a reason."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PLACELESS = {"stack-overflow", "bytecode-too-large"}
 
 
 def _compiled(source):
-    """Return the program, or None having checked the error."""
+    """Return the program, or None after checking the error."""
     try:
         return compile(source, THYMIO_II, EVENTS, CONSTANTS)
     except CompileError as error:
@@ -47,7 +47,7 @@ def test_a_random_program_compiles_or_is_refused_in_place(seed):
 
 
 def _exercise(words, seed):
-    """Run events in a machine; nothing may come out but messages."""
+    """Run events in a machine, which must never raise."""
     machine = VirtualMachine(THYMIO_II)
     machine.set_bytecode(words)
     source = random.Random(seed)

@@ -44,7 +44,7 @@ def test_an_unknown_kind_is_shown_as_it_is():
 
 
 @pytest.mark.parametrize("language", sorted(LANGUAGES))
-def test_a_language_says_everything_and_of_every_sentence_all_that_english_says(language):
+def test_a_translation_has_every_message_with_the_same_arguments(language):
     table = LANGUAGES[language]
     assert table.keys() == MESSAGES.keys()
     found = {kind: arguments(text) for kind, text in table.items()}
@@ -56,7 +56,7 @@ def test_nothing_is_left_in_english(language):
     assert [kind for kind, text in LANGUAGES[language].items() if text == MESSAGES[kind]] == []
 
 
-def test_tokens_are_told_in_the_language_of_the_sentence():
+def test_tokens_are_named_in_the_language_of_the_message():
     german = LANGUAGES["de"]
     assert format_message("expected-token", ("identifier", "end-of-input"), german) == (
         "erwartet wird ein Name, hier steht das Ende des Programms"
@@ -71,5 +71,5 @@ def test_tokens_are_told_in_the_language_of_the_sentence():
 
 
 def arguments(text: str) -> set[str]:
-    """What a template names."""
+    """Return the arguments that a template uses."""
     return {name for _, name, _, _ in string.Formatter().parse(text) if name}

@@ -1,4 +1,4 @@
-"""What holds for every program, whatever it says."""
+"""Properties of every program."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_any_text_compiles_or_is_refused_at_a_place_inside_it(source):
 
 
 def check_lines(program):
-    """Rows and addresses lead to each other."""
+    """Check that the mappings between rows and addresses agree."""
     start = 2 * len(program.events) + 1
     places = [pc for pc, _ in instructions(program.words, start)]
     rows = {program.row_of(pc) for pc in places}

@@ -63,7 +63,7 @@ def test_loading_starts_the_initialization_and_keeps_the_variables():
     assert machine.variables[200] == 5
 
 
-def test_a_limit_pauses_and_the_next_run_goes_on():
+def test_a_run_at_its_limit_continues_in_the_next_run():
     machine, _ = machine_with("var n onevent tap while n < 100 do n++ end")
     machine.start_local(8)
     machine.run(50)
@@ -113,7 +113,7 @@ def test_a_local_event_waits_for_the_running_one():
     assert machine.variables[THYMIO_II.addresses["event.source"][0]] == machine.node_id
 
 
-def test_when_remembers_between_events():
+def test_when_keeps_its_condition_between_events():
     machine, _ = machine_with("var n onevent tap when acc[0] > 0 do n++ end")
     acc = THYMIO_II.addresses["acc"][0]
     counts = []
@@ -135,7 +135,7 @@ def test_when_remembers_between_events():
         ("var a = -1\ncall math.sqrt(a, a)", "square root of a negative number", 1),
     ],
 )
-def test_a_fault_stops_the_machine_and_says_why_and_where(source, reason, row):
+def test_a_fault_stops_the_machine_with_reason_and_address(source, reason, row):
     machine, program = machine_with(source)
     assert machine.fault.message == reason
     assert program.row_of(machine.fault.pc) == row
@@ -156,7 +156,7 @@ def test_every_fault_has_a_sentence():
     assert machine_messages.NodeSpecific(0, "no card").message == "no card"
 
 
-def test_resuming_forgets_the_fault():
+def test_resuming_clears_the_fault():
     machine, _ = machine_with("var z z = 5 / z")
     machine.resume()
     assert machine.fault is None
@@ -190,7 +190,7 @@ def test_words_that_no_compiler_writes_are_a_fault(words, reason):
     assert (machine.fault and machine.fault.reason) == reason
 
 
-def test_words_outside_the_memories_are_a_mistake_of_the_caller():
+def test_words_outside_the_memories_raise_value_error():
     machine = VirtualMachine(THYMIO_II)
     with pytest.raises(ValueError, match="do not fit"):
         machine.set_bytecode([0] * 2000)

@@ -14,7 +14,7 @@ from aseba_vm.errors import TextError
         ('<?xml version="1.0" encoding="ISO-8859-1"?>é'.encode("latin-1"), None, "ISO-8859-1"),
     ],
 )
-def test_text_comes_out_as_its_author_sees_it(data, text, encoding):
+def test_text_is_decoded_as_its_author_sees_it(data, text, encoding):
     file = decode(data)
     assert file.encoding == encoding
     assert file.text.endswith("é") if text is None else file.text == text

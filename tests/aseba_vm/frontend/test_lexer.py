@@ -13,7 +13,7 @@ def place(text, index=0):
     return (pos.offset, pos.row, pos.col)
 
 
-def test_keywords_symbols_names_and_numbers_are_told_apart():
+def test_keywords_symbols_names_and_numbers_are_distinguished():
     assert kinds("if.x if <<= a. 0x") == ["identifier", "if", "<<=", "identifier", "integer", "end-of-input"]
 
 

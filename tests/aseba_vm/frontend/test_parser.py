@@ -12,7 +12,7 @@ def tree(source, **definitions):
 
 
 def shape(source):
-    """The dump of the only statement, without positions."""
+    """Return the dump of the only statement, without positions."""
     lines = tree(f"var a var b var t[4] {source}").dump().splitlines()
     return [line.partition("  (")[0].strip() for line in lines[1:]]
 

@@ -1,4 +1,4 @@
-"""The examples of docs/spec/aseba-bytecode-vm.md section 15, and the map between rows and words."""
+"""The examples of docs/spec/aseba-bytecode-vm.md section 15, and the mapping between rows and words."""
 
 import pytest
 
@@ -101,7 +101,7 @@ def test_every_stage_can_be_shown():
     assert assemble(stages, THYMIO_II).words == (3, 0xFFFF, 3, 0x1003, 0x4080, 0)
 
 
-def test_a_stage_that_does_not_exist_is_a_mistake_of_the_caller():
+def test_an_unknown_stage_raises_value_error():
     with pytest.raises(ValueError, match="nonsense"):
         compile_stages("", THYMIO_II).dump("nonsense")
 

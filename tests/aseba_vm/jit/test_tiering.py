@@ -1,4 +1,4 @@
-"""Whatever runs an event, the machine is in the same state afterwards."""
+"""Every engine leaves the machine in the same state."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def _light(call):
 
 
 def _compare(words, seed, engines, costs=(NO_COSTS, COSTS)):
-    """Run the same events in two machines, one of them changing engines, and compare them after each."""
+    """Run the same events in two machines, one of which changes engines, and compare them after each."""
     for each in costs:
         _compare_at(each, words, seed, engines)
 
@@ -130,7 +130,7 @@ def test_random_words_end_in_the_same_state(seed, engines):
 
 
 def _likely_word(source):
-    """A word, most often an instruction that makes sense."""
+    """Return a word, usually a valid instruction."""
     match source.randrange(10):
         case 0 | 1:
             return 0x1000 | source.randrange(16)
@@ -305,7 +305,7 @@ def test_edge_flags_of_a_watched_run_are_kept(engine, watched):
     assert machine.variables[counter] == 1
 
 
-def test_an_unknown_engine_is_refused():
+def test_an_unknown_engine_is_rejected():
     with pytest.raises(ValueError, match="not one of"):
         VirtualMachine(THYMIO_II, engine="steam")
 

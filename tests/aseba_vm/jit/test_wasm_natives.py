@@ -1,4 +1,4 @@
-"""A native does the same whatever runs it: any place, any size, arguments that overlap, words at the limits."""
+"""A native has the same results in every engine: any address, any size, overlapping arguments, extreme words."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ STOP, PUSH, NATIVE = 0, 0x1000, 0xC000
 
 
 def _call(number, source):
-    """Words that call a native with arguments somewhere in a small part of memory."""
+    """Return words that call a native with arguments in a small part of memory."""
     native = THYMIO_II.natives[number]
     sizes = {}
     for index in native.free_sizes:

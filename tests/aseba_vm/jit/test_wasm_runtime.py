@@ -66,7 +66,7 @@ def poses() -> str:
     params=["raise ImportError('libwasmtime.so: no such file')", "import ctypes; ctypes.CDLL('nowhere.so')"]
 )
 def broken(request, tmp_path) -> Path:
-    """A folder with a package of that name."""
+    """Create a folder with a package of that name."""
     (tmp_path / "wasmtime").mkdir()
     (tmp_path / "wasmtime" / "__init__.py").write_text(request.param)
     return tmp_path

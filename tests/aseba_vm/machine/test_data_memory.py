@@ -1,4 +1,4 @@
-"""The variable memory keeps its size and its range wherever it lies."""
+"""The variable memory keeps its size and its value range in any storage."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ from aseba_vm.targets import THYMIO_II
 
 
 def after(source, address=128, count=1, **options):
-    """Words of the memory after the initialization."""
+    """Return the words of the memory after the initialization."""
     machine = VirtualMachine(THYMIO_II, **options)
     machine.load(compile(source, THYMIO_II))
     machine.run()
@@ -81,7 +81,7 @@ def test_a_function_of_the_node_may_refuse():
     assert machine.fault == machine_messages.NodeSpecific(5 + 1, "no card: 5")
 
 
-def test_a_function_that_nobody_has_pops_its_arguments_and_is_told():
+def test_a_function_without_implementation_pops_its_arguments_and_is_reported():
     machine = VirtualMachine(THYMIO_II)
     machine.load(compile("call leds.top(1, 2, 3) acc[0] = 4", THYMIO_II))
     machine.run()
@@ -111,7 +111,7 @@ def test_deques_are_rings_in_arrays(calls, words):
     assert after(f"var q[5] var d {calls}", count=5) == words
 
 
-def test_a_failing_pop_tells_two_faults():
+def test_a_failing_pop_reports_two_faults():
     machine = VirtualMachine(THYMIO_II)
     machine.load(compile("var q[5] var d call deque.pop_front(q, d)", THYMIO_II))
     machine.run()
