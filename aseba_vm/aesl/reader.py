@@ -13,9 +13,9 @@ from aseba_vm.errors import AeslError, Argument
 from aseba_vm.frontend.lexer import is_name
 
 MAX_CHARACTERS = 1_000_000
-"""Own limit: a hundred times the longest program that fits into a Thymio."""
+"""Limit of this reader: a hundred times the longest program that fits into a Thymio."""
 MAX_NODES = 64
-"""Own limit: more robots than a class has."""
+"""Limit of this reader: more robots than a class has."""
 MAX_EVENT_WORDS = 258
 """Words that fit into a message of the Aseba network (docs/spec/aseba-language.md sections 12 and 13)."""
 

@@ -28,7 +28,7 @@ SYMBOLS = (
     *("(", ")", "[", "]", ":", ",", "=", "+", "-", "*", "/", "%", "|", "^", "&", "~", "<", ">"),
 )
 
-#: Own limit: longer programs fit no node and would only take time.
+#: Limit of this compiler: longer programs fit no node and would only take time.
 MAX_TOKENS = 32_768
 
 _LARGEST = 2**63 - 1

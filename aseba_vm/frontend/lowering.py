@@ -35,7 +35,7 @@ from aseba_vm.frontend.syntax_tree import (
 from aseba_vm.frontend.trampoline import Task, run
 from aseba_vm.frontend.vectors import elements, first_element, require, size_of
 
-#: Own limit on the scalar operations of a program, far above the bytecode size of any node.
+#: Limit of this compiler on the scalar operations of a program, far above the bytecode size of any node.
 MAX_ELEMENTS = 300_000
 
 

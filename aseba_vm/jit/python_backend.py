@@ -82,6 +82,7 @@ class _Writer:
         for sub in subs:
             self.lines += sub
         self.is_sub = False
+        # The loop is never repeated: it lets the frequent exit at the end of an event be a break, not an exception.
         self.emit_line("try:")
         self.emit_line(" while 1:")
         self.indent = 3
@@ -217,6 +218,8 @@ class _Writer:
         self.indent -= 2 if branch.is_edge else 1
         self.expressions.known = known
         otherwise = self._else("else:", node.otherwise, start, None if node.is_broken else branch)
+        # An arm that ends in an exit does not reach the join, so the other arm decides. Otherwise the difference is
+        # charged at the end of each arm; the lines of the then-arm are already followed by those of the else-arm.
         if then is None or otherwise is None:
             joined = otherwise if then is None else then
         else:
@@ -245,6 +248,8 @@ class _Writer:
     def _loop(self, node: Loop, uncharged: int) -> int:
         branch = node.branch
         self.expressions.known.clear()
+        # The condition of the Python loop is the budget check; its else-clause is the exit for an exhausted budget, so
+        # leaving the loop of the program is a break. At each head the same number of instructions is uncharged.
         self.emit_line(f"while n >= {node.need + uncharged}:")
         self.indent += 1
         self.loops += 1
@@ -309,6 +314,7 @@ class _Writer:
         popped = ", ".join([*(self.expressions.word(word).text for word in node.popped), ""])
         self._spill(node)
         is_barrier = needs_barrier(node, self.natives)
+        # A native that may access any word sees memory, not local variables: write them back, and read them afterwards.
         if is_barrier:
             self._store()
         self.emit_line(f"h = H({node.number}, {node.pc}, ({popped}))")

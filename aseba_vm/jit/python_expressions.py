@@ -183,6 +183,8 @@ class Expressions:
             self._emit_line(f"if not {two.text}: {self.bail_out}")
         one = self._atom(one)
         a, b = one.text, two.text
+        # Python rounds towards minus infinity, Aseba towards 0. They differ if exactly one operand is negative; there
+        # -(-a // b) truncates. A remainder has the sign of the dividend, and the sign of the divisor does not matter.
         is_positive = two.interval[0] >= 0
         if operator == 5:
             interval = value_ranges.of_quotient(one.interval, two.interval)

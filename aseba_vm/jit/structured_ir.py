@@ -194,14 +194,16 @@ class StructuredProgram:
         branch = block.end
         assert isinstance(branch, Branch)
         target = branch.otherwise
+        # A target behind the branch, outside the enclosing nodes or without code fits none of the patterns: exit to it.
         outside: list[Node] = [Exit(ProgramPoint(target, ()), CONTINUE)]
         if target not in self.blocks.by_address:
+            # The interpreter repeats the branch and reports the fault; the negative cost takes the charge back.
             outside = [Exit(branch.place, INTERPRET, -branch.cost)]
         if target < branch.then or (end is not None and target > end) or target not in self.blocks.by_address:
             nodes += block.statements
             nodes.append(If(branch, [], outside))
             return branch.then
-        jump = target - 1
+        jump = target - 1  # a JUMP has one word
         to = self.blocks.jumps.get(jump)
         if to == pc and not branch.is_edge:
             body, _ = self._sequence(routine, branch.then, target, jump, nesting + 1)
@@ -234,17 +236,18 @@ class StructuredProgram:
             node = nodes[place]
             match node:
                 case Exit() | SubReturn():
-                    need = max(node.cost, 0)
+                    need = max(node.cost, 0)  # nothing after an exit is executed
                 case If():
                     then = self._need(routine, node.then, need)
                     need = node.branch.cost + max(then, self._need(routine, node.otherwise, need))
                 case Loop():
                     iteration = max(self._need(routine, node.body, 0), need)
                     node.need = self._need(routine, node.before, node.branch.cost + iteration)
-                    need = 0
+                    need = 0  # the loop checks its own budget before the first iteration
                 case SubCall():
                     sub = self.subs[node.end.target]
                     if sub.has_checks:
+                        # The checks inside cannot cover what follows the call, so it gets its own check.
                         nodes.insert(place + 1, Check(node.end.back, need))
                         need = 0
                         routine.has_checks = True
@@ -253,6 +256,7 @@ class StructuredProgram:
                     need = 0
                 case _:
                     need += node.cost
+                    # The exit of a check has no pending words, so it is possible only where the stack is empty.
                     if need > _CHECK_EVERY and not isinstance(node, Charge) and not node.place.pending:
                         nodes.insert(place, Check(node.place.pc, need))
                         need = 0

@@ -115,6 +115,7 @@ class _Writer:
         depth = "(local.get $d)" if self.is_sub else "(i32.const 0)"
         stores = [f"(i32.store (i32.const {EXIT + 8}) (i32.const {place.pc}))"]
         stores.append(f"(i32.store (i32.const {EXIT + 12}) (i32.const {kind}))")
+        # Return addresses of active subroutines are already at STACK, one per level; the pending words follow them.
         for number, atom in enumerate(place.pending):
             at = f"(i32.shl {depth} (i32.const 2))"
             stores.append(f"(i32.store offset={STACK + 4 * number} {at} {self.expressions.word(atom)})")
@@ -172,6 +173,7 @@ class _Writer:
         emit_line = self.lines.append
         emit_line(f"(i32.store offset={STACK} (i32.shl {depth} (i32.const 2)) (i32.const {back}))")
         emit_line(f"(local.set $n (call $f{target} (local.get $n) (i32.add {depth} (i32.const 1))))")
+        # -1: the callee exited for good. Pass it on; the outermost function moves the remaining budget to EXIT.
         leave = "(return (i64.const -1))"
         if not self.is_sub:
             leave = f"(i64.store (i32.const {EXIT}) (i64.load (i32.const {INNER}))) (return)"
@@ -183,6 +185,7 @@ class _Writer:
         self.expressions.bail_out = self._exit(branch.place, INTERPRET, uncharged)
         test = self.expressions.condition(branch.operator, branch.left, branch.right)
         start = uncharged + branch.cost
+        # Generate both arms first: their uncharged instructions are known only afterwards.
         outer, self.lines[:] = list(self.lines), []
         then = self._nodes(node.then, start)
         then_lines, self.lines[:] = list(self.lines), []

@@ -102,6 +102,7 @@ class WasmHost:
         self._exit = memoryview(self._array(ctypes.c_ubyte, EXIT, _EXIT_FORMAT.size)).cast("B")
         self._budget = self._array(ctypes.c_int64, EXIT, 1)
         self._stack = self._array(ctypes.c_int32, STACK, (TABLES - STACK) // 4)
+        # The store keeps its host functions alive; a strong reference would keep this object alive in a cycle.
         this = weakref.ref(self)
         self._imports = [
             make_import(wasmtime, self._store, _weak_call(this, WasmHost._call_native)),

@@ -27,6 +27,7 @@ class CodeMemory:
         if self._events is None:
             words = self.words
             places = range(1, min(words[0], len(words) - 1), 2) if words else range(0)
+            # Reversed, so that the first of several entries for an event wins.
             self._events = {words[place]: words[place + 1] for place in reversed(places)}
         return self._events.get(event, 0)
 

@@ -66,6 +66,8 @@ class _Deque:
         words = last - target if delta > 0 else target - last
         if words > 2 * self.capacity:
             self.call.charge(_MOVE * words)
+        # Indexes behave as in C: 16-bit unsigned target, remainder with the sign of the dividend. A negative one can
+        # therefore address the words before the ring; addresses outside the memory are skipped.
         while target <= last if delta > 0 else target >= last:
             source = target + delta
             rest = source % self.capacity if source >= 0 else -(-source % self.capacity)
