@@ -242,7 +242,7 @@ class _Nobody:
     def call_native(self, _number: int, _pc: int, _popped: tuple[int, ...]) -> int:
         raise AssertionError("translated code was run")
 
-    def refuse_translated(self, _pc: int, _reason: int) -> None:
+    def stop_on_translated_fault(self, _pc: int, _reason: int) -> None:
         raise AssertionError("translated code was run")
 
     def emit(self, _number: int, _words: tuple[int, ...]) -> None:
