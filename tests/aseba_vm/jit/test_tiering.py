@@ -306,7 +306,7 @@ def test_edge_flags_of_a_watched_run_are_kept(engine, watched):
 
 
 def test_an_unknown_engine_is_rejected():
-    with pytest.raises(ValueError, match="not one of"):
+    with pytest.raises(ValueError, match="expected one of"):
         VirtualMachine(THYMIO_II, engine="steam")
 
 
