@@ -1,4 +1,4 @@
-"""Aseba without a robot: compiler, virtual machine and .aesl files, in the standard library alone.
+"""Compiler, virtual machine and .aesl files of the Aseba language, without a robot; standard library only.
 
 >>> from aseba_vm import VirtualMachine, compile, targets
 >>> program = compile("var n = 2  n = n * 21", targets.THYMIO_II)

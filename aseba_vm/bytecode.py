@@ -1,4 +1,4 @@
-"""Instructions and words: the table of operations, encoding, linking and disassembly.
+"""Instructions and words: operation table, encoding, linking and disassembly.
 
 Source: docs/spec/aseba-bytecode-vm.md sections 1 and 2.
 """
@@ -12,7 +12,7 @@ from enum import IntEnum
 from aseba_vm.errors import SourcePos
 
 MAX_EMITTED = 516
-"""Most words that an event carries (docs/spec/aseba-bytecode-vm.md section 10.1)."""
+"""Maximum number of words in an event (docs/spec/aseba-bytecode-vm.md section 10.1)."""
 
 
 class Op(IntEnum):
@@ -36,7 +36,7 @@ class Op(IntEnum):
     UNKNOWN = 0xF
 
 
-#: Words of each operation, by its number.
+#: Length of each operation in words, by its number.
 LENGTH: Sequence[int] = (1, 1, 2, 1, 1, 2, 2, 1, 1, 1, 2, 3, 1, 1, 1, 1)
 
 BINARY_OPERATORS: Sequence[str] = (
@@ -49,14 +49,14 @@ BINARY_NUMBER: Mapping[str, int] = {symbol: number for number, symbol in enumera
 UNARY_NUMBER: Mapping[str, int] = {symbol: number for number, symbol in enumerate(UNARY_OPERATORS)}
 
 EDGE = 0x100
-"""Bit of a BRANCH: take the branch only when the condition becomes true."""
+"""Flag of a BRANCH (``when``): branch only when the condition becomes true."""
 WAS_TRUE = 0x200
-"""Bit of a BRANCH in bytecode memory: the condition was true at the last evaluation."""
+"""Flag of a BRANCH in bytecode memory: the condition was true when last evaluated."""
 
 
 @dataclass(frozen=True, slots=True)
 class Instruction:
-    """An operation, its 12-bit operand, the words after it, and the source row of each word (None: undefined)."""
+    """An operation, its 12-bit operand, the words after it, and the source row of its words (None: undefined)."""
 
     op: Op
     operand: int
@@ -65,7 +65,7 @@ class Instruction:
 
     @property
     def words(self) -> tuple[int, ...]:
-        """The instruction as unsigned words. The operand is or-ed without mask, as linking demands."""
+        """The instruction as unsigned words. The operand is or-ed without a mask, as linking requires."""
         return ((self.op << 12 | self.operand) & 0xFFFF, *(word & 0xFFFF for word in self.more))
 
     def __str__(self) -> str:
@@ -76,10 +76,9 @@ class Instruction:
 class Segment:
     """The code of an event or a subroutine.
 
-    ``number`` is that of the event or the index of the subroutine, ``depth`` the estimated depth of the stack,
-    ``row`` that of ``sub``. ``falls_through``: the last instruction may be skipped, so that the code runs on.
-    ``far_blocks``: where blocks begin that are too long for the 12 bits of a jump (docs/spec/aseba-language.md section
-    12).
+    ``number`` is the event number or the subroutine index, ``depth`` the estimated stack depth, ``row`` the row of
+    ``sub``. ``falls_through``: the last instruction may be skipped, so execution runs on into the next segment.
+    ``far_blocks``: starts of blocks too long for the 12 bits of a jump (docs/spec/aseba-language.md section 12).
     """
 
     is_sub: bool
@@ -105,7 +104,7 @@ class Segment:
 
 @dataclass(frozen=True, slots=True)
 class EventEntry:
-    """An event of the table: number, address of its code, name (empty for the initialisation)."""
+    """An entry of the event table: number, address of the code, name (empty for the initialization)."""
 
     number: int
     address: int
@@ -114,7 +113,7 @@ class EventEntry:
 
 @dataclass(frozen=True, slots=True)
 class SubEntry:
-    """A subroutine: name, address of its code, row of its declaration."""
+    """A subroutine: name, address of the code, row of the declaration."""
 
     name: str
     address: int
@@ -123,7 +122,7 @@ class SubEntry:
 
 @dataclass(frozen=True, slots=True)
 class Image:
-    """The linked program: words, the source row of each, and where events and subroutines begin."""
+    """A linked program: words, the source row of each word, and the entries of events and subroutines."""
 
     words: tuple[int, ...]
     lines: tuple[int | None, ...]
@@ -132,7 +131,7 @@ class Image:
 
 
 def link(segments: Sequence[Segment]) -> Image:
-    """Lay out the segments, events by number and then subroutines, and resolve the calls."""
+    """Lay out the segments (events by number, then subroutines) and resolve the calls."""
     events = sorted((segment for segment in segments if not segment.is_sub), key=lambda segment: segment.number)
     subs = [segment for segment in segments if segment.is_sub]
     address = 2 * len(events) + 1
@@ -177,7 +176,7 @@ def instructions(words: Sequence[int], start: int = 0) -> Iterator[tuple[int, tu
 
 
 def describe(words: Sequence[int]) -> str:
-    """Return one instruction as text; targets of jumps are relative."""
+    """Return one instruction as text; jump targets are relative."""
     op, operand = Op(words[0] >> 12), words[0] & 0xFFF
     more = [*words[1:], 0, 0]
     match op:

@@ -1,4 +1,4 @@
-"""The debugger: a machine seen through the lines of its program. Rows count from 0, as in all data of this package."""
+"""Debugger: execution of a machine by source row. Rows count from 0, as in all data of this package."""
 
 from __future__ import annotations
 
@@ -9,28 +9,31 @@ from aseba_vm.frontend.pipeline import Program
 from aseba_vm.machine.machine_messages import ExecutionState
 from aseba_vm.vm import VirtualMachine
 
-MOST_STEPS = 100_000
-"""Instructions after which a step to the next line gives up."""
+MAX_STEPS = 100_000
+"""Default limit of instructions for a step to the next row."""
 
 
 @dataclass(frozen=True, slots=True)
-class Use:
-    """Words in use and words there are."""
+class Usage:
+    """Number of words in use and in total."""
 
     used: int
     total: int
 
     @property
     def share(self) -> float:
-        """The part in use, from 0 (also of nothing) to 1."""
+        """Fraction in use, 0 to 1; 0 if the total is 0."""
         return self.used / self.total if self.total else 0.0
 
 
 class Debugger:
-    """Breakpoints, steps and places of a program by line. The machine holds this program and stays usable directly."""
+    """Breakpoints, steps and positions by source row.
+
+    The machine must have this program loaded; it can still be used directly.
+    """
 
     def __init__(self, machine: VirtualMachine, program: Program) -> None:
-        """Look at a machine that has ``program`` loaded."""
+        """Attach to a machine that has ``program`` loaded."""
         self.machine = machine
         self.program = program
         start = 2 * len(program.events) + 1
@@ -40,11 +43,11 @@ class Debugger:
             if row is not None:
                 self._places.setdefault(row, pc)
 
-    # -- where it is
+    # -- position
 
     @property
     def row(self) -> int | None:
-        """The row about to be executed; None if no event is active or the code there belongs to no row."""
+        """The row about to be executed; None if no event is active or the code has no row."""
         return self.program.row_of(self.machine.pc) if self.machine.is_active else None
 
     @property
@@ -52,35 +55,35 @@ class Debugger:
         """The event or subroutine about to be executed; None if no event is active."""
         return self.program.segment_of(self.machine.pc) if self.machine.is_active else None
 
-    # -- what it uses
+    # -- memory use
 
     @property
-    def memory_use(self) -> Use:
-        """Words of variable memory, the target's own variables included."""
-        return Use(self.program.allocated, self.machine.target.variables_size)
+    def memory_use(self) -> Usage:
+        """Words of variable memory in use, including the target's own variables."""
+        return Usage(self.program.allocated, self.machine.target.variables_size)
 
     @property
-    def bytecode_use(self) -> Use:
-        """Words of bytecode memory."""
-        return Use(len(self.program.words), self.machine.target.bytecode_size)
+    def bytecode_use(self) -> Usage:
+        """Words of bytecode memory in use."""
+        return Usage(len(self.program.words), self.machine.target.bytecode_size)
 
     @property
-    def stack_use(self) -> Use:
-        """Words of the stack that the deepest event needs by the estimate of the compiler, with all that it calls."""
-        return Use(self.program.stack_need, self.machine.target.stack_size)
+    def stack_use(self) -> Usage:
+        """Words of stack that the deepest event needs with all its calls, as estimated by the compiler."""
+        return Usage(self.program.stack_need, self.machine.target.stack_size)
 
     # -- breakpoints
 
     @property
     def breakpoints(self) -> tuple[int, ...]:
-        """Rows with a breakpoint, in order."""
+        """Rows with a breakpoint, in ascending order."""
         rows = {row for pc in self.machine.breakpoints if (row := self.program.row_of(pc)) is not None}
         return tuple(sorted(rows))
 
     def set_breakpoint(self, row: int) -> int | None:
-        """Stop before ``row``, or before the next row that has code; return that row.
+        """Set a breakpoint at ``row``, or at the next row that has code, and return that row.
 
-        None if there is no code or no room (16 are allowed). A row that has a breakpoint already keeps it.
+        Returns None if there is no such row, or if all 16 breakpoints are in use. A row with a breakpoint keeps it.
         """
         found = min((place for place in self._places if place >= row), default=None)
         if found is None or found in self.breakpoints:
@@ -89,7 +92,7 @@ class Debugger:
         return found if found in self.breakpoints else None
 
     def clear_breakpoint(self, row: int) -> None:
-        """Remove the breakpoint of a row, if any."""
+        """Remove the breakpoints of a row, if any."""
         for pc in self.machine.breakpoints:
             if self.program.row_of(pc) == row:
                 self.machine.clear_breakpoint(pc)
@@ -98,14 +101,15 @@ class Debugger:
         """Remove all breakpoints."""
         self.machine.clear_breakpoints()
 
-    # -- going on
+    # -- execution
 
-    def step_row(self, limit: int = MOST_STEPS) -> bool:
-        """Execute up to the next row, into subroutines, or to the end of the event; tell whether it got there.
+    def step_row(self, limit: int = MAX_STEPS) -> bool:
+        """Execute to the next row (stepping into subroutines) or the end of the event; return whether it was reached.
 
-        A fault ends the step too. Breakpoints are not heeded; of the states on the way only the last is told.
+        A fault ends the step too. Breakpoints are ignored. Of the execution states on the way only the last is
+        reported.
         """
-        machine, begun = self.machine, self.row
+        machine, first_row = self.machine, self.row
         if not machine.is_step_by_step:
             machine.pause()
         for _ in range(limit):
@@ -114,7 +118,7 @@ class Debugger:
             machine.step()
             if machine.is_active and machine.outbox and isinstance(machine.outbox[-1], ExecutionState):
                 machine.outbox.pop()
-            if self.row is not None and self.row != begun:
+            if self.row is not None and self.row != first_row:
                 break
         else:
             machine.report_state()
@@ -123,7 +127,7 @@ class Debugger:
         return True
 
     def resume(self, limit: int = 0) -> bool:
-        """Run on, off the breakpoint where the machine stands; tell whether it stopped at another one."""
+        """Continue from the current breakpoint, if any; return whether the machine stopped at another one."""
         machine = self.machine
         if machine.is_active and machine.is_step_by_step and machine.pc in machine.breakpoints:
             machine.step()

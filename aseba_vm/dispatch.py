@@ -1,9 +1,9 @@
-"""How events reach a machine, without a robot: two policies, one interface.
+"""Delivery of events to a machine without a robot: two policies with one interface.
 
 Source: docs/spec/aseba-bytecode-vm.md section 10.5.
 
-``raise_local(name)`` and ``receive(event, source, arguments)`` tell what happens; ``turn(limit)`` is one turn of the
-main loop. The robot itself lets a global event kill a handler; here it waits, as pupils expect of a queue.
+``raise_local(name)`` and ``receive(event, source, arguments)`` deliver events; ``run(limit)`` is one iteration of the
+main loop. On the robot a global event kills the active handler; FirmwareDispatch queues it instead, as pupils expect.
 """
 
 from __future__ import annotations
@@ -14,64 +14,64 @@ from typing import Protocol
 
 from aseba_vm.vm import VirtualMachine
 
-TURN = 65535
-"""Instructions of one turn of the firmware's main loop."""
+FIRMWARE_BUDGET = 65535
+"""Instructions per iteration of the firmware's main loop."""
 
-STEP = 1000
-"""Instructions of one step of the reference's playground; a longer handler goes on.
+PLAYGROUND_BUDGET = 1000
+"""Instructions per step of the reference's playground; a longer handler continues in the next step.
 
 Source: docs/spec/thymio-robot.md section 3.
 """
 
-MOST_WAITING = 100
-"""Global events that may wait; more are refused."""
+MAX_QUEUED_EVENTS = 100
+"""Capacity of the queue of global events; further events are rejected."""
 
 
 class Dispatch(Protocol):
-    """What both policies offer."""
+    """Interface of both policies."""
 
     def raise_local(self, name: str) -> None:
-        """Tell that a local event of the target happened. Raises KeyError for a name that the target lacks."""
+        """Raise a local event of the target. Raises KeyError for a name that the target lacks."""
 
     def receive(self, event: int, source: int = 0, arguments: Sequence[int] = ()) -> bool:
-        """Take a global event from the network; tell whether there was room for it."""
+        """Accept a global event from the network; return whether there was room for it."""
 
-    def turn(self, limit: int = ...) -> bool:
-        """Execute at most ``limit`` instructions of each handler that is due; tell whether anything was done."""
+    def run(self, limit: int = ...) -> bool:
+        """Execute at most ``limit`` instructions of each handler that is due; return whether any was executed."""
 
 
 class FirmwareDispatch:
-    """As the robot: nothing interrupts a handler. Local events wait as one flag each, global ones in line."""
+    """Dispatch of the robot: handlers are never interrupted. Local events are flags, global events are queued."""
 
     def __init__(self, machine: VirtualMachine) -> None:
-        """Serve a machine; forget what waits with :meth:`clear`, as the robot does in a reset."""
+        """Dispatch events to a machine. Call :meth:`clear` when it is reset, as the robot does."""
         self.machine = machine
         self._pending: set[int] = set()
         self._incoming: deque[tuple[int, int, tuple[int, ...]]] = deque()
 
     @property
     def pending(self) -> tuple[str, ...]:
-        """Local events that wait, the next one first."""
+        """Names of the pending local events, the next one first."""
         return tuple(self.machine.target.local_events[index].name for index in sorted(self._pending))
 
     def clear(self) -> None:
-        """Forget all events that wait."""
+        """Discard all pending events."""
         self._pending.clear()
         self._incoming.clear()
 
     def raise_local(self, name: str) -> None:
-        """Flag a local event; occurrences that wait together are one."""
+        """Set the flag of a local event; several occurrences before it is handled count as one."""
         self._pending.add(0xFFFE - self.machine.target.local_event_number(name))
 
     def receive(self, event: int, source: int = 0, arguments: Sequence[int] = ()) -> bool:
-        """Put a global event in line."""
-        if len(self._incoming) >= MOST_WAITING:
+        """Append a global event to the queue; return False if the queue is full."""
+        if len(self._incoming) >= MAX_QUEUED_EVENTS:
             return False
         self._incoming.append((event, source, tuple(arguments)))
         return True
 
-    def turn(self, limit: int = TURN) -> bool:
-        """Continue the active handler; if there is none any more, start what waits: global events, then local ones."""
+    def run(self, limit: int = FIRMWARE_BUDGET) -> bool:
+        """Continue the active handler; if none is left, start the next global event, else the next local one."""
         has_run = self.machine.run(limit)
         if self.machine.is_active:
             return has_run
@@ -87,23 +87,23 @@ class FirmwareDispatch:
 
 
 class PlaygroundDispatch:
-    """As the simulated robot of the reference: an event starts at once and kills the handler that is active."""
+    """Dispatch of the reference's simulated robot: an event starts at once and kills the active handler."""
 
     def __init__(self, machine: VirtualMachine) -> None:
-        """Serve a machine."""
+        """Dispatch events to a machine."""
         self.machine = machine
 
     def raise_local(self, name: str) -> None:
-        """Start a local event; nothing happens while the machine is paused inside a handler."""
+        """Start a local event. Does nothing while the machine is paused inside a handler."""
         machine = self.machine
         number = machine.target.local_event_number(name)
         machine.receive(number, machine.node_id, ())
 
     def receive(self, event: int, source: int = 0, arguments: Sequence[int] = ()) -> bool:
-        """Start a global event; nothing happens while the machine is paused inside a handler."""
+        """Start a global event. Does nothing while the machine is paused inside a handler."""
         self.machine.receive(event, source, arguments)
         return True
 
-    def turn(self, limit: int = STEP) -> bool:
-        """Execute the active handler."""
+    def run(self, limit: int = PLAYGROUND_BUDGET) -> bool:
+        """Execute at most ``limit`` instructions of the active handler."""
         return self.machine.run(limit)

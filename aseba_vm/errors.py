@@ -1,6 +1,6 @@
-"""Where and why a text is refused: source positions and the exceptions of the package.
+"""Source positions, hints and the exceptions of this package.
 
-An error is data (kind, arguments, position); its wording comes from :mod:`aseba_vm.messages`.
+An error is data (kind, arguments, position); :mod:`aseba_vm.messages` has its text.
 """
 
 from __future__ import annotations
@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from aseba_vm.messages import MESSAGES, wording
+from aseba_vm.messages import MESSAGES, format_message
 
 Argument = int | str | tuple[int | str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class SourcePos:
-    """A place in a text: index of the code point, row and column, all from 0.
+    """A position in a text: index of the code point, row and column, all from 0.
 
     Source: docs/spec/aseba-language.md section 2.
     """
@@ -28,7 +28,7 @@ class SourcePos:
         return f"{self.row + 1}:{self.col + 1}"
 
     def moved(self, row: int, col: int) -> SourcePos:
-        """Return the place in a file in which the text begins at a row and column."""
+        """Return the position in a file, given the row and column where the text begins in it."""
         return SourcePos(self.offset, self.row + row, self.col + col if self.row == 0 else self.col)
 
 
@@ -41,16 +41,16 @@ class Edit:
     text: str
 
     def applied(self, source: str) -> str:
-        """Return a program with the edit."""
+        """Return the program with this edit applied."""
         return source[: self.start] + self.text + source[self.end :]
 
 
 @dataclass(frozen=True, slots=True)
 class Hint:
-    """What was probably meant where a program is refused, as data.
+    """What was probably meant by a rejected program, as data.
 
-    ``kind`` is a stable identifier, ``arguments`` its ordered values, ``edit`` a change that repairs the place, ``row``
-    a row of the program, from 0, that the sentence names after the arguments.
+    ``kind`` is a stable identifier, ``arguments`` are its ordered values, ``edit`` is a change that corrects the
+    program. ``row`` is a row of the program, from 0; the message states it after the arguments.
     """
 
     kind: str
@@ -59,23 +59,26 @@ class Hint:
     row: int | None = None
 
     def __str__(self) -> str:
-        return self.worded()
+        return self.message()
 
-    def worded(self, messages: Mapping[str, str] = MESSAGES, rows: Sequence[int] = ()) -> str:
-        """Return the sentence; ``rows`` leads from rows of the program to rows of its file, both from 0."""
+    def message(self, messages: Mapping[str, str] = MESSAGES, rows: Sequence[int] = ()) -> str:
+        """Return the text of the hint in the language of ``messages``.
+
+        ``rows`` maps rows of the program to rows of its file, both from 0; without it they are the same.
+        """
         lines = () if self.row is None else ((rows[self.row] if rows else self.row) + 1,)
-        return wording(self.kind, (*self.arguments, *lines), messages)
+        return format_message(self.kind, (*self.arguments, *lines), messages)
 
 
 class AsebaError(Exception):
-    """Base of everything this package raises about other people's input."""
+    """Base class of all errors that this package raises for invalid input."""
 
 
 class CompileError(AsebaError):
-    """A program that is refused: the first error met, in the order of docs/spec/aseba-language.md section 11.
+    """A rejected program: the first error in the order of docs/spec/aseba-language.md section 11.
 
-    ``kind`` is a stable identifier, ``arguments`` its ordered values, ``pos`` the place or None; ``hint`` says what was
-    probably meant, if that is known (:mod:`aseba_vm.frontend.hints`).
+    ``kind`` is a stable identifier, ``arguments`` are its ordered values, ``pos`` is the position or None. ``hint``
+    suggests what was probably meant, if that is known (:mod:`aseba_vm.frontend.hints`).
     """
 
     def __init__(self, kind: str, arguments: tuple[Argument, ...] = (), pos: SourcePos | None = None) -> None:
@@ -86,15 +89,15 @@ class CompileError(AsebaError):
         self.hint: Hint | None = None
 
     def __str__(self) -> str:
-        return wording(self.kind, self.arguments)
+        return format_message(self.kind, self.arguments)
 
     def located(self, name: str) -> str:
-        """Return the message after the name of the file and the place, counted from 1."""
+        """Return the message with the file name and the position (from 1) in front."""
         return f"{name}: {self}" if self.pos is None else f"{name}:{self.pos}: {self}"
 
 
 class TextError(AsebaError):
-    """A file that is not text. ``line`` and ``column`` count from 1; kind and arguments as in a CompileError."""
+    """A file that is not text. ``line`` and ``column`` count from 1; kind and arguments as in CompileError."""
 
     def __init__(self, kind: str, arguments: tuple[Argument, ...], line: int, column: int) -> None:
         super().__init__(kind, arguments, line, column)
@@ -104,16 +107,16 @@ class TextError(AsebaError):
         self.column = column
 
     def __str__(self) -> str:
-        return wording(self.kind, self.arguments)
+        return format_message(self.kind, self.arguments)
 
     def located(self, name: str) -> str:
-        """Return the message after the name of the file and the place."""
+        """Return the message with the file name and the position in front."""
         return f"{name}:{self.line}:{self.column}: {self}"
 
 
 class AeslError(TextError):
-    """A text that is not an .aesl file, or one that breaks its rules."""
+    """A text that is not a valid .aesl file."""
 
 
 class TargetError(AsebaError):
-    """A target description that contradicts itself or lacks a field."""
+    """A target description that is inconsistent or incomplete."""

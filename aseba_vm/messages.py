@@ -1,7 +1,7 @@
-"""The wording of every error and warning, in one table for each language.
+"""Texts of every error, warning and hint in English; other languages are in `messages_<language>.py`.
 
-Kinds and arguments belong to the errors; other languages are `messages_<language>.py`.
-In a template ``{0}`` is an argument, ``{t0}`` a token, ``{l0}`` a list of tokens, ``{v0}`` a token with its value.
+Kinds and arguments come from the errors. In a template, ``{0}`` is an argument, ``{t0}`` a token, ``{l0}`` a list of
+tokens, ``{v0}`` a token with its value.
 """
 
 from __future__ import annotations
@@ -206,14 +206,14 @@ MESSAGES: Mapping[str, str] = {
 }
 
 LANGUAGES: Mapping[str, Mapping[str, str]] = {"en": MESSAGES, "de": GERMAN, "fr": FRENCH, "it": ITALIAN}
-"""Language → its sentences; a table that lacks one leaves it to English."""
+"""Message table of each language; English is used for messages that a table lacks."""
 
 _LONGEST = 60
-"""Letters of a name that are shown; the rest of a longer one is cut."""
+"""Letters of a name that are shown; longer names are truncated."""
 
 
-def wording(kind: str, arguments: Sequence[object], messages: Mapping[str, str] = MESSAGES) -> str:
-    """Return the sentence for an error or a warning; an unknown kind is its own sentence."""
+def format_message(kind: str, arguments: Sequence[object], messages: Mapping[str, str] = MESSAGES) -> str:
+    """Return the text of an error, warning or hint; for an unknown kind, the kind itself with its arguments."""
     template = messages.get(kind, MESSAGES.get(kind))
     if template is None:
         return " ".join([kind, *map(str, arguments)])

@@ -1,4 +1,4 @@
-"""The wording of errors and warnings in German; kinds and arguments as in :mod:`aseba_vm.messages`."""
+"""German texts of errors, warnings and hints; kinds and arguments as in :mod:`aseba_vm.messages`."""
 
 from __future__ import annotations
 

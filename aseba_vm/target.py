@@ -1,4 +1,4 @@
-"""What a program is compiled for: memories, variables, local events and native functions of one kind of node."""
+"""Target descriptions: memory sizes, variables, local events and native functions of one kind of node."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import Any
 
 from aseba_vm.errors import TargetError
 
-#: Words that 16-bit addresses can tell apart.
+#: Number of words that 16-bit addresses can reach.
 LARGEST_MEMORY = 65536
 
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A named range of variable memory; its address follows from the order of declaration. Size in words."""
+    """A named range of variable memory, ``size`` in words. Its address follows from the order of declaration."""
 
     name: str
     size: int
@@ -30,7 +30,7 @@ class LocalEvent:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter of a native: size n > 0 exactly n words, n < 0 the same for equal n, 0 any size."""
+    """A parameter of a native. Size n > 0: exactly n words; n < 0: any size, equal for equal n; 0: any size."""
 
     name: str
     size: int
@@ -38,7 +38,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class NativeFunction:
-    """A function of the node that programs may call."""
+    """A function of the node that programs can call."""
 
     name: str
     parameters: tuple[Parameter, ...] = ()
@@ -46,7 +46,7 @@ class NativeFunction:
 
     @property
     def free_sizes(self) -> tuple[int, ...]:
-        """For each size pushed, in list order, the index of a parameter that has it.
+        """For each size that a call pushes, in list order, the index of a parameter that has it.
 
         Source: docs/spec/aseba-bytecode-vm.md section 6.
         """
@@ -58,7 +58,7 @@ class NativeFunction:
 
 @dataclass(frozen=True, slots=True)
 class TargetDescription:
-    """A kind of node. Sizes in words; addresses of variables are sums of the sizes before them."""
+    """A kind of node. Sizes are in words; the address of a variable is the sum of the sizes before it."""
 
     name: str
     variables_size: int
@@ -70,7 +70,7 @@ class TargetDescription:
 
     @property
     def variables_end(self) -> int:
-        """First address that no variable of the target uses."""
+        """First address after the target's own variables."""
         return sum(variable.size for variable in self.variables)
 
     @property
@@ -84,7 +84,7 @@ class TargetDescription:
         return found
 
     def local_event_number(self, name: str) -> int:
-        """Return the number of a local event, 0xFFFE downwards. Raises KeyError."""
+        """Return the number of a local event, from 0xFFFE downwards. Raises KeyError for an unknown name."""
         for index in range(len(self.local_events) - 1, -1, -1):
             if self.local_events[index].name == name:
                 return 0xFFFE - index
@@ -92,9 +92,9 @@ class TargetDescription:
 
     @classmethod
     def from_data(cls, data: Mapping[str, Any]) -> TargetDescription:
-        """Build from plain data as read from JSON: pairs for variables, names for events, params for natives.
+        """Build a target from plain data as read from JSON: variables as pairs, events as names, natives with params.
 
-        Raises TargetError naming the field that is missing or has a wrong type.
+        Raises TargetError with the field that is missing or has a wrong type.
         """
         try:
             target = cls(

@@ -1,4 +1,4 @@
-"""Ready-made target descriptions: the Thymio II (firmware 14)."""
+"""Predefined target descriptions: the Thymio II (firmware 14)."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ _NATIVES = """
 _DESCRIPTIONS = {
     "button.backward": "the backward button was pressed or released",
     "button.left": "the left button was pressed or released",
-    "button.center": "the centre button was pressed or released",
+    "button.center": "the center button was pressed or released",
     "button.forward": "the forward button was pressed or released",
     "button.right": "the right button was pressed or released",
     "buttons": "the buttons were read (50 Hz)",

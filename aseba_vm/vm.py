@@ -1,9 +1,9 @@
-"""The virtual machine: one object of state, one loop, a budget of instructions.
+"""The virtual machine: one state object, one interpreter loop, a budget of instructions.
 
 Source: docs/spec/aseba-bytecode-vm.md section 10.
 
-The machine never raises for what a program does: a fault stops it, is told in the outbox and kept in ``fault``.
-:mod:`aseba_vm.machine.interpreter` holds the loop, :mod:`aseba_vm.jit.tiering` the quicker ways.
+A program can never make the machine raise: a fault stops it, is appended to ``outbox`` and kept in ``fault``.
+:mod:`aseba_vm.machine.interpreter` has the loop, :mod:`aseba_vm.jit.tiering` the faster translated execution.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from aseba_vm.frontend.pipeline import Program
 from aseba_vm.frontend.symbols import INIT_EVENT
-from aseba_vm.jit.tiering import AUTO, Engine, new_engine
+from aseba_vm.jit.tiering import AUTO, Tiering, create_tiering
 from aseba_vm.machine.code_memory import CodeMemory
 from aseba_vm.machine.costs import NO_COSTS, Costs
 from aseba_vm.machine.data_memory import Variables
@@ -38,11 +38,11 @@ RUNNING = 4
 
 MAX_BREAKPOINTS = 16
 
-_FOREVER = 1 << 62
+_UNLIMITED = 1 << 62
 
 
 class VirtualMachine:
-    """A node's machine. ``variables`` are signed words that the node may read and write between runs."""
+    """The machine of one node. ``variables`` are signed words that the node may read and write between runs."""
 
     def __init__(
         self,
@@ -55,13 +55,18 @@ class VirtualMachine:
         costs: Costs = NO_COSTS,
         engine: str = AUTO,
     ) -> None:
-        """Build an idle machine with empty memories.
+        """Create an idle machine with empty memories.
 
-        ``natives`` are functions by name, added to the standard ones or in their place; one that is missing pops its
-        arguments and leaves a NativeCalled. ``on_reset`` is the node's share in a reset. ``kills_long_events``: an
-        event that reaches the limit of ``run`` is abandoned, as in the 2.x fork, not continued. ``costs`` are what
-        natives and events take of that limit, and add to ``instructions``. ``engine`` says how events are run, one of
-        :data:`aseba_vm.jit.tiering.ENGINES`; they differ in time only.
+        Args:
+            target: memory sizes, variables, local events and natives.
+            natives: implementations by name; they extend or replace the standard ones. A call of a native without
+                implementation pops its arguments and leaves a NativeCalled message.
+            node_id: number of the node.
+            on_reset: called in each reset, for the node's own part of it.
+            kills_long_events: abandon an event that reaches the limit of ``run``, as the 2.x fork does, instead of
+                continuing it in the next run.
+            costs: what natives and events take of the limit and add to ``instructions``.
+            engine: one of :data:`aseba_vm.jit.tiering.ENGINES`. Engines differ in speed only.
         """
         self.target = target
         self.node_id = node_id
@@ -73,8 +78,8 @@ class VirtualMachine:
         self.outbox: list[Message] = []
         self.fault: Fault | None = None
         self.instructions = 0
-        self.surcharge = 0
-        """What the native that is being called takes of the budget, until it is counted."""
+        self.extra_cost = 0
+        """Cost of the native that is being called, until it is added to ``instructions``."""
         self.random_state = 0
         self.tracer: Callable[[int], None] | None = None
         self.stack: list[int] = [0] * target.stack_size
@@ -86,7 +91,7 @@ class VirtualMachine:
         self._natives = [
             (Signature.of(native, costs.of(native.name)), self._functions.get(native.name)) for native in target.natives
         ]
-        self._engine: Engine | None = None
+        self._tiering: Tiering | None = None
         self.use_engine(engine)
 
     # -- state
@@ -94,26 +99,26 @@ class VirtualMachine:
     @property
     def bytecode(self) -> tuple[int, ...]:
         """The bytecode memory, unsigned words."""
-        self._settle()
+        self._flush_edges()
         return tuple(self.code.words)
 
     @property
     def is_active(self) -> bool:
-        """Tell whether an event is being executed."""
+        """Whether an event is being executed."""
         return bool(self.flags & ACTIVE)
 
     @property
     def is_step_by_step(self) -> bool:
-        """Tell whether the machine waits for ``step`` or ``resume``."""
+        """Whether the machine is paused until ``step`` or ``resume``."""
         return bool(self.flags & STEP_BY_STEP)
 
     @property
     def breakpoints(self) -> tuple[int, ...]:
-        """Addresses in the order in which they were set."""
+        """Addresses of the breakpoints in the order in which they were set."""
         return tuple(self._breakpoints)
 
-    def take_messages(self) -> tuple[Message, ...]:
-        """Return what the machine has said since the last time, and forget it."""
+    def pop_messages(self) -> tuple[Message, ...]:
+        """Return the messages since the last call and clear the outbox."""
         messages = tuple(self.outbox)
         self.outbox.clear()
         return messages
@@ -121,33 +126,36 @@ class VirtualMachine:
     # -- commands (docs/spec/aseba-bytecode-vm.md section 10.4)
 
     def set_bytecode(self, words: Sequence[int], start: int = 0) -> None:
-        """Write words and reset. Raises ValueError if they do not fit the memory."""
+        """Write words and reset. Raises ValueError if they do not fit into the memory."""
         if start < 0 or start + len(words) > len(self.code.words):
             raise ValueError(f"{len(words)} words at {start} do not fit a bytecode memory of {len(self.code.words)}")
-        self._settle()
+        self._flush_edges()
         self.code.write(start, words)
         self.reset()
 
     def load(self, program: Program) -> None:
-        """Write a compiled program and let it start: the next ``run`` executes its initialisation."""
+        """Write a compiled program and resume: the next ``run`` executes its initialization."""
         self.set_bytecode(program.words)
         self.resume()
 
     def reset(self) -> None:
-        """Stop, forget what ``when`` remembers as far as the reference does, and start the initialisation, paused."""
-        self._settle()
+        """Stop, clear the state of ``when`` conditions, and start the initialization, paused.
+
+        The conditions are cleared as far as the reference clears them (:meth:`CodeMemory.clear_edges`).
+        """
+        self._flush_edges()
         self.flags = STEP_BY_STEP
         self.fault = None
         self.code.clear_edges()
-        if self._engine is not None:
-            self._engine.forget()
+        if self._tiering is not None:
+            self._tiering.invalidate()
         if self._on_reset is not None:
             self._on_reset(self)
         if not self.setup(INIT_EVENT):
             self.report_state()
 
     def resume(self) -> None:
-        """The *run* command: let events run (again)."""
+        """Leave the paused state and clear the fault (the *run* command)."""
         self.flags &= ~STEP_BY_STEP
         self.fault = None
         self.report_state()
@@ -170,11 +178,11 @@ class VirtualMachine:
             self.report_state()
 
     def report_state(self) -> None:
-        """Say where the machine is."""
+        """Append an ExecutionState message."""
         self.outbox.append(ExecutionState(self.pc, self.flags))
 
     def set_breakpoint(self, pc: int) -> None:
-        """Add a breakpoint if there is room for it, and say so."""
+        """Add a breakpoint if fewer than MAX_BREAKPOINTS are set, and report whether it was added."""
         if not 0 <= pc < len(self.code.words):
             self.stop_on(BadCode(pc, "breakpoint-out-of-range"))
             return
@@ -193,11 +201,11 @@ class VirtualMachine:
         self._breakpoints.clear()
 
     def report_variables(self, start: int, count: int) -> None:
-        """Say the words of a part of the variable memory."""
+        """Append a VariablesRead message with a range of the variable memory."""
         self.outbox.append(VariablesRead(start, tuple(self.variables[start : start + count])))
 
     def write_variables(self, start: int, values: Sequence[int]) -> None:
-        """Set words of the variable memory. Raises ValueError outside the memory."""
+        """Write words, cut to 16 bits, to the variable memory. Raises ValueError outside the memory."""
         if start < 0 or start + len(values) > len(self.variables):
             raise ValueError(f"{len(values)} words at {start} are outside a memory of {len(self.variables)}")
         self.variables.words[start : start + len(values)] = [wrap(value) for value in values]
@@ -223,7 +231,10 @@ class VirtualMachine:
         return address
 
     def receive(self, event: int, source: int, arguments: Sequence[int]) -> None:
-        """Take a global event from the network: store source and arguments, then start it, killing a running one."""
+        """Start a global event from the network after storing source and arguments; this kills an active event.
+
+        Does nothing while the machine is paused inside an event.
+        """
         if self.flags & STEP_BY_STEP and self.flags & ACTIVE:
             return
         declared = self.target.variables
@@ -235,7 +246,7 @@ class VirtualMachine:
         self.setup(event)
 
     def start_local(self, index: int) -> bool:
-        """Start local event ``index`` of the target if no event is active; tell whether it could be tried."""
+        """Start local event ``index`` of the target; return False if another event is active."""
         if self.flags & ACTIVE:
             return False
         declared = self.target.variables
@@ -247,22 +258,22 @@ class VirtualMachine:
     # -- running (docs/spec/aseba-bytecode-vm.md section 10.3)
 
     def run(self, limit: int = 0) -> bool:
-        """Execute the active event until ``limit`` instructions are spent (0: to its end); tell whether it ran at all.
+        """Execute the active event up to ``limit`` instructions (0: no limit); return whether anything was executed.
 
-        With ``costs`` the last operation may go beyond the limit.
+        With ``costs``, the last operation may exceed the limit.
         """
         if self.flags & (ACTIVE | STEP_BY_STEP) != ACTIVE:
             return False
         self.flags |= RUNNING
         try:
             if self._breakpoints or self.tracer is not None:
-                executed, stopped = self._run_watched(limit or _FOREVER)
+                executed, stopped = self._run_watched(limit or _UNLIMITED)
                 if stopped:
                     return True
-            elif self._engine is not None:
-                executed = self._engine.run(limit or _FOREVER)
+            elif self._tiering is not None:
+                executed = self._tiering.run(limit or _UNLIMITED)
             else:
-                executed = interpret(self, limit or _FOREVER)
+                executed = interpret(self, limit or _UNLIMITED)
         except BaseException:
             self.flags &= ~RUNNING
             raise
@@ -273,7 +284,7 @@ class VirtualMachine:
         return True
 
     def _run_watched(self, limit: int) -> tuple[int, bool]:
-        """Run one by one; return the number executed, and whether a breakpoint ended the run."""
+        """Run instruction by instruction; return the number executed and whether a breakpoint ended the run."""
         executed = 0
         running = ACTIVE | RUNNING
         while executed < limit and self.flags & running == running:
@@ -286,32 +297,35 @@ class VirtualMachine:
         return executed, False
 
     def _interpret_one(self) -> int:
-        """Execute one instruction, which the engine does not see; return how many were."""
+        """Execute one instruction in the interpreter and mark the translation as stale; return the number executed."""
         try:
             return self.interpret(1)
         finally:
-            if self._engine is not None:
-                self._engine.doubt()
+            if self._tiering is not None:
+                self._tiering.mark_stale()
 
     def _trace(self) -> None:
         if self.tracer is not None:
             self.tracer(self.pc)
 
-    # -- engines (see aseba_vm.jit.tiering)
+    # -- execution engines (see aseba_vm.jit.tiering)
 
     def use_engine(self, name: str) -> None:
-        """Choose how events run from now on. Raises ValueError for a name that is not in ``ENGINES``."""
-        if self._engine is not None:
-            self._engine.close()
-        self._engine = new_engine(name, self, self._functions)
+        """Select how events are executed. Raises ValueError for a name that is not in ``ENGINES``."""
+        if self._tiering is not None:
+            self._tiering.close()
+        self._tiering = create_tiering(name, self, self._functions)
 
     def interpret(self, limit: int) -> int:
-        """Execute without translation until ``limit`` is spent; return what was. For the engine."""
-        self._settle()
+        """Execute without translation up to ``limit``; return the budget used. Called by the tiering."""
+        self._flush_edges()
         return interpret(self, limit)
 
     def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
-        """Call a native with the words it pops; do nothing and say so if they lie outside memory. For the engine."""
+        """Call a native with the words it pops; return False if an argument lies outside memory.
+
+        Called by the interpreter and the tiering.
+        """
         signature, function = self._natives[number]
         call = NativeCall(self, signature, popped)
         if not call.is_inside_memory:
@@ -321,14 +335,14 @@ class VirtualMachine:
             return True
         try:
             function(call)
-        except NativeFault as refusal:
-            call.report(refusal)
+        except NativeFault as error:
+            call.report(error)
         for fault in call.faults:
-            self.refuse(pc, fault)
+            self.stop_on_native_fault(pc, fault)
         return True
 
-    def refuse(self, pc: int, fault: NativeFault) -> None:
-        """Stop for what a native at ``pc`` refused. For the engine."""
+    def stop_on_native_fault(self, pc: int, fault: NativeFault) -> None:
+        """Stop because a native called at ``pc`` raised ``fault``. Called by the tiering."""
         if isinstance(fault, DivisionFault):
             self.stop_on(DivisionByZero(pc))
         elif isinstance(fault, DequeFault):
@@ -337,28 +351,28 @@ class VirtualMachine:
             self.stop_on(NodeSpecific(pc, fault.reason))
 
     def charge(self, instructions: int) -> None:
-        """Take more of the budget for the native that is being called, where natives cost anything."""
+        """Add to the cost of the native that is being called, if costs are enabled."""
         if self.costs is not NO_COSTS:
-            self.surcharge += instructions
+            self.extra_cost += instructions
 
-    def price(self, number: int, popped: Sequence[int]) -> int:
-        """Return what a call of a native takes of the budget, beyond its instruction. For the interpreter."""
-        return self._natives[number][0].price(popped)
+    def native_cost(self, number: int, popped: Sequence[int]) -> int:
+        """Return the cost of a native call beyond its instruction. Called by the interpreter."""
+        return self._natives[number][0].call_cost(popped)
 
-    def price_of_emit(self, words: int) -> int:
-        """Return what an event takes of the budget, beyond its instruction. For the interpreter."""
+    def emit_cost(self, words: int) -> int:
+        """Return the cost of an emitted event beyond its instruction. Called by the interpreter."""
         return self.costs.emit.of(words)
 
     def count_popped(self, number: int) -> int:
-        """Return how many words a native pops. For the interpreter."""
+        """Return how many words a native pops. Called by the interpreter."""
         return self._natives[number][0].count
 
-    def _settle(self) -> None:
-        if self._engine is not None:
-            self._engine.settle()
+    def _flush_edges(self) -> None:
+        if self._tiering is not None:
+            self._tiering.flush_edges()
 
     def stop_on(self, fault: Fault) -> None:
-        """End the event for a fault, and say so. For the interpreter."""
+        """Stop the event because of a fault and report the fault. Called by the interpreter."""
         self.flags = STEP_BY_STEP
         self.fault = fault
         self.outbox.append(fault)

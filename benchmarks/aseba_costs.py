@@ -71,13 +71,13 @@ def measure(rounds: int) -> None:
                 for _ in range(rounds if "flash" not in native.name and "sound." not in native.name else 20):
                     machine.variables[FIRST:end] = [1] * (end - FIRST)
                     device.body.wanted = ""
-                    machine.surcharge = 0
+                    machine.extra_cost = 0
                     times.append(_timed(lambda: machine.invoke(number, 0, popped)))  # noqa: B023  # called at once
-                charged = 1 + signature.price(popped) + machine.surcharge
-                machine.surcharge = 0
+                charged = 1 + signature.call_cost(popped) + machine.extra_cost
+                machine.extra_cost = 0
                 device.pop_commands()
                 device.pop_load()
-                machine.take_messages()
+                machine.pop_messages()
                 taken = statistics.median(times) / unit_us
                 mark = "  short" if taken > SHORT * charged else ""
                 print(f"{native.name:24s} {size:4d} words {taken:9.0f} instructions, charged {charged:6d}{mark}")

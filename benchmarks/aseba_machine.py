@@ -23,8 +23,9 @@ from functools import cache
 from pathlib import Path
 
 from aseba_vm import VirtualMachine, compile
-from aseba_vm.jit.basic_blocks import Known, Memories
-from aseba_vm.jit.host import Host, PythonHost
+from aseba_vm.jit.basic_blocks import Memories
+from aseba_vm.jit.host import JitHost, PythonHost
+from aseba_vm.jit.ir import KnownNative
 from aseba_vm.jit.tiering import INTERPRETER, PYTHON, WASM, Translation
 from aseba_vm.jit.wasm_backend import is_available
 from aseba_vm.jit.wasm_host import WasmHost
@@ -189,7 +190,7 @@ def _runner(words: tuple[int, ...], engine: str) -> Callable[[], int]:
     machine.set_bytecode(words)
     machine.resume()
     machine.run()
-    machine.take_messages()
+    machine.pop_messages()
 
     def run() -> int:
         before = machine.instructions
@@ -213,19 +214,19 @@ def _translation_time(size: int, *, is_wasm: bool) -> float:
         count += 1
     words = program.words + (0,) * (THYMIO_II.bytecode_size - len(program.words))
     signatures = tuple(Signature.of(native) for native in THYMIO_II.natives)
-    known = tuple(Known(signature, True, True) for signature in signatures)
+    known = tuple(KnownNative(signature, True, True) for signature in signatures)
     memories = Memories(THYMIO_II.variables_size, THYMIO_II.bytecode_size, THYMIO_II.stack_size, signatures)
     times = []
     for _ in range(7):
-        host: Host = WasmHost(_Nobody()) if is_wasm else PythonHost(_Nobody())
+        host: JitHost = WasmHost(_Nobody()) if is_wasm else PythonHost(_Nobody())
         begun = time.process_time()
         translation = Translation(words, memories, known, is_wasm=is_wasm)
         assert translation.blocks is not None
-        host.begin(len(translation.blocks.branches))
+        host.reserve_edges(len(translation.blocks.branches))
         for event in program.events:
             entry = translation.entry(event.address)
             assert entry is not None
-            host.make(entry.code)
+            host.instantiate(entry.code)
         times.append(time.process_time() - begun)
         host.close()
     return round(1000 * statistics.median(times), 2)
@@ -241,7 +242,7 @@ class _Nobody:
     def call_native(self, _number: int, _pc: int, _popped: tuple[int, ...]) -> int:
         raise AssertionError("translated code was run")
 
-    def refuse_translated(self, _pc: int, _reason: int) -> None:
+    def stop_on_translated_fault(self, _pc: int, _reason: int) -> None:
         raise AssertionError("translated code was run")
 
     def emit(self, _number: int, _words: tuple[int, ...]) -> None:

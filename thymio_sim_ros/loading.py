@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from aseba_vm import AeslError
-from aseba_vm.aesl.text_decoding import decoded
+from aseba_vm.aesl.text_decoding import decode
 from aseba_vm.errors import TextError
 from thymio_sim_ros import resources
 from thymio_sim_ros.device.layout import THYMIO
@@ -103,7 +103,7 @@ def read_text(path: str) -> tuple[str, str]:
     if found.suffix.lower() not in _PROGRAMS:
         raise resources.ResourceError(f"{found}: expected a file whose name ends in {', '.join(_PROGRAMS)}")
     try:
-        return decoded(found.read_bytes()).text, found.name
+        return decode(found.read_bytes()).text, found.name
     except TextError as error:
         raise resources.ResourceError(f"{found}: line {error.line}, column {error.column}: {error}") from error
     except OSError as error:

@@ -1,4 +1,4 @@
-"""What an .aesl file says: events, constants and programs that the nodes of one network share.
+"""Contents of an .aesl file: events, constants and programs that the nodes of a network share.
 
 Source: docs/spec/aseba-language.md section 13.
 """
@@ -11,7 +11,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 
 _OTHER_DEVICES = re.compile(r"e-?puck|dummynode|marxbot|handbot|smartrob", re.IGNORECASE)
-"""Names of nodes that are kinds of devices other than Thymios; any other unknown name may be that of one Thymio."""
+"""Node names that identify devices other than Thymios; any other unknown name may belong to one Thymio."""
 _VPL_PLUGINS = frozenset(("ThymioVisualProgramming", "ThymioVPL"))
 _VPL_DATA = "vplroot"
 _VPL_EVENTS = (("pair_run", 1), ("debug_log", 14))
@@ -19,7 +19,7 @@ _VPL_EVENTS = (("pair_run", 1), ("debug_log", 14))
 
 @dataclass(frozen=True, slots=True)
 class Plugin:
-    """Data of an editor plug-in: its name, the name of its data element (empty if it has none), and its XML text."""
+    """Data of an editor plug-in: its name, the name of its data element (empty if there is none), and its XML text."""
 
     name: str
     element: str
@@ -30,8 +30,8 @@ class Plugin:
 class Node:
     """A program: name of the node type, number of the node (0: any; the 2.x fork writes a UUID), code, plug-in data.
 
-    ``anchors`` lead from the code back to the file: an offset in the code with its row and column in the file (all from
-    0) wherever the two do not simply go on side by side: after entities, CDATA marks, comments and child elements.
+    ``anchors`` map the code to the file: an offset in the code with its row and column in the file, all from 0,
+    wherever the two stop being contiguous: after entities, CDATA marks, comments and child elements.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Node:
         return (row + rows, len(between) - between.rfind("\n") - 1) if rows else (row, col + len(between))
 
     def rows_in_file(self) -> tuple[int, ...]:
-        """Return, for each row of the code, the row of the file in which it begins, from 0."""
+        """Return, for each row of the code, the row of the file in which it starts, from 0."""
         ends = [at for at, letter in enumerate(self.code) if letter == "\n"]
         rows: list[int] = []
         for row, offset in enumerate((0, *(end + 1 for end in ends))):
@@ -62,10 +62,11 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A part of a file as it was written: ``event``, ``constant``, ``keywords`` or ``node`` with what it says, or
-    ``text`` (all between them, comments and unknown elements too).
+    """A part of a file as it was written.
 
-    Of a node, ``opening`` is its tag, ``others`` its comments and unknown elements, ``tools`` its plug-in element.
+    ``kind`` is ``event``, ``constant``, ``keywords`` or ``node``, with its ``value``, or ``text`` for everything
+    between them, including comments and unknown elements. For a node, ``opening`` is its tag, ``others`` its comments
+    and unknown elements, ``tools`` its plug-in element.
     """
 
     kind: str
@@ -80,8 +81,8 @@ class Piece:
 class Network:
     """A whole file: global events (name, words), constants (name, value), keyword flag, nodes.
 
-    ``pieces`` are the file that was read; they do not count in comparisons, and let ``dumps`` change no more of the
-    file than what was changed in the network.
+    ``pieces`` are the parts of the file that was read. They are ignored in comparisons; ``dumps`` uses them to change
+    only the parts that differ.
     """
 
     events: tuple[tuple[str, int], ...] = ()
@@ -91,7 +92,7 @@ class Network:
     pieces: tuple[Piece, ...] = field(default=(), compare=False, repr=False)
 
     def node(self, name: str, node_id: int | str = 0) -> Node | None:
-        """Return the program for a node: its number and name if both match, else the first of that name."""
+        """Return the program for a node: with its number and name if there is one, else the first with its name."""
         same_name = [node for node in self.nodes if node.name == name]
         exact = [node for node in same_name if node.node_id == node_id]
         return next(iter(exact or same_name), None)
@@ -99,8 +100,10 @@ class Network:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """The nodes of a file that one kind of device can run: ``named`` after it, ``guessed`` with a name of their own
-    (that of a device, or none); ``others`` are for other devices.
+    """The nodes of a file that one kind of device can run.
+
+    ``named`` are named after the device. ``guessed`` have another name (that of one robot, or none). ``others`` are for
+    other devices.
     """
 
     named: tuple[Node, ...]
@@ -109,12 +112,12 @@ class Selection:
 
     @property
     def nodes(self) -> tuple[Node, ...]:
-        """All nodes to be run, named ones first."""
+        """All nodes to be run, the named ones first."""
         return (*self.named, *self.guessed)
 
 
 def select(network: Network, names: Collection[str]) -> Selection:
-    """Sort the nodes of a network for devices of these names.
+    """Sort the nodes of a network for devices with these names.
 
     Editors name a node after the device it was connected to (``Thymio_4 on LAPTOP``), so an unknown name says nothing
     about the program. Only nodes named after another kind of device, such as ``e-puck``, are left out, and only if the
@@ -128,12 +131,12 @@ def select(network: Network, names: Collection[str]) -> Selection:
 
 
 def is_other_device(node: Node) -> bool:
-    """Return whether a node is named after a kind of device that is no Thymio."""
+    """Return whether a node is named after a kind of device that is not a Thymio."""
     return _OTHER_DEVICES.match(node.name.strip()) is not None
 
 
 def with_vpl_events(network: Network) -> Network:
-    """Add the events that VPL declares by itself if a node has VPL data and the file does not declare them."""
+    """Add the events that VPL declares implicitly if a node has VPL data and the file does not declare them."""
     plugins = [plugin for node in network.nodes for plugin in node.plugins]
     if not any(plugin.name in _VPL_PLUGINS or plugin.element == _VPL_DATA for plugin in plugins):
         return network

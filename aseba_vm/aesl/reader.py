@@ -1,4 +1,4 @@
-"""Reads an .aesl file: expat walks through it, and what it finds becomes a Network or one located error."""
+"""Reader of .aesl files: expat events become a Network, or one error with a position."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from dataclasses import replace
 from xml.parsers import expat
 
 from aseba_vm.aesl.network import Network, Node, Piece, Plugin
-from aseba_vm.aesl.xml_errors import fault_of_xml, place_of
+from aseba_vm.aesl.xml_errors import error_of_xml, position_at
 from aseba_vm.errors import AeslError, Argument
 from aseba_vm.frontend.lexer import is_name
 
 MAX_CHARACTERS = 1_000_000
-"""Own limit: a hundred times the longest program that fits a Thymio."""
+"""Limit of this reader: a hundred times the longest program that fits into a Thymio."""
 MAX_NODES = 64
-"""Own limit: more robots than a class has."""
+"""Limit of this reader: more robots than a class has."""
 MAX_EVENT_WORDS = 258
-"""Words that a message on the Aseba network holds (docs/spec/aseba-language.md sections 12 and 13)."""
+"""Words that fit into a message of the Aseba network (docs/spec/aseba-language.md sections 12 and 13)."""
 
 _MARK = "\ufeff"  # byte order mark
 _NUMBER = re.compile(r"\s*[+-]?[0-9]{1,10}\s*")
@@ -29,7 +29,7 @@ _INSIDE_PLUGIN = 4
 
 
 def checked_length(text: str) -> str:
-    """Return a text that is no longer than allowed. Raises AeslError."""
+    """Return the text. Raises AeslError if it is longer than MAX_CHARACTERS."""
     if len(text) > MAX_CHARACTERS:
         row = text.count("\n", 0, MAX_CHARACTERS)
         col = MAX_CHARACTERS - text.rfind("\n", 0, MAX_CHARACTERS) - 1
@@ -38,13 +38,13 @@ def checked_length(text: str) -> str:
 
 
 def read(text: str, *, is_strict: bool) -> Network:
-    """Return what a file says; ``is_strict`` refuses what the reference would let pass. Raises AeslError."""
+    """Parse a file; ``is_strict`` also rejects what the reference accepts. Raises AeslError."""
     network = _Reader(checked_length(text.removeprefix(_MARK)), is_strict=is_strict).read()
     return replace(network, pieces=(Piece("text", _MARK), *network.pieces)) if text.startswith(_MARK) else network
 
 
 class _OpenNode:
-    """A node whose end has not come yet."""
+    """A node whose end tag has not been read yet."""
 
     def __init__(self, name: str, node_id: int | str, row: int = 0, col: int = 0) -> None:
         self.name = name
@@ -59,7 +59,7 @@ class _OpenNode:
         self.tools: list[str] = []  # XML of the plug-ins' elements
 
     def add(self, text: str, row: int, col: int) -> None:
-        """Go on with the code; expat ends a text at each line end and entity."""
+        """Append text to the code; expat splits text at each line end and entity."""
         if (row, col) != self.next_place:
             if self.anchors[-1][0] == self.size:
                 self.anchors.pop()
@@ -77,25 +77,25 @@ class _OpenNode:
 
 
 class _Reader:
-    """Collects the parts of a file while expat walks through it."""
+    """Collects the parts of a file from the events of expat."""
 
     def __init__(self, text: str, *, is_strict: bool) -> None:
         self.data = text.encode("utf-8", "surrogatepass")
         self.is_strict = is_strict
         self.parser = expat.ParserCreate("utf-8")
-        self.parser.buffer_text = False  # so that the place of a text is that of its first character
+        self.parser.buffer_text = False  # so the position of a text is that of its first character
         self.parser.StartDoctypeDeclHandler = self.document_type
         self.parser.EntityDeclHandler = self.entity
         self.parser.SkippedEntityHandler = self.unknown_entity
         self.parser.StartElementHandler = self.start
         self.parser.EndElementHandler = self.end
-        self.parser.CommentHandler = lambda _: self.aside(b"-->")
-        self.parser.ProcessingInstructionHandler = lambda *_: self.aside(b"?>")
+        self.parser.CommentHandler = lambda _: self.keep_markup(b"-->")
+        self.parser.ProcessingInstructionHandler = lambda *_: self.keep_markup(b"?>")
         self.path: list[str] = []
-        self.starts: list[int] = []  # where each open element begins, in bytes
+        self.starts: list[int] = []  # byte offset of each open element
         self.pieces: list[Piece] = []
-        self.told = 0  # bytes that are in a piece already
-        self.firsts: dict[tuple[object, ...], int] = {}  # where a name or number was first given, in bytes
+        self.consumed = 0  # bytes that are already in a piece
+        self.first_uses: dict[tuple[object, ...], int] = {}  # byte offset of the first use of a name or number
         self.events: list[tuple[str, int]] = []
         self.constants: list[tuple[str, int]] = []
         self.keywords: bool | None = None
@@ -107,12 +107,12 @@ class _Reader:
             self.parser.Parse(self.data, True)
         except expat.ExpatError as error:
             open_elements = list(zip(self.path, self.starts, strict=True))
-            raise fault_of_xml(error.code, self.data, self.parser.ErrorByteIndex, open_elements) from error
+            raise error_of_xml(error.code, self.data, self.parser.ErrorByteIndex, open_elements) from error
         if self.is_strict and not self.nodes:
             raise self.error("aesl-no-node", (), self.data.rfind(b"<"))
         return Network(tuple(self.events), tuple(self.constants), self.keywords, tuple(self.nodes), tuple(self.pieces))
 
-    # -- what expat finds
+    # -- expat handlers
 
     def document_type(self, name: str, system: str | None, public: str | None, _: object) -> None:
         if self.is_strict and (system is not None or public is not None):
@@ -123,7 +123,7 @@ class _Reader:
         raise self.error("aesl-entity", (name,), at)
 
     def unknown_entity(self, *_: object) -> None:
-        """An entity that another document might declare; no other document is ever read."""
+        """Reject an entity that another document might declare; no other document is ever read."""
         raise self.error("xml-entity", ())
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
@@ -159,7 +159,9 @@ class _Reader:
         start = self.starts.pop()
         depth = len(self.path)
         if depth == 0:
-            self.piece("closing", self.parser.CurrentByteIndex if self.is_open(start) else self.told, len(self.data))
+            self.piece(
+                "closing", self.parser.CurrentByteIndex if self.is_open(start) else self.consumed, len(self.data)
+            )
         elif depth == 1:
             self.finish(name, start)
         elif depth == _INSIDE_NODE and self.path[1] == "node":
@@ -170,7 +172,7 @@ class _Reader:
             self.open_node.finish_plugin(name, self.text(start, self.element_end(start)))
 
     def finish(self, name: str, start: int) -> None:
-        """Keep a definition with its text; what is unknown stays between the pieces."""
+        """Keep a definition with its text; unknown elements become part of the text between the pieces."""
         end = self.element_end(start)
         match name:
             case "event":
@@ -189,32 +191,32 @@ class _Reader:
     def characters(self, text: str) -> None:
         self.open_node.add(text, self.parser.CurrentLineNumber - 1, self.parser.CurrentColumnNumber)
 
-    def aside(self, closing: bytes) -> None:
-        """Keep a comment or an instruction for another program if it stands in a node."""
+    def keep_markup(self, closing: bytes) -> None:
+        """Keep a comment or a processing instruction that is inside a node."""
         if len(self.path) == _INSIDE_NODE and self.path[1] == "node":
             start = self.parser.CurrentByteIndex
             self.open_node.others.append(self.text(start, self.data.index(closing, start) + len(closing)))
 
-    # -- our elements
+    # -- known elements
 
     def event(self, attributes: Mapping[str, str]) -> tuple[str, int]:
         name = self.name("event", attributes)
         size = self.number(attributes, "size")
         if size < 0 or (self.is_strict and size > MAX_EVENT_WORDS):
-            raise self.wrong("aesl-event-size", "size", (name, size, MAX_EVENT_WORDS))
+            raise self.attribute_error("aesl-event-size", "size", (name, size, MAX_EVENT_WORDS))
         return name, size
 
     def constant(self, attributes: Mapping[str, str]) -> tuple[str, int]:
         name = self.name("constant", attributes)
         value = self.number(attributes, "value")
         if self.is_strict and not -0x8000 <= value <= 0x7FFF:
-            raise self.wrong("aesl-constant-value", "value", (name, value))
+            raise self.attribute_error("aesl-constant-value", "value", (name, value))
         return name, value
 
     def flag(self, attributes: Mapping[str, str]) -> bool:
         flag = attributes.get("flag", "").strip()
         if self.is_strict and flag not in ("true", "false"):
-            raise self.wrong("aesl-keywords", "flag", (flag,))
+            raise self.attribute_error("aesl-keywords", "flag", (flag,))
         return flag == "true"
 
     def node(self, attributes: Mapping[str, str]) -> _OpenNode:
@@ -223,9 +225,9 @@ class _Reader:
         node_id = int(written_id) if _NUMBER.fullmatch(written_id) else written_id
         if self.is_strict:
             if not (0 <= node_id <= 0xFFFF if isinstance(node_id, int) else _UUID.fullmatch(node_id)):
-                raise self.wrong("aesl-node-id", "nodeId", (written_id,))
+                raise self.attribute_error("aesl-node-id", "nodeId", (written_id,))
             if node_id != 0:
-                self.check_first("node", "nodeId", name, written_id)
+                self.check_unique("node", "nodeId", name, written_id)
             if len(self.nodes) == MAX_NODES:
                 raise self.error("aesl-many-nodes", (MAX_NODES,))
         start = self.starts[-1]
@@ -240,16 +242,16 @@ class _Reader:
         name = self.attribute(attributes, "name")
         if self.is_strict:
             if not is_name(name):
-                raise self.wrong("aesl-name", "name", (name,))
-            self.check_first(kind, "name", name)
+                raise self.attribute_error("aesl-name", "name", (name,))
+            self.check_unique(kind, "name", name)
         return name
 
-    def check_first(self, kind: str, attribute: str, *names: str) -> None:
-        """Refuse what a file says twice."""
-        first = self.firsts.setdefault((kind, *names), self.starts[-1])
+    def check_unique(self, kind: str, attribute: str, *names: str) -> None:
+        """Reject a name or number that the file already uses."""
+        first = self.first_uses.setdefault((kind, *names), self.starts[-1])
         if first != self.starts[-1]:
-            line = place_of(self.data, first)[0] + 1
-            raise self.wrong(f"aesl-{kind}-twice", attribute, (*names, line))
+            line = position_at(self.data, first)[0] + 1
+            raise self.attribute_error(f"aesl-{kind}-twice", attribute, (*names, line))
 
     def attribute(self, attributes: Mapping[str, str], name: str) -> str:
         if name not in attributes:
@@ -257,15 +259,15 @@ class _Reader:
         return attributes[name]
 
     def number(self, attributes: Mapping[str, str], name: str) -> int:
-        """Return the value of an attribute; a missing one is 0 unless the reading is strict."""
+        """Return the value of an attribute; a missing one is 0 unless reading is strict."""
         if name not in attributes and not self.is_strict:
             return 0
         text = self.attribute(attributes, name)
         if not _NUMBER.fullmatch(text):
-            raise self.wrong("aesl-number", name, (name, text))
+            raise self.attribute_error("aesl-number", name, (name, text))
         return int(text)
 
-    # -- places
+    # -- positions
 
     def is_in_tools(self) -> bool:
         return self.path[1:_INSIDE_TOOLS] == ["node", "toolsPlugins"]
@@ -275,7 +277,7 @@ class _Reader:
         return found.end() if found else start
 
     def is_open(self, start: int) -> bool:
-        """Tell whether the element that ends here has a closing tag."""
+        """Return whether the element that ends here has a closing tag."""
         return not self.data.endswith(b"/>", start, self.tag_end(start))
 
     def element_end(self, start: int) -> int:
@@ -287,18 +289,18 @@ class _Reader:
         return self.data[start:end].decode("utf-8", "surrogatepass")
 
     def piece(self, kind: str, start: int, end: int, value: object = None, *parts: str) -> None:
-        """Keep a part of the file, and before it what lies between it and the part before."""
-        if start > self.told:
-            self.pieces.append(Piece("text", self.text(self.told, start)))
+        """Append a part of the file, preceded by the text since the part before it."""
+        if start > self.consumed:
+            self.pieces.append(Piece("text", self.text(self.consumed, start)))
         self.pieces.append(Piece(kind, self.text(start, end), value, *parts))
-        self.told = end
+        self.consumed = end
 
     def error(self, kind: str, arguments: tuple[Argument, ...], at: int | None = None) -> AeslError:
-        row, col = place_of(self.data, self.parser.CurrentByteIndex if at is None else max(at, 0))
+        row, col = position_at(self.data, self.parser.CurrentByteIndex if at is None else max(at, 0))
         return AeslError(kind, arguments, row + 1, col + 1)
 
-    def wrong(self, kind: str, attribute: str, arguments: tuple[Argument, ...]) -> AeslError:
-        """An error at the value of an attribute of the element that begins here."""
+    def attribute_error(self, kind: str, attribute: str, arguments: tuple[Argument, ...]) -> AeslError:
+        """Return an error at the value of an attribute of the current element."""
         start = self.starts[-1]
         tag = self.data[start : self.tag_end(start)]
         found = re.search(rb"\s" + attribute.encode() + rb"\s*=\s*[\"']", tag)

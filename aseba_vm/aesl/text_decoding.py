@@ -1,4 +1,4 @@
-"""Bytes of a file to its text: UTF-8 unless a byte order mark or an XML declaration says otherwise."""
+"""Decoding of text files: UTF-8 unless a byte order mark or an XML declaration says otherwise."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from aseba_vm.errors import TextError
 
 _MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
 _UNMARKED = ((b"<\0", "utf-16-le"), (b"\0<", "utf-16-be"))
-"""How XML begins in UTF-16 without a mark."""
+"""First bytes of XML in UTF-16 without a byte order mark."""
 _DECLARED = re.compile(rb"\s*<\?xml\s[^>]*?encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"']")
 
 
 @dataclass(frozen=True, slots=True)
 class TextFile:
-    """A text without byte order mark, and the codec that brings its bytes back."""
+    """A text without byte order mark, and the codec that reproduces its bytes."""
 
     text: str
     encoding: str
@@ -26,13 +26,13 @@ class TextFile:
         return text.encode(self.encoding)
 
 
-def decoded(data: bytes) -> TextFile:
-    """Return the text of a file. Raises TextError with the place of the first byte that is wrong."""
+def decode(data: bytes) -> TextFile:
+    """Return the text of a file. Raises TextError with the position of the first invalid byte."""
     encoding = next((name for mark, name in (*_MARKS, *_UNMARKED) if data.startswith(mark)), None)
     if encoding is None:
         declared = _DECLARED.match(data)
         encoding = declared[1].decode("ascii") if declared else "utf-8"
-        if encoding.lower().startswith("utf-16"):  # the declaration could not be read if that were true
+        if encoding.lower().startswith("utf-16"):  # impossible: the declaration was readable as ASCII
             encoding = "utf-8"
     try:
         return TextFile(data.decode(encoding), encoding)

@@ -1,4 +1,4 @@
-"""Writes an .aesl file: what was read as it was, what is new as the reference writes it."""
+"""Writer of .aesl files: unchanged parts as they were read, new ones in the format of the reference."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _HEADINGS = {
 _ORDER = tuple(_HEADINGS)
 
 
-def written(network: Network) -> str:
+def write(network: Network) -> str:
     """Return the text of a file."""
     return "".join(_edited(network)) if network.pieces else _new(network)
 
@@ -30,7 +30,7 @@ def _new(network: Network) -> str:
 
 
 def _values(network: Network) -> dict[str, Sequence[object]]:
-    """What a network holds, by kind of piece."""
+    """Return the contents of a network by kind of piece."""
     return {
         "event": network.events,
         "constant": network.constants,
@@ -40,7 +40,7 @@ def _values(network: Network) -> dict[str, Sequence[object]]:
 
 
 def _section(kind: str, values: Sequence[object]) -> list[str]:
-    """Lines of all elements of a kind with the comments that editors write."""
+    """Return the lines of all elements of a kind with the comments that editors write."""
     if kind != "node":
         return ["", "", _HEADINGS[kind], *(_element(value, kind) for value in values)]
     lines: list[str] = []
@@ -51,7 +51,7 @@ def _section(kind: str, values: Sequence[object]) -> list[str]:
 
 
 def _element(value: object, kind: str, was: Piece | None = None, line_end: str = "\n") -> str:
-    """The text of one element; of a node that was in the file already, what has not changed stays."""
+    """Return the text of one element; unchanged parts of a node that was read are kept."""
     match kind, value:
         case "event", (str(name), int(size)):
             return f"<event size={quoteattr(str(size))} name={_quoted(name)}/>"
@@ -78,11 +78,11 @@ def _node(node: Node, was: Piece | None, line_end: str) -> str:
     return f"{opening}{code}{others}{tools}</node>"
 
 
-# -- changes of a file that was read
+# -- changes to a file that was read
 
 
 def _edited(network: Network) -> Iterator[str]:
-    """The pieces of the file, each element as it was, written anew, left out, or with new ones around it."""
+    """Yield the pieces of the file, each element unchanged, rewritten, omitted, or with new ones around it."""
     pieces = network.pieces
     line_end = "\r\n" if any("\r\n" in piece.xml for piece in pieces) else "\n"
     texts: dict[int, str] = {}
@@ -103,8 +103,9 @@ def _edited(network: Network) -> Iterator[str]:
 
 
 def _replaced(kind: str, old: list[tuple[int, Piece]], new: Sequence[object], line_end: str) -> dict[int, str]:
-    """The new texts of the pieces of a kind; ``old`` are these pieces with their places. What is equal at the beginning
-    and at the end stays.
+    """Return the new texts of the pieces of a kind, by index; ``old`` are its pieces with their indexes.
+
+    Equal elements at the beginning and at the end stay unchanged.
     """
     shorter = min(len(old), len(new))
     first = next((at for at in range(shorter) if old[at][1].value != new[at]), shorter)
@@ -126,7 +127,7 @@ def _replaced(kind: str, old: list[tuple[int, Piece]], new: Sequence[object], li
 def _insert(
     kind: str, values: Sequence[object], pieces: Sequence[Piece], texts: dict[int, str], before: dict[int, str]
 ) -> None:
-    """Put the first elements of a kind under its heading if the file has one, else before the kinds that follow it."""
+    """Insert the first elements of a kind below its heading if there is one, else before the kinds that follow it."""
     heading = _HEADINGS[kind]
     for at, piece in enumerate(pieces):
         text = texts.get(at, piece.xml)
@@ -140,7 +141,7 @@ def _insert(
 
 
 def _opened(pieces: Sequence[Piece]) -> dict[int, str]:
-    """A root that was one empty tag becomes two, as it has content now."""
+    """Return the texts that split an empty root tag into two, since it has content now."""
     at = next(at for at, piece in enumerate(pieces) if piece.kind == "opening")
     tag, closing = pieces[at].xml, pieces[-1].xml
     if not tag.endswith("/>"):

@@ -1,4 +1,4 @@
-"""Where XML is broken, and how to say so to somebody who has never heard of XML."""
+"""Errors of malformed XML: position and a message for readers who do not know XML."""
 
 from __future__ import annotations
 
@@ -25,14 +25,17 @@ _KINDS: Mapping[int, str] = {
 }
 
 
-def place_of(data: bytes, at: int) -> tuple[int, int]:
+def position_at(data: bytes, at: int) -> tuple[int, int]:
     """Return row and column, from 0, of a byte of UTF-8 text."""
     before = data[: max(at, 0)]
     return before.count(b"\n"), len(before[before.rfind(b"\n") + 1 :].decode("utf-8", "replace"))
 
 
-def fault_of_xml(code: int, data: bytes, at: int, open_elements: Sequence[tuple[str, int]]) -> AeslError:
-    """Return the error for a code of expat at a byte; elements that are open there: name and first byte of each."""
+def error_of_xml(code: int, data: bytes, at: int, open_elements: Sequence[tuple[str, int]]) -> AeslError:
+    """Return the error for an expat error code at byte ``at``.
+
+    ``open_elements`` are the name and the first byte of each element that is open there.
+    """
     kind = _KINDS.get(code, "xml-other")
     arguments: tuple[Argument, ...] = ()
     at = min(at, len(data)) if at >= 0 else len(data)
@@ -42,18 +45,18 @@ def fault_of_xml(code: int, data: bytes, at: int, open_elements: Sequence[tuple[
         at = data.rfind(b"</", 0, at + 1)
         found = data[at + 2 : data.find(b">", at)].decode("utf-8", "replace").strip()
         name, start = open_elements[-1]
-        arguments = (found, name, place_of(data, start)[0] + 1)
+        arguments = (found, name, position_at(data, start)[0] + 1)
     elif kind == "xml-empty" and open_elements:
         name, start = open_elements[-1]
-        kind, arguments = "xml-unclosed", (name, place_of(data, start)[0] + 1)
+        kind, arguments = "xml-unclosed", (name, position_at(data, start)[0] + 1)
     elif kind == "xml-other":
         arguments = (errors.messages[code],)
-    row, col = place_of(data, at)
+    row, col = position_at(data, at)
     return AeslError(kind, arguments, row + 1, col + 1)
 
 
 def _unexpected(kind: str, data: bytes, at: int) -> tuple[str, int, tuple[Argument, ...]]:
-    """Blame the bare ``<`` or ``&`` before a wrong character where there is one."""
+    """Report the bare ``<`` or ``&`` before an invalid character, if there is one, instead of the character."""
     if kind == "xml-character":
         before = data[max(at - 200, 0) : at]
         mark = max(before.rfind(b"<"), before.rfind(b"&"))

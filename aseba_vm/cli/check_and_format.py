@@ -1,4 +1,4 @@
-"""The commands ``check`` and ``fmt``: many files and folders, each on its own, with one summary and one exit code."""
+"""The commands ``check`` and ``fmt``: files and folders one by one, with one summary and one exit code."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from aseba_vm.cli.report import (
     table_of,
 )
 from aseba_vm.errors import AeslError, CompileError, TextError
-from aseba_vm.frontend.formatter import formatted
+from aseba_vm.frontend.formatter import format_program
 from aseba_vm.frontend.pipeline import assemble
-from aseba_vm.messages import wording
+from aseba_vm.messages import format_message
 from aseba_vm.target import TargetDescription
 from aseba_vm.targets import THYMIO_II
 
@@ -38,7 +38,7 @@ UNREADABLE = 2
 
 @dataclass(slots=True)
 class _Run:
-    """What one command line has come to so far."""
+    """State of one command line: options, exit code and findings so far."""
 
     options: argparse.Namespace
     messages: Mapping[str, str]
@@ -51,11 +51,11 @@ class _Run:
         return getattr(self.options, "format", "text") == "json"
 
     def report(self, finding: Finding, text: str, code: int = CLEAN) -> None:
-        """Keep a finding, and print it unless all are printed at the end."""
+        """Record a finding, and print it unless all are printed as JSON at the end."""
         self.code = max(self.code, code)
         self.findings.append(finding)
         if not self.is_json:
-            label = wording("label-hint", (), self.messages)
+            label = format_message("label-hint", (), self.messages)
             print(finding.text(text, label=label, is_colored=is_colored()), file=sys.stderr)
 
     def fail(self, error: OSError) -> None:
@@ -66,7 +66,7 @@ class _Run:
             print(f"aseba: {error.filename}: {error.strerror}", file=sys.stderr)
 
     def each(self, handle: Callable[[str, TextFile], None]) -> None:
-        """Handle every file of the command line; one that is refused does not stop the others."""
+        """Process every file of the command line; an error in one does not stop the others."""
         files: dict[str, None] = {}
         for name in self.options.files:
             try:
@@ -92,12 +92,12 @@ class _Run:
         return None
 
     def summarize(self, kind: str, *numbers: int) -> None:
-        """Print a sentence about all files if there are several."""
+        """Print a summary if there are several files."""
         if self.files > 1:
-            print(wording(kind, (self.files, *numbers), self.messages), file=sys.stderr)
+            print(format_message(kind, (self.files, *numbers), self.messages), file=sys.stderr)
 
     def count(self, severity: str) -> int:
-        """The number of files with findings of a severity."""
+        """Return the number of files with findings of a severity."""
         return len({finding.file for finding in self.findings if finding.severity == severity})
 
 
@@ -125,7 +125,7 @@ def _check_file(run: _Run, name: str, text: str, target: TargetDescription) -> N
 def _check_source(run: _Run, source: Source, text: str, target: TargetDescription, *, is_optional: bool) -> None:
     def note(kind: str, argument: str) -> None:
         row, col = source.place(0)
-        sentence = wording(kind, (source.node.name, argument), run.messages)
+        sentence = format_message(kind, (source.node.name, argument), run.messages)
         run.report(Finding(source.name, row + 1, col + 1, NOTE, kind, sentence), text)
 
     try:
@@ -139,10 +139,10 @@ def _check_source(run: _Run, source: Source, text: str, target: TargetDescriptio
         return run.report(finding, text, FOUND)
     if source.is_guessed:
         note("note-checked-as", target.name)
-    for doubt in program.warnings:
-        row, col = source.place(doubt.pos.offset)
-        sentence = wording(doubt.kind, doubt.arguments, run.messages)
-        run.report(Finding(source.name, row + 1, col + 1, WARNING, doubt.kind, sentence), text)
+    for warning in program.warnings:
+        row, col = source.place(warning.pos.offset)
+        sentence = format_message(warning.kind, warning.arguments, run.messages)
+        run.report(Finding(source.name, row + 1, col + 1, WARNING, warning.kind, sentence), text)
     return None
 
 
@@ -150,7 +150,7 @@ def _check_source(run: _Run, source: Source, text: str, target: TargetDescriptio
 
 
 def format_files(options: argparse.Namespace) -> int:
-    """Lay programs out regularly; return the exit code."""
+    """Format programs; return the exit code."""
     run = _Run(options, table_of(options.language))
     changed: list[str] = []
     run.each(lambda name, file: _format_file(run, name, file, changed))
@@ -174,7 +174,7 @@ def _format_file(run: _Run, name: str, file: TextFile, changed: list[str]) -> No
         if is_different:
             run.code = max(run.code, FOUND)
             if not options.diff:
-                print(f"{name}: {wording('fmt-different', (), run.messages)}", file=sys.stderr)
+                print(f"{name}: {format_message('fmt-different', (), run.messages)}", file=sys.stderr)
     elif options.write and name != "-":
         if is_different:
             try:
@@ -186,12 +186,12 @@ def _format_file(run: _Run, name: str, file: TextFile, changed: list[str]) -> No
 
 
 def _formatted(run: _Run, name: str, text: str) -> str | None:
-    """Return the text with regular programs; None if one of them is refused."""
+    """Return the text with formatted programs; None if one of them has an error."""
     network = network_of(text, THYMIO_II.name)
     nodes = []
     for node in network.nodes:
         try:
-            nodes.append(replace(node, code=formatted(node.code)))
+            nodes.append(replace(node, code=format_program(node.code)))
         except CompileError as error:
             run.report(finding_of_compile_error(Source(name, node), error, run.messages), text, FOUND)
             return None

@@ -1,4 +1,4 @@
-"""What the command line is given: a file's text, the program in it, and what the program is compiled with."""
+"""Inputs of the command line: text of a file, the programs in it, and their definitions."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pathlib import Path
 
 from aseba_vm import aesl
 from aseba_vm.aesl.network import select, with_vpl_events
-from aseba_vm.aesl.text_decoding import TextFile, decoded
-from aseba_vm.cli.output import named
+from aseba_vm.aesl.text_decoding import TextFile, decode
+from aseba_vm.cli.output import named_errors
 from aseba_vm.errors import AeslError, CompileError
 from aseba_vm.frontend.pipeline import Stages, compile_stages
 from aseba_vm.target import TargetDescription
@@ -20,7 +20,7 @@ Definitions = tuple[tuple[str, int], ...]
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A program and its definitions, and places in its file; ``is_guessed``: its node has a name of its own."""
+    """A program, its definitions and its file. ``is_guessed``: its node is not named after the target."""
 
     name: str
     node: aesl.Node
@@ -29,23 +29,23 @@ class Source:
     is_guessed: bool = False
 
     def compiled(self, target: TargetDescription) -> Stages:
-        """Compile. Raises CompileError."""
+        """Compile the program. Raises CompileError."""
         return compile_stages(self.node.code, target, self.events, self.constants)
 
     def stages(self, target: TargetDescription) -> Stages:
-        """Compile. Raises SourceError, which has its place in the file."""
+        """Compile the program. Raises SourceError, which has the file."""
         try:
             return self.compiled(target)
         except CompileError as error:
             raise SourceError(self, error) from error
 
     def place(self, offset: int) -> tuple[int, int]:
-        """Row and column in the file, from 0."""
+        """Return row and column in the file, from 0."""
         return self.node.place(offset)
 
 
 class SourceError(Exception):
-    """A program that is refused, with the file it stands in."""
+    """A program with an error, and its source."""
 
     def __init__(self, source: Source, error: CompileError) -> None:
         super().__init__(source, error)
@@ -55,13 +55,13 @@ class SourceError(Exception):
 
 def read_text(name: str) -> TextFile:
     """Return the text of a file; ``-`` is the standard input. Raises OSError, TextError."""
-    with named(name):
+    with named_errors(name):
         data = sys.stdin.buffer.read() if name == "-" else Path(name).read_bytes()
-    return decoded(data)
+    return decode(data)
 
 
 def network_of(text: str, name: str) -> aesl.Network:
-    """Return what a text says; a bare program becomes that of a node. Raises AeslError."""
+    """Return the network of a text; a plain program becomes that of a node called ``name``. Raises AeslError."""
     return aesl.loads(text, strict=True) if aesl.is_aesl(text) else aesl.bare(text, name)
 
 
@@ -73,9 +73,9 @@ def sources_of(
     events: Sequence[tuple[str, int]],
     constants: Sequence[tuple[str, int]],
 ) -> list[Source]:
-    """Return the programs of a file for a kind of device, or of the nodes of one name.
+    """Return the programs of a file for a kind of device, or those of the nodes called ``node``.
 
-    Raises AeslError if no node has that name.
+    Raises AeslError if there is no such node.
     """
     network = with_vpl_events(network)
     definitions = (*network.events, *events), (*network.constants, *constants)

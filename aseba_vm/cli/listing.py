@@ -1,4 +1,4 @@
-"""The bytecode of a program beside its source: for those who want to see what became of each line."""
+"""Listing: the bytecode of a program beside its source."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ def listing(
     events: Sequence[tuple[str, int]] = (),
     lines: Sequence[int] | None = None,
 ) -> str:
-    """Return the event table, each segment with its instructions, and the use of the memories.
+    """Return the event table, each segment with its instructions, and the memory use.
 
-    After ``|`` stand the line and its number where the code of another line begins; ``lines`` are the numbers that the
-    rows of ``source`` have in their file (from 1).
+    After ``|`` there are the number and text of the source line, where the code of another line begins. ``lines`` are
+    the numbers of the rows of ``source`` in their file (from 1).
     """
     rows = source.split("\n")
     numbers = range(1, len(rows) + 1) if lines is None else lines
@@ -46,7 +46,7 @@ def listing(
 
 
 class _Names:
-    """What the numbers in instructions stand for."""
+    """Names of the numbers in instructions."""
 
     def __init__(self, program: Program, target: TargetDescription, events: Sequence[tuple[str, int]]) -> None:
         self.natives = [native.name for native in target.natives]
@@ -78,7 +78,7 @@ class _Names:
 def _heading(entry: EventEntry | SubEntry) -> str:
     if isinstance(entry, SubEntry):
         return f"sub {entry.name}"
-    return f"onevent {entry.name}" if entry.name else "initialisation"
+    return f"onevent {entry.name}" if entry.name else "initialization"
 
 
 def _use(program: Program, target: TargetDescription) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """The command line: ``python -m aseba_vm check | compile | dis | run | fmt``, also installed as ``aseba``.
 
-Exit codes: 0 done, 1 the program is wrong or stopped with a fault, 2 the command line or a file is wrong.
+Exit codes: 0 done, 1 the program has an error or stopped with a fault, 2 wrong usage or unreadable file.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from aseba_vm.bytecode import describe
 from aseba_vm.cli import check_and_format
 from aseba_vm.cli.inputs import Source, SourceError, network_of, read_text, sources_of
 from aseba_vm.cli.listing import listing
-from aseba_vm.cli.output import end_by, open_standard_streams, standard_output, write_file
+from aseba_vm.cli.output import exit_by_signal, open_standard_streams, standard_output, write_file
 from aseba_vm.cli.report import (
     WARNING,
     Finding,
@@ -32,7 +32,7 @@ from aseba_vm.errors import AeslError, CompileError, TargetError, TextError
 from aseba_vm.frontend.lexer import is_name
 from aseba_vm.frontend.pipeline import Program, assemble
 from aseba_vm.machine.machine_messages import Emitted, NativeCalled
-from aseba_vm.messages import LANGUAGES, wording
+from aseba_vm.messages import LANGUAGES, format_message
 from aseba_vm.target import TargetDescription
 from aseba_vm.targets import THYMIO_II
 from aseba_vm.vm import VirtualMachine
@@ -41,7 +41,7 @@ DONE = 0
 WRONG_PROGRAM = 1
 WRONG_USE = 2
 
-_STAGES = ("tokens", "tree", "expanded", "optimised", "code", "words")
+_STAGES = ("tokens", "tree", "expanded", "optimized", "code", "words")
 
 _EXAMPLES = """\
 examples:
@@ -54,18 +54,18 @@ examples:
 
 Without installation: python -m aseba_vm check robot.aesl
 
-A file is an .aesl file if it begins with '<', else the bare text of a program; '-' is the standard input. Of a folder
-check and fmt take all files *.aesl and *.aseba below it.
-exit codes: 0 done, 1 a program is wrong or stopped with a fault, 2 wrong use or unreadable file.
+A file that begins with '<' is an .aesl file, any other file is the plain text of a program; '-' is the standard input.
+check and fmt process all *.aesl and *.aseba files in a folder and its subfolders.
+exit codes: 0 done, 1 a program has an error or stopped with a fault, 2 wrong usage or unreadable file.
 """
 
 
 class _UseError(Exception):
-    """A command line that cannot be obeyed."""
+    """An invalid command line."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Obey a command line and return the exit code."""
+    """Execute a command line and return the exit code."""
     open_standard_streams()
     options = _parser().parse_args(arguments)
     command: Callable[[argparse.Namespace], int] = options.command
@@ -74,8 +74,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with standard_output():
             return command(options)
-    except SourceError as refusal:
-        _print(options, finding_of_compile_error(refusal.source, refusal.error, table_of(options.language)))
+    except SourceError as error:
+        _print(options, finding_of_compile_error(error.source, error.error, table_of(options.language)))
         return WRONG_PROGRAM
     except AeslError as error:
         _print(options, finding_of_text_error(options.file, error, table_of(options.language)))
@@ -83,13 +83,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except TextError as error:
         _print(options, finding_of_text_error(options.file, error, table_of(options.language)))
     except BrokenPipeError:
-        pass  # nobody reads on, and no more is to be said
+        pass  # the reader of the output has closed it
     except OSError as error:
         print(f"aseba: {error.filename}: {error.strerror}", file=sys.stderr)
     except (_UseError, TargetError) as error:
         print(f"aseba: {error}", file=sys.stderr)
     except KeyboardInterrupt:
-        end_by(signal.SIGINT)
+        exit_by_signal(signal.SIGINT)
     return WRONG_USE
 
 
@@ -145,8 +145,8 @@ def _run(options: argparse.Namespace) -> int:
         if not numbers and not is_local:
             raise _UseError(f"no event is called {name!r}")
         if machine.is_step_by_step:
-            break  # it stopped, and hears nothing any more
-        if is_local:  # which hides a global one in the program, too
+            break  # it has stopped and accepts no more events
+        if is_local:  # it hides a global event of the same name, as in programs
             machine.start_local(0xFFFE - target.local_event_number(name))
         else:
             machine.receive(numbers[-1], machine.node_id, values)
@@ -161,9 +161,9 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _execute(machine: VirtualMachine, program: Program, source: Source, options: argparse.Namespace) -> None:
-    """Run the active event to its end or to the limit, and tell what it said."""
+    """Run the active event to its end or to the limit, and print its messages."""
     machine.run(options.limit)
-    for message in machine.take_messages():
+    for message in machine.pop_messages():
         if isinstance(message, Emitted):
             print("emit", source.events[message.number][0], *message.arguments)
         elif isinstance(message, NativeCalled):
@@ -172,14 +172,14 @@ def _execute(machine: VirtualMachine, program: Program, source: Source, options:
     if fault is not None:
         row = program.row_of(fault.pc)
         place = options.file if row is None else f"{options.file}:{source.node.rows_in_file()[row] + 1}"
-        print(f"{place}: stopped: {fault.sentence_in(options.language)}", file=sys.stderr)
+        print(f"{place}: stopped: {fault.message_in(options.language)}", file=sys.stderr)
     elif machine.is_active:
         print(f"{options.file}: still running after {options.limit} instructions", file=sys.stderr)
         machine.stop()
 
 
 def _trace(machine: VirtualMachine, program: Program, rows: Sequence[int], pc: int) -> None:
-    """Show an instruction that is about to be executed: address, line, instruction, stack."""
+    """Print the instruction about to be executed: address, line, instruction, stack."""
     row = program.row_of(pc)
     line = "" if row is None else rows[row] + 1
     stack = " ".join(map(str, machine.stack[: machine.sp + 1]))
@@ -190,7 +190,7 @@ def _trace(machine: VirtualMachine, program: Program, rows: Sequence[int], pc: i
 
 
 def _read(options: argparse.Namespace) -> list[Source]:
-    """The programs of the file for the chosen node, or for the target."""
+    """Return the programs of the file for the selected node, or for the target."""
     options.text = read_text(options.file).text
     kind = _target(options).name
     network = network_of(options.text, options.node or kind)
@@ -217,13 +217,13 @@ def _compile_source(options: argparse.Namespace, source: Source, *, with_warning
         raise SourceError(source, error) from error
     for warning in program.warnings if with_warnings else ():
         row, col = source.place(warning.pos.offset)
-        sentence = wording(warning.kind, warning.arguments, table_of(options.language))
+        sentence = format_message(warning.kind, warning.arguments, table_of(options.language))
         _print(options, Finding(options.file, row + 1, col + 1, WARNING, warning.kind, sentence))
     return program
 
 
 def _print(options: argparse.Namespace, finding: Finding) -> None:
-    label = wording("label-hint", (), table_of(options.language))
+    label = format_message("label-hint", (), table_of(options.language))
     print(finding.text(options.text, label=label, is_colored=is_colored()), file=sys.stderr)
 
 
@@ -255,14 +255,14 @@ def _parser() -> argparse.ArgumentParser:
         "--format",
         choices=("text", "json"),
         default="text",
-        help="json: all findings on the output, default: %(default)s",
+        help="json: all findings on the standard output; default: %(default)s",
     )
     compiling = _command(commands, "compile", _compile, "write the bytecode")
     compiling.add_argument("--format", choices=("hex", "json", "listing"), default="hex", help="default: %(default)s")
     compiling.add_argument("-o", "--output", metavar="FILE", help="default: standard output")
-    dis = _command(commands, "dis", _dis, "show the bytecode or another stage of the compiler")
-    dis.add_argument("--stage", choices=_STAGES, default="words", help="default: %(default)s")
-    run = _command(commands, "run", _run, "execute the initialisation and events, then show variables")
+    dis = _command(commands, "dis", _dis, "print the bytecode or another stage of the compiler")
+    dis.add_argument("--stage", type=_stage, choices=_STAGES, default="words", help="default: %(default)s")
+    run = _command(commands, "run", _run, "execute the initialization and events, then print variables")
     run.add_argument(
         "--raise",
         dest="raised",
@@ -270,27 +270,25 @@ def _parser() -> argparse.ArgumentParser:
         type=_raised,
         action="append",
         default=[],
-        help="event to raise afterwards, with values between commas (may be repeated)",
+        help="event to raise afterwards, with comma-separated values (may be repeated)",
     )
     run.add_argument("--show", metavar="VARIABLE", action="append", help="default: all variables of the program")
-    run.add_argument("--trace", action="store_true", help="show each instruction: address, line, stack before it")
-    limit_help = "instructions of one event, default: %(default)s"
+    run.add_argument("--trace", action="store_true", help="print address, line and stack before each instruction")
+    limit_help = "maximum instructions per event, default: %(default)s"
     run.add_argument(
         "--limit", metavar="N", type=partial(_number, lowest=1, highest=10**12), default=1_000_000, help=limit_help
     )
-    fmt = _command(commands, "fmt", check_and_format.format_files, "indent and space programs regularly")
+    fmt = _command(commands, "fmt", check_and_format.format_files, "normalize indentation and spacing")
     result = fmt.add_mutually_exclusive_group()
     result.add_argument("--write", action="store_true", help="change the files")
     result.add_argument("--check", action="store_true", help="change nothing; exit code 1 if a file would change")
-    result.add_argument("--diff", action="store_true", help="as --check, and show the changes")
+    result.add_argument("--diff", action="store_true", help="like --check, and print the changes")
     for command in (check, fmt):
-        command.add_argument("files", metavar="FILE", nargs="+", help=".aesl file, bare program text, folder, or -")
+        command.add_argument("files", metavar="FILE", nargs="+", help=".aesl file, plain program text, folder, or -")
     for command in (compiling, dis, run):
-        command.add_argument("file", metavar="FILE", help=".aesl file, bare program text, or -")
+        command.add_argument("file", metavar="FILE", help=".aesl file, plain program text, or -")
     for command in (check, compiling, dis, run, fmt):
-        command.add_argument(
-            "--lang", choices=sorted(LANGUAGES), help="language of messages, default: that of the locale"
-        )
+        command.add_argument("--lang", choices=sorted(LANGUAGES), help="language of messages, default: from the locale")
     for command in (check, compiling, dis, run):
         command.add_argument("--target", metavar="FILE", help="target description in JSON, default: Thymio II")
         command.add_argument("--node", metavar="NAME", help="node of the .aesl file, default: that of the target")
@@ -324,6 +322,10 @@ def _command(
     command = commands.add_parser(name, help=about, description=f"{about[0].upper()}{about[1:]}.")
     command.set_defaults(command=function)
     return command
+
+
+def _stage(text: str) -> str:
+    return {"optimised": "optimized"}.get(text, text)  # the former spelling is still accepted
 
 
 def _number(text: str, lowest: int, highest: int) -> int:

@@ -1,4 +1,4 @@
-"""Where programs write, and how a command line ends: files, the standard output, Ctrl-C."""
+"""Output of programs: files, the standard output, and the end of a process on Ctrl-C."""
 
 from __future__ import annotations
 
@@ -17,21 +17,24 @@ STANDARD_OUTPUT = "standard output"
 
 def write_file(name: str, data: bytes) -> None:
     """Write a file. Raises OSError."""
-    with named(name):
+    with named_errors(name):
         Path(name).write_bytes(data)
 
 
 def rewrite_file(name: str, data: bytes) -> None:
-    """Give a file another content; where that fails, it keeps its own, or is not there as before. Raises OSError."""
-    with named(name):
-        path = Path(name).resolve()  # what a link leads to
+    """Replace the content of a file atomically. Raises OSError.
+
+    On failure the file keeps its content, or still does not exist.
+    """
+    with named_errors(name):
+        path = Path(name).resolve()  # the target of a link
         is_new = not path.exists()
         handle, new = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
         try:
             with os.fdopen(handle, "wb") as file:
                 file.write(data)
             with path.open("ab"):
-                pass  # a file that may not be written is not replaced either
+                pass  # a read-only file must not be replaced
             shutil.copymode(path, new)
             os.replace(new, path)
         except BaseException:
@@ -42,14 +45,14 @@ def rewrite_file(name: str, data: bytes) -> None:
 
 
 def print_bytes(data: bytes) -> None:
-    """Write to the standard output what is already encoded. Raises OSError."""
+    """Write encoded text to the standard output. Raises OSError."""
     sys.stdout.flush()
     sys.stdout.buffer.write(data)
 
 
 @contextmanager
 def standard_output() -> Iterator[None]:
-    """Meanwhile letters that the standard output lacks become escapes, and its errors have a name. Raises OSError."""
+    """Escape characters that the encoding of the standard output lacks, and name it in errors. Raises OSError."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")
     try:
@@ -58,15 +61,15 @@ def standard_output() -> Iterator[None]:
     except OSError as error:
         if error.filename is not None:
             raise
-        # What is left of it goes nowhere: the end of the process would fail on it once more.
+        # Discard the rest of the buffer, on which the end of the process would fail again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise OSError(error.errno, error.strerror, STANDARD_OUTPUT) from error
 
 
 def open_standard_streams() -> None:
-    """Open those of stdin, stdout and stderr that were closed (`aseba … >&-`, some services): to nowhere.
+    """Open closed standard streams (`aseba … >&-`, some services) to the null device.
 
-    Python leaves None in their place, and the next file that is opened gets their descriptor.
+    Otherwise Python leaves None in their place, and the next file that is opened gets their descriptor.
     """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
@@ -78,15 +81,15 @@ def open_standard_streams() -> None:
             setattr(sys, name, open(number, mode, encoding="utf-8", closefd=False))  # noqa: SIM115
 
 
-def end_by(number: int) -> None:
-    """End the process as this signal does, without a word: on SIGINT the loop of a shell around it ends, too."""
+def exit_by_signal(number: int) -> None:
+    """End the process as the default action of a signal, so a shell loop around it also ends on SIGINT."""
     signal.signal(number, signal.SIG_DFL)
     signal.raise_signal(number)
 
 
 @contextmanager
-def named(name: str) -> Iterator[None]:
-    """Meanwhile errors have the name of this file. Raises OSError."""
+def named_errors(name: str) -> Iterator[None]:
+    """Give OSErrors raised in the block the name of a file. Raises OSError."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""What the command line reports about files: findings as data, and their text and JSON."""
+"""Findings about files as data, and their text and JSON forms."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from aseba_vm.cli.inputs import Source
-from aseba_vm.cli.source_snippet import excerpt
+from aseba_vm.cli.source_snippet import source_snippet
 from aseba_vm.errors import CompileError, Edit, Hint, TextError
-from aseba_vm.messages import LANGUAGES, MESSAGES, wording
+from aseba_vm.messages import LANGUAGES, MESSAGES, format_message
 
 PROGRAM_ENDINGS = (".aesl", ".aseba")
-"""Files of a folder that are programs."""
+"""Suffixes of program files in a folder."""
 
 ERROR, WARNING, NOTE = "error", "warning", "note"
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Something about a file: place from 1 or None, severity (error, warning, note), kind, sentence; hint and edit.
+    """A message about a file: position from 1 or None, severity (error, warning, note), kind, text, hint and edit.
 
-    ``edit`` is (line, column, end line, end column, text), all from 1, the end exclusive, the text that of the program.
+    ``edit`` is (line, column, end line, end column, text), all from 1, the end exclusive; the text is program text.
     """
 
     file: str
@@ -37,22 +37,22 @@ class Finding:
 
     @property
     def located(self) -> str:
-        """The sentence after the file, the place and what is no error."""
+        """The message with the file, the position and the severity (unless it is an error) in front."""
         place = self.file if self.line is None else f"{self.file}:{self.line}:{self.column}"
         severity = "" if self.severity == ERROR else f"{self.severity}: "
         return f"{place}: {severity}{self.message}"
 
     def text(self, source: str, *, label: str, is_colored: bool) -> str:
-        """Return the finding for people: one line, the line of the file with a mark, the hint."""
+        """Return the finding as text: the message, the line of the file with a caret, the hint."""
         lines = [self.located]
         if source and self.line is not None and self.column is not None and self.severity != NOTE:
-            lines.append(excerpt(source, self.line - 1, self.column - 1, is_coloured=is_colored))
+            lines.append(source_snippet(source, self.line - 1, self.column - 1, is_colored=is_colored))
         if self.hint:
             lines.append(f"{label}: {self.hint}")
         return "\n".join(lines)
 
     def data(self) -> dict[str, object]:
-        """Return the finding for programs."""
+        """Return the finding as JSON data."""
         keys = ("line", "column", "end_line", "end_column", "text")
         return {
             "file": self.file,
@@ -67,16 +67,16 @@ class Finding:
 
 
 def finding_of_compile_error(source: Source, error: CompileError, messages: Mapping[str, str]) -> Finding:
-    """Return the finding for a program that is refused."""
+    """Return the finding for a program with an error."""
     line, column = (None, None) if error.pos is None else _from_1(source.place(error.pos.offset))
-    message = wording(error.kind, error.arguments, messages)
+    message = format_message(error.kind, error.arguments, messages)
     hint, edit = _hint(source, error.hint, messages)
     return Finding(source.name, line, column, ERROR, error.kind, message, hint, edit)
 
 
 def finding_of_text_error(file: str, error: TextError, messages: Mapping[str, str]) -> Finding:
     """Return the finding for a file that cannot be read as text or as an .aesl file."""
-    message = wording(error.kind, error.arguments, messages)
+    message = format_message(error.kind, error.arguments, messages)
     return Finding(file, error.line, error.column, ERROR, error.kind, message)
 
 
@@ -85,7 +85,7 @@ def _hint(
 ) -> tuple[str, tuple[int, int, int, int, str] | None]:
     if hint is None:
         return "", None
-    sentence = hint.worded(messages, source.node.rows_in_file())
+    sentence = hint.message(messages, source.node.rows_in_file())
     return sentence, None if hint.edit is None else _edit(source, hint.edit)
 
 
@@ -103,9 +103,9 @@ def _from_1(place: tuple[int, int]) -> tuple[int, int]:
 
 
 def files_in(name: str) -> Sequence[str]:
-    """Return the programs below a folder in order of their paths, or the name itself of anything else.
+    """Return the programs in a folder and its subfolders in order of path, or the name itself if it is no folder.
 
-    Hidden folders are left out and links to folders are not followed. Raises FileNotFoundError for a folder without
+    Hidden folders are skipped and links to folders are not followed. Raises FileNotFoundError for a folder without
     programs.
     """
     if name == "-" or not os.path.isdir(name):
@@ -120,7 +120,7 @@ def files_in(name: str) -> Sequence[str]:
 
 
 def user_language(environment: Mapping[str, str]) -> str:
-    """Return the language of the user's messages, as the locale variables say; English if it is not translated."""
+    """Return the language of messages from the locale variables; English if there is no translation."""
     locale = next((value for key in ("LC_ALL", "LC_MESSAGES", "LANG") if (value := environment.get(key))), "")
     choices = environment.get("LANGUAGE", "").split(":") if locale not in ("", "C", "POSIX", "C.UTF-8") else []
     for choice in (*choices, locale):
@@ -131,10 +131,10 @@ def user_language(environment: Mapping[str, str]) -> str:
 
 
 def table_of(language: str) -> Mapping[str, str]:
-    """Return the sentences of a language."""
+    """Return the messages of a language."""
     return LANGUAGES.get(language, MESSAGES)
 
 
 def is_colored() -> bool:
-    """Return whether the standard error takes colors."""
+    """Return whether the standard error shows colors."""
     return sys.stderr.isatty() and "NO_COLOR" not in os.environ

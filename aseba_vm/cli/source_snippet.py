@@ -1,4 +1,4 @@
-"""The line of a text that an error is about, with a mark under the place."""
+"""The source line of an error with a caret under the position."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ _RED = "\x1b[31m"
 _PLAIN = "\x1b[0m"
 
 
-def excerpt(text: str, row: int, col: int, *, is_coloured: bool = False) -> str:
-    """Return a line of ``text`` and, below it, a caret under the column; row and column count from 0.
+def source_snippet(text: str, row: int, col: int, *, is_colored: bool = False) -> str:
+    """Return a line of ``text`` and a caret under the column below it; row and column count from 0.
 
-    A very long line is cut around the place; a place after the end of the text shows its last line.
+    A very long line is cut around the position; a position after the end of the text selects its last line.
     """
     rows = text.split("\n", row + 1)
     line = rows[min(row, len(rows) - 1)].rstrip("\r")
@@ -20,5 +20,5 @@ def excerpt(text: str, row: int, col: int, *, is_coloured: bool = False) -> str:
         letter if letter.isprintable() or letter == "\t" else "?" for letter in line[first : first + _WIDTH]
     )
     indent = "".join("\t" if letter == "\t" else " " for letter in shown[: col - first])
-    caret = f"{_RED}^{_PLAIN}" if is_coloured else "^"
+    caret = f"{_RED}^{_PLAIN}" if is_colored else "^"
     return f"{shown}\n{indent}{caret}"

@@ -1,4 +1,4 @@
-"""Eighth to tenth pass: tree to instructions, terminators, stack check.
+"""Passes 8 to 10, code generation: tree to instructions, terminators, stack check.
 
 Source: docs/spec/aseba-bytecode-vm.md sections 4 to 9.
 """
@@ -35,22 +35,22 @@ from aseba_vm.frontend.syntax_tree import (
 )
 from aseba_vm.frontend.trampoline import Task, run
 
-_FARTHEST = 2047
-"""Words that the 12 bits of a jump can lead over."""
+_MAX_JUMP = 2047
+"""Longest jump in words that 12 bits can hold."""
 
 
-def emit(tree: Tree) -> tuple[Segment, ...]:
-    """Return the code of each event that has any, in source order, and of every subroutine, ended and measured."""
-    initial = _Builder(is_sub=False, number=INIT_EVENT, name="", row=0)
+def generate(tree: Tree) -> tuple[Segment, ...]:
+    """Return the terminated code of each event that has any, in source order, and of every subroutine."""
+    initial = _SegmentBuilder(is_sub=False, number=INIT_EVENT, name="", row=0)
     builders = [initial]
     numbers = {sub.name: sub.index for sub in tree.subs}
     current = initial
     for statement in tree.body.statements:
         if isinstance(statement, OnEvent):
-            current = _Builder(False, statement.number, statement.name, statement.pos.row)
+            current = _SegmentBuilder(False, statement.number, statement.name, statement.pos.row)
             builders.append(current)
         elif isinstance(statement, Sub):
-            current = _Builder(True, statement.index, statement.name, statement.pos.row)
+            current = _SegmentBuilder(True, statement.index, statement.name, statement.pos.row)
             current.last_row = statement.pos.row
             builders.append(current)
         else:
@@ -60,7 +60,7 @@ def emit(tree: Tree) -> tuple[Segment, ...]:
 
 
 def check_stack(segments: Sequence[Segment], stack_size: int) -> int:
-    """Return the estimate of the deepest stack, calls included. Raises CompileError if it does not fit.
+    """Return the estimated maximum stack depth, including calls. Raises CompileError if it exceeds the stack.
 
     Source: docs/spec/aseba-bytecode-vm.md section 8.
     """
@@ -92,8 +92,8 @@ def check_stack(segments: Sequence[Segment], stack_size: int) -> int:
 
 
 @dataclass(slots=True)
-class _Builder:
-    """Code in the making. Methods append code and return its depth as a task."""
+class _SegmentBuilder:
+    """Code of one segment. The methods append code and return its stack depth as a task."""
 
     is_sub: bool
     number: int
@@ -106,7 +106,7 @@ class _Builder:
     subs: dict[str, int] = field(default_factory=dict)
     far_blocks: list[SourcePos] = field(default_factory=list)
     skips_to: int = -1
-    """Size of the code at the last place that a branch leads to."""
+    """Size of the code at the most recent branch target."""
 
     def add(self, op: Op, operand: int, row: int | None, *more: int) -> None:
         self.code.append(Instruction(op, operand, more, row))
@@ -162,7 +162,7 @@ class _Builder:
         raise AssertionError(expression)
 
     def constant(self, value: int, row: int) -> None:
-        """Push a constant; the short form is chosen by the 32-bit value."""
+        """Push a constant. The 32-bit value decides whether the short form is used."""
         if abs(value) <= 2047:
             self.add(Op.PUSH, value & 0xFFF, row)
         else:
@@ -219,7 +219,7 @@ class _Builder:
         return depth
 
     def condition(self, condition: Expression, flags: int, row: int) -> Task[tuple[int, int]]:
-        """Append both operands and a BRANCH without displacement; return depth and index of the BRANCH."""
+        """Append both operands and a BRANCH without offset; return the depth and the index of the BRANCH."""
         assert isinstance(condition, Binary)
         depth: int = yield self.expression(condition.left)
         depth += yield self.expression(condition.right)
@@ -241,7 +241,7 @@ class _Builder:
             otherwise_depth: int = yield self.statement(statement.otherwise)
             depth = max(depth, otherwise_depth)
             self.code[jump] = replace(self.code[jump], operand=self.size - jump_at)
-            if self.size - jump_at > _FARTHEST:
+            if self.size - jump_at > _MAX_JUMP:
                 self.far_blocks.append(statement.pos)
         else:
             self.code[branch] = replace(self.code[branch], more=(self.size - start,))
@@ -257,7 +257,7 @@ class _Builder:
         depth, branch = yield self.condition(loop.condition, 0, row)
         start = self.size - 2
         body_depth: int = yield self.statement(loop.body)
-        if self.size - begin > _FARTHEST:
+        if self.size - begin > _MAX_JUMP:
             self.far_blocks.append(loop.pos)
         self.add(Op.JUMP, (begin - self.size) & 0xFFF, row)
         self.code[branch] = replace(self.code[branch], more=(self.size - start,))

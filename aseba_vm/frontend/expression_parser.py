@@ -1,7 +1,7 @@
-"""Second pass, expressions: tokens to vectors (docs/spec/aseba-language.md sections 4 and 6).
+"""Pass 2, expressions: tokens to vectors (docs/spec/aseba-language.md sections 4 and 6).
 
-A recursive-descent parser, one method per rule of the grammar, which stands above it. Names are looked up and constant
-indexes evaluated on the way.
+A recursive-descent parser with one method per grammar rule; the docstring of each method is its rule. Names are
+resolved and constant indexes evaluated while parsing.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from aseba_vm.errors import CompileError, SourcePos
 from aseba_vm.frontend.folding import simplify
 from aseba_vm.frontend.lexer import Token
-from aseba_vm.frontend.symbols import Symbols
-from aseba_vm.frontend.syntax_tree import Access, Binary, Expression, Listing, Number, Subscript, Unary
+from aseba_vm.frontend.symbols import SymbolTable
+from aseba_vm.frontend.syntax_tree import Access, Binary, Expression, ListLiteral, Number, Subscript, Unary
 from aseba_vm.frontend.token_stream import TokenStream
 from aseba_vm.frontend.trampoline import Task
 from aseba_vm.frontend.vectors import first_constant
@@ -24,7 +24,7 @@ _OPERATORS: Mapping[str, int] = {
     )
     for symbol in symbols.split()
 }
-"""How strongly each binary operator binds; ``not`` stands between ``and`` and the comparisons."""
+"""Precedence of each binary operator, lowest first; ``not`` is between ``and`` and the comparisons."""
 
 _CONDITION = _OPERATORS["or"]
 _NOT = _OPERATORS["and"] + 1
@@ -34,9 +34,9 @@ _PRIMARY = ("(", "[", "-", "~", "abs", "identifier", "integer")
 
 
 class ExpressionParser:
-    """Reads expressions from a stream of tokens; shares stream and symbols with the parser of statements."""
+    """Parses expressions from a token stream; shares stream and symbol table with the parser of statements."""
 
-    def __init__(self, stream: TokenStream, symbols: Symbols) -> None:
+    def __init__(self, stream: TokenStream, symbols: SymbolTable) -> None:
         self.stream = stream
         self.symbols = symbols
 
@@ -76,7 +76,7 @@ class ExpressionParser:
             variable: Expression = yield self.variable(token)
             return variable
         if kind == "[":
-            listing: Listing = yield self.listing()
+            listing: ListLiteral = yield self.listing()
             return listing
         if kind == "(":
             self.stream.advance()
@@ -91,7 +91,7 @@ class ExpressionParser:
             return literal(number, -number.value)
         return Unary(kind, (yield self.unary()), token.pos)
 
-    def listing(self) -> Task[Listing]:
+    def listing(self) -> Task[ListLiteral]:
         """list = "[" , element , { "," , element } , "]\""""
         start = self.stream.expect("[")
         items: list[Expression] = [(yield self.element())]
@@ -99,7 +99,7 @@ class ExpressionParser:
             self.stream.advance()
             items.append((yield self.element()))
         self.stream.expect("]")
-        return Listing(tuple(items), start.pos)
+        return ListLiteral(tuple(items), start.pos)
 
     def element(self) -> Task[Expression]:
         """element = list | expr"""
@@ -132,7 +132,7 @@ class ExpressionParser:
 
 
 def literal(token: Token, value: int) -> Number:
-    """Return a number that was written with or without a minus. Raises CompileError if it does not fit."""
+    """Return a number that was written with or without a minus sign. Raises CompileError if it is out of range."""
     if not -32768 <= value <= 32767:
         raise CompileError("int16-range", (abs(value),), token.pos)
     return Number(value, token.pos)
@@ -147,7 +147,7 @@ def constant_value(expression: Expression, pos: SourcePos) -> int:
 
 
 def _attempt(expression: Expression) -> tuple[int | None, CompileError | None]:
-    """Return the value of a constant index, or None and what went wrong, if anything did."""
+    """Return the value of a constant index; else None, and the error if the evaluation failed."""
     try:
         simple = simplify(first_constant(expression))
     except CompileError as error:

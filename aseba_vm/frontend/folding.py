@@ -1,4 +1,4 @@
-"""Seventh pass: folding and simplification of a scalar tree (docs/spec/aseba-language.md section 9)."""
+"""Pass 7: constant folding and simplification of a scalar tree (docs/spec/aseba-language.md section 9)."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ from aseba_vm.frontend.syntax_tree import (
 from aseba_vm.frontend.trampoline import Task, run
 
 
-def optimise(tree: Tree) -> Tree:
-    """Return the tree without what is constant or has no effect. Raises CompileError."""
+def optimize(tree: Tree) -> Tree:
+    """Return the tree with constants folded and statements without effect removed. Raises CompileError."""
     return replace(tree, body=run(_block(tree.body)))
 
 
 def simplify(expression: Expression) -> Expression:
-    """Return a scalar expression folded and simplified. Raises CompileError."""
+    """Return a scalar expression, folded and simplified. Raises CompileError."""
     return run(_expression(expression))
 
 
@@ -122,7 +122,7 @@ def _fold_unary(symbol: str, value: int, pos: SourcePos) -> int:
 
 
 def _binary(node: Binary) -> Expression:
-    """Apply rules 1 and 3 to 6 to an operation whose operands are simplified."""
+    """Apply rules 1 and 3 to 6 to an operation with simplified operands."""
     symbol, left, right, pos = node.operator, node.left, node.right, node.pos
     if isinstance(right, Number):
         value = right.value
@@ -146,7 +146,7 @@ def _binary(node: Binary) -> Expression:
 
 
 def _commutative(node: Binary, other: Expression, value: int) -> Expression:
-    """Apply the neutral and absorbing operands that work on both sides."""
+    """Apply the neutral and absorbing operands that are valid on both sides."""
     symbol = node.operator
     if symbol == "*":
         return other if value == 1 else Number(0, node.pos) if value == 0 else node
@@ -164,7 +164,7 @@ def _commutative(node: Binary, other: Expression, value: int) -> Expression:
 
 
 def _inverted(node: Expression) -> Task[Expression]:
-    """Push a ``not`` into a simplified operation (rule 7)."""
+    """Move a ``not`` into a simplified operation (rule 7)."""
     if not isinstance(node, Binary) or node.operator not in _OPPOSITE:
         raise CompileError("negated-number", (), node.pos)
     left, right = node.left, node.right
@@ -189,7 +189,7 @@ def _block(block: Block) -> Task[Block]:
 
 
 def _statement(statement: Statement) -> Task[Statement | None]:
-    """Return the simpler statement, or None for one that disappears."""
+    """Return the simplified statement, or None if it is removed."""
     match statement:
         case Assignment():
             assignment: Assignment = yield _assignment(statement)

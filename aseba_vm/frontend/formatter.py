@@ -1,12 +1,12 @@
-"""Source text with regular indentation and spaces; the words, symbols and comments stay as they are."""
+"""Formatter: normalizes indentation and spaces; words, symbols and comments stay as they are."""
 
 from __future__ import annotations
 
 import re
 from bisect import bisect_right
 
-from aseba_vm.frontend.lexer import tokenise
-from aseba_vm.frontend.token_spacing import spaced
+from aseba_vm.frontend.lexer import tokenize
+from aseba_vm.frontend.token_spacing import space_line
 
 _COMMENT = re.compile(r"\#\*[\s\S]*?\*\#|\#[^\r\n]*")
 _OPENING = frozenset(("if", "when", "while", "for"))
@@ -15,14 +15,14 @@ _MARKERS = frozenset(("onevent", "sub"))
 _BRACKETS = {"(": 1, "[": 1, ")": -1, "]": -1}
 
 
-def formatted(source: str, indent: str = "\t") -> str:
-    """Return a program with each line indented by its depth, regular spaces in it, and no repeated empty lines.
+def format_program(source: str, indent: str = "\t") -> str:
+    """Return a program with each line indented by its depth, normalized spaces, and no repeated empty lines.
 
-    The tokens are the same, so the bytecode is too. Lines that begin inside a block comment are kept.
-    Raises CompileError if the text has no tokens.
+    The tokens and therefore the bytecode stay the same. Lines that start inside a block comment are kept. Raises
+    CompileError if the text cannot be tokenized.
     """
     text = source.replace("\r\n", "\n").replace("\r", "\n")
-    tokens = tokenise(text)[:-1]
+    tokens = tokenize(text)[:-1]
     kept = _rows_inside_comments(text)
     lines: list[str] = []
     section = depth = brackets = start = first = 0
@@ -35,7 +35,7 @@ def formatted(source: str, indent: str = "\t") -> str:
             lines.append(line)
         else:
             level = section + depth - _closers(kinds) + (1 if brackets > 0 else 0)
-            regular = spaced(text, start, start + len(line), tokens, first, last)
+            regular = space_line(text, start, start + len(line), tokens, first, last)
             lines.append(indent * max(level, 0) + regular if regular else "")
         for kind in kinds:
             depth += (kind in _OPENING) - (kind == "end")
@@ -47,7 +47,7 @@ def formatted(source: str, indent: str = "\t") -> str:
 
 
 def _closers(kinds: list[str]) -> int:
-    """How many levels a line goes back by the words it begins with."""
+    """Return by how many levels the first words of a line reduce its indentation."""
     count = 0
     for kind in kinds:
         if kind != "end":
@@ -57,7 +57,7 @@ def _closers(kinds: list[str]) -> int:
 
 
 def _rows_inside_comments(text: str) -> set[int]:
-    """Rows whose beginning belongs to a block comment."""
+    """Return the rows that start inside a block comment."""
     rows: set[int] = set()
     row = at = 0
     for comment in _COMMENT.finditer(text):

@@ -1,7 +1,7 @@
-"""Hints for errors whose message does not help a beginner: what was probably meant, and an edit that repairs it.
+"""Hints for errors whose message does not help a beginner: what was probably meant, and an edit that corrects it.
 
-Each recognizer looks at the tokens around the place of an error and returns a hint or None. Kind and place of the error
-stay as they are. A wrong hint is worse than none: an edit is offered only if the compiler gets further with it.
+Each recognizer checks the tokens around the position of an error and returns a hint or None. Kind and position of the
+error do not change. A wrong hint is worse than none, so an edit is offered only if it lets the compiler get further.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from aseba_vm.errors import CompileError, Edit, Hint
-from aseba_vm.frontend.lexer import KEYWORDS, Token, tokenise
+from aseba_vm.frontend.lexer import KEYWORDS, Token, tokenize
 from aseba_vm.frontend.parser import COMPOUND
 from aseba_vm.frontend.token_spacing import token_begin, token_end
 from aseba_vm.target import NativeFunction, TargetDescription
@@ -20,14 +20,14 @@ from aseba_vm.target import NativeFunction, TargetDescription
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A text that was refused: the pass that found the error (0 tokens, 1 grammar, 2 any later one), and the error."""
+    """A rejected text: the pass that found the error (0 tokens, 1 grammar, 2 any later one), and the error."""
 
     stage: int
     error: CompileError
 
     @property
     def offset(self) -> int:
-        """Offset of the error, 0 if it has no place."""
+        """Offset of the error, 0 if it has no position."""
         return 0 if self.error.pos is None else self.error.pos.offset
 
 
@@ -38,7 +38,7 @@ _BLOCKS = frozenset(("if", "when", "while", "for"))
 _CONDITIONS = frozenset(("if", "elseif", "when", "while"))
 _STATEMENTS = frozenset(("if", "when", "while", "for", "emit", "_emit", "call", "callsub", "return"))
 _MARKERS = ("onevent", "sub", "end-of-input")
-"""What ends a handler."""
+"""Keywords that end a handler."""
 _AFTER_STATEMENT = frozenset(("then", "do", "else", "end", "return", "integer", ")", "]", "++", "--"))
 _CONNECTORS = frozenset(
     ("+", "-", "*", "/", "%", "<", ">", "==", "!=", "<=", ">=", "|", "^", "&", "<<", ">>", "and", "or")
@@ -55,7 +55,7 @@ _LOOK_ALIKE = {
     "\u00a0": " ", "\u2007": " ", "\u202f": " ", "\u200b": "", "\ufeff": "", "−": "-", "–": "-", "—": "-", "×": "*",
     "·": "*", "÷": "/", "≤": "<=", "≥": ">=", "≠": "!=",
 }  # fmt: skip
-"""Characters that text processors and web pages put in place of what a program needs."""
+"""Characters that word processors and web pages substitute for those of a program."""
 _COMMENTS = re.compile(r"#\*.*?\*#|#[^\r\n]*", re.DOTALL)
 _DECIMAL = re.compile(r"[0-9]+\.[0-9]+(?![\w.])")
 _OPERAND = re.compile(r"![ \t]*([^\W\d][\w.]*(?:\[[0-9]+\])?)(?=[ \t]*(?:\)|then\b|do\b|and\b|or\b|&&|\|\|))")
@@ -63,7 +63,7 @@ _OPERAND = re.compile(r"![ \t]*([^\W\d][\w.]*(?:\[[0-9]+\])?)(?=[ \t]*(?:\)|then
 
 @dataclass(frozen=True, slots=True)
 class _Word:
-    """A token with the range that it covers in the text."""
+    """A token with its range in the text."""
 
     kind: str
     text: str
@@ -73,8 +73,8 @@ class _Word:
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
-    """An error in its surroundings: the text, the tokens (up to the error if one of them is wrong), where it is."""
+class _Context:
+    """An error and its context: the text, the tokens (up to the error if a token is invalid), and the position."""
 
     source: str
     words: Sequence[_Word]
@@ -84,7 +84,7 @@ class _Place:
     natives: Mapping[str, NativeFunction]
 
     def kind(self, distance: int = 0) -> str:
-        """The kind of a token near the error, empty before the first and after the last."""
+        """Return the kind of a token near the error; empty before the first and after the last."""
         index = self.at + distance
         return self.words[index].kind if 0 <= index < len(self.words) else ""
 
@@ -92,27 +92,30 @@ class _Place:
         return self.words[self.at + distance]
 
     def is_adjacent(self, distance: int) -> bool:
-        """Whether nothing stands between a token near the error and the next one."""
+        """Return whether a token near the error touches the next one."""
         first = self.at + distance
         return 0 <= first < len(self.words) - 1 and self.words[first].end == self.words[first + 1].start
 
     def replaced(self, kind: str, first: int, last: int, text: str, *arguments: str | int) -> Hint:
-        """A hint with an edit that replaces the tokens from one distance to another."""
+        """Return a hint with an edit that replaces the tokens from one distance to another."""
         return Hint(kind, arguments, Edit(self.word(first).start, self.word(last).end, text))
 
     @property
     def subs(self) -> set[str]:
-        """Names of the subroutines of the program."""
+        """Return the names of the subroutines of the program."""
         return {name.text for keyword, name in pairwise(self.words) if keyword.kind == "sub"}
 
     @property
     def is_statement_expected(self) -> bool:
-        """Whether the error is that something else stands where a statement may begin."""
+        """Return whether the error is an unexpected token where a statement may start."""
         keywords = ("call", "callsub", "onevent", "sub", "emit", "_emit", "for", "in", ":", "step")
         return self.error.arguments[:1] == ("identifier",) and self.kind(-1) not in keywords
 
     def condition(self, *, with_assignment: bool = False) -> str:
-        """The keyword of the condition in which the error lies, empty if it lies in none; ``=`` ends one or not."""
+        """Return the keyword of the condition that contains the error, empty if there is none.
+
+        ``with_assignment``: an ``=`` does not end the condition.
+        """
         ends = {"then", "do", "else", "end", "onevent", "sub", "call", "callsub", "emit", "return", "var", "const"}
         for word in reversed(self.words[: self.at]):
             if word.kind in _CONDITIONS:
@@ -122,14 +125,14 @@ class _Place:
         return ""
 
     def is_statement(self, distance: int = 0) -> bool:
-        """Whether a token near the error is the first of a statement."""
+        """Return whether a token near the error is the first of a statement."""
         before = self.kind(distance - 1)
         if before == "identifier":
             return self.kind(distance - 2) not in ("emit", "_emit", "call", "for")
         return before == "" or before in _AFTER_STATEMENT
 
     def closing(self, distance: int) -> int | None:
-        """The distance of the parenthesis that closes the one at a distance."""
+        """Return the distance of the parenthesis that closes the one at a distance, None if there is none."""
         depth = 0
         for index in range(self.at + distance, len(self.words)):
             depth += {"(": 1, ")": -1}.get(self.words[index].kind, 0)
@@ -138,22 +141,22 @@ class _Place:
         return None
 
 
-Recognizer = Callable[[_Place], Hint | None]
+Recognizer = Callable[[_Context], Hint | None]
 
 
 def find_hint(
     source: str, target: TargetDescription, attempt: Attempt, compile_again: Callable[[str], Attempt | None]
 ) -> Hint | None:
-    """Return the hint for a text that was refused; None if nothing is known about its error.
+    """Return the hint for a rejected text, None if there is none.
 
     Args:
         source: text of the program.
-        target: what the program is for.
+        target: target of the program.
         attempt: how far the compiler got.
-        compile_again: compiles another text, to try an edit; None is success.
+        compile_again: compiles another text to try an edit; None means success.
     """
     recognizers = _RECOGNIZERS.get(attempt.error.kind, ())
-    place = _place(source, target, attempt) if recognizers and attempt.error.pos is not None else None
+    place = _context(source, target, attempt) if recognizers and attempt.error.pos is not None else None
     if place is None:
         return None
     for recognize in recognizers:
@@ -168,11 +171,11 @@ def find_hint(
     return None
 
 
-def _place(source: str, target: TargetDescription, attempt: Attempt) -> _Place | None:
+def _context(source: str, target: TargetDescription, attempt: Attempt) -> _Context | None:
     error, offset = attempt.error, attempt.offset
     is_token = attempt.stage == _TOKENS
     try:
-        tokens = tokenise(source[:offset] if is_token else source)
+        tokens = tokenize(source[:offset] if is_token else source)
     except CompileError:
         return None
     words = [_word(source, token) for token in tokens[:-1]]
@@ -180,13 +183,13 @@ def _place(source: str, target: TargetDescription, attempt: Attempt) -> _Place |
     at: int | None = len(words) - 1
     if not is_token:
         found = [index for index, token in enumerate(tokens) if token.pos == error.pos]
-        # The end of the input has the place of the last character, which may be that of a token.
+        # The end of input has the position of the last character, which may belong to a token.
         ends = [index for index in found if tokens[index].kind in error.arguments]
         at = next(iter(ends or found), None)
     if at is None:
         return None
     natives = {native.name: native for native in target.natives}
-    return _Place(source, words, at, offset if is_token else words[at].start, error, natives)
+    return _Context(source, words, at, offset if is_token else words[at].start, error, natives)
 
 
 def _word(source: str, token: Token) -> _Word:
@@ -194,7 +197,7 @@ def _word(source: str, token: Token) -> _Word:
 
 
 def _is_better(before: Attempt, after: Attempt | None, edit: Edit) -> bool:
-    """Whether a text with an edit compiles, or is refused by a later pass, or behind the edit and the old place."""
+    """Return whether the edited text compiles, or is rejected by a later pass, or after edit and old position."""
     if after is None or after.stage != before.stage:
         return after is None or after.stage > before.stage
     is_behind = edit.start <= before.offset
@@ -206,11 +209,11 @@ def _is_better(before: Attempt, after: Attempt | None, edit: Edit) -> bool:
     return after.offset > moved
 
 
-# -- characters that begin no token ------------------------------------------------------------------------------------
+# -- characters that start no token ------------------------------------------------------------------------------------
 
 
-def _foreign_comment(place: _Place) -> Hint | None:
-    """``//`` before the error in the same line, or ``/*`` around it."""
+def _foreign_comment(place: _Context) -> Hint | None:
+    """Recognize ``//`` before the error in the same line, or ``/*`` around it."""
     for first, second in reversed(list(pairwise(place.words))):
         if first.kind != "/" or first.end != second.start or second.kind not in ("/", "*", "*="):
             continue
@@ -224,7 +227,7 @@ def _foreign_comment(place: _Place) -> Hint | None:
 
 
 def _comment(source: str, start: int) -> Hint | None:
-    """``//`` or ``/* */`` as Aseba writes it."""
+    """Return the hint that writes ``//`` or ``/* */`` as an Aseba comment."""
     if source.startswith("//", start):
         return Hint("hint-comment", ("//", "#"), Edit(start, start + 2, "#"))
     end = source.find("*/", start + 2)
@@ -233,8 +236,8 @@ def _comment(source: str, start: int) -> Hint | None:
     return Hint("hint-comment", ("/*", "#*"), Edit(start, end + 2, f"#*{source[start + 2 : end]}*#"))
 
 
-def _semicolon(place: _Place) -> Hint | None:
-    """``;``: the edit removes all of them."""
+def _semicolon(place: _Context) -> Hint | None:
+    """Recognize ``;``; the edit removes all of them."""
     source = place.source
     if source[place.offset] != ";" or sum((word.kind == "[") - (word.kind == "]") for word in place.words) > 0:
         return None
@@ -247,7 +250,7 @@ def _semicolon(place: _Place) -> Hint | None:
     return Hint("hint-semicolon", (), Edit(first, last + 1, text))
 
 
-def _brace(place: _Place) -> Hint | None:
+def _brace(place: _Context) -> Hint | None:
     source, at = place.source, place.offset
     if source[at] not in "{}":
         return None
@@ -265,11 +268,11 @@ def _brace(place: _Place) -> Hint | None:
     return replace(hint, edit=Edit(at, at + 1, _spaced(source, at, at + 1, word)))
 
 
-def _text(place: _Place) -> Hint | None:
+def _text(place: _Context) -> Hint | None:
     return Hint("hint-text", ()) if place.source[place.offset] in _QUOTES else None
 
 
-def _look_alike(place: _Place) -> Hint | None:
+def _look_alike(place: _Context) -> Hint | None:
     letter = place.source[place.offset]
     right = _LOOK_ALIKE.get(letter)
     if right is None:
@@ -280,8 +283,8 @@ def _look_alike(place: _Place) -> Hint | None:
     return Hint("hint-look-alike", (right,), edit)
 
 
-def _negation(place: _Place) -> Hint | None:
-    """``!`` in a condition, or ``! =``."""
+def _negation(place: _Context) -> Hint | None:
+    """Recognize ``!`` in a condition, or ``! =``."""
     source, at = place.source, place.offset
     spaced = re.match(r"![ \t]+=(?!=)", source[at:])
     if spaced is not None:
@@ -294,7 +297,7 @@ def _negation(place: _Place) -> Hint | None:
     return Hint("hint-not", (), Edit(at, at + 1, "not " if source[at + 1 : at + 2] == "(" else "not"))
 
 
-def _decimals(place: _Place) -> Hint | None:
+def _decimals(place: _Context) -> Hint | None:
     number = _DECIMAL.match(place.source, place.offset)
     return Hint("hint-decimals", (number[0],)) if number is not None else None
 
@@ -302,8 +305,8 @@ def _decimals(place: _Place) -> Hint | None:
 # -- operators ---------------------------------------------------------------------------------------------------------
 
 
-def _equals_in_condition(place: _Place) -> Hint | None:
-    """``if a = 1``, ``if a => 1``."""
+def _equals_in_condition(place: _Context) -> Hint | None:
+    """Recognize ``if a = 1`` and ``if a => 1``."""
     if place.kind() != "=" or not place.condition():
         return None
     if place.is_adjacent(0) and place.kind(1) in _SWAPPED:
@@ -312,8 +315,8 @@ def _equals_in_condition(place: _Place) -> Hint | None:
     return place.replaced("hint-equals-in-condition", 0, 0, "==")
 
 
-def _doubled(place: _Place) -> Hint | None:
-    """``&&``, ``||``, ``<>``, ``===``, ``!==``: the second half is what was refused."""
+def _doubled(place: _Context) -> Hint | None:
+    """Recognize ``&&``, ``||``, ``<>``, ``===`` and ``!==``, whose second half was rejected."""
     if not place.is_adjacent(-1):
         return None
     pair = (place.kind(-1), place.kind())
@@ -327,8 +330,8 @@ def _doubled(place: _Place) -> Hint | None:
     return None
 
 
-def _comparison_as_statement(place: _Place) -> Hint | None:
-    """``a == 1`` or ``a := 1`` in place of an assignment."""
+def _comparison_as_statement(place: _Context) -> Hint | None:
+    """Recognize ``a == 1`` or ``a := 1`` in place of an assignment."""
     if place.kind() == "==":
         return place.replaced("hint-assignment", 0, 0, "=")
     if place.kind() == ":" and place.kind(1) == "=" and place.is_adjacent(0):
@@ -336,20 +339,20 @@ def _comparison_as_statement(place: _Place) -> Hint | None:
     return None
 
 
-def _declared_with_comparison(place: _Place) -> Hint | None:
+def _declared_with_comparison(place: _Context) -> Hint | None:
     return _comparison_as_statement(place) if place.kind(-1) in ("identifier", "]") else None
 
 
-def _step_in_front(place: _Place) -> Hint | None:
-    """``++i``."""
+def _step_in_front(place: _Context) -> Hint | None:
+    """Recognize ``++i``."""
     if place.kind() not in ("++", "--") or place.kind(1) != "identifier" or not place.is_statement_expected:
         return None
     name, mark = place.word(1), place.word()
     return place.replaced("hint-step", 0, 1, f"{name.text}{mark.kind}", f"{name.text}{mark.kind}")
 
 
-def _comment_as_statement(place: _Place) -> Hint | None:
-    """``// comment``: the first half is refused where a statement may begin, the second in an expression."""
+def _comment_as_statement(place: _Context) -> Hint | None:
+    """Recognize ``// comment``: the first half is rejected where a statement may start, the second in an expression."""
     at = 0 if place.kind() == "/" and place.is_adjacent(0) else -1
     if place.kind(at) != "/" or not place.is_adjacent(at) or place.kind(at + 1) not in ("/", "*", "*="):
         return None
@@ -359,8 +362,8 @@ def _comment_as_statement(place: _Place) -> Hint | None:
 # -- names -------------------------------------------------------------------------------------------------------------
 
 
-def _other_keyword(place: _Place) -> Hint | None:
-    """``elif``, ``If``."""
+def _other_keyword(place: _Context) -> Hint | None:
+    """Recognize ``elif`` and ``If``."""
     name = place.word().text
     if name in _ELSEIF:
         return place.replaced("hint-elseif", 0, 0, "elseif", name)
@@ -370,7 +373,7 @@ def _other_keyword(place: _Place) -> Hint | None:
     return None
 
 
-def _truth(place: _Place) -> Hint | None:
+def _truth(place: _Context) -> Hint | None:
     value = _TRUTH.get(place.word().text.lower())
     if value is None or place.kind(-1) not in _BEFORE_VALUE:
         return None
@@ -380,13 +383,13 @@ def _truth(place: _Place) -> Hint | None:
     return Hint("hint-truth", (place.word().text,))
 
 
-def _called_name(place: _Place) -> int:
-    """The distance of the name that is refused, or before the parenthesis that is."""
+def _called_name(place: _Context) -> int:
+    """Return the distance of the rejected name, or of the name before the rejected parenthesis."""
     return -1 if place.kind() == "(" else 0
 
 
-def _native_as_statement(place: _Place) -> Hint | None:
-    """``sound.freq(440, 1)`` without ``call``."""
+def _native_as_statement(place: _Context) -> Hint | None:
+    """Recognize ``sound.freq(440, 1)`` without ``call``."""
     at = _called_name(place)
     if place.kind(at) != "identifier" or place.kind(at + 1) != "(" or not place.is_statement(at):
         return None
@@ -396,13 +399,13 @@ def _native_as_statement(place: _Place) -> Hint | None:
     return None
 
 
-def _native_with_variable(place: _Place) -> Hint | None:
-    """The same where a variable has the name of the function, as ``leds.top`` has."""
+def _native_with_variable(place: _Context) -> Hint | None:
+    """Recognize the same where a variable has the name of the function, as ``leds.top`` does."""
     return _native_as_statement(place) if place.kind() == "(" else None
 
 
-def _sub_as_statement(place: _Place) -> Hint | None:
-    """``turn`` or ``turn()`` without ``callsub``."""
+def _sub_as_statement(place: _Context) -> Hint | None:
+    """Recognize ``turn`` or ``turn()`` without ``callsub``."""
     at = _called_name(place)
     if place.kind(at) != "identifier" or place.word(at).text not in place.subs or not place.is_statement(at):
         return None
@@ -415,8 +418,8 @@ def _sub_as_statement(place: _Place) -> Hint | None:
     return Hint("hint-sub-arguments", (name,))
 
 
-def _native_in_expression(place: _Place) -> Hint | None:
-    """``x = math.sqrt(y)``."""
+def _native_in_expression(place: _Context) -> Hint | None:
+    """Recognize ``x = math.sqrt(y)``."""
     name = place.word()
     if name.text not in place.natives or place.kind(1) != "(" or place.kind(-1) not in _BEFORE_VALUE:
         return None
@@ -435,8 +438,8 @@ def _native_in_expression(place: _Place) -> Hint | None:
     return replace(hint, edit=Edit(left.start, place.word(close).end, text))
 
 
-def _call_of_sub(place: _Place) -> Hint | None:
-    """``call turn`` or ``call turn()``."""
+def _call_of_sub(place: _Context) -> Hint | None:
+    """Recognize ``call turn`` or ``call turn()``."""
     if place.kind() != "call" or place.kind(1) != "identifier" or place.word(1).text not in place.subs:
         return None
     name = place.word(1).text
@@ -447,8 +450,8 @@ def _call_of_sub(place: _Place) -> Hint | None:
     return place.replaced("hint-callsub", 0, 0, "callsub", name)
 
 
-def _callsub_with_parentheses(place: _Place) -> Hint | None:
-    """``callsub turn()``, ``callsub sound.freq(440, 1)``."""
+def _callsub_with_parentheses(place: _Context) -> Hint | None:
+    """Recognize ``callsub turn()`` and ``callsub sound.freq(440, 1)``."""
     if place.kind() != "(" or place.kind(-1) != "identifier" or place.kind(-2) != "callsub":
         return None
     name = place.word(-1).text
@@ -461,13 +464,13 @@ def _callsub_with_parentheses(place: _Place) -> Hint | None:
     return None
 
 
-def _callsub_of_native(place: _Place) -> Hint | None:
+def _callsub_of_native(place: _Context) -> Hint | None:
     if place.kind() != "callsub" or place.kind(1) != "identifier" or place.word(1).text not in place.natives:
         return None
     return Hint("hint-call", (place.word(1).text,))
 
 
-def _call_without_parentheses(place: _Place) -> Hint | None:
+def _call_without_parentheses(place: _Context) -> Hint | None:
     if place.kind(-1) != "identifier" or place.kind(-2) != "call":
         return None
     name = place.word(-1)
@@ -482,14 +485,14 @@ def _call_without_parentheses(place: _Place) -> Hint | None:
 
 @dataclass(slots=True)
 class _Block:
-    """A block that is open: index of its keyword, of its last ``else``."""
+    """An open block: index of its keyword, and of its last ``else``."""
 
     opener: int
     other: int | None = None
 
 
 def _blocks(words: Sequence[_Word]) -> tuple[list[_Block], list[tuple[_Block, int]]]:
-    """Blocks that are open at the end of some tokens, and those that were closed, each with the index of its end."""
+    """Return the blocks that are open after the tokens, and the closed ones, each with the index of its end."""
     stack: list[_Block] = []
     closed: list[tuple[_Block, int]] = []
     for index, word in enumerate(words):
@@ -504,8 +507,8 @@ def _blocks(words: Sequence[_Word]) -> tuple[list[_Block], list[tuple[_Block, in
     return stack, closed
 
 
-def _else_if(place: _Place) -> Hint | None:
-    """``else if`` that lacks an ``end`` of its own."""
+def _else_if(place: _Context) -> Hint | None:
+    """Recognize ``else if`` without its own ``end``."""
     if not place.is_statement_expected or place.kind() not in _MARKERS:
         return None
     words = place.words
@@ -524,10 +527,10 @@ def _else_if(place: _Place) -> Hint | None:
     return Hint("hint-else-if", (), Edit(pairs[0][0].start, previous, text), pairs[0][0].row)
 
 
-def _missing_end(place: _Place) -> Hint | None:
-    """A block that is open where a handler, a subroutine or the end of the text comes.
+def _missing_end(place: _Context) -> Hint | None:
+    """Recognize a block that is still open at a handler, a subroutine or the end of the text.
 
-    It is the last one opened, unless the ``end`` of a block inside it is indented as an outer block is: then that block
+    It is the last one opened, unless the ``end`` of a block inside it is indented like an outer block: then that block
     has taken the ``end`` of the outer one.
     """
     found = place.kind()
@@ -551,8 +554,8 @@ def _missing_end(place: _Place) -> Hint | None:
     return Hint("hint-missing-end", (word.kind,), edit, word.row)
 
 
-def _new_end(place: _Place, indent: str, before: int) -> Edit:
-    """Put ``end`` between two tokens, on a line of its own if they are on different lines."""
+def _new_end(place: _Context, indent: str, before: int) -> Edit:
+    """Return the edit that inserts ``end`` between two tokens, on its own line if they are on different lines."""
     last = place.words[before - 1]
     if place.words[before].row == last.row:
         return Edit(last.end, last.end, " end")
@@ -562,8 +565,8 @@ def _new_end(place: _Place, indent: str, before: int) -> Edit:
     return Edit(line_end, line_end, f"{newline}{indent}end")
 
 
-def _extra_end(place: _Place) -> Hint | None:
-    """An ``end`` where no block is open, often that of an ``onevent``."""
+def _extra_end(place: _Context) -> Hint | None:
+    """Recognize an ``end`` where no block is open, often meant for an ``onevent``."""
     if place.kind() != "end" or not place.is_statement_expected or _blocks(place.words[: place.at])[0]:
         return None
     word, source = place.word(), place.source
@@ -574,8 +577,8 @@ def _extra_end(place: _Place) -> Hint | None:
     return Hint("hint-extra-end", (), Edit(start, end, ""))
 
 
-def _block_word(place: _Place) -> Hint | None:
-    """``then`` or ``do`` that is missing, or written as ``:``, or one in place of the other."""
+def _block_word(place: _Context) -> Hint | None:
+    """Recognize ``then`` or ``do`` that is missing, written as ``:``, or confused with the other."""
     wanted, found = place.error.arguments[0], place.kind()
     if not isinstance(wanted, str) or wanted not in ("then", "do"):
         return None
@@ -590,8 +593,8 @@ def _block_word(place: _Place) -> Hint | None:
     return None
 
 
-def _loop_form(place: _Place) -> Hint | None:
-    """``for i = 0 to 9``, ``for (i = 0; …)``."""
+def _loop_form(place: _Context) -> Hint | None:
+    """Recognize ``for i = 0 to 9`` and ``for (i = 0; …)``."""
     is_head = place.kind(-1) == "for" or place.kind(-2) == "for"
     return Hint("hint-for", ()) if is_head and place.kind() in ("=", "(", "identifier", "integer") else None
 
@@ -605,8 +608,8 @@ def _is_loop_head(words: Sequence[_Word]) -> bool:
     return False
 
 
-def _late_declaration(place: _Place) -> Hint | None:
-    """``var`` behind the first statement: declared above, its value set where it stands."""
+def _late_declaration(place: _Context) -> Hint | None:
+    """Recognize ``var`` after the first statement; the edit declares it above and assigns the value in place."""
     keyword = place.kind()
     is_refused = place.error.kind == "misplaced-var" or place.is_statement_expected
     if keyword not in ("var", "const") or not is_refused:
@@ -637,8 +640,8 @@ def _late_declaration(place: _Place) -> Hint | None:
     return replace(hint, edit=Edit(top, end, f"{declared}{head}"))
 
 
-def _end_of_declarations(place: _Place) -> int:
-    """The end of the last line of declarations at the beginning; 0 if there are none."""
+def _end_of_declarations(place: _Context) -> int:
+    """Return the end of the last line of the declarations at the beginning; 0 if there are none."""
     top = depth = 0
     row = -1
     is_declared = False
@@ -656,8 +659,8 @@ def _end_of_declarations(place: _Place) -> int:
     return len(place.source) if line_end < 0 else line_end - (place.source[line_end - 1] == "\r")
 
 
-def _truth_of_number(place: _Place) -> Hint | None:
-    """``if a then`` where ``a`` is a number."""
+def _truth_of_number(place: _Context) -> Hint | None:
+    """Recognize ``if a then`` where ``a`` is a number."""
     if place.kind() not in _CONDITIONS or place.error.arguments != ("boolean", "integer"):
         return None
     size = 1
@@ -675,7 +678,7 @@ def _truth_of_number(place: _Place) -> Hint | None:
 
 
 def _spaced(source: str, start: int, end: int, word: str) -> str:
-    """A word in place of symbols, with spaces where it would run into its neighbors."""
+    """Return a word in place of symbols, with spaces where it would touch its neighbors."""
     if not word:
         return ""
     before = " " if start > 0 and not source[start - 1].isspace() and source[start - 1] != "(" else ""
@@ -689,7 +692,7 @@ def _line_indent(source: str, word: _Word) -> str:
 
 
 def _indent(source: str, word: _Word) -> str | None:
-    """The white space before the first token of a line; None for other tokens."""
+    """Return the white space before the first token of a line; None for other tokens."""
     line = source[source.rfind("\n", 0, word.start) + 1 : word.start]
     return line if line.strip(" \t") == "" else None
 
@@ -743,4 +746,4 @@ _STAND_ALONE = frozenset(
         "hint-not",
     )
 )
-"""Hints that hold even where their edit alone does not help."""
+"""Recognizers whose hint is valid even if its edit alone does not help."""

@@ -1,11 +1,11 @@
-"""The letters and digits of names: a fixed Unicode 15 table, so that every Python gives the same answer.
+"""Letters and digits of names: a fixed Unicode 15 table, independent of the version of Python.
 
-``str.isalnum`` differs (docs/spec/aseba-language.md section 3) and changes with the version of Python.
+``str.isalnum`` differs from it (docs/spec/aseba-language.md section 3) and changes with the version.
 """
 
 from __future__ import annotations
 
-# Pairs in base 36: distance from the end of the previous range, number of further code points in this one.
+# Pairs in base 36: distance from the end of the previous range, and number of further code points in this range.
 _RANGES = """
 1c 9 8 p 7 p 1c 0 b 0 5 0 6 m 2 u 2 cp 5 b f 4 8 0 2 0 2f 0 17 4 2 1 3 3 2 0 7 0 2 2 2 0 2 j 2 2a 2 3u 9 4l 2 11 3 0 7
 14 14 d 2 0 2 1 2 1 2 0 9 q 5 3 u a 6 1j 2 g 5 2t 2 7 5 7 5 f 3 0 h 1b e 2s f 16 a 1 5 0 6 n 3 i k o 8 a 6 n 2 5 i 15

@@ -1,7 +1,8 @@
-"""First pass: text to tokens (docs/spec/aseba-language.md sections 2 and 3).
+"""Pass 1: text to tokens (docs/spec/aseba-language.md sections 2 and 3).
 
-One regular expression finds the longest next token, comments and white space too. The column is the offset minus
-``base``, the offset that column 0 would have, which makes each of the odd columns of section 2 one assignment.
+One regular expression matches the longest next token, including comments and white space. The column is the offset
+minus ``base``, which is the offset of column 0. Each of the irregular columns of section 2 is then one assignment to
+``base``.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ SYMBOLS = (
     *("(", ")", "[", "]", ":", ",", "=", "+", "-", "*", "/", "%", "|", "^", "&", "~", "<", ">"),
 )
 
-#: Own limit: longer programs fit no node and would only keep the caller waiting.
+#: Limit of this compiler: longer programs fit no node and would only take time.
 MAX_TOKENS = 32_768
 
 _LARGEST = 2**63 - 1
@@ -44,7 +45,7 @@ _TOKEN = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A word or symbol. ``kind`` is the keyword or symbol itself, identifier, integer or end-of-input."""
+    """A word or symbol. ``kind`` is the keyword or symbol itself, ``identifier``, ``integer`` or ``end-of-input``."""
 
     kind: str
     pos: SourcePos
@@ -53,7 +54,7 @@ class Token:
 
     @property
     def described(self) -> tuple[str | int, ...]:
-        """The kind, and the name or number if it has one: an argument of some errors."""
+        """The kind, and the name or number if there is one: an argument of some errors."""
         if self.kind == "identifier":
             return (self.kind, self.text)
         return (self.kind, self.value) if self.kind == "integer" else (self.kind,)
@@ -62,8 +63,8 @@ class Token:
         return f"{self.pos} {' '.join(map(str, self.described))}"
 
 
-def tokenise(text: str) -> tuple[Token, ...]:
-    """Return the tokens of a program, end of input included. Raises CompileError."""
+def tokenize(text: str) -> tuple[Token, ...]:
+    """Return the tokens of a program, including the end of input. Raises CompileError."""
     tokens: list[Token] = []
     match = _TOKEN.match
     length = len(text)
@@ -94,7 +95,7 @@ def tokenise(text: str) -> tuple[Token, ...]:
             comment = found.group()
             tabs = 3 * comment.count("\t")
             if comment[-1] in "\r\n":
-                base = offset - 1
+                base = offset - 1  # the line end counts as column 0: one column too many, as in the reference
                 row += comment[-1] == "\n"
             elif len(comment) > 1:
                 last = SourcePos(offset, row, offset - base + tabs)
@@ -115,7 +116,7 @@ def tokenise(text: str) -> tuple[Token, ...]:
 
 
 def is_name(text: str) -> bool:
-    """Tell whether a program can use a text as the name of something."""
+    """Return whether a text can be an identifier in a program."""
     found = _TOKEN.fullmatch(text)
     return found is not None and found.lastgroup == "word" and not "0" <= text[0] <= "9" and text not in KEYWORDS
 
@@ -127,7 +128,7 @@ def _word(text: str, pos: SourcePos) -> Token:
 
 
 def _number(text: str, pos: SourcePos) -> int:
-    """Value of a number word; hexadecimal and binary ones above 32767 are negative."""
+    """Return the value of a number; hexadecimal and binary numbers above 32767 are negative. Raises CompileError."""
     prefix = text[1:2]
     if text[0] == "0" and prefix and not "0" <= prefix <= "9":
         if prefix not in "xb":

@@ -1,4 +1,4 @@
-"""What compiles and is probably not meant. Warnings never change the bytecode."""
+"""Warnings: programs that compile but are probably not meant. Warnings never change the bytecode."""
 
 from __future__ import annotations
 
@@ -22,27 +22,27 @@ from aseba_vm.frontend.syntax_tree import (
     position_of,
     walk,
 )
-from aseba_vm.messages import wording
+from aseba_vm.messages import format_message
 
 
 @dataclass(frozen=True, slots=True)
 class CompileWarning:
-    """A doubt about a program: a stable identifier, its arguments, the place."""
+    """A warning about a program: a stable identifier, its arguments, the position."""
 
     kind: str
     arguments: tuple[str, ...]
     pos: SourcePos
 
     def __str__(self) -> str:
-        return wording(self.kind, self.arguments)
+        return format_message(self.kind, self.arguments)
 
     def located(self, name: str) -> str:
-        """Return the message after the name of the file and the place, counted from 1."""
+        """Return the message with the file name and the position (from 1) in front."""
         return f"{name}:{self.pos}: warning: {self}"
 
 
 def find_warnings(tree: Tree, segments: Sequence[Segment]) -> tuple[CompileWarning, ...]:
-    """Return the doubts about a program, given its tree as parsed and its code, in order of place."""
+    """Return the warnings about a program in order of position, from its parsed tree and its code."""
     found = [*_subroutines(tree, segments), *_far_blocks(segments)]
     for node in walk(tree.body):
         match node:
@@ -58,7 +58,7 @@ def find_warnings(tree: Tree, segments: Sequence[Segment]) -> tuple[CompileWarni
 
 
 def _unreachable(block: Block) -> Iterator[CompileWarning]:
-    """The first statement after each ``return`` of the same block."""
+    """Warn about the first statement after a ``return`` in the same block."""
     for before, after in zip(block.statements, block.statements[1:], strict=False):
         pos = position_of(after)
         if isinstance(before, Return) and not isinstance(after, OnEvent | Sub) and pos is not None:
@@ -66,13 +66,13 @@ def _unreachable(block: Block) -> Iterator[CompileWarning]:
 
 
 def _constant_when(node: If) -> Iterator[CompileWarning]:
-    """A condition without variables: such a ``when`` is no edge trigger (docs/spec/aseba-language.md section 7)."""
+    """Warn about a ``when`` without variables, which has no edge (docs/spec/aseba-language.md section 7)."""
     if not any(isinstance(part, Access | Subscript) for part in walk(node.condition)):
         yield CompileWarning("warning-constant-when", (), node.pos)
 
 
 def _endless_for(loop: For) -> Iterator[CompileWarning]:
-    """A step that jumps over the end of the 16-bit range (docs/spec/aseba-language.md section 7)."""
+    """Warn about a step that jumps over the end of the 16-bit range (docs/spec/aseba-language.md section 7)."""
     start, end = loop.start.value, loop.end.value
     last = start + int((end - start) / loop.step) * loop.step
     if start != end and not -0x8000 <= last + loop.step <= 0x7FFF:
@@ -80,7 +80,7 @@ def _endless_for(loop: For) -> Iterator[CompileWarning]:
 
 
 def _vector_index(node: Subscript) -> Iterator[CompileWarning]:
-    """Arrays in an index, of which only the first word counts (docs/spec/aseba-language.md section 6.1)."""
+    """Warn about arrays in an index, of which only the first word counts (docs/spec/aseba-language.md section 6.1)."""
     parts: list[Node] = [node.index]
     while parts:
         part = parts.pop()
@@ -91,7 +91,7 @@ def _vector_index(node: Subscript) -> Iterator[CompileWarning]:
 
 
 def _subroutines(tree: Tree, segments: Sequence[Segment]) -> Iterator[CompileWarning]:
-    """Subroutines that nobody calls, or that may run on into the code after them.
+    """Warn about subroutines that are never called, or that may run on into the code after them.
 
     Source: docs/spec/aseba-bytecode-vm.md section 7.
     """

@@ -1,4 +1,4 @@
-"""Fourth and fifth pass: compound assignments and loops to plain ones, vectors to scalars.
+"""Passes 4 and 5, lowering: compound assignments and loops to plain ones, vectors to scalars.
 
 Source: docs/spec/aseba-bytecode-vm.md section 3.
 """
@@ -22,7 +22,7 @@ from aseba_vm.frontend.syntax_tree import (
     Expression,
     For,
     If,
-    Listing,
+    ListLiteral,
     Memory,
     Number,
     Statement,
@@ -33,20 +33,22 @@ from aseba_vm.frontend.syntax_tree import (
     Word,
 )
 from aseba_vm.frontend.trampoline import Task, run
-from aseba_vm.frontend.vectors import elements, first_element, needed, size_of
+from aseba_vm.frontend.vectors import elements, first_element, require, size_of
 
-#: Own limit on the scalar operations of a program; far more than any node has words of bytecode.
+#: Limit of this compiler on the scalar operations of a program, far above the bytecode size of any node.
 MAX_ELEMENTS = 300_000
 
 
-def expand(tree: Tree, memory_size: int) -> Tree:
-    """Return the tree of scalars. Raises CompileError."""
-    expander = _Expander(memory_size, tree.allocated, tree.temporaries)
-    body: Block = run(expander.block(tree.body))
-    return replace(tree, body=body, temporaries=expander.temporaries)
+def lower(tree: Tree, memory_size: int) -> Tree:
+    """Return the scalar tree. Raises CompileError."""
+    lowering = _Lowering(memory_size, tree.allocated, tree.temporaries)
+    body: Block = run(lowering.block(tree.body))
+    return replace(tree, body=body, temporaries=lowering.temporaries)
 
 
-class _Expander:
+class _Lowering:
+    """Lowers statements; counts temporary words and the remaining budget of operations."""
+
     def __init__(self, memory_size: int, allocated: int, temporaries: int) -> None:
         self.memory_size = memory_size
         self.allocated = allocated
@@ -65,7 +67,7 @@ class _Expander:
                 return list(self.assign(left, right, pos))
             case Compound(operator, left, right, pos):
                 if right is None:
-                    right = Listing((Number(1, pos),) * size_of(left), pos)
+                    right = ListLiteral((Number(1, pos),) * size_of(left), pos)
                 return list(self.assign(left, Binary(operator, left, right, pos), pos))
             case If():
                 return [(yield self.conditional(statement))]
@@ -122,7 +124,7 @@ class _Expander:
         )
 
     def assign(self, left: Expression, right: Expression, pos: SourcePos) -> tuple[Assignment, ...]:
-        """Expand an assignment, through temporary words if the right side reads what the left side writes."""
+        """Lower an assignment, through temporary words if the right side reads what the left side writes."""
         size = size_of(left)
         if size == 1 or not isinstance(left, Access) or not _occurs(left.variable.name, right):
             return self.copy(left, right, pos)
@@ -134,7 +136,7 @@ class _Expander:
         return self.copy(temporary, right, pos) + self.copy(left, temporary, pos)
 
     def copy(self, left: Expression, right: Expression, pos: SourcePos) -> tuple[Assignment, ...]:
-        """Return one assignment for each element; the right side of each is looked at first."""
+        """Return one assignment per element. The right side of each is checked first, which fixes the error order."""
         size = size_of(right)
         self.budget -= size * run(_weight(right))
         if self.budget < 0:
@@ -143,8 +145,8 @@ class _Expander:
         values = elements(right, size)
         places = elements(left, size)
         for value, place in zip(values, places, strict=True):
-            source = needed(value)
-            destination = needed(place)
+            source = require(value)
+            destination = require(place)
             if isinstance(destination, Number):
                 raise CompileError("not-assignable", ("constant-list",), pos)
             if not isinstance(destination, Word | Element):
@@ -154,7 +156,7 @@ class _Expander:
 
 
 def _weight(expression: Expression) -> Task[int]:
-    """Return how many nodes one element of the expression can have."""
+    """Return the maximum number of nodes in one element of the expression."""
     weight: int
     match expression:
         case Unary(_, operand, _):
@@ -164,7 +166,7 @@ def _weight(expression: Expression) -> Task[int]:
             weight = yield _weight(left)
             other: int = yield _weight(right)
             return weight + other + 1
-        case Listing(items):
+        case ListLiteral(items):
             weight = 1
             for item in items:
                 weight = max(weight, (yield _weight(item)))
@@ -173,7 +175,7 @@ def _weight(expression: Expression) -> Task[int]:
 
 
 def _occurs(name: str, expression: Expression) -> bool:
-    """Tell whether a variable of this name is read anywhere, also inside an index."""
+    """Return whether a variable of this name is read anywhere, including inside indexes."""
     stack = [expression]
     while stack:
         match stack.pop():
@@ -188,6 +190,6 @@ def _occurs(name: str, expression: Expression) -> bool:
                 stack.append(operand)
             case Binary(_, left, right):
                 stack += (left, right)
-            case Listing(items):
+            case ListLiteral(items):
                 stack += items
     return False

@@ -1,7 +1,8 @@
-"""Second pass, statements: tokens to tree (docs/spec/aseba-language.md sections 4 to 7 and 10).
+"""Pass 2, statements: tokens to tree (docs/spec/aseba-language.md sections 4 to 7 and 10).
 
-A recursive-descent parser, one method per rule of the grammar, which stands above it. Names are looked up, constants
-evaluated and the temporary words of events and natives allocated on the way, as the order of errors demands.
+A recursive-descent parser with one method per grammar rule; the docstring of each method is its rule. Names are
+resolved, constants evaluated, and temporary words of events and natives allocated while parsing, because that
+determines which error comes first.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from collections.abc import Sequence
 from aseba_vm.errors import CompileError, SourcePos
 from aseba_vm.frontend.expression_parser import ExpressionParser, constant_value, literal
 from aseba_vm.frontend.lexer import Token
-from aseba_vm.frontend.symbols import Symbols
+from aseba_vm.frontend.symbols import SymbolTable
 from aseba_vm.frontend.syntax_tree import (
     Access,
     Argument,
@@ -25,7 +26,7 @@ from aseba_vm.frontend.syntax_tree import (
     Expression,
     For,
     If,
-    Listing,
+    ListLiteral,
     Memory,
     Number,
     OnEvent,
@@ -51,11 +52,11 @@ def parse(
     constants: Sequence[tuple[str, int]] = (),
 ) -> Tree:
     """Return the tree of a program. Raises CompileError."""
-    return run(_Parser(tokens, Symbols(target, events, constants)).program())
+    return run(_Parser(tokens, SymbolTable(target, events, constants)).program())
 
 
 class _Parser:
-    def __init__(self, tokens: Sequence[Token], symbols: Symbols) -> None:
+    def __init__(self, tokens: Sequence[Token], symbols: SymbolTable) -> None:
         self.stream = TokenStream(tokens)
         self.symbols = symbols
         self.expressions = ExpressionParser(self.stream, symbols)
@@ -153,7 +154,7 @@ class _Parser:
         while self.stream.token.kind == ",":
             self.stream.advance()
             items.append((yield self.expressions.element()))
-        return Listing(tuple(items), start)
+        return ListLiteral(tuple(items), start)
 
     def onevent(self) -> OnEvent:
         """onevent = "onevent" , IDENT"""
@@ -190,10 +191,10 @@ class _Parser:
         if keyword.kind == "return":
             return Return(keyword.pos)
         return CallSub(self.stream.expect("identifier").text, keyword.pos)
-        yield
+        yield  # unreachable, but makes this function a generator, which a Task has to be
 
     def block(self, *ends: str) -> Task[Block]:
-        """Statements up to one of the given keywords, which stays."""
+        """Parse statements up to one of the given keywords, which is not consumed."""
         statements: list[Statement] = []
         while self.stream.token.kind not in ends:
             statements.append((yield self.statement()))
@@ -339,7 +340,7 @@ class _Parser:
         return Argument(address, setup, start)
 
     def temporary(self, value: Expression, size: int, pos: SourcePos) -> tuple[int, tuple[Assignment, ...]]:
-        """Allocate words for a value; return their address and the assignment that computes them."""
+        """Allocate words for a value; return their address and the assignments that compute them."""
         address = self.symbols.allocate(size, pos)
         left = Access(Memory("", address, size), 0, size - 1, pos)
         return address, (Assignment(left, value, pos),)

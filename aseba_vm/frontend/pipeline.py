@@ -1,4 +1,4 @@
-"""All passes in order: text to program, every stage kept if asked for (docs/spec/aseba-bytecode-vm.md section 3)."""
+"""The compiler pipeline: source text to program, with every stage (docs/spec/aseba-bytecode-vm.md section 3)."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 from aseba_vm.bytecode import EventEntry, Segment, SubEntry, instructions, link
 from aseba_vm.errors import CompileError
-from aseba_vm.frontend.codegen import check_stack, emit
-from aseba_vm.frontend.folding import optimise
+from aseba_vm.frontend.codegen import check_stack, generate
+from aseba_vm.frontend.folding import optimize
 from aseba_vm.frontend.hints import Attempt, find_hint
-from aseba_vm.frontend.lexer import Token, tokenise
+from aseba_vm.frontend.lexer import Token, tokenize
 from aseba_vm.frontend.lint import CompileWarning, find_warnings
-from aseba_vm.frontend.lowering import expand
+from aseba_vm.frontend.lowering import lower
 from aseba_vm.frontend.parser import parse
 from aseba_vm.frontend.syntax_tree import Memory, Tree
 from aseba_vm.frontend.type_check import check_sizes, check_types
@@ -22,16 +22,16 @@ from aseba_vm.target import TargetDescription
 
 @dataclass(frozen=True, slots=True)
 class Stages:
-    """What each pass made of a program."""
+    """The result of each pass."""
 
     tokens: tuple[Token, ...]
     tree: Tree
     expanded: Tree
-    optimised: Tree
+    optimized: Tree
     segments: tuple[Segment, ...]
 
     def dump(self, stage: str) -> str:
-        """Return a stage as text: ``tokens``, ``tree``, ``expanded``, ``optimised`` or ``code``."""
+        """Return a stage as text: ``tokens``, ``tree``, ``expanded``, ``optimized`` or ``code``. Raises ValueError."""
         match stage:
             case "tokens":
                 return "\n".join(map(str, self.tokens))
@@ -39,21 +39,27 @@ class Stages:
                 return self.tree.dump()
             case "expanded":
                 return self.expanded.dump()
-            case "optimised":
-                return self.optimised.dump()
+            case "optimized":
+                return self.optimized.dump()
             case "code":
                 return "\n".join(segment.dump() for segment in self.segments)
-        raise ValueError(f"no stage is called {stage!r}")
+        raise ValueError(f"stage: found {stage!r}, expected tokens, tree, expanded, optimized or code")
 
 
 @dataclass(frozen=True, slots=True)
 class Program:
     """A compiled program.
 
-    ``words`` are unsigned, ``lines`` the source row (from 0) of each word or None where the reference has no value,
-    ``variables`` those of the program by address, ``allocated`` the words of variable memory in use, ``stack`` the
-    estimated depth of each event (in table order) and then of each subroutine, ``stack_need`` that of the deepest event
-    with all it calls, ``warnings`` what is probably not meant.
+    Attributes:
+        words: unsigned words of the bytecode.
+        lines: source row (from 0) of each word, None where the reference has no value.
+        variables: variables of the program by address.
+        events: entries of the event table.
+        subs: entries of the subroutines.
+        allocated: words of variable memory in use, including the variables of the target.
+        stack: estimated depth of each event (in table order), then of each subroutine.
+        stack_need: estimated depth of the deepest event with all its calls.
+        warnings: what compiles but is probably not meant.
     """
 
     words: tuple[int, ...]
@@ -72,17 +78,17 @@ class Program:
         return {variable.name: (variable.address, variable.size) for variable in self.variables}
 
     def row_of(self, pc: int) -> int | None:
-        """Return the source row of a word of bytecode, None outside the code or where no row is known."""
+        """Return the source row of a word of bytecode, None outside the code or where there is no row."""
         first = 2 * len(self.events) + 1
         return self.lines[pc] if first <= pc < len(self.lines) else None
 
     def addresses_of(self, row: int) -> tuple[int, ...]:
-        """Return the addresses of the instructions of a source row, in order: the first is the place to stop at."""
+        """Return the addresses of the instructions of a source row in order; breakpoints use the first."""
         start = 2 * len(self.events) + 1
         return tuple(pc for pc, _ in instructions(self.words, start) if self.lines[pc] == row)
 
     def segment_of(self, pc: int) -> EventEntry | SubEntry | None:
-        """Return the event or subroutine whose code holds the address."""
+        """Return the event or subroutine whose code contains the address, None outside the code."""
         entries: list[EventEntry | SubEntry] = sorted((*self.events, *self.subs), key=lambda entry: entry.address)
         place = bisect_right([entry.address for entry in entries], pc)
         return entries[place - 1] if place and pc < len(self.words) else None
@@ -94,7 +100,7 @@ def compile_stages(
     events: Sequence[tuple[str, int]] = (),
     constants: Sequence[tuple[str, int]] = (),
 ) -> Stages:
-    """Run all passes and keep what each one made. Raises CompileError, with a hint where one is known."""
+    """Run all passes and return their results. Raises CompileError, with a hint if there is one."""
     result = _attempt(source, target, events, constants)
     if isinstance(result, Stages):
         return result
@@ -113,27 +119,27 @@ def _attempt(
     events: Sequence[tuple[str, int]],
     constants: Sequence[tuple[str, int]],
 ) -> Attempt | Stages:
-    """Run all passes; return what they made, or the error and the pass that found it."""
+    """Run all passes; return their results, or the error and the pass that found it."""
     stage = 0
     try:
         if target.variables_end > target.variables_size:
             raise CompileError("target-too-small")
-        tokens = tokenise(source)
+        tokens = tokenize(source)
         stage = 1
         tree = parse(tokens, target, events, constants)
         stage = 2
         check_sizes(tree)
-        expanded = expand(tree, target.variables_size)
+        expanded = lower(tree, target.variables_size)
         check_types(expanded)
-        optimised = optimise(expanded)
-        segments = emit(optimised)
+        optimized = optimize(expanded)
+        segments = generate(optimized)
         check_stack(segments, target.stack_size)
     except CompileError as error:
         return Attempt(stage, error)
-    return Stages(tokens, tree, expanded, optimised, segments)
+    return Stages(tokens, tree, expanded, optimized, segments)
 
 
-def compile(  # noqa: A001  # the word of the field; hides the built-in one in this module only
+def compile(  # noqa: A001  # the standard term; shadows the built-in function in this module only
     source: str,
     target: TargetDescription,
     events: Sequence[tuple[str, int]] = (),
@@ -142,13 +148,13 @@ def compile(  # noqa: A001  # the word of the field; hides the built-in one in t
     """Compile a program for a target.
 
     ``events`` are the global events (name, number of words) and ``constants`` the constants (name, value) that the
-    nodes of a network share. Raises CompileError for the first fault found.
+    nodes of a network share. Raises CompileError for the first error.
     """
     return assemble(compile_stages(source, target, events, constants), target)
 
 
 def assemble(stages: Stages, target: TargetDescription) -> Program:
-    """Link the code of a compiled program. Raises CompileError if it does not fit."""
+    """Link the code of a program. Raises CompileError if it does not fit into the memory of the target."""
     image = link(stages.segments)
     if len(image.words) > target.bytecode_size:
         raise CompileError("bytecode-too-large")

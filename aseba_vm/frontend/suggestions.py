@@ -1,4 +1,4 @@
-"""Look-up of names, with the suggestion for one that is not found (docs/spec/aseba-language.md section 5.3)."""
+"""Errors for unknown names, with a suggestion if a known name is similar (docs/spec/aseba-language.md section 5.3)."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from aseba_vm.errors import CompileError, SourcePos
 _MAX_DISTANCE = 2
 
 
-def not_found(kind: str, name: str, known: Iterable[str], pos: SourcePos) -> CompileError:
-    """Return the error ``kind``, or ``kind-hint`` with the nearest known name."""
+def unknown_name_error(kind: str, name: str, known: Iterable[str], pos: SourcePos) -> CompileError:
+    """Return the error ``kind``, or ``kind-hint`` with the most similar known name."""
     hint = suggestion(name, known)
     return CompileError(kind, (name,), pos) if hint is None else CompileError(f"{kind}-hint", (name, hint), pos)
 
 
 def suggestion(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name at the smallest distance 1 or 2; of several, the first in code point order."""
+    """Return the known name at the smallest distance of 1 or 2; of several, the first in code point order."""
     best = None
     best_distance = _MAX_DISTANCE + 1
     for candidate in sorted(known):
@@ -28,7 +28,10 @@ def suggestion(name: str, known: Iterable[str]) -> str | None:
 
 
 def _distance(one: str, two: str) -> int:
-    """Levenshtein distance, or more than the maximum if it is: only a band around the diagonal can matter."""
+    """Return the Levenshtein distance, or a larger number than the maximum.
+
+    Only a band around the diagonal of the matrix can stay below the maximum, so only that is computed.
+    """
     far = _MAX_DISTANCE + 1
     previous = {column: column for column in range(far)}
     for row, left in enumerate(one, start=1):

@@ -1,11 +1,11 @@
-"""The tables of names and the allocation of memory while parsing (docs/spec/aseba-language.md sections 5 and 10)."""
+"""Symbol table and memory allocation while parsing (docs/spec/aseba-language.md sections 5 and 10)."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from aseba_vm.errors import CompileError, SourcePos
-from aseba_vm.frontend.suggestions import not_found
+from aseba_vm.frontend.suggestions import unknown_name_error
 from aseba_vm.frontend.syntax_tree import Memory, Number, OnEvent, Sub
 from aseba_vm.target import NativeFunction, TargetDescription
 
@@ -13,8 +13,8 @@ from aseba_vm.target import NativeFunction, TargetDescription
 INIT_EVENT = 0xFFFF
 
 
-class Symbols:
-    """All that a name may mean, in the order of its declaration. A name given twice means its last meaning."""
+class SymbolTable:
+    """All names in the order of declaration. A name that is defined twice has its last meaning."""
 
     def __init__(
         self,
@@ -50,7 +50,7 @@ class Symbols:
             raise CompileError("variable-constant-clash", (name,), pos)
 
     def declare(self, name: str, size: int, pos: SourcePos) -> Memory:
-        """Give a variable the next free words. Raises CompileError if the memory is full."""
+        """Allocate the next free words to a variable. Raises CompileError if the memory is full."""
         variable = Memory(name, self.allocated, size)
         self.allocated += size
         if self.allocated > self.memory_size:
@@ -68,50 +68,50 @@ class Symbols:
         return address
 
     def variable(self, name: str, pos: SourcePos) -> Memory:
-        """Return a variable of the target or the program. Raises CompileError."""
+        """Return a variable of the target or the program. Raises CompileError for an unknown name."""
         if name not in self.variables:
-            raise not_found("unknown-variable", name, self.variables, pos)
+            raise unknown_name_error("unknown-variable", name, self.variables, pos)
         return self.variables[name]
 
     def constant(self, name: str, pos: SourcePos) -> Number:
-        """Return the value of a constant in use. Raises CompileError."""
+        """Return the value of a constant. Raises CompileError if it is unknown or out of range."""
         if name not in self.constants:
-            raise not_found("unknown-constant", name, self.constants, pos)
+            raise unknown_name_error("unknown-constant", name, self.constants, pos)
         value = self.constants[name]
         if not -32768 <= value <= 32767:
             raise CompileError("constant-range", (name, value), pos)
         return Number(value, pos)
 
     def native(self, name: str, pos: SourcePos) -> tuple[int, NativeFunction]:
-        """Return number and description of a native function. Raises CompileError."""
+        """Return number and declaration of a native function. Raises CompileError for an unknown name."""
         if name not in self.natives:
-            raise not_found("unknown-function", name, self.natives, pos)
+            raise unknown_name_error("unknown-function", name, self.natives, pos)
         number = self.natives[name]
         return number, self.native_functions[number]
 
     def global_event(self, name: str, pos: SourcePos) -> tuple[int, int]:
-        """Return number and size of an event to emit. Raises CompileError."""
+        """Return number and size of an event to emit. Raises CompileError for an unknown or local event."""
         if name in self.events:
             return self.events[name]
         if name in self.local_events:
             raise CompileError("emit-of-local-event", (name,), pos)
-        raise not_found("unknown-event", name, self.events, pos)
+        raise unknown_name_error("unknown-event", name, self.events, pos)
 
     def open_event(self, name: str, pos: SourcePos) -> OnEvent:
-        """Return the marker of an event that has no handler yet. Raises CompileError."""
+        """Return the marker of a new event handler. Raises CompileError for an unknown event or a second handler."""
         if name in self.local_events:
             number = self.local_events[name]
         elif name in self.events:
             number = self.events[name][0]
         else:
-            raise not_found("unknown-event", name, self.events.keys() | self.local_events.keys(), pos)
+            raise unknown_name_error("unknown-event", name, self.events.keys() | self.local_events.keys(), pos)
         if number in self.handled:
             raise CompileError("duplicate-event-handler", (name,), pos)
         self.handled.add(number)
         return OnEvent(number, name, pos)
 
     def open_sub(self, name: str, name_pos: SourcePos, pos: SourcePos) -> Sub:
-        """Return the marker of a new subroutine. Raises CompileError."""
+        """Return the marker of a new subroutine. Raises CompileError for a duplicate name."""
         if name in self.subs:
             raise CompileError("duplicate-subroutine", (name,), name_pos)
         self.subs[name] = Sub(len(self.subs), name, pos)

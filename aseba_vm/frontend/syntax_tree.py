@@ -1,8 +1,8 @@
-"""The program as a tree of immutable nodes, and its dump.
+"""The syntax tree: immutable nodes, and their dump.
 
-The parser builds a tree in which an expression is a vector; :mod:`aseba_vm.frontend.lowering` turns it into a tree of
-scalars: ``Assignment`` takes the place of ``Compound`` and of the assignments of ``For``, ``Word`` that of ``Access``,
-``Element`` that of ``Subscript``, and ``Listing`` is gone. Positions are those that errors and rows of words need.
+In the tree of the parser, an expression is a vector. :mod:`aseba_vm.frontend.lowering` converts it to a tree of
+scalars: ``Assignment`` replaces ``Compound`` and the assignments of ``For``, ``Word`` replaces ``Access``, ``Element``
+replaces ``Subscript``, and ``ListLiteral`` disappears. Positions are those that errors and source rows need.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Number:
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """The words first..last of a variable, both constant and not yet checked; a whole variable is 0..size-1."""
+    """The words first..last of a variable, constant and not yet checked; a whole variable is 0..size-1."""
 
     variable: Memory
     first: int
@@ -53,7 +53,7 @@ class Access:
 
 @dataclass(frozen=True, slots=True)
 class Subscript:
-    """One word at an index computed at run time. ``fault`` is why the index could not be evaluated, if it failed."""
+    """One word at an index computed at run time. ``fault`` is the error if constant evaluation of the index failed."""
 
     variable: Memory
     index: Expression
@@ -62,8 +62,8 @@ class Subscript:
 
 
 @dataclass(frozen=True, slots=True)
-class Listing:
-    """A list: the words of its items one after the other."""
+class ListLiteral:
+    """A list: the words of its items, concatenated."""
 
     items: tuple[Expression, ...]
     pos: SourcePos
@@ -80,7 +80,7 @@ class Unary:
 
 @dataclass(frozen=True, slots=True)
 class Binary:
-    """An operation, comparison or connective, word by word."""
+    """An operation, comparison or connective, applied word by word."""
 
     operator: str
     left: Expression
@@ -105,7 +105,7 @@ class Element:
     pos: SourcePos
 
 
-Expression = Number | Access | Subscript | Listing | Unary | Binary | Word | Element
+Expression = Number | Access | Subscript | ListLiteral | Unary | Binary | Word | Element
 
 
 # -- statements --------------------------------------------------------------------------------------------------------
@@ -139,7 +139,7 @@ class Compound:
 
 @dataclass(frozen=True, slots=True)
 class If:
-    """``if`` or ``when``. An ``elseif`` is an If as ``otherwise``; ``end_row`` is known without ``elseif`` only."""
+    """``if`` or ``when``. An ``elseif`` is an If in ``otherwise``; ``end_row`` is known only without ``elseif``."""
 
     is_edge: bool
     condition: Expression
@@ -151,7 +151,7 @@ class If:
 
 @dataclass(frozen=True, slots=True)
 class While:
-    """A loop; ``pos`` is that of its keyword."""
+    """A loop; ``pos`` is the position of its keyword."""
 
     condition: Expression
     body: Block
@@ -172,7 +172,7 @@ class For:
 
 @dataclass(frozen=True, slots=True)
 class Emit:
-    """A global event with the words at an address, after ``setup`` has computed them."""
+    """A global event with the words at an address, which ``setup`` computes."""
 
     number: int
     address: int
@@ -183,7 +183,7 @@ class Emit:
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """An argument of a native: its address, after ``setup`` has computed the words."""
+    """An argument of a native: its address; ``setup`` computes the words."""
 
     address: int
     setup: tuple[Assignment, ...]
@@ -192,7 +192,7 @@ class Argument:
 
 @dataclass(frozen=True, slots=True)
 class ElementArgument:
-    """An argument of a native: an element at a computed index, checked with the help of a temporary word."""
+    """An argument of a native: an element at a computed index, checked by means of a temporary word."""
 
     variable: Memory
     index: Expression
@@ -202,7 +202,7 @@ class ElementArgument:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A native function: number, sizes in list order (docs/spec/aseba-bytecode-vm.md section 6), arguments."""
+    """A native call: number, sizes in list order (docs/spec/aseba-bytecode-vm.md section 6), arguments."""
 
     number: int
     sizes: tuple[int, ...]
@@ -220,14 +220,14 @@ class CallSub:
 
 @dataclass(frozen=True, slots=True)
 class Return:
-    """The end of the handler or subroutine."""
+    """``return`` from the handler or subroutine."""
 
     pos: SourcePos
 
 
 @dataclass(frozen=True, slots=True)
 class OnEvent:
-    """Marker: what follows belongs to the event."""
+    """Marker: the following statements belong to the event."""
 
     number: int
     name: str
@@ -236,7 +236,7 @@ class OnEvent:
 
 @dataclass(frozen=True, slots=True)
 class Sub:
-    """Marker: what follows belongs to the subroutine."""
+    """Marker: the following statements belong to the subroutine."""
 
     index: int
     name: str
@@ -257,8 +257,9 @@ _FIELDS: Mapping[type, tuple[str, ...]] = {
 class Tree:
     """A program between two passes.
 
-    ``variables`` are those of the program, ``allocated`` the words in use with those of the target,
-    ``temporaries`` the words in use at the end of the memory, ``subs`` names to markers in order.
+    ``variables`` are those of the program, ``allocated`` is the number of words in use including those of the target,
+    ``temporaries`` the number of words in use at the end of the memory, ``subs`` the markers of the subroutines in
+    order.
     """
 
     body: Block
@@ -285,7 +286,7 @@ def children(node: Node) -> tuple[Node, ...]:
 
 
 def walk(root: Node) -> Iterator[Node]:
-    """Yield a node and all below it, parents first, in order."""
+    """Yield a node and all its descendants, parents first, in order."""
     stack = [root]
     while stack:
         node = stack.pop()
@@ -294,7 +295,7 @@ def walk(root: Node) -> Iterator[Node]:
 
 
 def position_of(node: Node) -> SourcePos | None:
-    """Return the place of a node; a block has none."""
+    """Return the position of a node; a block has none."""
     return None if isinstance(node, Block) else node.pos
 
 

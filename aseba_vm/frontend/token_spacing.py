@@ -1,6 +1,6 @@
-"""Regular spaces between the words and symbols of one line; words, symbols and comments stay as they are.
+"""Spacing between the tokens of one line; words, symbols and comments stay as they are.
 
-Two or more spaces before a comment, after a comma or before a list are columns that somebody aligned: they stay.
+Two or more spaces before a comment, after a comma or before a list are taken as manual alignment and kept.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ _TIGHT_AFTER = frozenset(("(", "[", ":", "~"))
 _SHIFTS = frozenset(("<<", ">>", "<<=", ">>="))
 
 
-def spaced(text: str, start: int, end: int, tokens: Sequence[Token], first: int, last: int) -> str:
-    """Return the line text[start:end], which holds the tokens first..last-1 of the program, with regular spaces."""
+def space_line(text: str, start: int, end: int, tokens: Sequence[Token], first: int, last: int) -> str:
+    """Return the line text[start:end], which has the tokens first..last-1 of the program, with normalized spaces."""
     parts: list[str] = []
     at = start
     for index in range(first, last):
@@ -38,7 +38,7 @@ def spaced(text: str, start: int, end: int, tokens: Sequence[Token], first: int,
 
 
 def token_begin(token: Token) -> int:
-    """Return the offset at which a token begins; shifts carry the place of their second character.
+    """Return the start offset of a token; the position of a shift operator is its second character.
 
     Source: docs/spec/aseba-language.md section 3.
     """
@@ -46,7 +46,7 @@ def token_begin(token: Token) -> int:
 
 
 def token_end(text: str, token: Token) -> int:
-    """Return the offset behind the last character of a token."""
+    """Return the offset after the last character of a token."""
     begin = token_begin(token)
     word = _WORD.match(text, begin)
     return word.end() if word else begin + len(token.kind)
@@ -57,14 +57,14 @@ def _is_column(space: str) -> bool:
 
 
 def _kept(space: str, tokens: Sequence[Token], at: int) -> str:
-    """The space before a token if it aligns the token in a column, else nothing."""
+    """Return the space before a token if it aligns the token in a column, else nothing."""
     before, token = tokens[at - 1].kind, tokens[at].kind
     is_cell = before == "," or (before == "=" and token == "[")
     return space if is_cell and token not in _TIGHT_BEFORE and _is_column(space) else ""
 
 
 def _gap(tokens: Sequence[Token], at: int) -> str:
-    """The space between a token and the one before it."""
+    """Return the space between a token and the one before it."""
     before, token = tokens[at - 1].kind, tokens[at].kind
     if token in _TIGHT_BEFORE or before in _TIGHT_AFTER:
         return ""
@@ -76,10 +76,10 @@ def _gap(tokens: Sequence[Token], at: int) -> str:
 
 
 def _is_sign(tokens: Sequence[Token], at: int) -> bool:
-    """Tell whether a ``-`` has no left operand."""
+    """Return whether a ``-`` has no left operand."""
     return at == 0 or tokens[at - 1].kind not in _OPERANDS or _is_emitted(tokens, at - 1)
 
 
 def _is_emitted(tokens: Sequence[Token], at: int) -> bool:
-    """Tell whether a name is that of an event, after which a value may follow."""
+    """Return whether an identifier is the event of an ``emit``, which a value may follow."""
     return at >= 1 and tokens[at - 1].kind in ("emit", "_emit")

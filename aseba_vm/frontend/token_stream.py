@@ -1,4 +1,4 @@
-"""The tokens of a program, read one after the other."""
+"""Token stream with look-ahead."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from aseba_vm.frontend.lexer import Token
 
 
 class TokenStream:
-    """A place in a sequence of tokens that ends with end-of-input; it never moves past that."""
+    """A position in a sequence of tokens that ends with end-of-input; it never moves past that."""
 
     def __init__(self, tokens: Sequence[Token]) -> None:
         self.tokens = tokens
@@ -17,7 +17,7 @@ class TokenStream:
         self.token = tokens[0]
 
     def advance(self) -> Token:
-        """Return the present token and go to the next."""
+        """Return the current token and move to the next one."""
         token = self.token
         if self.at + 1 < len(self.tokens):
             self.at += 1
@@ -25,11 +25,11 @@ class TokenStream:
         return token
 
     def peek(self, distance: int) -> str:
-        """Return the kind of a token further on."""
+        """Return the kind of the token ``distance`` positions ahead."""
         return self.tokens[min(self.at + distance, len(self.tokens) - 1)].kind
 
     def expect(self, kind: str) -> Token:
-        """Return the present token and go on, if it is of that kind. Raises CompileError."""
+        """Return the current token and move on. Raises CompileError if it is not of this kind."""
         if self.token.kind != kind:
             raise CompileError("expected-token", (kind, self.token.kind), self.token.pos)
         return self.advance()

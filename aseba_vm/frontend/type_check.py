@@ -1,4 +1,4 @@
-"""Third pass: sizes of vectors; sixth pass: types and subroutines of scalars.
+"""Pass 3: sizes of vectors; pass 6: types and subroutines of the scalar tree.
 
 Source: docs/spec/aseba-language.md sections 8 and 11.
 """
@@ -6,7 +6,7 @@ Source: docs/spec/aseba-language.md sections 8 and 11.
 from __future__ import annotations
 
 from aseba_vm.errors import CompileError, SourcePos
-from aseba_vm.frontend.suggestions import not_found
+from aseba_vm.frontend.suggestions import unknown_name_error
 from aseba_vm.frontend.syntax_tree import (
     COMPARISONS,
     CONNECTIVES,
@@ -29,7 +29,7 @@ from aseba_vm.frontend.vectors import size_of
 
 
 def check_sizes(tree: Tree) -> None:
-    """Check that both sides of each assignment have one size and each condition size 1. Raises CompileError."""
+    """Check that both sides of each assignment have the same size and each condition size 1. Raises CompileError."""
     run(_sizes(tree.body))
 
 
@@ -70,7 +70,7 @@ def _check_equal(left: Expression, right: Expression, pos: SourcePos) -> None:
 
 
 def check_types(tree: Tree) -> None:
-    """Check the types of a scalar tree, and that subroutines exist. Raises CompileError."""
+    """Check the types of a scalar tree and the existence of subroutines. Raises CompileError."""
     run(_types(tree.body, {sub.name: sub for sub in tree.subs}))
 
 
@@ -94,11 +94,11 @@ def _types(statement: Statement, subs: dict[str, Sub]) -> Task[None]:
             yield _types(body, subs)
         case CallSub(name, pos):
             if name not in subs:
-                raise not_found("unknown-subroutine", name, subs, pos)
+                raise unknown_name_error("unknown-subroutine", name, subs, pos)
 
 
 def _type_of(expression: Expression) -> Task[str]:
-    """Return ``integer`` or ``boolean``; indexes are not looked at."""
+    """Return ``integer`` or ``boolean``; indexes are not checked."""
     match expression:
         case Unary(operator, operand, pos):
             wanted = "boolean" if operator == "not" else "integer"

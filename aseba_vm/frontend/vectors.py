@@ -1,9 +1,9 @@
-"""Expressions as vectors: their size, their address, their scalar elements.
+"""Expressions as vectors: size, address, scalar elements.
 
 Source: docs/spec/aseba-language.md sections 6 and 11.
 
-Used while parsing (sizes of arguments, constants) and by the passes that check and expand. An element that does not
-exist stays in place as ``Missing`` until the scalar assignment that needs it, so that errors keep their order.
+The parser (sizes of arguments, constants), the size check and lowering use this module. An element that does not exist
+is represented by ``MissingElement`` until a scalar assignment needs it, which preserves the order of errors.
 """
 
 from __future__ import annotations
@@ -11,22 +11,22 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from aseba_vm.errors import CompileError, SourcePos
-from aseba_vm.frontend.syntax_tree import Access, Binary, Element, Expression, Listing, Subscript, Unary, Word
+from aseba_vm.frontend.syntax_tree import Access, Binary, Element, Expression, ListLiteral, Subscript, Unary, Word
 from aseba_vm.frontend.trampoline import Task, run
 
 
 @dataclass(frozen=True, slots=True)
-class Missing:
-    """In place of an element: the error of whoever needs it."""
+class MissingElement:
+    """Placeholder for an element that does not exist, with the error to raise when it is needed."""
 
     error: CompileError
 
 
-Scalar = Expression | Missing
+Scalar = Expression | MissingElement
 
 
 def size_of(expression: Expression) -> int:
-    """Return the number of words. Raises CompileError for unequal operands and the end of a slice."""
+    """Return the number of words. Raises CompileError for operands of different sizes and for an invalid slice end."""
     return run(_size(expression))
 
 
@@ -36,7 +36,7 @@ def _size(expression: Expression) -> Task[int]:
             if is_slice and not 0 <= last < variable.size:
                 raise CompileError("index-out-of-bounds", (variable.name, last, variable.size), pos)
             return last - first + 1
-        case Subscript(_, Listing(items), _, pos):
+        case Subscript(_, ListLiteral(items), _, pos):
             total = 0
             for item in items:
                 total += yield _size(item)
@@ -50,7 +50,7 @@ def _size(expression: Expression) -> Task[int]:
             if size != other:
                 raise CompileError("size-mismatch", (size, other), pos)
             return size
-        case Listing(items):
+        case ListLiteral(items):
             size = 0
             for item in items:
                 size += yield _size(item)
@@ -59,14 +59,14 @@ def _size(expression: Expression) -> Task[int]:
 
 
 def check_address(expression: Expression) -> None:
-    """Check the start of the leftmost part, as asking for its address does. Raises CompileError."""
+    """Check the start of the leftmost part, as taking its address does. Raises CompileError."""
     while True:
         match expression:
             case Unary(_, operand, _):
                 expression = operand
             case Binary(_, left, _, _):
                 expression = left
-            case Listing(items):
+            case ListLiteral(items):
                 expression = items[0]
             case Access():
                 missing = out_of_bounds(expression)
@@ -85,27 +85,27 @@ def out_of_bounds(access: Access) -> CompileError | None:
 
 
 def elements(expression: Expression, count: int) -> list[Scalar]:
-    """Return the first ``count`` elements as scalar expressions, or fewer if there are fewer."""
+    """Return the first ``count`` elements as scalar expressions, or all if there are fewer."""
     return run(_elements(expression, count, False))
 
 
 def first_element(expression: Expression) -> Expression:
     """Return element 0. Raises CompileError if it does not exist."""
-    return needed(elements(expression, 1)[0])
+    return require(elements(expression, 1)[0])
 
 
 def first_constant(expression: Expression) -> Expression:
-    """Return element 0 with a word that is never constant in place of each element at a computed index.
+    """Return element 0, where each element at a computed index is replaced by a word that is never constant.
 
-    Those indexes were evaluated when they were read; doing it again at each level would take quadratic time.
-    Raises CompileError if the element does not exist or one of the indexes could not be evaluated.
+    Those indexes were evaluated when they were parsed; repeating it at each level would take quadratic time. Raises
+    CompileError if the element does not exist or an index could not be evaluated.
     """
-    return needed(run(_elements(expression, 1, True))[0])
+    return require(run(_elements(expression, 1, True))[0])
 
 
-def needed(scalar: Scalar) -> Expression:
-    """Return an element that is now needed. Raises CompileError if it does not exist."""
-    if isinstance(scalar, Missing):
+def require(scalar: Scalar) -> Expression:
+    """Return an element. Raises CompileError if it does not exist."""
+    if isinstance(scalar, MissingElement):
         raise scalar.error
     return scalar
 
@@ -115,26 +115,26 @@ def _elements(expression: Expression, count: int, is_opaque: bool) -> Task[list[
         case Access(variable, first, last, pos):
             error = out_of_bounds(expression)
             if error is not None:
-                return [Missing(error)] * min(count, last - first + 1)
+                return [MissingElement(error)] * min(count, last - first + 1)
             end = min(last + 1, variable.size, first + count)
             return [Word(variable.address + index, pos) for index in range(first, end)]
         case Subscript(variable, index, fault, pos):
-            if isinstance(index, Listing):
+            if isinstance(index, ListLiteral):
                 total = yield _size(index)
-                return [Missing(CompileError("illegal-index" if total > 2 else "list-as-index", (), pos))]
+                return [MissingElement(CompileError("illegal-index" if total > 2 else "list-as-index", (), pos))]
             if is_opaque:
-                return [Word(variable.address, pos) if fault is None else Missing(fault)]
+                return [Word(variable.address, pos) if fault is None else MissingElement(fault)]
             first_index: list[Scalar] = yield _elements(index, 1, False)
             inner = first_index[0]
-            return [inner if isinstance(inner, Missing) else Element(variable, inner, pos)]
+            return [inner if isinstance(inner, MissingElement) else Element(variable, inner, pos)]
         case Unary(operator, operand, pos):
             operands: list[Scalar] = yield _elements(operand, count, is_opaque)
-            return [item if isinstance(item, Missing) else Unary(operator, item, pos) for item in operands]
+            return [item if isinstance(item, MissingElement) else Unary(operator, item, pos) for item in operands]
         case Binary(operator, left, right, pos):
             lefts: list[Scalar] = yield _elements(left, count, is_opaque)
             rights: list[Scalar] = yield _elements(right, count, is_opaque)
             return [_paired(operator, one, two, pos) for one, two in zip(lefts, rights, strict=False)]
-        case Listing(items):
+        case ListLiteral(items):
             gathered: list[Scalar] = []
             for item in items:
                 gathered += yield _elements(item, count - len(gathered), is_opaque)
@@ -145,6 +145,6 @@ def _elements(expression: Expression, count: int, is_opaque: bool) -> Task[list[
 
 
 def _paired(operator: str, left: Scalar, right: Scalar, pos: SourcePos) -> Scalar:
-    if isinstance(left, Missing):
+    if isinstance(left, MissingElement):
         return left
-    return right if isinstance(right, Missing) else Binary(operator, left, right, pos)
+    return right if isinstance(right, MissingElement) else Binary(operator, left, right, pos)

@@ -1,9 +1,10 @@
-"""Bytecode as basic blocks of statements over expression trees: what both translators start from.
+"""Bytecode as basic blocks of statements over expression trees: the input of both translators.
 
-The stack of the machine becomes trees again. A statement is the least that has an effect; between statements the
-machine's state is known: ``pc``, and on the stack only ``pending``, constants and temporaries. So whatever cannot be
-translated, or goes wrong while running, is left *before* the statement, and the interpreter does it again, exactly
-(see :mod:`aseba_vm.jit.tiering`). Only code that can be reached from the event table is decoded.
+Symbolic execution turns stack operations back into trees. A statement is the smallest unit with an effect. Between
+statements the state of the machine is known: ``pc``, and a stack that holds only ``pending``, constants and
+temporaries. Code that cannot be translated, or that fails at run time, therefore exits *before* its statement, and the
+interpreter repeats it exactly (see :mod:`aseba_vm.jit.tiering`). Only code that is reachable from the event table is
+decoded.
 """
 
 from __future__ import annotations
@@ -15,19 +16,19 @@ from aseba_vm.bytecode import EDGE, LENGTH, MAX_EMITTED, Op, signed, signed12
 from aseba_vm.jit.ir import (
     Assign,
     AssignIndex,
+    BailOut,
     Binary,
     Branch,
     Call,
     Const,
     Emit,
     End,
-    Enter,
+    EnterSub,
     Expr,
     Index,
     Jump,
-    Leave,
     Load,
-    Place,
+    ProgramPoint,
     Return,
     Statement,
     Stop,
@@ -45,7 +46,7 @@ _UNARY_COUNT = 3
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Statements executed one after the other, and what follows. ``depth`` is the most the stack grows by."""
+    """Statements in order, and how the block ends. ``depth`` is the maximum number of words it adds to the stack."""
 
     pc: int
     statements: tuple[Statement, ...]
@@ -55,7 +56,7 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class Memories:
-    """What of a machine the translation depends on: sizes in words, the natives, the cost of an event."""
+    """The properties of a machine that translation depends on: sizes in words, natives, cost of an event."""
 
     variables: int
     bytecode: int
@@ -66,10 +67,10 @@ class Memories:
 
 @dataclass(frozen=True, slots=True)
 class Blocks:
-    """The blocks of a program by address, and the addresses of its branches in order.
+    """The blocks of a program by address, and the addresses of its branches in ascending order.
 
-    ``jumps``: the addresses of all JUMP instructions with their targets. ``operands``: the words that are not
-    instructions; ``is_fragile``: one of them could, executed as an instruction, change itself.
+    ``jumps`` has the address and target of each JUMP, ``operands`` the words that are not instructions. ``is_fragile``:
+    one of the operands would modify itself if it were executed as an instruction.
     """
 
     by_address: dict[int, Block]
@@ -81,7 +82,7 @@ class Blocks:
 
 
 def find_blocks(words: Sequence[int], memories: Memories) -> Blocks | None:
-    """Return the blocks of a program, or None if its branches change words that have another meaning too."""
+    """Return the blocks of a program, or None if a branch word, which changes, also has another meaning."""
     size = len(words)
     if not size:
         return None
@@ -107,7 +108,7 @@ def find_blocks(words: Sequence[int], memories: Memories) -> Blocks | None:
 
 
 def _reach(words: Sequence[int], leaders: set[int]) -> set[int]:
-    """Return the addresses of the instructions that can be reached; add those where blocks begin to ``leaders``."""
+    """Return the addresses of all reachable instructions, and add the starts of blocks to ``leaders``."""
     size = len(words)
     found: set[int] = set()
     waiting = sorted(leaders)
@@ -135,7 +136,7 @@ def _reach(words: Sequence[int], leaders: set[int]) -> set[int]:
 
 
 class _Builder:
-    """Executes a block symbolically."""
+    """Executes blocks symbolically: ``stack`` holds expression trees instead of words."""
 
     def __init__(self, words: Sequence[int], memories: Memories, leaders: set[int]) -> None:
         self.words = [*words, 0, 0]
@@ -146,7 +147,7 @@ class _Builder:
     def block(self, start: int) -> Block:
         self.stack: list[Expr] = []
         self.statements: list[Statement] = []
-        self.place = Place(start, ())
+        self.place = ProgramPoint(start, ())
         self.cost = 0
         self.depth = 0
         self.temps = 0
@@ -154,9 +155,9 @@ class _Builder:
         end: End | None = None
         while end is None:
             if pc >= self.size:
-                end = Leave(self.place, 0)
+                end = BailOut(self.place, 0)
             elif pc != start and pc in self.leaders:
-                end = Leave(self.place, 0) if self.cost or self.stack else Jump(self.place, 0, -1, pc)
+                end = BailOut(self.place, 0) if self.cost or self.stack else Jump(self.place, 0, -1, pc)
             else:
                 self.cost += 1
                 end = self._instruction(pc)
@@ -165,7 +166,7 @@ class _Builder:
         return Block(start, tuple(self.statements), end, self.depth)
 
     def _instruction(self, pc: int) -> End | None:
-        """Execute one instruction; return the end of the block if this is it."""
+        """Execute one instruction; return the end of the block if it ends there."""
         word, second, third = self.words[pc : pc + 3]
         op, operand = word >> 12, word & 0xFFF
         stack = self.stack
@@ -179,15 +180,15 @@ class _Builder:
                 stack.append(Load(operand))
             case Op.STORE if stack and operand < memory:
                 value = stack.pop()
-                self.statements.append(Assign(self.place, self.cost, self._keep(), operand, value))
-                self._begin(pc + 1)
+                self.statements.append(Assign(self.place, self.cost, self._spill(), operand, value))
+                self._start_statement(pc + 1)
             case Op.LOADX if stack and operand + second <= memory:
                 stack.append(Index(operand, second, stack.pop()))
             case Op.STOREX if len(stack) > 1 and operand + second <= memory:
                 index, value = stack.pop(), stack.pop()
-                place, keep = self.place, self._keep()
+                place, keep = self.place, self._spill()
                 self.statements.append(AssignIndex(place, self.cost, keep, operand, second, index, value))
-                self._begin(pc + 2)
+                self._start_statement(pc + 2)
             case Op.UNARY if stack and operand < _UNARY_COUNT:
                 stack.append(Unary(operand, stack.pop()))
             case Op.BINARY if len(stack) > 1 and operand < _BINARY_COUNT:
@@ -195,8 +196,8 @@ class _Builder:
                 stack.append(Binary(operand, left, right))
             case Op.EMIT if second + third <= memory and third <= MAX_EMITTED:
                 self.cost += self.memories.emit.of(third)
-                self.statements.append(Emit(self.place, self.cost, self._keep(), operand, second, third))
-                self._begin(pc + 3)
+                self.statements.append(Emit(self.place, self.cost, self._spill(), operand, second, third))
+                self._start_statement(pc + 3)
             case Op.NATIVE if operand < len(self.memories.natives):
                 return self._native(pc, operand)
             case _:
@@ -204,25 +205,27 @@ class _Builder:
         return None
 
     def _native(self, pc: int, number: int) -> End | None:
+        """Execute a native call; bail out if its cost or validity is known only at run time."""
         signature = self.memories.natives[number]
         count = signature.count
         if len(self.stack) < count:
-            return Leave(self.place, 0)
+            return BailOut(self.place, 0)
         popped = tuple(self.stack[len(self.stack) - count :][::-1])
         del self.stack[len(self.stack) - count :]
         words = words_of(popped, signature) if signature.cost.per_word else 0
-        if words is None:  # only the call itself knows what it costs
-            return Leave(self.place, 0)
+        if words is None:  # the cost is known only at run time
+            return BailOut(self.place, 0)
         place, cost = self.place, self.cost + signature.cost.of(words)
         known = arguments(popped, signature) or ()
         if any(address + size > self.memories.variables for address, size in known):
-            return Leave(place, 0)
-        keep = self._keep()
-        self._begin(pc + 1)
+            return BailOut(place, 0)
+        keep = self._spill()
+        self._start_statement(pc + 1)
         self.statements.append(Call(place, cost, keep, number, popped, pc, self.place))
         return None
 
     def _end(self, pc: int, op: int, word: int, second: int) -> End:
+        """Return the end of the block for a control-flow instruction, a bail-out if it cannot be translated."""
         stack, place, cost = self.stack, self.place, self.cost
         if op == Op.BRANCH and len(stack) == 2 and word & 0xFF < _BINARY_COUNT:
             left, right = stack
@@ -236,13 +239,16 @@ class _Builder:
                 return Jump(place, cost, pc, target)
             if op == Op.CALL and word & 0xFFF < self.size:
                 self.depth = max(self.depth, 1)
-                return Enter(place, cost, word & 0xFFF, pc + 1)
+                return EnterSub(place, cost, word & 0xFFF, pc + 1)
             if op == Op.RET:
                 return Return(place, cost)
-        return Leave(place, 0)
+        return BailOut(place, 0)
 
-    def _keep(self) -> tuple[tuple[Temp, Expr], ...]:
-        """Replace what is still on the stack by temporaries; return their values. Constants stay."""
+    def _spill(self) -> tuple[tuple[Temp, Expr], ...]:
+        """Replace expressions on the stack by temporaries and return their values; constants stay.
+
+        A statement may change memory that the expressions read, so they must be evaluated before it.
+        """
         kept: list[tuple[Temp, Expr]] = []
         for place, expression in enumerate(self.stack):
             if not isinstance(expression, Const | Temp):
@@ -252,7 +258,7 @@ class _Builder:
                 self.stack[place] = temp
         return tuple(kept)
 
-    def _begin(self, pc: int) -> None:
-        """Begin the next statement."""
-        self.place = Place(pc, tuple(atom for atom in self.stack if isinstance(atom, Const | Temp)))
+    def _start_statement(self, pc: int) -> None:
+        """Start the next statement at ``pc``."""
+        self.place = ProgramPoint(pc, tuple(atom for atom in self.stack if isinstance(atom, Const | Temp)))
         self.cost = 0

@@ -1,4 +1,4 @@
-"""What translated code works on: the variables of one machine, what its branches remember, its natives."""
+"""Hosts of translated code: access to the variables, edge flags and natives of one machine."""
 
 from __future__ import annotations
 
@@ -8,63 +8,63 @@ from typing import Any, Protocol
 from aseba_vm.machine.data_memory import Variables
 
 Run = Callable[[int], tuple[int, int, int, Any]]
-"""Run with a budget. Returns the budget left, the address, the kind of exit, and the words to push, false if none."""
+"""Run with a budget; return the budget left, the address, the kind of exit and the words to push (falsy if none)."""
 
 
-class Machine(Protocol):
-    """What translated code needs of its machine; none of it may raise."""
+class TranslatedMachine(Protocol):
+    """What translated code needs of its machine; none of these methods may raise."""
 
     random_state: int
 
     @property
     def variables(self) -> Variables:
-        """The machine's words."""
+        """The variables of the machine."""
 
     def call_native(self, number: int, pc: int, popped: tuple[int, ...]) -> int:
-        """Call a native by number, from an address, with the words it pops.
+        """Call native ``number`` from address ``pc`` with the words it pops.
 
-        Return 0 if the event goes on, 1 if translated code must be left, 2 if nothing was done.
+        Returns 0 to continue, 1 if translated code must exit, 2 if an argument was invalid and nothing was done.
         """
 
-    def refuse_translated(self, pc: int, reason: int) -> None:
-        """Let the event end at an address for what went wrong in a native that is translated itself."""
+    def stop_on_translated_fault(self, pc: int, reason: int) -> None:
+        """Stop the event at ``pc`` because of a fault in a translated native."""
 
     def emit(self, number: int, words: tuple[int, ...]) -> None:
         """Emit an event."""
 
 
-class Host(Protocol):
-    """One machine's side of translated code."""
+class JitHost(Protocol):
+    """Connection between translated code and one machine."""
 
-    memory: MutableSequence[int]
-    """What branches remember, 0 or 1."""
+    edges: MutableSequence[int]
+    """Edge flags of the branches: the last condition of each, 0 or 1."""
 
-    def begin(self, branches: int) -> None:
-        """Make room for what the branches of a program remember."""
+    def reserve_edges(self, branches: int) -> None:
+        """Allocate the edge flags of a program with this number of branches."""
 
-    def make(self, code: Any) -> Run:
-        """Return what runs a translation on this machine."""
+    def instantiate(self, code: Any) -> Run:
+        """Return the function that runs a translation on this machine."""
 
     def close(self) -> None:
-        """Give the variables back."""
+        """Move the variables back to the machine."""
 
 
 class PythonHost:
-    """What the functions of one machine work on."""
+    """Host of code translated to Python."""
 
-    def __init__(self, machine: Machine) -> None:
-        """Use the variables where they are."""
+    def __init__(self, machine: TranslatedMachine) -> None:
+        """Use the machine's variables in place."""
         self._machine = machine
-        self.memory: MutableSequence[int] = []
+        self.edges: MutableSequence[int] = []
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Do nothing: the variables were never moved."""
 
-    def begin(self, branches: int) -> None:
-        """Make room for what the branches of a program remember."""
-        self.memory = [0] * branches
+    def reserve_edges(self, branches: int) -> None:
+        """Allocate the edge flags of a program with this number of branches."""
+        self.edges = [0] * branches
 
-    def make(self, code: Callable[..., Run]) -> Run:
-        """Return the function of a structure for this machine."""
+    def instantiate(self, code: Callable[..., Run]) -> Run:
+        """Return the function of a translation for this machine."""
         machine = self._machine
-        return code(machine.variables.words, self.memory, machine.call_native, machine.emit)
+        return code(machine.variables.words, self.edges, machine.call_native, machine.emit)

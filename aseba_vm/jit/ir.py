@@ -1,6 +1,6 @@
-"""What blocks of bytecode are made of: expressions, the statements that use them, and the ends of blocks.
+"""Intermediate representation of basic blocks: expressions, statements, and the ends of blocks.
 
-A statement is the least that has an effect; see :mod:`aseba_vm.jit.basic_blocks` for what holds between two of them.
+A statement is the smallest unit with an effect; :mod:`aseba_vm.jit.basic_blocks` states what holds between two of them.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ class Load(NamedTuple):
 
 
 class Temp(NamedTuple):
-    """A value kept aside while a statement changes memory."""
+    """A value saved while a statement changes memory."""
 
     number: int
 
 
 class Index(NamedTuple):
-    """A word of an array; leaves if the place is not below the size."""
+    """An element of an array; bails out if the index is not below the size."""
 
     base: int
     size: int
@@ -38,14 +38,14 @@ class Index(NamedTuple):
 
 
 class Unary(NamedTuple):
-    """An operator by number over one value."""
+    """A unary operation; ``operator`` is its number."""
 
     operator: int
     operand: Expr
 
 
 class Binary(NamedTuple):
-    """An operator by number over two values; 5 and 6 leave if the right one is 0."""
+    """A binary operation; ``operator`` is its number. Division (5) and remainder (6) bail out if the divisor is 0."""
 
     operator: int
     left: Expr
@@ -56,17 +56,17 @@ Expr = Const | Load | Temp | Index | Unary | Binary
 Atom = Const | Temp
 
 
-class Place(NamedTuple):
-    """A point between statements: address, words on the stack."""
+class ProgramPoint(NamedTuple):
+    """A point between statements: the address and the words on the stack."""
 
     pc: int
     pending: tuple[Atom, ...]
 
 
 class Assign(NamedTuple):
-    """Store a value, after keeping aside what the stack still holds. ``cost`` is in instructions."""
+    """Store a value in a word. ``keep`` is evaluated first; ``cost`` is in instructions."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     keep: tuple[tuple[Temp, Expr], ...]
     address: int
@@ -74,9 +74,9 @@ class Assign(NamedTuple):
 
 
 class AssignIndex(NamedTuple):
-    """Store a value in an array; leaves if the element is not below the size."""
+    """Store a value in an array element; bails out if the index is not below the size."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     keep: tuple[tuple[Temp, Expr], ...]
     base: int
@@ -86,9 +86,9 @@ class AssignIndex(NamedTuple):
 
 
 class Emit(NamedTuple):
-    """Send an event with words of memory."""
+    """Emit an event with words of memory."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     keep: tuple[tuple[Temp, Expr], ...]
     number: int
@@ -97,21 +97,21 @@ class Emit(NamedTuple):
 
 
 class Call(NamedTuple):
-    """Call native ``number`` with the words popped; ``pc`` is that of the instruction."""
+    """Call native ``number`` with the popped words; ``pc`` is the address of the instruction."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     keep: tuple[tuple[Temp, Expr], ...]
     number: int
     popped: tuple[Expr, ...]
     pc: int
-    after: Place
+    after: ProgramPoint
 
 
-class Known(NamedTuple):
-    """A native as far as a translator may rely on it.
+class KnownNative(NamedTuple):
+    """What a translator may assume about a native.
 
-    ``is_confined``: it touches nothing but its arguments. ``is_standard``: it is the function of
+    ``is_confined``: it accesses nothing but its arguments. ``is_standard``: it is the function of
     docs/spec/aseba-bytecode-vm.md section 12.
     """
 
@@ -124,9 +124,9 @@ Statement = Assign | AssignIndex | Emit | Call
 
 
 class Branch(NamedTuple):
-    """Compare and go to ``then`` or ``otherwise``; the word at ``pc`` remembers the condition."""
+    """Compare and continue at ``then`` or ``otherwise``; the word at ``pc`` holds the edge flag."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     pc: int
     operator: int
@@ -138,18 +138,18 @@ class Branch(NamedTuple):
 
 
 class Jump(NamedTuple):
-    """Go to ``target``; ``pc`` is that of the JUMP, or -1 where a block just runs into the next (cost 0)."""
+    """Continue at ``target``. ``pc`` is the address of the JUMP, or -1 (cost 0) if a block runs into the next one."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     pc: int
     target: int
 
 
-class Enter(NamedTuple):
+class EnterSub(NamedTuple):
     """Call the subroutine at ``target``, which returns to ``back``."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
     target: int
     back: int
@@ -158,29 +158,29 @@ class Enter(NamedTuple):
 class Return(NamedTuple):
     """Return from a subroutine."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
 
 
 class Stop(NamedTuple):
     """End the event."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
 
 
-class Leave(NamedTuple):
-    """Let the interpreter go on from here."""
+class BailOut(NamedTuple):
+    """Continue in the interpreter from here."""
 
-    place: Place
+    place: ProgramPoint
     cost: int
 
 
-End = Branch | Jump | Enter | Return | Stop | Leave
+End = Branch | Jump | EnterSub | Return | Stop | BailOut
 
 
 def words_of(popped: Sequence[Expr], signature: Signature) -> int | None:
-    """Return the words of all arguments of a native together, or None if a size is not constant."""
+    """Return the total number of words of all arguments of a native, None if a size is not constant."""
     total = 0
     for size in signature.sizes:
         length = Const(size) if size > 0 else popped[-size]
@@ -191,7 +191,7 @@ def words_of(popped: Sequence[Expr], signature: Signature) -> int | None:
 
 
 def arguments(popped: Sequence[Expr], signature: Signature) -> list[tuple[int, int]] | None:
-    """Return address and size of each argument of a native, or None if they are not all constant."""
+    """Return address and size of each argument of a native, None if not all are constant."""
     found: list[tuple[int, int]] = []
     for place, size in enumerate(signature.sizes):
         address = popped[place]

@@ -1,4 +1,4 @@
-"""Which words of memory a translated function uses, and how: what it may keep in variables of its own."""
+"""How a translated function uses words of memory, and which of them it may keep in local variables."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from aseba_vm.jit.ir import (
     Emit,
     Expr,
     Index,
-    Known,
+    KnownNative,
     Load,
     Statement,
     Temp,
@@ -23,14 +23,18 @@ from aseba_vm.jit.ir import (
 )
 from aseba_vm.jit.structured_ir import If, Loop, Node
 
-LONGEST_EMIT = 8
-"""Words of an event that are looked at one by one."""
+MAX_SCALAR_EMIT = 8
+"""Maximum number of words of an event that are read one by one instead of as a slice."""
 
 
-class Survey:
-    """Which words and branches a function uses, and how."""
+class MemoryUsage:
+    """The words and branches that a function uses.
 
-    def __init__(self, natives: Sequence[Known]) -> None:
+    ``scalars`` are accessed by a constant address, ``stored`` are the scalars that are written, ``shared`` belong to an
+    array or an argument of a native and must stay in memory.
+    """
+
+    def __init__(self, natives: Sequence[KnownNative]) -> None:
         self.natives = natives
         self.scalars: set[int] = set()
         self.stored: set[int] = set()
@@ -38,7 +42,7 @@ class Survey:
         self.branches: set[int] = set()
 
     def visit(self, nodes: Iterable[Node]) -> None:
-        """Look at nodes and those inside."""
+        """Add the nodes and everything inside them."""
         for node in nodes:
             match node:
                 case If(branch, then, otherwise):
@@ -68,7 +72,7 @@ class Survey:
                 self._expressions(index, value)
             case Emit(address=address, length=count):
                 words = range(address, address + count)
-                (self.scalars if count <= LONGEST_EMIT else self.shared).update(words)
+                (self.scalars if count <= MAX_SCALAR_EMIT else self.shared).update(words)
             case Call(popped=popped):
                 self._expressions(*popped)
                 if not needs_barrier(node, self.natives):
@@ -92,14 +96,14 @@ class Survey:
                     pass
 
 
-def needs_barrier(node: Call, natives: Sequence[Known]) -> bool:
-    """Tell whether a native may touch more of memory than arguments known beforehand."""
+def needs_barrier(node: Call, natives: Sequence[KnownNative]) -> bool:
+    """Return whether a native may access memory other than arguments with a constant address and size."""
     native = natives[node.number]
     return not native.is_confined or arguments(node.popped, native.signature) is None
 
 
-def runs(places: Iterable[int]) -> list[tuple[int, int]]:
-    """Return first and last of each run of neighbours."""
+def contiguous_ranges(places: Iterable[int]) -> list[tuple[int, int]]:
+    """Return the first and last address of each contiguous range, in ascending order."""
     found: list[tuple[int, int]] = []
     for place in sorted(places):
         if found and found[-1][1] == place - 1:

@@ -1,4 +1,4 @@
-"""Expression trees as Python text, with the interval of their values."""
+"""Expression trees as Python source, with the range of their values."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FIRST_COMPARISON = 10
 
 
 class Text(NamedTuple):
-    """An expression: Python text (an operand needs no brackets), values, whether it is a truth value."""
+    """An expression: source (usable as an operand without parentheses), value range, whether it is a truth value."""
 
     text: str
     interval: Interval
@@ -24,25 +24,26 @@ class Text(NamedTuple):
 
     @property
     def is_atom(self) -> bool:
-        """Tell whether it may be repeated."""
+        """Whether the source may be repeated without evaluating anything twice."""
         return self.text.isidentifier() or self.text.lstrip("(-").rstrip(")").isdigit()
 
 
 class Expressions:
-    """Writes expressions. ``say`` takes the lines that must come before; ``name`` gives the text of a word of memory.
+    """Generates expressions.
 
-    ``refuse`` gives the statement that leaves; the same for the whole of one statement of the program.
+    ``emit_line`` appends a line that must run before the expression; ``name`` returns the source for a word of memory.
+    ``bail_out`` is the statement that leaves translated code; it is set once for each statement of the program.
     """
 
-    def __init__(self, say: Callable[[str], None], name: Callable[[int], str]) -> None:
-        self._say = say
+    def __init__(self, emit_line: Callable[[str], None], name: Callable[[int], str]) -> None:
+        self._emit_line = emit_line
         self._name = name
         self._temporaries = 0
-        self.refuse = ""
+        self.bail_out = ""
         self.known: dict[int, Interval] = {}
 
     def word(self, expression: Expr) -> Text:
-        """Return an expression as a signed word."""
+        """Return an expression wrapped to a signed 16-bit word."""
         return self._cut(self._value(expression))
 
     def condition(self, operator: int, left: Expr, right: Expr) -> str:
@@ -50,7 +51,7 @@ class Expressions:
         return self._truth(self._binary(operator, left, right))
 
     def index(self, index: Expr, size: int) -> str:
-        """Return an index that was checked against the size of the array."""
+        """Return an index after generating its bounds check, which is omitted if the value range proves it."""
         text = self.word(index)
         low, high = text.interval
         if low < 0 or high >= size:
@@ -60,7 +61,7 @@ class Expressions:
                 test = f"{text.text} >= {size}"
             elif high < size:
                 test = f"{text.text} < 0"
-            self._say(f"if {test}: {self.refuse}")
+            self._emit_line(f"if {test}: {self.bail_out}")
         return text.text
 
     def _new(self) -> str:
@@ -68,15 +69,18 @@ class Expressions:
         return f"t{self._temporaries}"
 
     def _atom(self, value: Text) -> Text:
-        """Return a value that may be repeated."""
+        """Return a value that may be repeated, through a temporary variable if necessary."""
         if value.is_atom:
             return value
         name = self._new()
-        self._say(f"{name} = {value.text}")
+        self._emit_line(f"{name} = {value.text}")
         return Text(name, value.interval)
 
     def _cut(self, value: Text) -> Text:
-        """Return a value cut to 16 bits."""
+        """Return a value wrapped to 16 bits.
+
+        The cheapest form that covers the value range is used: nothing, one conditional correction by 65536, or masking.
+        """
         low, high = value.interval
         if value.is_truth:
             return Text(f"(1 if {value.text} else 0)", (0, 1))
@@ -91,7 +95,7 @@ class Expressions:
         return Text(f"(({value.text} + 32768 & 65535) - 32768)", WORD)
 
     def _number(self, expression: Expr) -> Text:
-        """Return a value modulo 2^16, of moderate size, never a truth value."""
+        """Return a value modulo 2^16 that is below 2^31 in magnitude and not a truth value."""
         value = self._value(expression)
         large = max(-value.interval[0], value.interval[1]) >= _LARGE
         return self._cut(value) if value.is_truth or large else value
@@ -176,9 +180,11 @@ class Expressions:
     def _division(self, operator: int, left: Expr, right: Expr) -> Text:
         one, two = self.word(left), self._atom(self.word(right))
         if two.interval[0] <= 0 <= two.interval[1]:
-            self._say(f"if not {two.text}: {self.refuse}")
+            self._emit_line(f"if not {two.text}: {self.bail_out}")
         one = self._atom(one)
         a, b = one.text, two.text
+        # Python rounds towards minus infinity, Aseba towards 0. They differ if exactly one operand is negative; there
+        # -(-a // b) truncates. A remainder has the sign of the dividend, and the sign of the divisor does not matter.
         is_positive = two.interval[0] >= 0
         if operator == 5:
             interval = value_ranges.of_quotient(one.interval, two.interval)

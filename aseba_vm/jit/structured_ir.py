@@ -1,10 +1,10 @@
-"""Blocks as structured code: loops and conditions again, from the shapes that the compiler makes.
+"""Structured control flow from basic blocks: loops and conditions, recovered from the patterns of the compiler.
 
 Source: docs/spec/aseba-bytecode-vm.md section 6.
 
-What has another shape becomes an :class:`Exit` to an address, where other translated code or the interpreter goes on;
-so any program can be translated, only some profit less. The budget of instructions is checked at :class:`Check` and
-at the head of each loop, for the longest way to the next check.
+Any other control flow becomes an :class:`Exit` to an address, where other translated code or the interpreter continues.
+So every program can be translated, though some gain less. The instruction budget is checked at each :class:`Check` and
+at the head of each loop, for the longest path to the next check.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from aseba_vm.jit.basic_blocks import Blocks
-from aseba_vm.jit.ir import Branch, Enter, Jump, Leave, Place, Return, Statement, Stop
+from aseba_vm.jit.ir import BailOut, Branch, EnterSub, Jump, ProgramPoint, Return, Statement, Stop
 
 MAX_NESTING = 14
 MAX_NODES = 4000
@@ -21,20 +21,24 @@ _CHECK_EVERY = 250
 
 STOPPED = 0
 INTERPRET = 1
-GO_ON = 2
+CONTINUE = 2
 
 
 @dataclass(slots=True)
 class Exit:
-    """Leave translated code: the event ends, the interpreter has to go on, or other translated code may."""
+    """Leave translated code.
 
-    place: Place
+    ``kind`` is STOPPED (the event has ended), INTERPRET (the interpreter must continue) or CONTINUE (other translated
+    code may continue).
+    """
+
+    place: ProgramPoint
     kind: int
     cost: int = 0
 
 
 @dataclass(slots=True)
-class Cost:
+class Charge:
     """Instructions without an effect of their own: jumps."""
 
     cost: int
@@ -42,7 +46,7 @@ class Cost:
 
 @dataclass(slots=True)
 class Check:
-    """Leave unless ``need`` instructions are left."""
+    """Exit unless ``need`` instructions are left."""
 
     pc: int
     need: int
@@ -50,7 +54,7 @@ class Check:
 
 @dataclass(slots=True)
 class If:
-    """A condition; each arm is a list of nodes."""
+    """A condition with two arms, each a list of nodes."""
 
     branch: Branch
     then: list[Node]
@@ -58,14 +62,14 @@ class If:
 
     @property
     def is_broken(self) -> bool:
-        """Tell whether there is no code to go to if the condition is false."""
+        """Whether the target of a false condition does not exist."""
         first = self.otherwise[0] if self.otherwise else None
         return isinstance(first, Exit) and first.cost < 0
 
 
 @dataclass(slots=True)
 class Loop:
-    """``before`` and the condition, then ``body``, again and again; ``need`` is that of the longest turn."""
+    """``before``, the condition and ``body``, repeated while true; ``need`` is the budget of the longest iteration."""
 
     pc: int
     before: list[Node]
@@ -75,25 +79,25 @@ class Loop:
 
 
 @dataclass(slots=True)
-class Visit:
+class SubCall:
     """A call of a subroutine."""
 
-    end: Enter
+    end: EnterSub
 
 
 @dataclass(slots=True)
-class Back:
+class SubReturn:
     """The end of a subroutine."""
 
     cost: int
 
 
-Node = Statement | Exit | Cost | Check | If | Loop | Visit | Back
+Node = Statement | Exit | Charge | Check | If | Loop | SubCall | SubReturn
 
 
 @dataclass(slots=True)
 class Routine:
-    """The code of a subroutine, or of an event (``is_sub`` false), with what running it takes."""
+    """The code of a subroutine, or of an event (``is_sub`` is false), with the budget and stack depth it needs."""
 
     pc: int
     is_sub: bool
@@ -103,8 +107,8 @@ class Routine:
     has_checks: bool = False
 
 
-class Structure:
-    """Builds the routine at ``entry`` and the subroutines it calls, into ``routines``; the first is the entry's."""
+class StructuredProgram:
+    """The routine at ``entry`` (``main``) and the subroutines it calls (``subs``, by address)."""
 
     def __init__(self, blocks: Blocks, entry: int) -> None:
         self.blocks = blocks
@@ -115,7 +119,7 @@ class Structure:
 
     @property
     def is_too_large(self) -> bool:
-        """Tell whether the code grew beyond reason, as only odd programs make it."""
+        """Whether the code exceeds MAX_NODES, which only artificial programs do."""
         return self._nodes > MAX_NODES
 
     def _routine(self, pc: int, *, is_sub: bool) -> Routine:
@@ -129,12 +133,12 @@ class Structure:
     def _sequence(
         self, routine: Routine, pc: int, end: int | None, jump: int | None, nesting: int
     ) -> tuple[list[Node], bool]:
-        """Return the nodes from ``pc`` to ``end`` (or to the JUMP at ``jump``), and whether they run to there."""
+        """Return the nodes from ``pc`` to ``end`` (or to the JUMP at ``jump``), and whether control reaches it."""
         nodes: list[Node] = []
         while pc != end:
             block = self.blocks.by_address.get(pc)
             if block is None or nesting > MAX_NESTING or self._nodes > MAX_NODES:
-                nodes.append(Exit(Place(pc, ()), GO_ON))
+                nodes.append(Exit(ProgramPoint(pc, ()), CONTINUE))
                 return nodes, False
             self._nodes += 1 + len(block.statements)
             routine.depth = max(routine.depth, block.depth)
@@ -146,32 +150,32 @@ class Structure:
             match last:
                 case Jump(_, cost, at, target):
                     if cost:
-                        nodes.append(Cost(cost))
+                        nodes.append(Charge(cost))
                     if cost and (at == jump or target == end):
                         return nodes, True
                     if cost:
-                        nodes.append(Exit(Place(target, ()), GO_ON))
+                        nodes.append(Exit(ProgramPoint(target, ()), CONTINUE))
                         return nodes, False
                     pc = target
-                case Enter(place, _, target, back):
-                    if not self._visit(routine, target):
+                case EnterSub(place, _, target, back):
+                    if not self._prepare_sub(routine, target):
                         nodes.append(Exit(place, INTERPRET))
                         return nodes, False
-                    nodes.append(Visit(last))
+                    nodes.append(SubCall(last))
                     pc = back
                 case Stop(place, cost):
                     nodes.append(Exit(place, STOPPED, cost))
                     return nodes, False
                 case Return(place, cost):
-                    nodes.append(Back(cost) if routine.is_sub else Exit(place, INTERPRET))
+                    nodes.append(SubReturn(cost) if routine.is_sub else Exit(place, INTERPRET))
                     return nodes, False
-                case Leave(place):
+                case BailOut(place):
                     nodes.append(Exit(place, INTERPRET))
                     return nodes, False
         return nodes, True
 
-    def _visit(self, routine: Routine, target: int) -> bool:
-        """Make the subroutine at ``target`` available; tell whether it can be called."""
+    def _prepare_sub(self, routine: Routine, target: int) -> bool:
+        """Translate the subroutine at ``target`` if necessary; return whether it can be called (not recursive)."""
         if target in self._open or len(self._open) > _MAX_CALLS:
             return False
         if target not in self.subs:
@@ -180,19 +184,26 @@ class Structure:
         return True
 
     def _condition(self, routine: Routine, nodes: list[Node], pc: int, end: int | None, nesting: int) -> int:
-        """Append the block at ``pc`` that ends in a branch, with what hangs on it; return where the code goes on."""
+        """Append the block at ``pc``, which ends in a branch, and its arms; return the address after them.
+
+        The compiler emits three patterns (docs/spec/aseba-bytecode-vm.md section 6). The word before the branch target
+        tells them apart: a JUMP back to ``pc`` closes a loop, a JUMP forward ends a then-arm with an else-arm, anything
+        else is an ``if`` without ``else``.
+        """
         block = self.blocks.by_address[pc]
         branch = block.end
         assert isinstance(branch, Branch)
         target = branch.otherwise
-        outside: list[Node] = [Exit(Place(target, ()), GO_ON)]
+        # A target behind the branch, outside the enclosing nodes or without code fits none of the patterns: exit to it.
+        outside: list[Node] = [Exit(ProgramPoint(target, ()), CONTINUE)]
         if target not in self.blocks.by_address:
+            # The interpreter repeats the branch and reports the fault; the negative cost takes the charge back.
             outside = [Exit(branch.place, INTERPRET, -branch.cost)]
         if target < branch.then or (end is not None and target > end) or target not in self.blocks.by_address:
             nodes += block.statements
             nodes.append(If(branch, [], outside))
             return branch.then
-        jump = target - 1
+        jump = target - 1  # a JUMP has one word
         to = self.blocks.jumps.get(jump)
         if to == pc and not branch.is_edge:
             body, _ = self._sequence(routine, branch.then, target, jump, nesting + 1)
@@ -216,23 +227,27 @@ class Structure:
         return target
 
     def _need(self, routine: Routine, nodes: list[Node], after: int) -> int:
-        """Return the most instructions to the next check, given those ``after`` the nodes; insert checks."""
+        """Return the maximum number of instructions to the next check, and insert checks.
+
+        ``after`` is that number from the end of the nodes. The nodes are processed from last to first.
+        """
         need = after
         for place in range(len(nodes) - 1, -1, -1):
             node = nodes[place]
             match node:
-                case Exit() | Back():
-                    need = max(node.cost, 0)
+                case Exit() | SubReturn():
+                    need = max(node.cost, 0)  # nothing after an exit is executed
                 case If():
                     then = self._need(routine, node.then, need)
                     need = node.branch.cost + max(then, self._need(routine, node.otherwise, need))
                 case Loop():
-                    turn = max(self._need(routine, node.body, 0), need)
-                    node.need = self._need(routine, node.before, node.branch.cost + turn)
-                    need = 0
-                case Visit():
+                    iteration = max(self._need(routine, node.body, 0), need)
+                    node.need = self._need(routine, node.before, node.branch.cost + iteration)
+                    need = 0  # the loop checks its own budget before the first iteration
+                case SubCall():
                     sub = self.subs[node.end.target]
                     if sub.has_checks:
+                        # The checks inside cannot cover what follows the call, so it gets its own check.
                         nodes.insert(place + 1, Check(node.end.back, need))
                         need = 0
                         routine.has_checks = True
@@ -241,7 +256,8 @@ class Structure:
                     need = 0
                 case _:
                     need += node.cost
-                    if need > _CHECK_EVERY and not isinstance(node, Cost) and not node.place.pending:
+                    # The exit of a check has no pending words, so it is possible only where the stack is empty.
+                    if need > _CHECK_EVERY and not isinstance(node, Charge) and not node.place.pending:
                         nodes.insert(place, Check(node.place.pc, need))
                         need = 0
                         routine.has_checks = True

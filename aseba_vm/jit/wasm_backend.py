@@ -1,8 +1,12 @@
-"""Translation to WebAssembly with the optional ``wasmtime`` (extra ``[fast]``): one module for an event.
+"""Translation to WebAssembly with the optional ``wasmtime`` (extra ``[fast]``): one module per event.
 
-Modules work on the machine's own variables (:mod:`aseba_vm.jit.wasm_host`). A subroutine is a function that returns the
-budget left, or -1 if the code was left inside. Leaving writes what is left of the budget, address, kind and the words
-of the stack into memory. Structure and rules are those of :mod:`aseba_vm.jit.python_backend`.
+Modules work directly on the variables of the machine (:mod:`aseba_vm.jit.wasm_host`). A subroutine is a function that
+takes the budget and the stack depth, and returns the budget left, or -1 if translated code was left inside it. An exit
+writes the remaining budget, address, kind and the words of the stack into memory. Structure and rules are those of
+:mod:`aseba_vm.jit.python_backend`.
+
+Locals in the generated code: ``$n`` budget, ``$d`` stack depth, ``$h`` scratch, ``$t<number>`` temporaries of
+expressions, ``$s<number>`` temporaries of statements.
 """
 
 from __future__ import annotations
@@ -10,8 +14,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from aseba_vm.jit.basic_blocks import Blocks
-from aseba_vm.jit.ir import Assign, AssignIndex, Branch, Call, Emit, Known, Place, Statement, arguments
-from aseba_vm.jit.structured_ir import INTERPRET, Back, Check, Cost, Exit, If, Loop, Node, Routine, Structure, Visit
+from aseba_vm.jit.ir import Assign, AssignIndex, Branch, Call, Emit, KnownNative, ProgramPoint, Statement, arguments
+from aseba_vm.jit.structured_ir import (
+    INTERPRET,
+    Charge,
+    Check,
+    Exit,
+    If,
+    Loop,
+    Node,
+    Routine,
+    StructuredProgram,
+    SubCall,
+    SubReturn,
+)
 from aseba_vm.jit.wasm_expressions import WasmExpressions
 from aseba_vm.jit.wasm_host import (
     ARGUMENTS,
@@ -19,37 +35,37 @@ from aseba_vm.jit.wasm_host import (
     EMIT,
     EMITTED,
     EXIT,
+    FAULTED,
     IMPORTS,
     INNER,
-    REFUSED,
     STACK,
-    Code,
+    WasmCode,
 )
-from aseba_vm.jit.wasm_natives import call, functions, is_usual, unrolled
-from aseba_vm.jit.wasm_runtime import Runtime, is_usable
+from aseba_vm.jit.wasm_natives import call, functions, has_standard_parameters, unrolled
+from aseba_vm.jit.wasm_runtime import WasmRuntime, is_usable
 
 _TRAPPED = -1
-"""The kind of exit until there is one."""
+"""Kind of exit before there is one; it remains if the code traps."""
 
 
 def is_available() -> bool:
-    """Tell whether ``wasmtime`` works here."""
+    """Return whether ``wasmtime`` works here."""
     return is_usable()
 
 
-def translate(blocks: Blocks, structure: Structure, natives: Sequence[Known]) -> Code:
-    """Return the code of a structure, for :meth:`aseba_vm.jit.wasm_host.WasmHost.make`."""
+def translate(blocks: Blocks, structure: StructuredProgram, natives: Sequence[KnownNative]) -> WasmCode:
+    """Return the code of a program, for :meth:`aseba_vm.jit.wasm_host.WasmHost.instantiate`."""
     order = {pc: place for place, pc in enumerate(blocks.branches)}
     writer = _Writer(structure, order, natives, blocks.memories.variables)
-    module = Runtime.get().compile(writer.text())
-    return Code(module, "math.rand" in writer.called)
+    module = WasmRuntime.get().compile(writer.text())
+    return WasmCode(module, "math.rand" in writer.called)
 
 
 class _Writer:
-    """Writes the text of a module."""
+    """Generates the text of a module."""
 
     def __init__(
-        self, structure: Structure, order: dict[int, int], natives: Sequence[Known], memory_words: int
+        self, structure: StructuredProgram, order: dict[int, int], natives: Sequence[KnownNative], memory_words: int
     ) -> None:
         self.memory_words = memory_words
         self.structure = structure
@@ -60,14 +76,14 @@ class _Writer:
         self.is_emitting = False
         self.called: set[str] = set()
         self.temps: set[int] = set()
-        self.expressions = WasmExpressions(self.lines_say)
+        self.expressions = WasmExpressions(self.emit_line)
 
-    def lines_say(self, line: str) -> None:
+    def emit_line(self, line: str) -> None:
         """Append a line."""
         self.lines.append(line)
 
     def text(self) -> str:
-        """Return the module: ``run`` finds the budget in memory and leaves there how it ended."""
+        """Return the module; its export ``run`` reads the budget from memory and writes the exit there."""
         self.is_emitting = emits(self.structure)
         subs = [self._routine(sub, f"$f{sub.pc}") for sub in self.structure.subs.values()]
         main = self._routine(self.structure.main, '$run (export "run")')
@@ -92,13 +108,14 @@ class _Writer:
         body = "\n".join(self.lines)
         return f"(func {name} {head} {local}\n{body}\n(unreachable))"
 
-    # -- leaving
+    # -- exits
 
-    def _leaving(self, place: Place, kind: int, uncharged: int) -> str:
-        """Return the code that notes where the code is left and returns."""
+    def _exit(self, place: ProgramPoint, kind: int, uncharged: int) -> str:
+        """Return the code that stores the exit and returns."""
         depth = "(local.get $d)" if self.is_sub else "(i32.const 0)"
         stores = [f"(i32.store (i32.const {EXIT + 8}) (i32.const {place.pc}))"]
         stores.append(f"(i32.store (i32.const {EXIT + 12}) (i32.const {kind}))")
+        # Return addresses of active subroutines are already at STACK, one per level; the pending words follow them.
         for number, atom in enumerate(place.pending):
             at = f"(i32.shl {depth} (i32.const 2))"
             stores.append(f"(i32.store offset={STACK + 4 * number} {at} {self.expressions.word(atom)})")
@@ -115,26 +132,26 @@ class _Writer:
         if count:
             self.lines.append(f"(local.set $n (i64.sub (local.get $n) (i64.const {count})))")
 
-    def _unless(self, need: int, leaving: str) -> None:
-        self.lines.append(f"(if (i64.lt_s (local.get $n) (i64.const {need})) (then {leaving}))")
+    def _check_budget(self, need: int, exit_code: str) -> None:
+        self.lines.append(f"(if (i64.lt_s (local.get $n) (i64.const {need})) (then {exit_code}))")
 
     # -- nodes
 
     def _nodes(self, nodes: Sequence[Node], uncharged: int) -> int | None:
-        """Write nodes; return the instructions not charged at their end, None if it is not reached."""
+        """Generate nodes; return the instructions not yet charged at their end, None if the end is unreachable."""
         for node in nodes:
             match node:
-                case Cost(cost):
+                case Charge(cost):
                     uncharged += cost
                 case Exit(place, kind, cost):
-                    self.lines.append(self._leaving(place, kind, uncharged + cost))
+                    self.lines.append(self._exit(place, kind, uncharged + cost))
                     return None
-                case Back(cost):
+                case SubReturn(cost):
                     self._charge(uncharged + cost)
                     self.lines.append("(return (local.get $n))")
                     return None
                 case Check(pc, need):
-                    self._unless(need + uncharged, self._leaving(Place(pc, ()), INTERPRET, uncharged))
+                    self._check_budget(need + uncharged, self._exit(ProgramPoint(pc, ()), INTERPRET, uncharged))
                 case If():
                     ended = self._if(node, uncharged)
                     if ended is None:
@@ -142,104 +159,106 @@ class _Writer:
                     uncharged = ended
                 case Loop():
                     uncharged = self._loop(node, uncharged)
-                case Visit(end):
-                    self._visit(end.target, end.back, uncharged + 1)
+                case SubCall(end):
+                    self._sub_call(end.target, end.back, uncharged + 1)
                     uncharged = 0
                 case _:
                     self._statement(node, uncharged)
                     uncharged += node.cost
         return uncharged
 
-    def _visit(self, target: int, back: int, uncharged: int) -> None:
+    def _sub_call(self, target: int, back: int, uncharged: int) -> None:
         self._charge(uncharged)
         depth = "(local.get $d)" if self.is_sub else "(i32.const 0)"
-        say = self.lines.append
-        say(f"(i32.store offset={STACK} (i32.shl {depth} (i32.const 2)) (i32.const {back}))")
-        say(f"(local.set $n (call $f{target} (local.get $n) (i32.add {depth} (i32.const 1))))")
+        emit_line = self.lines.append
+        emit_line(f"(i32.store offset={STACK} (i32.shl {depth} (i32.const 2)) (i32.const {back}))")
+        emit_line(f"(local.set $n (call $f{target} (local.get $n) (i32.add {depth} (i32.const 1))))")
+        # -1: the callee exited for good. Pass it on; the outermost function moves the remaining budget to EXIT.
         leave = "(return (i64.const -1))"
         if not self.is_sub:
             leave = f"(i64.store (i32.const {EXIT}) (i64.load (i32.const {INNER}))) (return)"
-        say(f"(if (i64.lt_s (local.get $n) (i64.const 0)) (then {leave}))")
+        emit_line(f"(if (i64.lt_s (local.get $n) (i64.const 0)) (then {leave}))")
 
     def _if(self, node: If, uncharged: int) -> int | None:
-        """Write a condition; see :class:`aseba_vm.jit.python_backend`."""
+        """Generate a condition; :class:`aseba_vm.jit.python_backend._Writer` explains edge flags and charging."""
         branch = node.branch
-        self.expressions.refuse = self._leaving(branch.place, INTERPRET, uncharged)
+        self.expressions.bail_out = self._exit(branch.place, INTERPRET, uncharged)
         test = self.expressions.condition(branch.operator, branch.left, branch.right)
         start = uncharged + branch.cost
+        # Generate both arms first: their uncharged instructions are known only afterwards.
         outer, self.lines[:] = list(self.lines), []
         then = self._nodes(node.then, start)
         then_lines, self.lines[:] = list(self.lines), []
         otherwise = self._nodes(node.otherwise, start)
         other_lines, self.lines[:] = list(self.lines), outer
         joined = then if otherwise is None else otherwise
-        say = self.lines.append
-        say(f"(if {test} (then")
+        emit_line = self.lines.append
+        emit_line(f"(if {test} (then")
         if branch.is_edge:
-            say(f"(if (i32.load16_s (i32.const {self._memory(branch)})) (then")
+            emit_line(f"(if (i32.load16_s (i32.const {self._edge_address(branch)})) (then")
             self.lines += other_lines
-            say(") (else")
-        self._remember(branch, 1)
+            emit_line(") (else")
+        self._set_edge(branch, 1)
         self.lines += then_lines
         if then is not None and joined is not None:
             self._charge(then - joined)
         if branch.is_edge:
-            say("))")
-        say(") (else")
+            emit_line("))")
+        emit_line(") (else")
         if not node.is_broken:
-            self._remember(branch, 0)
+            self._set_edge(branch, 0)
         self.lines += other_lines
-        say("))")
+        emit_line("))")
         return joined
 
     def _loop(self, node: Loop, uncharged: int) -> int:
         branch = node.branch
-        say = self.lines.append
-        say("(block (loop")
-        self._unless(node.need + uncharged, self._leaving(Place(node.pc, ()), INTERPRET, uncharged))
+        emit_line = self.lines.append
+        emit_line("(block (loop")
+        self._check_budget(node.need + uncharged, self._exit(ProgramPoint(node.pc, ()), INTERPRET, uncharged))
         before = self._nodes(node.before, uncharged)
         assert before is not None
-        self.expressions.refuse = self._leaving(branch.place, INTERPRET, before)
+        self.expressions.bail_out = self._exit(branch.place, INTERPRET, before)
         test = self.expressions.condition(branch.operator, branch.left, branch.right)
-        say(f"(if {test} (then")
-        self._remember(branch, 1)
+        emit_line(f"(if {test} (then")
+        self._set_edge(branch, 1)
         ended = self._nodes(node.body, before + branch.cost)
         if ended is not None:
             self._charge(ended - uncharged)
-        say("(br 1)))")
+        emit_line("(br 1)))")
         self._charge(before - uncharged)
-        self._remember(branch, 0)
-        say("))")
+        self._set_edge(branch, 0)
+        emit_line("))")
         return uncharged + branch.cost
 
-    def _memory(self, branch: Branch) -> int:
+    def _edge_address(self, branch: Branch) -> int:
         return BRANCHES + 2 * self.order[branch.pc]
 
-    def _remember(self, branch: Branch, value: int) -> None:
-        self.lines.append(f"(i32.store16 (i32.const {self._memory(branch)}) (i32.const {value}))")
+    def _set_edge(self, branch: Branch, value: int) -> None:
+        self.lines.append(f"(i32.store16 (i32.const {self._edge_address(branch)}) (i32.const {value}))")
 
     # -- statements
 
     def _statement(self, node: Statement, uncharged: int) -> None:
-        write, say = self.expressions, self.lines.append
-        write.refuse = self._leaving(node.place, INTERPRET, uncharged)
+        write, emit_line = self.expressions, self.lines.append
+        write.bail_out = self._exit(node.place, INTERPRET, uncharged)
         match node:
             case Assign(address=address, value=value):
                 text = write.low(value)
-                self._keep(node)
-                say(f"(i32.store16 offset={2 * address} (i32.const 0) {text})")
+                self._spill(node)
+                emit_line(f"(i32.store16 offset={2 * address} (i32.const 0) {text})")
             case AssignIndex(base=base, size=size, element=element, value=value):
                 text = write.low(value)
                 place = write.place(base, size, element)
-                self._keep(node)
-                say(f"(i32.store16 offset={2 * base} {place} {text})")
+                self._spill(node)
+                emit_line(f"(i32.store16 offset={2 * base} {place} {text})")
             case Emit(number=number, address=address, length=length):
-                self._keep(node)
-                say(f"(call $emit (i32.const {number}) (i32.const {address}) (i32.const {length}))")
+                self._spill(node)
+                emit_line(f"(call $emit (i32.const {number}) (i32.const {address}) (i32.const {length}))")
             case Call():
                 self._call(node, uncharged)
 
-    def _keep(self, node: Statement) -> None:
+    def _spill(self, node: Statement) -> None:
         for temp, expression in node.keep:
             self.temps.add(temp.number)
             text = self.expressions.word(expression)
@@ -248,34 +267,34 @@ class _Writer:
     def _call(self, node: Call, uncharged: int) -> None:
         native = self.natives[node.number]
         known = arguments(node.popped, native.signature)
-        after = self._leaving(node.after, INTERPRET, uncharged + node.cost)
-        if known is not None and native.is_standard and is_usual(native.signature):
+        after = self._exit(node.after, INTERPRET, uncharged + node.cost)
+        if known is not None and native.is_standard and has_standard_parameters(native.signature):
             lines = unrolled(native.signature.native.name, known)
             if lines is not None:
-                self._keep(node)
+                self._spill(node)
                 self.lines += lines
                 return
             expression = call(native.signature, known)
             if expression is not None:
-                self._keep(node)
+                self._spill(node)
                 self.called.add(native.signature.native.name)
-                reason = f"(i32.add (i32.const {REFUSED}) (local.get $h))"
+                reason = f"(i32.add (i32.const {FAULTED}) (local.get $h))"
                 refuse = f"(drop (call $native {reason} (i32.const {node.pc}) (i32.const 0)))"
                 self.lines.append(f"(if (local.tee $h {expression}) (then {refuse} {after}))")
                 return
-        write, say = self.expressions, self.lines.append
+        write, emit_line = self.expressions, self.lines.append
         popped = [write.word(word) for word in node.popped]
-        self._keep(node)
+        self._spill(node)
         for place, text in enumerate(popped):
-            say(f"(i32.store (i32.const {ARGUMENTS + 4 * place}) {text})")
+            emit_line(f"(i32.store (i32.const {ARGUMENTS + 4 * place}) {text})")
         head = f"(i32.const {node.number}) (i32.const {node.pc}) (i32.const {len(popped)})"
-        say(f"(local.set $h (call $native {head}))")
-        before = self._leaving(node.place, INTERPRET, uncharged)
-        say(f"(if (local.get $h) (then (if (i32.eq (local.get $h) (i32.const 2)) (then {before})) {after}))")
+        emit_line(f"(local.set $h (call $native {head}))")
+        before = self._exit(node.place, INTERPRET, uncharged)
+        emit_line(f"(if (local.get $h) (then (if (i32.eq (local.get $h) (i32.const 2)) (then {before})) {after}))")
 
 
-def emits(structure: Structure) -> bool:
-    """Tell whether a structure emits events."""
+def emits(structure: StructuredProgram) -> bool:
+    """Return whether the program emits events."""
     waiting: list[Node] = [*structure.main.nodes, *(node for sub in structure.subs.values() for node in sub.nodes)]
     while waiting:
         match waiting.pop():

@@ -1,7 +1,8 @@
-"""The way into WebAssembly and back: the quickest that this version of ``wasmtime`` has.
+"""Calls into and out of WebAssembly by the fastest interface of the installed ``wasmtime``.
 
-What the library documents checks and converts every value, which costs more than a short event; its bindings hold the
-same calls without that. Where they look otherwise, the documented ones do.
+The documented interface checks and converts every value, which costs more than a short event. The ctypes bindings
+inside the package make the same calls without that. They are private: where they differ from what this module expects,
+the documented interface is used.
 """
 
 from __future__ import annotations
@@ -12,13 +13,14 @@ from functools import partial
 from typing import Any
 
 
-def caller(wasmtime: Any, store: Any, function: Any, arguments: Sequence[float] = ()) -> Callable[[], object]:
-    """Return what calls a function of a module, always with the same arguments: an int is an i32, a float an f64.
+def make_caller(wasmtime: Any, store: Any, function: Any, arguments: Sequence[float] = ()) -> Callable[[], object]:
+    """Return a function that calls an exported function with fixed arguments: an int is an i32, a float an f64.
 
-    It holds Python's lock; whoever makes the function bounds for how long.
+    The call holds the GIL, so the exported function must be bounded in time.
     """
     try:
         bindings = wasmtime._bindings
+        # PyDLL keeps the GIL: releasing and taking it again would cost more than a short event.
         raw = ctypes.PyDLL(bindings.dll._name).wasmtime_func_call_unchecked
         values = (bindings.wasmtime_val_raw_t * max(1, len(arguments)))()
         for value, argument in zip(values, arguments, strict=False):
@@ -29,12 +31,12 @@ def caller(wasmtime: Any, store: Any, function: Any, arguments: Sequence[float] 
     except AttributeError:
         return partial(function, store, *arguments)
     call = partial(raw, context, places[0], places[1], ctypes.c_size_t(len(values)), places[2])
-    call.kept = (store, function, values, trap)  # type: ignore[attr-defined]  # alive as long as the call
+    call.kept = (store, function, values, trap)  # type: ignore[attr-defined]  # keeps them alive as long as the call
     return call
 
 
-def callee(wasmtime: Any, store: Any, function: Callable[[], None]) -> Any:
-    """Return a function for modules to import. It must not raise."""
+def make_import(wasmtime: Any, store: Any, function: Callable[[], None]) -> Any:
+    """Return a host function without parameters for modules to import. It must not raise."""
     kind = wasmtime.FuncType([], [])
     try:
         bindings = wasmtime._bindings
@@ -51,5 +53,5 @@ def callee(wasmtime: Any, store: Any, function: Callable[[], None]) -> Any:
         imported = wasmtime.Func._from_raw(found)
     except (AttributeError, TypeError, ctypes.ArgumentError):
         return wasmtime.Func(store, kind, function)
-    imported.kept = callback  # alive as long as the function
+    imported.kept = callback  # keeps it alive as long as the function
     return imported

@@ -1,9 +1,9 @@
-"""The natives for deques in WebAssembly: those of :mod:`aseba_vm.machine.deque`, step by step.
+"""Deque natives in WebAssembly; they follow :mod:`aseba_vm.machine.deque` step by step.
 
 Source: docs/spec/aseba-bytecode-vm.md section 12.
 
-Parameters are addresses and sizes in bytes; ``$cap`` is the capacity, ``$n`` a number of words. A function returns 0,
-FAULT, or for a pop of which both halves failed TWO_FAULTS; what it changed before that stays, as in the reference.
+Parameters are addresses and sizes in bytes; ``$cap`` is the capacity and ``$n`` a number of words. A function returns
+0, FAULT, or TWO_FAULTS for a pop of which both halves failed. Changes made before a fault remain, as in the reference.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _TOO_MANY = f"(if (i32.gt_s (local.get $n) (i32.sub {_COUNT} (local.get $index))
 
 
 def _copy(to: str, source: str) -> str:
-    """Return a loop that copies $n words one after the other; $i counts."""
+    """Return a loop that copies $n words one after the other; $i is the counter."""
     return f"""
   (loop $next
     (if (i32.lt_u (local.get $i) (local.get $n)) (then
@@ -45,7 +45,7 @@ _PLACE = """
 
 
 def move(memory_words: int) -> str:
-    """Return the function that moves words along the ring, in a memory of so many words."""
+    """Return the function that moves words along the ring, for a memory of ``memory_words`` words."""
     return f"""
 (func $deque_move (param $q i32) (param $cap i32) (param $to i32) (param $last i32) (param $by i32) (result i32)
   (local $step i32) (local $from i32)
@@ -132,7 +132,7 @@ _ON_RING = f"(local.get $q) (local.get $cap) (local.get $words) {_WORDS}"
 
 
 def _pop(index: str) -> str:
-    """Return the code of get and erase; the second part runs even if the first failed."""
+    """Return the code of get and erase; erase runs even if get failed."""
     return f"""
   (local.set $at {index})
   (i32.add
@@ -173,9 +173,9 @@ FUNCTIONS: dict[str, str] = {
     "deque_get_at": _transfer("deque_get_at", _OUTSIDE_AT, _RING_AT),
     "deque_set_at": _transfer("deque_set_at", _RING_AT, _OUTSIDE_AT),
 }
-"""Functions by name, without ``$``; :func:`move` is ``deque_move``.
+"""Functions by name, without ``$``; :func:`move` returns ``deque_move``.
 
-``deque.insert`` is called in Python, which charges it for what it moves.
+``deque.insert`` is missing: it runs in Python, which charges the words that it moves.
 """
 
 NEEDS: dict[str, tuple[str, ...]] = {
@@ -192,4 +192,4 @@ NEEDS: dict[str, tuple[str, ...]] = {
     "deque_erase_at": ("deque_move",),
     "deque_move": ("deque_place",),
 }
-"""Functions that a function calls."""
+"""Functions that each function calls."""

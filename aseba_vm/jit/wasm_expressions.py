@@ -1,6 +1,6 @@
-"""Expression trees as WebAssembly text, with the interval of their values.
+"""Expression trees as WebAssembly text, with the range of their values.
 
-Arithmetic is that of 32 bits, so every value is exact modulo 2^16; it is cut where the value itself matters.
+Arithmetic is 32-bit, so every value is exact modulo 2^16. It is wrapped to 16 bits only where the value itself matters.
 """
 
 from __future__ import annotations
@@ -20,34 +20,37 @@ _ANYTHING: Interval = (-1 << 31, 1 << 31)
 
 
 class Wat(NamedTuple):
-    """An expression of type i32 and its values."""
+    """An expression of type i32 and its value range."""
 
     text: str
     interval: Interval
 
 
 class WasmExpressions:
-    """Writes expressions. ``say`` takes the lines that must come before, ``refuse`` is the code that leaves."""
+    """Generates expressions. ``emit_line`` appends code that runs before, ``bail_out`` is the code of an exit."""
 
-    def __init__(self, say: Callable[[str], None]) -> None:
-        self._say = say
+    def __init__(self, emit_line: Callable[[str], None]) -> None:
+        self._emit_line = emit_line
         self.temporaries = 0
-        self.refuse = ""
+        self.bail_out = ""
 
     def word(self, expression: Expr) -> str:
-        """Return an expression as a signed word."""
+        """Return an expression wrapped to a signed 16-bit word."""
         return self._cut(self._value(expression)).text
 
     def low(self, expression: Expr) -> str:
-        """Return an expression of which only the low 16 bits count."""
+        """Return an expression of which only the low 16 bits are significant."""
         return self._value(expression).text
 
     def condition(self, operator: int, left: Expr, right: Expr) -> str:
-        """Return ``left operator right``, not 0 if true."""
+        """Return ``left operator right`` as an i32, nonzero if true."""
         return self._cut(self._binary(operator, left, right)).text
 
     def place(self, base: int, size: int, index: Expr) -> str:
-        """Return the offset in bytes of an element, to be used with the offset of its base, having checked it."""
+        """Return the byte offset of an array element, to be added to the offset of the base, after a bounds check.
+
+        The check compares unsigned, as the machine does; it is omitted if the value range proves it.
+        """
         value = self._cut(self._value(index))
         if isinstance(index, Const) and 0 <= index.value < size:
             return f"(i32.const {2 * index.value})"
@@ -55,7 +58,7 @@ class WasmExpressions:
         low, high = value.interval
         if low < 0 or high >= size:
             unsigned = name if low >= 0 else f"(i32.and {name} (i32.const 65535))"
-            self._say(f"(if (i32.ge_u {unsigned} (i32.const {size})) (then {self.refuse}))")
+            self._emit_line(f"(if (i32.ge_u {unsigned} (i32.const {size})) (then {self.bail_out}))")
         if low < 0 and size > 0x8000:
             name = f"(i32.and {name} (i32.const 65535))"
         return f"(i32.shl {name} (i32.const 1))"
@@ -63,7 +66,7 @@ class WasmExpressions:
     def _atom(self, value: Wat) -> str:
         self.temporaries += 1
         name = f"$t{self.temporaries}"
-        self._say(f"(local.set {name} {value.text})")
+        self._emit_line(f"(local.set {name} {value.text})")
         return f"(local.get {name})"
 
     def _cut(self, value: Wat) -> Wat:
@@ -125,12 +128,12 @@ class WasmExpressions:
         divisor = two.text
         if not isinstance(right, Const) or right.value == 0:
             divisor = self._atom(two)
-            self._say(f"(if (i32.eqz {divisor}) (then {self.refuse}))")
+            self._emit_line(f"(if (i32.eqz {divisor}) (then {self.bail_out}))")
         if operator == 5:
             return Wat(f"(i32.div_s {one} {divisor})", (-32768, 32768))
         return Wat(f"(i32.rem_s {one} {divisor})", WORD)
 
 
 def _moderate(interval: Interval) -> Interval:
-    """Return the interval, or that of all of 32 bits if it could wrap around there."""
+    """Return the range, or the full 32-bit range if the operation could overflow 32 bits."""
     return interval if interval[0] >= _ANYTHING[0] and interval[1] < _ANYTHING[1] else _ANYTHING

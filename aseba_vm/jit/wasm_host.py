@@ -1,7 +1,7 @@
-"""What WebAssembly modules of one machine share: its memory, the way to natives, and how they are called.
+"""The memory and imports that the WebAssembly modules of one machine share.
 
-The machine's variables live in that memory, so that nothing is copied between Python and translated code. Below are
-the places in it, in bytes.
+The variables of the machine live in this memory, so nothing is copied between Python and translated code. The constants
+below are byte addresses in it.
 """
 
 from __future__ import annotations
@@ -12,35 +12,37 @@ import weakref
 from collections.abc import Callable, MutableSequence
 from typing import Any, NamedTuple
 
-from aseba_vm.jit.host import Machine, Run
-from aseba_vm.jit.wasm_calls import callee, caller
-from aseba_vm.jit.wasm_runtime import Runtime
+from aseba_vm.jit.host import Run, TranslatedMachine
+from aseba_vm.jit.wasm_calls import make_caller, make_import
+from aseba_vm.jit.wasm_runtime import WasmRuntime
 
 VARIABLES = 0
 BRANCHES = 0x20000
-"""What branches remember, a word each."""
+"""Edge flags of the branches, one word each."""
 EXIT = 0x40000
-"""The budget on the way in; on the way out what is left of it, then address, kind, and whether there is more."""
+"""Entry: the budget (i64). Exit: the budget left (i64), address, kind, and number of stack words plus 4096 times the
+bytes in the event buffer (i32 each).
+"""
 EMITTED = EXIT + 24
-"""Bytes of events in their buffer."""
+"""Number of bytes in the event buffer."""
 RANDOM = EXIT + 28
-"""State of the generator of random numbers."""
+"""State of the random number generator."""
 INNER = EXIT + 32
-"""What is left of the budget when a subroutine is left for good."""
+"""Budget left when code exits inside a subroutine."""
 REQUEST = EXIT + 40
-"""What a native needs: its number (or REFUSED and what went wrong), its address, how many words it pops; the answer."""
+"""Native call: number (or FAULTED plus the fault), address, number of popped words; then the result."""
 STACK = EXIT + 64
-"""Words to push when code is left, four bytes each."""
+"""Words to push on exit, four bytes each."""
 TABLES = 0x58000
-"""Tables of natives."""
+"""Lookup tables of natives."""
 ARGUMENTS = 0x60000
 """Words that a native pops, four bytes each."""
 EVENTS = 0x70000
-"""Buffer of events: number and count, then the words."""
+"""Event buffer: number and count of each event, then its words."""
 PAGES = 8
 
 _EVENTS_SIZE = PAGES * 0x10000 - EVENTS
-REFUSED = 0x10000
+FAULTED = 0x10000
 
 _EXIT_FORMAT = struct.Struct("<qiii")
 _EVENT = struct.Struct("<HH")
@@ -57,7 +59,7 @@ EMIT = f"""
   (i32.store (i32.const {EMITTED})
     (i32.add (i32.add (local.get $at) (i32.const 4)) (i32.shl (local.get $count) (i32.const 1)))))
 """
-"""Function that puts an event into the buffer."""
+"""Function that appends an event to the buffer, which it flushes first if it is full."""
 
 IMPORTS = f"""
 (import "" "request" (func $request))
@@ -70,22 +72,22 @@ IMPORTS = f"""
   (call $request)
   (i32.load (i32.const {REQUEST + 12})))
 """
-"""What every module begins with."""
+"""Beginning of every module."""
 
 
-class Code(NamedTuple):
-    """A module, and whether it uses the generator of random numbers."""
+class WasmCode(NamedTuple):
+    """A module, and whether it uses the random number generator."""
 
     module: Any
     is_random: bool
 
 
 class WasmHost:
-    """The memory of one machine and what its modules may call."""
+    """The memory of one machine and the functions that its modules may call."""
 
-    def __init__(self, machine: Machine) -> None:
-        """Move the variables of a machine into a new memory."""
-        runtime = Runtime.get()
+    def __init__(self, machine: TranslatedMachine) -> None:
+        """Move the variables of a machine into a new WebAssembly memory."""
+        runtime = WasmRuntime.get()
         wasmtime = runtime.wasmtime
         self._wasmtime = wasmtime
         self._machine = machine
@@ -100,41 +102,42 @@ class WasmHost:
         self._exit = memoryview(self._array(ctypes.c_ubyte, EXIT, _EXIT_FORMAT.size)).cast("B")
         self._budget = self._array(ctypes.c_int64, EXIT, 1)
         self._stack = self._array(ctypes.c_int32, STACK, (TABLES - STACK) // 4)
-        own = weakref.ref(self)
+        # The store keeps its host functions alive; a strong reference would keep this object alive in a cycle.
+        this = weakref.ref(self)
         self._imports = [
-            callee(wasmtime, self._store, _of(own, WasmHost._serve)),
-            callee(wasmtime, self._store, _of(own, WasmHost._drain)),
+            make_import(wasmtime, self._store, _weak_call(this, WasmHost._call_native)),
+            make_import(wasmtime, self._store, _weak_call(this, WasmHost._flush_events)),
             memory,
         ]
         self._is_random = False
-        self.memory: MutableSequence[int] = []
+        self.edges: MutableSequence[int] = []
         self._is_open = True
         machine.variables.move_to(self._array(ctypes.c_int16, VARIABLES, len(machine.variables)), self)
-        runtime.serve(self)
+        runtime.register(self)
 
     def close(self) -> None:
-        """Give the variables back and free the memory."""
+        """Move the variables back and free the memory."""
         if self._is_open:
             self._is_open = False
-            self._machine.variables.move_home()
-            self.memory = self.memory[:]
+            self._machine.variables.move_back()
+            self.edges = self.edges[:]
             self._store.close()
 
-    def begin(self, branches: int) -> None:
-        """Make room for what the branches of a program remember."""
-        self.memory = self._array(ctypes.c_int16, BRANCHES, branches)
+    def reserve_edges(self, branches: int) -> None:
+        """Place the edge flags of a program with this number of branches."""
+        self.edges = self._array(ctypes.c_int16, BRANCHES, branches)
 
-    def make(self, code: Code) -> Run:
+    def instantiate(self, code: WasmCode) -> Run:
         """Return the function of a module for this machine."""
         run = self._wasmtime.Instance(self._store, code.module, self._imports).exports(self._store)["run"]
-        call = caller(self._wasmtime, self._store, run)
-        budget, way_out, unpack = self._budget, self._exit, _EXIT_FORMAT.unpack_from
+        call = make_caller(self._wasmtime, self._store, run)
+        budget, exit_area, unpack = self._budget, self._exit, _EXIT_FORMAT.unpack_from
 
         def run_module(left: int) -> tuple[int, int, int, Any]:
             budget[0] = left
             call()
-            found: tuple[int, int, int, int] = unpack(way_out)
-            return self._all_of(found) if found[3] else found
+            found: tuple[int, int, int, int] = unpack(exit_area)
+            return self._with_stack(found) if found[3] else found
 
         def run_random(left: int) -> tuple[int, int, int, Any]:
             self._is_random = True
@@ -146,13 +149,13 @@ class WasmHost:
 
         return run_random if code.is_random else run_module
 
-    def _serve(self) -> None:
-        """Call a native for translated code."""
+    def _call_native(self) -> None:
+        """Call a native, or report a fault of a translated one, for translated code."""
         if self._emitted[0]:
-            self._drain()
+            self._flush_events()
         number, pc, count = self._request[:3]
-        if number >= REFUSED:
-            self._machine.refuse_translated(pc, number - REFUSED)
+        if number >= FAULTED:
+            self._machine.stop_on_translated_fault(pc, number - FAULTED)
             return
         if self._is_random:
             self._machine.random_state = self._random[0]
@@ -160,14 +163,14 @@ class WasmHost:
         if self._is_random:
             self._random[0] = self._machine.random_state
 
-    def _all_of(self, found: tuple[int, int, int, int]) -> tuple[int, int, int, Any]:
-        """Fetch the words of the stack and the events."""
+    def _with_stack(self, found: tuple[int, int, int, int]) -> tuple[int, int, int, Any]:
+        """Flush the events and return the exit with the words to push."""
         left, pc, kind, count = found
-        self._drain()
+        self._flush_events()
         return left, pc, kind, tuple(self._stack[: count & 0xFFF])
 
-    def _drain(self) -> None:
-        """Hand over the events in the buffer, in order."""
+    def _flush_events(self) -> None:
+        """Emit the events of the buffer in order."""
         end = self._emitted[0]
         self._emitted[0] = at = 0
         while at < end:
@@ -179,11 +182,11 @@ class WasmHost:
         return (kind * size).from_address(self._base + place)
 
 
-def _of(own: weakref.ref[WasmHost], method: Callable[[WasmHost], None]) -> Callable[[], None]:
-    """Return a function that calls a method and keeps nobody alive."""
+def _weak_call(this: weakref.ref[WasmHost], method: Callable[[WasmHost], None]) -> Callable[[], None]:
+    """Return a function that calls a method without keeping the host alive."""
 
     def call() -> None:
-        host = own()
+        host = this()
         if host is not None:
             method(host)
 

@@ -1,8 +1,8 @@
-"""Standard natives in WebAssembly (docs/spec/aseba-bytecode-vm.md section 12), for arguments known beforehand.
+"""Standard natives in WebAssembly (docs/spec/aseba-bytecode-vm.md section 12), for constant arguments.
 
-Words are read and stored in the order of :mod:`aseba_vm.machine.natives`, so that overlapping arguments behave the
-same. Few words are unrolled in the place of the call; everything else is a function, which a module has if it calls it.
-Its parameters are the addresses of the arguments in bytes, then their sizes in bytes; it returns 0 or what went wrong.
+Words are read and stored in the order of :mod:`aseba_vm.machine.natives`, so overlapping arguments behave the same.
+Calls on few words are unrolled in place. All others are functions, which a module includes only if it calls them. Their
+parameters are the byte addresses of the arguments, then the sizes in bytes; they return 0 or the number of a fault.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ FAULTS: tuple[Callable[[], tuple[NativeFault, ...]], ...] = (
     lambda: (DequeFault(),),
     lambda: (DequeFault(), DequeFault()),
 )
-"""What went wrong, from 1 on."""
+"""Faults by number, from 1."""
 
-_LONGEST_UNROLLED = 16
+_MAX_UNROLLED = 16
 _ARCTANGENTS = TABLES + 2 * len(SINE)
 
 Argument = tuple[int, int]
-"""Address and size."""
+"""Address and size in words."""
 
 
 def unrolled(name: str, arguments: Sequence[Argument]) -> list[str] | None:
-    """Return the code of a call on few words, or None."""
+    """Return the code of a call on few words, None if it is not unrolled."""
     addresses = [address for address, _ in arguments]
     size = arguments[0][1] if arguments else 0
-    if size > _LONGEST_UNROLLED:
+    if size > _MAX_UNROLLED:
         return None
     if name in _ELEMENTWISE:
         function, _ = _ELEMENTWISE[name]
@@ -50,7 +50,7 @@ def unrolled(name: str, arguments: Sequence[Argument]) -> list[str] | None:
             head,
             *(_store(addresses[0] + n, f"(i32.add {_load(addresses[1] + n)} (local.get $h))") for n in range(size)),
         ]
-    if name == "math.dot" and arguments[1][1] <= _LONGEST_UNROLLED:
+    if name == "math.dot" and arguments[1][1] <= _MAX_UNROLLED:
         total = "(i32.const 0)"
         for n in range(arguments[1][1]):
             total = f"(i32.add {total} (i32.mul {_load(addresses[1] + n)} {_load(addresses[2] + n)}))"
@@ -61,7 +61,7 @@ def unrolled(name: str, arguments: Sequence[Argument]) -> list[str] | None:
 
 
 def call(signature: Signature, arguments: Sequence[Argument]) -> str | None:
-    """Return the expression that calls the function of a native and is 0 if all went well, or None without one."""
+    """Return the expression that calls the function of a native (0 on success), None if there is no such function."""
     name = signature.native.name
     if name not in _FUNCTIONS or _shape(signature) != _SHAPES[name]:
         return None
@@ -71,7 +71,7 @@ def call(signature: Signature, arguments: Sequence[Argument]) -> str | None:
 
 
 def functions(names: Iterable[str], memory_words: int) -> str:
-    """Return the functions of natives and what they need, each once, for a memory of so many words."""
+    """Return the functions of natives and their dependencies, each once, for a memory of ``memory_words`` words."""
     needed: list[str] = []
     waiting = sorted(names)
     while waiting:
@@ -83,8 +83,8 @@ def functions(names: Iterable[str], memory_words: int) -> str:
     return "\n".join(own.get(name) or _FUNCTIONS[name] for name in needed)
 
 
-def is_usual(signature: Signature) -> bool:
-    """Tell whether a native is declared with the parameters that the code here expects."""
+def has_standard_parameters(signature: Signature) -> bool:
+    """Return whether a native is declared with the parameters that the code here expects."""
     return _shape(signature) == _SHAPES.get(signature.native.name)
 
 
@@ -100,15 +100,15 @@ def _store(address: int, value: str) -> str:
     return f"(i32.store16 offset={2 * address} (i32.const 0) {value})"
 
 
-def _of(name: str) -> Callable[..., str]:
+def _binary_operation(name: str) -> Callable[..., str]:
     return lambda *values: f"(i32.{name} {' '.join(values)})"
 
 
-def _least(one: str, two: str) -> str:
+def _minimum(one: str, two: str) -> str:
     return f"(select {one} {two} (i32.lt_s {one} {two}))"
 
 
-def _greatest(one: str, two: str) -> str:
+def _maximum(one: str, two: str) -> str:
     return f"(select {one} {two} (i32.gt_s {one} {two}))"
 
 
@@ -120,14 +120,14 @@ def _clamped(value: str, low: str, high: str) -> str:
 
 _ELEMENTWISE: dict[str, tuple[Callable[..., str], int]] = {
     "math.copy": (lambda value: value, 1),
-    "math.add": (_of("add"), 2),
-    "math.sub": (_of("sub"), 2),
-    "math.mul": (_of("mul"), 2),
-    "math.min": (_least, 2),
-    "math.max": (_greatest, 2),
+    "math.add": (_binary_operation("add"), 2),
+    "math.sub": (_binary_operation("sub"), 2),
+    "math.mul": (_binary_operation("mul"), 2),
+    "math.min": (_minimum, 2),
+    "math.max": (_maximum, 2),
     "math.clamp": (_clamped, 3),
 }
-"""Value of an element, and the number of arguments that it is made of; may be evaluated more than once."""
+"""Value of an element, and its number of source arguments. Operands may be evaluated more than once."""
 
 _ELEMENTWISE_ONCE: dict[str, tuple[str, Callable[..., str], int]] = {
     "math.div": (
@@ -248,7 +248,7 @@ _ARGBOUNDS = """
       (br $next))))
   (i32.const 0))"""
 
-# Sorting by insertion with gaps that shrink to a third.
+# Shell sort: insertion sort with gaps of 1, 4, 13, … words, from the largest down.
 _SORT = """
 (func $math.sort (param $from i32) (param $size i32) (result i32)
   (local $gap i32) (local $at i32) (local $hole i32) (local $word i32) (local $other i32)
@@ -294,7 +294,7 @@ _ROT2 = f"""
 
 
 def _between(table: int, bits: int) -> str:
-    """Return the value between words $at and the next of a table, $rest of 2^bits on."""
+    """Return the linear interpolation between table words $at and $at + 1, at $rest / 2^bits."""
     at = "(i32.shl (local.get $at) (i32.const 1))"
     return f"""(i32.shr_s (i32.add
     (i32.mul (i32.load16_s offset={table} {at}) (i32.sub (i32.const {1 << bits}) (local.get $rest)))

@@ -1,4 +1,4 @@
-"""The compiler of WebAssembly, one for the process."""
+"""The WebAssembly compiler, shared by the whole process."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ from typing import Any, Protocol
 
 _PAGE = 0x10000
 _HEADROOM = 256 << 20
-"""Bytes of address space that must be left for the memories and modules that are made later."""
+"""Bytes of address space that must remain free for later memories and modules."""
 _SAMPLE = '(module (import "" "memory" (memory 1)) (func (export "run") (i32.store (i32.const 0) (i32.const 42))))'
 
 
 @cache
 def is_usable() -> bool:
-    """Whether WebAssembly can be compiled and run here; if ``wasmtime`` is there but fails, the reason is logged once.
+    """Return whether WebAssembly can be compiled and run here.
 
-    The package may be broken (a missing system library, another machine's binary), or a memory limit may be too low.
+    If ``wasmtime`` is installed but fails, the reason is logged once: the package may be broken (a missing system
+    library, a binary for another platform), or a memory limit too low.
     """
     try:
         _try()
@@ -29,14 +30,15 @@ def is_usable() -> bool:
             return False
         _log(error)
         return False
-    except Exception as error:  # whatever a broken package raises: everything works without it
+    except Exception as error:  # a broken package can raise anything, and everything works without it
         _log(error)
         return False
     return True
 
 
 def _try() -> None:
-    runtime = Runtime.get()
+    """Compile and run a sample. Raises any exception that a broken ``wasmtime`` can raise."""
+    runtime = WasmRuntime.get()
     wasmtime = runtime.wasmtime
     with mmap.mmap(-1, _HEADROOM):
         store = wasmtime.Store(runtime.engine)
@@ -50,35 +52,37 @@ def _try() -> None:
 
 def _log(error: Exception) -> None:
     reason = " ".join(str(error).split()) or type(error).__name__
-    logging.getLogger(__name__).warning("wasmtime cannot be used, programs and crowds run slower: %s", reason)
+    logging.getLogger(__name__).warning(
+        "wasmtime cannot be used, programs and batches of robots run slower: %s", reason
+    )
 
 
-class Closable(Protocol):
-    """What holds a store."""
+class StoreOwner(Protocol):
+    """An object that owns a wasmtime store."""
 
     def close(self) -> None:
-        """Let go of it; harmless when done already."""
+        """Free the store; harmless if it is already closed."""
         ...
 
 
-class Runtime:
-    """The compiler, one for the process."""
+class WasmRuntime:
+    """The compiler, one instance per process."""
 
-    _instance: Runtime | None = None
+    _instance: WasmRuntime | None = None
 
     def __init__(self) -> None:
-        """Load ``wasmtime``."""
+        """Import ``wasmtime`` and create the compiler."""
         self.wasmtime: Any = importlib.import_module("wasmtime")
         self.engine = self.wasmtime.Engine(self._config())
         self._modules: weakref.WeakSet[Any] = weakref.WeakSet()
-        self._served: weakref.WeakSet[Closable] = weakref.WeakSet()
+        self._store_owners: weakref.WeakSet[StoreOwner] = weakref.WeakSet()
         atexit.register(self._close)
 
     def _config(self) -> Any:
-        """Memories take the address space of their size.
+        """Return a configuration in which memories reserve only the address space of their size.
 
-        The default of 4 GB each makes them fail where address space is limited (`ulimit -v`, batch systems). They never
-        grow, so that they need no room behind them either; bounds are checked instead (measured: no slower).
+        The default of 4 GB each fails where address space is limited (`ulimit -v`, batch systems). The memories never
+        grow, so no space behind them is needed either; bounds are checked explicitly, which measured no slower.
         """
         config = self.wasmtime.Config()
         for name, value in (
@@ -86,27 +90,27 @@ class Runtime:
             ("memory_reservation_for_growth", 0),
             ("memory_guard_size", _PAGE),
         ):
-            if hasattr(type(config), name):  # older versions reserve what they choose
+            if hasattr(type(config), name):  # absent in older versions
                 setattr(config, name, value)
         return config
 
     def compile(self, text: str) -> Any:
-        """Return a module."""
+        """Return the module of a WebAssembly text."""
         module = self.wasmtime.Module(self.engine, text)
         self._modules.add(module)
         return module
 
-    def serve(self, served: Closable) -> None:
-        """Note what lives in a store of its own; it is closed before the process takes ``wasmtime`` itself apart."""
-        self._served.add(served)
+    def register(self, owner: StoreOwner) -> None:
+        """Register an owner of a store, to be closed at exit before ``wasmtime`` itself is unloaded."""
+        self._store_owners.add(owner)
 
     def _close(self) -> None:
-        for made in [*self._served, *self._modules, self.engine]:
+        for made in [*self._store_owners, *self._modules, self.engine]:
             made.close()
 
     @classmethod
-    def get(cls) -> Runtime:
-        """Return the compiler, started when first asked for."""
+    def get(cls) -> WasmRuntime:
+        """Return the instance, created on first use."""
         if cls._instance is None:
             cls._instance = cls()
         return cls._instance

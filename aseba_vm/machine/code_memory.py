@@ -1,20 +1,23 @@
-"""Bytecode memory: words, decoded when they are written, so that the machine meets operations ready to be executed."""
+"""Bytecode memory: words that are decoded when they are written, so the interpreter finds executable operations."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
 from aseba_vm.bytecode import LENGTH, WAS_TRUE, Op
-from aseba_vm.machine.operations import STOP, Decoded, decoded
+from aseba_vm.machine.operations import STOP, Decoded, decode
 
 
 class CodeMemory:
-    """``words`` are unsigned; ``operations`` holds at each address what begins there. Change words by methods only."""
+    """``words`` are unsigned; ``operations`` has the decoded operation at each address.
+
+    Change the words through the methods only, which keep both in step.
+    """
 
     __slots__ = ("_events", "operations", "words")
 
     def __init__(self, size: int) -> None:
-        """Build a memory of zeros."""
+        """Create a memory of zeros."""
         self._events: dict[int, int] | None = None
         self.words: list[int] = [0] * size
         self.operations: list[Decoded] = [(STOP, 0, 0)] * size
@@ -24,27 +27,28 @@ class CodeMemory:
         if self._events is None:
             words = self.words
             places = range(1, min(words[0], len(words) - 1), 2) if words else range(0)
+            # Reversed, so that the first of several entries for an event wins.
             self._events = {words[place]: words[place + 1] for place in reversed(places)}
         return self._events.get(event, 0)
 
     def write(self, start: int, words: Sequence[int]) -> None:
-        """Write words that fit."""
+        """Write words, which must fit, and decode them."""
         self.words[start : start + len(words)] = [word & 0xFFFF for word in words]
         self._decode(start, start + len(words))
 
-    def turn(self, pc: int) -> None:
-        """Turn what the BRANCH at ``pc`` remembers over."""
+    def toggle_edge(self, pc: int) -> None:
+        """Toggle the edge flag of the BRANCH at ``pc``."""
         self.words[pc] ^= WAS_TRUE
         self._decode(pc, pc + 1)
 
-    def remember(self, memories: Iterable[tuple[int, int]]) -> None:
-        """Let BRANCHes remember their conditions: address, 0 or 1."""
-        for pc, value in memories:
+    def store_edges(self, edges: Iterable[tuple[int, int]]) -> None:
+        """Set the edge flags of branches: pairs of address and flag, 0 or 1."""
+        for pc, value in edges:
             if self.words[pc] >> 9 & 1 != value:
-                self.turn(pc)
+                self.toggle_edge(pc)
 
     def clear_edges(self) -> None:
-        """Let branches forget, from the word on where the reference starts its scan.
+        """Clear the edge flags, from the word on at which the reference starts its scan.
 
         Source: docs/spec/aseba-bytecode-vm.md section 10.4.
         """
@@ -53,13 +57,13 @@ class CodeMemory:
         while pc < len(words):
             word = words[pc]
             if word >> 12 == Op.BRANCH and word & WAS_TRUE:
-                self.turn(pc)
+                self.toggle_edge(pc)
             pc += LENGTH[word >> 12]
 
     def _decode(self, start: int, end: int) -> None:
-        """Decode the operations that words start..end-1 belong to."""
+        """Decode the operations that contain the words start..end-1; an operation has up to three words."""
         if start == 0 or start < self.words[0]:
             self._events = None
         words = [*self.words[max(start - 2, 0) : end], *self.words[end : end + 2], 0, 0]
         for place, pc in enumerate(range(max(start - 2, 0), end)):
-            self.operations[pc] = decoded(words[place], words[place + 1], words[place + 2])
+            self.operations[pc] = decode(words[place], words[place + 1], words[place + 2])

@@ -1,7 +1,7 @@
-"""What natives and emitted events take of a machine's budget, beyond the instruction that calls them.
+"""Costs of natives and emitted events, in instructions beyond the one that calls them.
 
-An instruction is the unit. Costs are part of the program's semantics under a budget: they depend on the operation and
-the sizes of its arguments only, so that every engine ends a run at the same place on every machine.
+Costs are part of the semantics of a program under a budget. They depend only on the operation and the sizes of its
+arguments, so every engine ends a run at the same place on every computer.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from types import MappingProxyType
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """Instructions that an operation takes as long as: ``base``, and ``per_word`` of all its arguments."""
+    """Cost of an operation in instructions: ``base``, plus ``per_word`` for each word of its arguments."""
 
     base: int = 0
     per_word: int = 0
 
     def of(self, words: int) -> int:
-        """Return the cost for arguments of so many words together."""
+        """Return the cost for arguments with ``words`` words in total."""
         return self.base + self.per_word * words
 
 
@@ -40,4 +40,4 @@ class Costs:
 
 
 NO_COSTS = Costs()
-"""The reference's: a native counts as one instruction."""
+"""Costs of the reference: a native counts as one instruction."""

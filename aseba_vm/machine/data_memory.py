@@ -1,37 +1,38 @@
-"""Variable memory: signed words at addresses, kept wherever the engine at work wants them."""
+"""Variable memory: signed words at addresses, in whatever storage the active engine needs."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, MutableSequence, Sequence
 from typing import Any, overload
 
-LOWEST, HIGHEST = -32768, 32767
+MIN_WORD, MAX_WORD = -32768, 32767
 
 
 class Variables(Sequence[int]):
-    """Words -32768…32767; the number of words never changes.
+    """A fixed number of words in -32768…32767.
 
-    ``words`` is the storage, quicker to use and unchecked; ask for it anew after every run, an engine may move it.
+    ``words`` is the storage: faster to access, and not range-checked. Read the attribute again after every run, since
+    an engine may have moved the words.
     """
 
-    __slots__ = ("_keeper", "words")
+    __slots__ = ("_owner", "words")
 
     words: MutableSequence[int]
 
     def __init__(self, size: int) -> None:
-        """Build a memory of ``size`` zeros."""
+        """Create a memory of ``size`` zeros."""
         self.words = [0] * size
-        self._keeper: object = None
+        self._owner: object = None
 
-    def move_to(self, words: MutableSequence[int], keeper: object = None) -> None:
-        """Copy the words to a storage of the same size and use that; ``keeper`` lives as long as it is used."""
+    def move_to(self, words: MutableSequence[int], owner: object = None) -> None:
+        """Copy the words to a storage of the same size and use it; ``owner`` is kept alive meanwhile."""
         words[:] = self.words[:]
-        self.words, self._keeper = words, keeper
+        self.words, self._owner = words, owner
 
-    def move_home(self) -> None:
-        """Take the words back from the storage of an engine."""
-        if self._keeper is not None:
-            self.words, self._keeper = self.words[:], None
+    def move_back(self) -> None:
+        """Copy the words from the storage of an engine back into a list."""
+        if self._owner is not None:
+            self.words, self._owner = self.words[:], None
 
     @overload
     def __getitem__(self, place: int) -> int: ...
@@ -52,11 +53,11 @@ class Variables(Sequence[int]):
             expected = len(range(*place.indices(len(self.words))))
             if len(value) != expected:
                 raise ValueError(f"{len(value)} words found, expected {expected}")
-            wrong = [word for word in value if not LOWEST <= word <= HIGHEST]
+            wrong = [word for word in value if not MIN_WORD <= word <= MAX_WORD]
         else:
-            wrong = [] if LOWEST <= value <= HIGHEST else [value]
+            wrong = [] if MIN_WORD <= value <= MAX_WORD else [value]
         if wrong:
-            raise ValueError(f"{wrong[0]} found, expected {LOWEST} to {HIGHEST}")
+            raise ValueError(f"{wrong[0]} found, expected {MIN_WORD} to {MAX_WORD}")
         self.words[place] = value
 
     def __len__(self) -> int:
@@ -64,13 +65,13 @@ class Variables(Sequence[int]):
         return len(self.words)
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether the words are the same; any sequence of words may be compared."""
+        """Return whether the words are equal to those of any sequence."""
         if not isinstance(other, Sequence):
             return NotImplemented
         return self.words[:] == list(other)
 
-    __hash__ = None  # type: ignore[assignment]  # it changes
+    __hash__ = None  # type: ignore[assignment]  # mutable
 
     def __repr__(self) -> str:
-        """Show the words."""
+        """Return the words as text."""
         return f"Variables({self.words[:]})"

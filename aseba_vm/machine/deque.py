@@ -1,8 +1,8 @@
-"""The natives for deques: rings of words inside an array (docs/spec/aseba-bytecode-vm.md section 12).
+"""Deque natives: ring buffers inside an array (docs/spec/aseba-bytecode-vm.md section 12).
 
-Word 0 of the array is the number of elements, word 1 the start, the rest the ring. The moves do not always keep the
-contents when the start is not 0; programs and the reference agree on that, so it is reproduced. An insertion behind the
-last element, with nonsense as the start, moves words round the ring up to 65536 times: that is charged.
+Word 0 of the array is the number of elements, word 1 the start; the others are the ring. Moving words does not always
+preserve the contents when the start is not 0. Programs and the reference rely on that, so it is reproduced. With an
+invalid start, an insertion after the last element moves words around the ring up to 65536 times; this work is charged.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from collections.abc import Mapping
 from aseba_vm.machine.native_call import DequeFault, Native, NativeCall, wrap
 
 _MOVE = 2
-"""What it costs to move a word, in instructions."""
+"""Cost of moving one word, in instructions."""
 
 
 class _Deque:
-    """The deque that is argument 0 of a call."""
+    """The deque in argument 0 of a call. Raises DequeFault if the array is too small."""
 
     def __init__(self, call: NativeCall) -> None:
         self.call = call
@@ -44,7 +44,7 @@ class _Deque:
         self.memory[self.address + 1] = wrap(value)
 
     def place(self, position: int) -> int:
-        """Address of a position of the ring."""
+        """Return the address of a position in the ring."""
         return self.address + 2 + position % self.capacity
 
     def check_index(self, index: int) -> None:
@@ -52,9 +52,9 @@ class _Deque:
             raise DequeFault
 
     def move(self, target: int, last: int, delta: int) -> None:
-        """Move words along the ring by ``delta``, from ``target`` on up or down to ``last``.
+        """Move words along the ring by ``delta``, from ``target`` up or down to ``last``.
 
-        Downwards to 0 or less the reference never ends, as ``target`` has no sign: that is a fault here.
+        Moving down to 0 or below never ends in the reference, because ``target`` is unsigned there; here it is a fault.
         """
         if delta == 0:
             return
@@ -66,6 +66,8 @@ class _Deque:
         words = last - target if delta > 0 else target - last
         if words > 2 * self.capacity:
             self.call.charge(_MOVE * words)
+        # Indexes behave as in C: 16-bit unsigned target, remainder with the sign of the dividend. A negative one can
+        # therefore address the words before the ring; addresses outside the memory are skipped.
         while target <= last if delta > 0 else target >= last:
             source = target + delta
             rest = source % self.capacity if source >= 0 else -(-source % self.capacity)
@@ -155,7 +157,7 @@ def _push_back(call: NativeCall) -> None:
 
 
 def _pop(call: NativeCall, index: int) -> None:
-    """Get and erase; the second part runs even if the first failed."""
+    """Get and erase; erase runs even if get failed."""
     deque = _Deque(call)
     try:
         deque.get(call, 1, index)

@@ -1,8 +1,8 @@
-"""Sine, cosine and arc tangent in 16-bit integers, by interpolation in tables.
+"""Sine, cosine and arc tangent in 16-bit integers, by linear interpolation in tables.
 
 Source: docs/spec/aseba-bytecode-vm.md section 12.
 
-A full circle is 65536, one is 32767.
+A full circle is 65536; the value 1 is represented by 32767.
 """
 
 from __future__ import annotations
@@ -95,12 +95,12 @@ def sine(angle: int) -> int:
 
 
 def cosine(angle: int) -> int:
-    """Return the cosine of an angle."""
+    """Return the cosine of an angle, as sin(angle + 90°)."""
     return sine(wrap(angle + RIGHT_ANGLE))
 
 
 def arctangent(y: int, x: int) -> int:
-    """Return the angle of the direction (x, y), not yet cut to 16 bits."""
+    """Return the angle of the direction (x, y), not yet wrapped to 16 bits."""
     if y == 0:
         return 0 if x >= 0 else -32768
     result = RIGHT_ANGLE if x == 0 else _steepness_angle(wrap(abs(y)), wrap(abs(x)))
@@ -110,7 +110,11 @@ def arctangent(y: int, x: int) -> int:
 
 
 def _steepness_angle(height: int, width: int) -> int:
-    """Return the angle whose tangent is height / width; either may be -32768 for 32768."""
+    """Return the angle whose tangent is height / width; either may be -32768, which stands for 32768.
+
+    The quotient has 16 fractional bits. Its exponent selects a group of eight table entries, its mantissa an entry and
+    the fraction between it and the next. Quotients below 2^12 are interpolated linearly from 0.
+    """
     numerator = wrap32(height << 16)
     quotient = abs(numerator) // abs(width)
     if (numerator < 0) != (width < 0):

@@ -1,10 +1,12 @@
-"""The interpreter: one loop over decoded operations, the oracle of the translators.
+"""The interpreter: one loop over decoded operations, and the reference for the translators.
 
 Source: docs/spec/aseba-bytecode-vm.md sections 7 to 10.3.
 
-The loop meets operations with their operands ready (:mod:`aseba_vm.machine.code_memory`); a BRANCH that remembers its
-condition rewrites its own word. Arithmetic is exact in Python and cut to 16 bits in
-:func:`aseba_vm.machine.native_call.wrap`.
+The loop reads operations with decoded operands (:mod:`aseba_vm.machine.code_memory`). A BRANCH keeps its edge flag in
+its own word. Arithmetic is exact in Python and wrapped to 16 bits by :func:`aseba_vm.machine.native_call.wrap`.
+
+The loop is written for speed: stack checks are inline, and reads beyond a list raise IndexError, which the end of the
+function turns into a fault, instead of being checked in advance.
 """
 
 from __future__ import annotations
@@ -41,11 +43,11 @@ from aseba_vm.machine.operations import (
 from aseba_vm.target import TargetDescription
 
 ACTIVE = 1
-"""Flag of a machine that executes an event."""
+"""Flag of a machine that is executing an event."""
 
 
-class Machine(Protocol):
-    """What the loop works on."""
+class InterpretedMachine(Protocol):
+    """What the loop needs of a machine."""
 
     target: TargetDescription
     code: CodeMemory
@@ -55,45 +57,45 @@ class Machine(Protocol):
     sp: int
     flags: int
     instructions: int
-    surcharge: int
+    extra_cost: int
     outbox: list[Message]
 
     def count_popped(self, number: int) -> int:
         """Return how many words a native pops."""
 
-    def price(self, number: int, popped: Sequence[int]) -> int:
-        """Return what a call of a native takes of the budget, beyond its instruction."""
+    def native_cost(self, number: int, popped: Sequence[int]) -> int:
+        """Return the cost of a native call beyond its instruction."""
 
-    def price_of_emit(self, words: int) -> int:
-        """Return what an event takes of the budget, beyond its instruction."""
+    def emit_cost(self, words: int) -> int:
+        """Return the cost of an emitted event beyond its instruction."""
 
     def invoke(self, number: int, pc: int, popped: Sequence[int]) -> bool:
-        """Call a native; return False if its arguments lie outside memory."""
+        """Call a native; return False if an argument lies outside memory."""
 
     def stop_on(self, fault: Fault) -> None:
-        """End the event."""
+        """Stop the event because of a fault."""
 
 
-def interpret(machine: Machine, limit: int) -> int:
-    """Execute instructions while the event is active and less than ``limit`` is spent; return what was spent.
+def interpret(machine: InterpretedMachine, limit: int) -> int:
+    """Execute instructions while the event is active and less than ``limit`` is spent; return the budget used.
 
-    An instruction takes one of the budget, a native or an event what it costs besides: the last may go beyond.
+    Each instruction costs one, natives and events also their own cost, so the last operation may exceed the limit.
     """
-    spent = _stretch(machine, limit)
+    spent = _run_slice(machine, limit)
     while spent < limit and machine.flags & ACTIVE:
-        spent += _stretch(machine, limit - spent)
+        spent += _run_slice(machine, limit - spent)
     return spent
 
 
-def _stretch(machine: Machine, limit: int) -> int:
-    """Execute until ``limit`` is spent, the event ends, or an operation took more than its instruction."""
+def _run_slice(machine: InterpretedMachine, limit: int) -> int:
+    """Execute until ``limit`` is spent, the event ends, or an operation costs more than its instruction."""
     code, variables, stack = machine.code.operations, machine.variables.words, machine.stack
     size = len(code)
     pc, sp = machine.pc, machine.sp
     executed = 0
     kind = BAD
     try:
-        for executed in range(limit):  # counts for the lines after the loop
+        for executed in range(limit):  # also read after the loop, where it is the number of complete instructions
             kind, first, second = code[pc]
             if kind == LOAD:
                 stack[sp + 1] = variables[first]
@@ -105,38 +107,38 @@ def _stretch(machine: Machine, limit: int) -> int:
                 pc += second
             elif kind == STORE:
                 if sp < 0:
-                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                    return _stop_on_bad_code(machine, pc, sp, executed, "stack-underflow")
                 variables[first] = stack[sp]
                 sp -= 1
                 pc += 1
             elif kind == BINARY:
                 if sp < 1:
-                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                    return _stop_on_bad_code(machine, pc, sp, executed, "stack-underflow")
                 right = stack[sp]
                 sp -= 1
                 stack[sp] = first(stack[sp], right)
                 pc += 1
             elif kind in IF:
                 if sp < 1:
-                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                    return _stop_on_bad_code(machine, pc, sp, executed, "stack-underflow")
                 sp -= 2
                 if first(stack[sp + 1], stack[sp + 2]):
                     if kind == IF_FALSE:
-                        machine.code.turn(pc)
+                        machine.code.toggle_edge(pc)
                     pc += 2
                 else:
                     if kind == IF_TRUE:
-                        machine.code.turn(pc)
+                        machine.code.toggle_edge(pc)
                     pc += second
                     if not 0 <= pc < size:
-                        return _bad(machine, pc - second, sp, executed, "jump-out-of-range")
+                        return _stop_on_bad_code(machine, pc - second, sp, executed, "jump-out-of-range")
             elif kind == JUMP:
                 pc += first
                 if not 0 <= pc < size:
-                    return _bad(machine, pc - first, sp, executed, "jump-out-of-range")
+                    return _stop_on_bad_code(machine, pc - first, sp, executed, "jump-out-of-range")
             elif kind == LOADX:
                 if sp < 0:
-                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                    return _stop_on_bad_code(machine, pc, sp, executed, "stack-underflow")
                 index = stack[sp] & 0xFFFF
                 if index >= second:
                     machine.stop_on(OutOfBounds(pc, second, index))
@@ -145,7 +147,7 @@ def _stretch(machine: Machine, limit: int) -> int:
                 pc += 2
             elif kind == STOREX:
                 if sp < 1:
-                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                    return _stop_on_bad_code(machine, pc, sp, executed, "stack-underflow")
                 index = stack[sp] & 0xFFFF
                 if index >= second:
                     machine.stop_on(OutOfBounds(pc, second, index))
@@ -155,20 +157,20 @@ def _stretch(machine: Machine, limit: int) -> int:
                 pc += 2
             elif kind in WHEN:
                 if sp < 1:
-                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                    return _stop_on_bad_code(machine, pc, sp, executed, "stack-underflow")
                 sp -= 2
                 is_true = bool(first(stack[sp + 1], stack[sp + 2]))
                 if is_true != (kind == WHEN_TRUE):
-                    machine.code.turn(pc)
+                    machine.code.toggle_edge(pc)
                 if is_true and kind == WHEN_FALSE:
                     pc += 2
                 else:
                     pc += second
                     if not 0 <= pc < size:
-                        return _bad(machine, pc - second, sp, executed, "jump-out-of-range")
+                        return _stop_on_bad_code(machine, pc - second, sp, executed, "jump-out-of-range")
             elif kind == UNARY:
                 if sp < 0:
-                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                    return _stop_on_bad_code(machine, pc, sp, executed, "stack-underflow")
                 stack[sp] = first(stack[sp])
                 pc += 1
             elif kind == STOP:
@@ -178,46 +180,46 @@ def _stretch(machine: Machine, limit: int) -> int:
                 stack[sp + 1] = pc + 1
                 sp += 1
                 if first >= size:
-                    return _bad(machine, pc, sp, executed, "jump-out-of-range")
+                    return _stop_on_bad_code(machine, pc, sp, executed, "jump-out-of-range")
                 pc = first
             elif kind == RET:
                 if sp < 0:
-                    return _bad(machine, pc, sp, executed, "stack-underflow")
+                    return _stop_on_bad_code(machine, pc, sp, executed, "stack-underflow")
                 if not 0 <= stack[sp] < size:
-                    return _bad(machine, pc, sp, executed, "jump-out-of-range")
+                    return _stop_on_bad_code(machine, pc, sp, executed, "jump-out-of-range")
                 pc = stack[sp]
                 sp -= 1
             elif kind == EMIT:
                 address, count = second
                 if count > MAX_EMITTED:
-                    return _bad(machine, pc, sp, executed, "emit-too-long")
+                    return _stop_on_bad_code(machine, pc, sp, executed, "emit-too-long")
                 if address + count > len(variables):
-                    return _bad(machine, pc, sp, executed, "variable-out-of-range")
+                    return _stop_on_bad_code(machine, pc, sp, executed, "variable-out-of-range")
                 machine.outbox.append(Emitted(first, tuple(variables[address : address + count])))
                 pc += 3
-                price = machine.price_of_emit(count)
-                if price:
-                    executed += price
+                cost = machine.emit_cost(count)
+                if cost:
+                    executed += cost
                     break
             elif kind == NATIVE:
                 try:
                     reason, sp = _call(machine, first, pc, sp)
-                except BaseException:  # the native failed after it took its arguments: the next is the one after it
+                except BaseException:  # its arguments are popped: continue after the native
                     machine.pc, machine.sp = pc + 1, sp - machine.count_popped(first)
-                    machine.instructions += executed + 1 + machine.surcharge
-                    machine.surcharge = 0
+                    machine.instructions += executed + 1 + machine.extra_cost
+                    machine.extra_cost = 0
                     raise
                 if reason:
-                    return _bad(machine, pc, sp, executed, reason)
+                    return _stop_on_bad_code(machine, pc, sp, executed, reason)
                 pc += 1
-                if machine.surcharge:
-                    executed += machine.surcharge
-                    machine.surcharge = 0
+                if machine.extra_cost:
+                    executed += machine.extra_cost
+                    machine.extra_cost = 0
                     break
                 if not machine.flags & ACTIVE:
                     break
             else:
-                return _bad(machine, pc, sp, executed, first)
+                return _stop_on_bad_code(machine, pc, sp, executed, first)
     except ZeroDivisionError:
         machine.stop_on(DivisionByZero(pc))
         if kind == BINARY:
@@ -227,31 +229,31 @@ def _stretch(machine: Machine, limit: int) -> int:
             pc += 2
     except IndexError:
         if not 0 <= pc < size:
-            return _bad(machine, pc, sp, executed, "jump-out-of-range")
+            return _stop_on_bad_code(machine, pc, sp, executed, "jump-out-of-range")
         is_full = sp + 1 >= len(stack) and kind in (LOAD, PUSH, CALL)
-        return _bad(machine, pc, sp, executed, "stack-overflow" if is_full else "variable-out-of-range")
+        return _stop_on_bad_code(machine, pc, sp, executed, "stack-overflow" if is_full else "variable-out-of-range")
     machine.pc, machine.sp = pc, sp
     executed += 1
     machine.instructions += executed
     return executed
 
 
-def _call(machine: Machine, number: int, pc: int, sp: int) -> tuple[str, int]:
-    """Call a native; return why it could not be, or an empty text, and the new index of the stack."""
+def _call(machine: InterpretedMachine, number: int, pc: int, sp: int) -> tuple[str, int]:
+    """Call a native; return the reason if that was impossible (empty otherwise), and the new stack index."""
     if number >= len(machine.target.natives):
         return "unknown-native", sp
     count = machine.count_popped(number)
     if sp + 1 < count:
         return "stack-underflow", sp
     popped = machine.stack[sp - count + 1 : sp + 1][::-1]
-    machine.surcharge = machine.price(number, popped)
+    machine.extra_cost = machine.native_cost(number, popped)
     if machine.invoke(number, pc, popped):
         return "", sp - count
-    machine.surcharge = 0
+    machine.extra_cost = 0
     return "variable-out-of-range", sp - count
 
 
-def _bad(machine: Machine, pc: int, sp: int, executed: int, reason: str) -> int:
+def _stop_on_bad_code(machine: InterpretedMachine, pc: int, sp: int, executed: int, reason: str) -> int:
     machine.pc, machine.sp = pc, sp
     machine.instructions += executed
     machine.stop_on(BadCode(pc, reason))

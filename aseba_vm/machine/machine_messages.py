@@ -1,4 +1,4 @@
-"""What a machine says: values left in its outbox, in order (docs/spec/aseba-bytecode-vm.md sections 10.1 to 10.5)."""
+"""Messages of a machine, in its outbox in order (docs/spec/aseba-bytecode-vm.md sections 10.1 to 10.5)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 from aseba_vm.bytecode import signed
-from aseba_vm.messages import LANGUAGES, MESSAGES, wording
+from aseba_vm.messages import LANGUAGES, MESSAGES, format_message
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +19,7 @@ class Emitted:
 
 @dataclass(frozen=True, slots=True)
 class NativeCalled:
-    """A call of a native that the machine has no function for: address, size and words of each argument."""
+    """A call of a native that has no implementation: address, size and words of each argument."""
 
     number: int
     name: str
@@ -28,7 +28,7 @@ class NativeCalled:
 
 @dataclass(frozen=True, slots=True)
 class ExecutionState:
-    """Where the machine is and in which mode."""
+    """Address and flags of the machine."""
 
     pc: int
     flags: int
@@ -36,7 +36,7 @@ class ExecutionState:
 
 @dataclass(frozen=True, slots=True)
 class BreakpointSet:
-    """Answer to a new breakpoint."""
+    """Reply to a new breakpoint."""
 
     pc: int
     is_set: bool
@@ -44,7 +44,7 @@ class BreakpointSet:
 
 @dataclass(frozen=True, slots=True)
 class VariablesRead:
-    """Words of the variable memory that were asked for."""
+    """A requested range of the variable memory."""
 
     start: int
     values: tuple[int, ...]
@@ -52,42 +52,42 @@ class VariablesRead:
 
 @dataclass(frozen=True, slots=True)
 class EventKilled:
-    """An event was abandoned at ``pc``: by a new one, or because it took too long."""
+    """An event was abandoned at ``pc``, because of a new event or because it took too long."""
 
     pc: int
 
 
 class _Fault(ABC):
-    """Why an event ended: a kind of `messages` and its arguments."""
+    """A reason why an event ended."""
 
     __slots__ = ()
 
     @property
     @abstractmethod
-    def words(self) -> tuple[str, tuple[object, ...]]:
-        """The kind, and what its sentence is about; a kind that no table has is its own sentence."""
+    def kind_and_arguments(self) -> tuple[str, tuple[object, ...]]:
+        """The kind in the table of messages and its arguments; an unknown kind is its own message."""
 
     @property
-    def sentence(self) -> str:
-        """The fault in words."""
-        return self.sentence_in("en")
+    def message(self) -> str:
+        """The fault as an English sentence."""
+        return self.message_in("en")
 
-    def sentence_in(self, language: str) -> str:
-        """The fault in words of a language of `LANGUAGES`; others get English."""
-        return wording(*self.words, LANGUAGES.get(language, MESSAGES))
+    def message_in(self, language: str) -> str:
+        """Return the fault as a sentence in a language of `LANGUAGES`, English for any other."""
+        return format_message(*self.kind_and_arguments, LANGUAGES.get(language, MESSAGES))
 
 
 @dataclass(frozen=True, slots=True)
 class OutOfBounds(_Fault):
-    """An index outside an array, as an unsigned word; without size and index when a deque was misused."""
+    """An index outside an array, as an unsigned word. Size and index are None for a wrong use of a deque."""
 
     pc: int
     size: int | None = None
     index: int | None = None
 
     @property
-    def words(self) -> tuple[str, tuple[object, ...]]:
-        """See `_Fault`."""
+    def kind_and_arguments(self) -> tuple[str, tuple[object, ...]]:
+        """The index and the size, or the deque fault."""
         if self.size is None or self.index is None:
             return "fault-deque", ()
         return "fault-index", (signed(self.index), self.size)
@@ -100,27 +100,27 @@ class DivisionByZero(_Fault):
     pc: int
 
     @property
-    def words(self) -> tuple[str, tuple[object, ...]]:
-        """See `_Fault`."""
+    def kind_and_arguments(self) -> tuple[str, tuple[object, ...]]:
+        """The kind; it has no arguments."""
         return "fault-division-by-zero", ()
 
 
 @dataclass(frozen=True, slots=True)
 class NodeSpecific(_Fault):
-    """A native refused its arguments; ``reason`` is what it said."""
+    """A native rejected its arguments; ``reason`` is the text that it gave."""
 
     pc: int
     reason: str
 
     @property
-    def words(self) -> tuple[str, tuple[object, ...]]:
-        """See `_Fault`."""
+    def kind_and_arguments(self) -> tuple[str, tuple[object, ...]]:
+        """The reason, as a kind if the table of messages has it."""
         return _kind(self.reason), ()
 
 
 @dataclass(frozen=True, slots=True)
 class BadCode(_Fault):
-    """Bytecode that no compiler makes, or a stack that overflows; the reference stops its whole process here.
+    """Bytecode that no compiler generates, or a stack overflow; the reference aborts its process here.
 
     ``reason`` is an identifier.
     """
@@ -129,8 +129,8 @@ class BadCode(_Fault):
     reason: str
 
     @property
-    def words(self) -> tuple[str, tuple[object, ...]]:
-        """See `_Fault`."""
+    def kind_and_arguments(self) -> tuple[str, tuple[object, ...]]:
+        """The reason as a kind; it has no arguments."""
         return _kind(self.reason), ()
 
 

@@ -13,17 +13,17 @@ from aseba_vm.target import NativeFunction
 
 
 def wrap(value: int) -> int:
-    """Cut a number to 16 bits, two's complement: the one place where that happens."""
+    """Wrap a number to 16 bits, two's complement. This is the only place that does it."""
     return ((value + 0x8000) & 0xFFFF) - 0x8000
 
 
 def wrap32(value: int) -> int:
-    """Cut a number to 32 bits, two's complement."""
+    """Wrap a number to 32 bits, two's complement."""
     return ((value + 0x80000000) & 0xFFFFFFFF) - 0x80000000
 
 
 class NativeFault(Exception):  # noqa: N818  # a fault, in the words of section 11
-    """Raised by a native that cannot do its work; the event ends and the reason is told."""
+    """Raised by a native that cannot do its work; the event ends and the reason is reported."""
 
     def __init__(self, reason: str) -> None:
         super().__init__(reason)
@@ -31,35 +31,35 @@ class NativeFault(Exception):  # noqa: N818  # a fault, in the words of section 
 
 
 class DivisionFault(NativeFault):
-    """A division by zero inside a native."""
+    """A division by zero in a native."""
 
     def __init__(self) -> None:
         super().__init__("division-by-zero")
 
 
 class DequeFault(NativeFault):
-    """A deque was given a wrong index or too many values."""
+    """A wrong index or too many values for a deque."""
 
     def __init__(self) -> None:
         super().__init__("deque")
 
 
-class Machine(Protocol):
-    """The part of the machine that natives may touch."""
+class NativeMachine(Protocol):
+    """The part of the machine that natives may access."""
 
     variables: Variables
     random_state: int
     node_id: int
 
     def charge(self, instructions: int) -> None:
-        """Take more of the budget."""
+        """Add to the cost of the call."""
 
 
 @dataclass(frozen=True, slots=True)
 class Signature:
-    """A native ready to be called: how many words it pops, and for each parameter its size.
+    """A native ready to be called: the number of words it pops, and the size of each parameter.
 
-    A size that is not fixed is minus its place among the words popped. ``cost``: what a call takes of the budget.
+    A size that is pushed by the caller is given as minus its index in the popped words. ``cost`` is the cost of a call.
     """
 
     native: NativeFunction
@@ -80,27 +80,28 @@ class Signature:
         )
         return cls(native, count + len(places), sizes, cost)
 
-    def price(self, popped: Sequence[int]) -> int:
-        """Return what a call with the words it pops takes of the budget, beyond its instruction."""
+    def call_cost(self, popped: Sequence[int]) -> int:
+        """Return the cost of a call beyond its instruction, given the words it pops."""
         if not self.cost.per_word:
             return self.cost.base
         return self.cost.of(sum([size if size > 0 else popped[-size] & 0xFFFF for size in self.sizes]))
 
 
 def _size_key(native: NativeFunction, index: int) -> int:
-    """What parameters of one size have in common: the template, or the parameter itself."""
+    """Return what parameters with the same size share: the template, or the parameter itself."""
     return native.parameters[index].size or index + 1
 
 
 class NativeCall:
     """One call: address and size of each argument, and access to the words.
 
-    ``memory`` is the whole variable memory, ``faults`` what was reported so far (a native may go on after a fault).
+    ``memory`` is the whole variable memory; ``faults`` are the faults reported so far (a native may continue after
+    one).
     """
 
     __slots__ = ("addresses", "faults", "machine", "memory", "native", "sizes")
 
-    def __init__(self, machine: Machine, signature: Signature, popped: Sequence[int]) -> None:
+    def __init__(self, machine: NativeMachine, signature: Signature, popped: Sequence[int]) -> None:
         """``popped`` are the words of the stack from the top: addresses, then sizes in list order."""
         self.machine = machine
         self.memory = machine.variables.words
@@ -113,9 +114,9 @@ class NativeCall:
 
     @property
     def is_inside_memory(self) -> bool:
-        """Tell whether every argument lies inside the variable memory."""
+        """Whether every argument lies inside the variable memory."""
         end = len(self.memory)
-        for address, size in zip(self.addresses, self.sizes, strict=True):  # noqa: SIM110  # twice as quick as all()
+        for address, size in zip(self.addresses, self.sizes, strict=True):  # noqa: SIM110  # twice as fast as all()
             if address + size > end:
                 return False
         return True
@@ -140,17 +141,17 @@ class NativeCall:
         return self.memory[self.addresses[argument]]
 
     def write(self, argument: int, values: Sequence[int]) -> None:
-        """Store values, cut to 16 bits, from the first word of an argument on; no more than it has."""
+        """Store values, wrapped to 16 bits, from the first word of an argument on, at most as many as it has."""
         address, size = self.addresses[argument], self.sizes[argument]
         words = [wrap(value) for value in values[:size]]
         self.memory[address : address + len(words)] = words
 
     def charge(self, instructions: int) -> None:
-        """Take more of the budget than the declared cost, for work whose amount only the call itself knows."""
+        """Add to the declared cost, for work whose amount only the call itself knows."""
         self.machine.charge(instructions)
 
     def report(self, fault: NativeFault) -> None:
-        """Note a fault without ending the native."""
+        """Record a fault without ending the native."""
         self.faults.append(fault)
 
     def record(self, number: int) -> NativeCalled:
@@ -163,4 +164,4 @@ class NativeCall:
 
 
 Native = Callable[[NativeCall], None]
-"""A function that does the work of a native of the target."""
+"""Implementation of a native function of the target."""

@@ -1,6 +1,6 @@
-"""The standard natives, one function each (docs/spec/aseba-bytecode-vm.md section 12).
+"""Standard natives, one function each (docs/spec/aseba-bytecode-vm.md section 12).
 
-Elements are processed in index order and each result is stored before the next element is read, so that overlapping
+Elements are processed in index order, and each result is stored before the next element is read, so overlapping
 arguments behave as specified. The numbers of arguments are those of the declarations in the target.
 """
 
@@ -14,14 +14,14 @@ from aseba_vm.machine.fixed_point_trigonometry import arctangent, cosine, sine
 from aseba_vm.machine.native_call import DivisionFault, Native, NativeCall, NativeFault, wrap, wrap32
 
 RANDOM_FACTOR, RANDOM_STEP = 25173, 13849
-"""Of the generator of random numbers (docs/spec/aseba-bytecode-vm.md section 12)."""
+"""Constants of the random number generator (docs/spec/aseba-bytecode-vm.md section 12)."""
 
 SQUARE_ROOT_FAULT = "sqrt-of-negative"
-"""Reason for refusing the root of a negative number."""
+"""Reason of the fault for the square root of a negative number."""
 
 
 def _elementwise(function: Callable[..., int]) -> Native:
-    """Make a native that computes each element of argument 0 from those of the others."""
+    """Return a native that computes each element of argument 0 from the elements of the other arguments."""
 
     def native(call: NativeCall) -> None:
         memory = call.memory

@@ -1,4 +1,4 @@
-"""The operations of the machine: arithmetic by operator, words decoded for the loop.
+"""Operations of the machine: arithmetic by operator, and words decoded for the interpreter loop.
 
 Source: docs/spec/aseba-bytecode-vm.md sections 1 and 10.
 """
@@ -11,7 +11,7 @@ from typing import Any
 from aseba_vm.bytecode import EDGE, WAS_TRUE, Op, signed, signed12
 from aseba_vm.machine.native_call import wrap
 
-# Kinds of decoded operations, frequent ones first: the order in which the loop asks.
+# Kinds of decoded operations, frequent ones first: the order in which the loop tests them.
 LOAD = 0
 PUSH = 1
 STORE = 2
@@ -34,7 +34,7 @@ IF = (IF_FALSE, IF_TRUE)
 WHEN = (WHEN_FALSE, WHEN_TRUE)
 
 Decoded = tuple[int, Any, Any]
-"""Kind, and two operands whose meaning depends on it."""
+"""Kind, and two operands whose meaning depends on the kind."""
 
 
 def _divide(left: int, right: int) -> int:
@@ -47,7 +47,7 @@ def _remainder(left: int, right: int) -> int:
     return -remainder if left < 0 else remainder
 
 
-#: In the order of the numbers of the operators.
+#: Indexed by the number of the operator.
 _BINARY_FUNCTIONS: Sequence[Callable[[int, int], int]] = (
     lambda left, right: wrap(left << (right & 31)),
     lambda left, right: left >> (right & 31),
@@ -76,8 +76,8 @@ _UNARY_FUNCTIONS: Sequence[Callable[[int], int]] = (
 )
 
 
-def decoded(word: int, second: int, third: int) -> Decoded:
-    """Return kind and operands of the operation that begins with ``word``, given the two words after it."""
+def decode(word: int, second: int, third: int) -> Decoded:
+    """Return kind and operands of the operation that starts with ``word``, given the two words after it."""
     op, operand = word >> 12, word & 0xFFF
     match op:
         case Op.STOP:

@@ -1,4 +1,4 @@
-"""Turns each vector of the chosen set into a test of its own."""
+"""Turns each vector of the selected set into a separate test."""
 
 import pytest
 
@@ -23,7 +23,7 @@ def _is_wanted(vector, *, crashes=None):
 
 @pytest.fixture
 def translators_work(caplog):
-    """Fail if a translator failed: the interpreter would have done its work, and the test shown nothing."""
+    """Fail if a translator failed: the interpreter would run instead, and the test would prove nothing."""
     yield
     failures = [record.getMessage() for record in caplog.get_records("call") if "no translation" in record.msg]
     assert not failures

@@ -1,4 +1,4 @@
-"""The engines that can work here: without wasmtime there is none that uses WebAssembly."""
+"""The engines available here; without wasmtime there is no WebAssembly engine."""
 
 from aseba_vm.jit.tiering import AUTO, ENGINES, INTERPRETER, WASM
 from aseba_vm.jit.wasm_backend import is_available

@@ -1,4 +1,4 @@
-"""Programs that say in their comments what must come out (tests/data/programs/README.md): read and played here."""
+"""Reads and runs programs with expected results in their comments (tests/data/programs/README.md)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.aseba_vm.vectors import targets
 
 FOLDER = Path(__file__).parents[1] / "data" / "programs"
 LIMIT = 20_000
-"""Instructions of one event."""
+"""Maximum number of instructions per event."""
 VERBS = frozenset(
     ("target", "global", "constant", "event", "emits", "calls", "expect", "stops", "goes", "error", "warning")
 )
@@ -32,7 +32,7 @@ class Order:
 
 
 class Scenario:
-    """A program with its orders."""
+    """A program with its directives."""
 
     def __init__(self, name: str, text: str) -> None:
         self.name = name
@@ -52,7 +52,7 @@ class Scenario:
         return [order.words for order in self.orders if order.verb == verb]
 
     def check(self, engine: str) -> None:
-        """Compile and play; AssertionError says at which line of the file something else came out, and what."""
+        """Compile and run. Raises AssertionError with the line of the file and the difference."""
         refusals = [order for order in self.orders if order.verb == "error"]
         try:
             program = compile(self.node.code, self.target, self.events, self.constants)
@@ -78,7 +78,7 @@ class Scenario:
 
 
 class _Play:
-    """One run of a program through its orders."""
+    """One run of a program and its directives."""
 
     def __init__(self, scenario: Scenario, program: Program, engine: str) -> None:
         self.scenario = scenario
@@ -115,17 +115,17 @@ class _Play:
 
     def _run(self) -> Iterator[str]:
         self.machine.run(LIMIT)
-        said = [self._told(message) for message in self.machine.take_messages()]
+        said = [self._told(message) for message in self.machine.pop_messages()]
         fault = self.machine.fault
         if fault is not None:
             row = self.program.row_of(fault.pc)
             line = "?" if row is None else self.rows[row] + 1
-            said.append(f"#! stops at {line}: {fault.sentence}")
+            said.append(f"#! stops at {line}: {fault.message}")
         elif self.machine.is_active:
             said.append("#! goes on")
         self.machine.stop()
         self.machine.resume()
-        self.machine.take_messages()
+        self.machine.pop_messages()
         return iter([text for text in said if text])
 
     def _told(self, message: Message) -> str:

@@ -1,4 +1,4 @@
-"""Random programs: a generator that walks the grammar, with sizes and types right, and now and then something wrong."""
+"""Random programs: a generator that follows the grammar with correct sizes and types, and occasional errors."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _NOISE = (
 
 
 class Writer:
-    """Writes one program from a seed."""
+    """Generates one program from a seed."""
 
     def __init__(self, seed: int) -> None:
         self.random = random.Random(seed)

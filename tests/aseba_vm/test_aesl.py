@@ -44,7 +44,7 @@ def test_a_file_is_read():
     assert compile(node.code, THYMIO_II, network.events, network.constants).words
 
 
-def test_a_node_knows_where_its_code_begins():
+def test_a_node_has_the_position_of_its_code():
     node = aesl.loads(FILE).nodes[0]
     assert node.place(0) == (6, 34)
     assert node.place(node.code.index("if")) == (7, 4)
@@ -158,7 +158,7 @@ TWO = '<node name="a"/>\n'
         ("<network><keywords flag='yes'/></network>", "aesl-keywords", (1, 26)),
     ],
 )
-def test_strict_reading_refuses_what_the_reference_lets_pass(text, kind, place):
+def test_strict_reading_rejects_what_the_reference_accepts(text, kind, place):
     aesl.loads(text)
     with pytest.raises(AeslError) as caught:
         aesl.loads(text, strict=True)
@@ -175,13 +175,13 @@ def test_strict_reading_refuses_what_the_reference_lets_pass(text, kind, place):
         '<node name="b" nodeId="1"/><node name="a" nodeId="{01234567-89ab-cdef-0123-456789abcdef}"/></network>',
     ],
 )
-def test_strict_reading_takes_what_is_right(text):
+def test_strict_reading_accepts_valid_files(text):
     assert aesl.loads(text, strict=True) == aesl.loads(text)
 
 
-def test_every_complaint_about_a_file_tells_what_was_found_and_expected():
-    told = {kind: text for kind, text in MESSAGES.items() if kind.startswith(("aesl-", "xml-"))}
-    assert {kind for kind, text in told.items() if not ("found" in text and "expected" in text)} == set()
+def test_every_error_about_a_file_states_what_was_found_and_expected():
+    texts = {kind: text for kind, text in MESSAGES.items() if kind.startswith(("aesl-", "xml-"))}
+    assert {kind for kind, text in texts.items() if not ("found" in text and "expected" in text)} == set()
 
 
 @pytest.mark.parametrize("data", [b'<?xml version="1.0" encoding="nonsense"?><network/>', b"<network>\xff</network>"])
@@ -191,7 +191,7 @@ def test_bytes_that_are_no_text_are_refused(data):
     assert caught.value.kind in ("text-unknown-encoding", "text-undecodable")
 
 
-# -- back to text
+# -- writing
 
 KEPT = """<?xml version="1.0"?>
 <!DOCTYPE aesl-source>
@@ -315,10 +315,10 @@ def test_rows_of_the_code_are_found_in_the_file():
     assert Node("a", code="a\nb").rows_in_file() == (0, 1)
 
 
-# -- files of other writers
+# -- files of other programs
 
 
-def test_a_forgiving_reading_takes_missing_numbers_as_zero():
+def test_lenient_reading_treats_missing_numbers_as_zero():
     text = '<network><event name="e"/><constant name="N"/><node/></network>'
     network = aesl.loads(text)
     assert (network.events, network.constants) == ((("e", 0),), (("N", 0),))

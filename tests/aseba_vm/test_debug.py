@@ -1,9 +1,9 @@
-"""A program seen by lines."""
+"""Debugging by source row."""
 
 import pytest
 
 from aseba_vm import VirtualMachine, compile
-from aseba_vm.debug import Debugger, Use
+from aseba_vm.debug import Debugger, Usage
 from aseba_vm.machine.machine_messages import DivisionByZero, ExecutionState
 from aseba_vm.targets import THYMIO_II
 
@@ -106,12 +106,12 @@ def test_a_step_goes_to_the_next_row_and_into_subroutines(debugger):
     assert [row for row in rows if row in {7, 8, 4, 10}] == [7, 8, 4, 10]
 
 
-def test_a_step_tells_one_state(debugger):
+def test_a_step_reports_one_state(debugger):
     debugger.machine.pause()
     _press(debugger)
-    debugger.machine.take_messages()
+    debugger.machine.pop_messages()
     debugger.step_row()
-    assert [type(message) for message in debugger.machine.take_messages()] == [ExecutionState]
+    assert [type(message) for message in debugger.machine.pop_messages()] == [ExecutionState]
 
 
 def test_a_step_that_never_leaves_its_row_gives_up():
@@ -128,12 +128,12 @@ def test_a_fault_ends_a_step():
     assert isinstance(debugger.machine.fault, DivisionByZero)
 
 
-def test_use_of_the_memories_is_told(debugger):
+def test_memory_use_is_reported(debugger):
     target = THYMIO_II
-    assert debugger.memory_use == Use(target.variables_end + 2, target.variables_size)
-    assert debugger.bytecode_use == Use(len(debugger.program.words), target.bytecode_size)
+    assert debugger.memory_use == Usage(target.variables_end + 2, target.variables_size)
+    assert debugger.bytecode_use == Usage(len(debugger.program.words), target.bytecode_size)
     assert debugger.stack_use.total == target.stack_size
     calls = _debugger("var a\ncallsub s\nsub s\ncallsub t\nreturn\nsub t\na = a + a\nreturn")
     assert calls.stack_use.used == 4, "two return addresses, two words of the sum"
-    assert Use(1, 4).share == 0.25
-    assert Use(0, 0).share == 0
+    assert Usage(1, 4).share == 0.25
+    assert Usage(0, 0).share == 0

@@ -1,9 +1,9 @@
-"""Events, without a robot: the robot lets them wait, the reference's simulator lets them kill."""
+"""Event dispatch without a robot: the robot queues events, the reference's simulator kills the active handler."""
 
 import pytest
 
 from aseba_vm import VirtualMachine, compile
-from aseba_vm.dispatch import MOST_WAITING, FirmwareDispatch, PlaygroundDispatch
+from aseba_vm.dispatch import MAX_QUEUED_EVENTS, FirmwareDispatch, PlaygroundDispatch
 from aseba_vm.machine.machine_messages import EventKilled
 from aseba_vm.targets import THYMIO_II
 
@@ -28,7 +28,7 @@ def _begin(policy):
 
 
 def _turns(dispatch):
-    while dispatch.turn():
+    while dispatch.run():
         pass
 
 
@@ -52,20 +52,20 @@ def test_local_events_that_wait_together_are_one():
 def test_nothing_interrupts_a_handler_of_the_robot():
     machine, dispatch, log = _begin(FirmwareDispatch)
     dispatch.raise_local("prox")
-    dispatch.turn()
-    dispatch.turn(limit=2)
+    dispatch.run()
+    dispatch.run(limit=2)
     dispatch.raise_local("button.center")
     dispatch.receive(0)
     _turns(dispatch)
     assert machine.variables[log : log + 3] == [3, 1, 2]
-    assert not [message for message in machine.take_messages() if isinstance(message, EventKilled)]
+    assert not [message for message in machine.pop_messages() if isinstance(message, EventKilled)]
 
 
 def test_global_events_wait_in_line_up_to_a_number():
     machine, dispatch, log = _begin(FirmwareDispatch)
-    assert [dispatch.receive(0) for _ in range(MOST_WAITING + 1)] == [True] * MOST_WAITING + [False]
+    assert [dispatch.receive(0) for _ in range(MAX_QUEUED_EVENTS + 1)] == [True] * MAX_QUEUED_EVENTS + [False]
     dispatch.clear()
-    assert dispatch.turn() is False
+    assert dispatch.run() is False
     dispatch.receive(0, 5, [7])
     _turns(dispatch)
     assert machine.variables[log] == 1
@@ -75,17 +75,17 @@ def test_global_events_wait_in_line_up_to_a_number():
 def test_a_new_event_kills_the_handler_of_the_playground():
     machine, dispatch, log = _begin(PlaygroundDispatch)
     dispatch.raise_local("prox")
-    dispatch.turn(limit=2)
+    dispatch.run(limit=2)
     dispatch.raise_local("button.center")
-    assert any(isinstance(message, EventKilled) for message in machine.take_messages())
-    dispatch.turn()
+    assert any(isinstance(message, EventKilled) for message in machine.pop_messages())
+    dispatch.run()
     assert machine.variables[log : log + 2] == [2, 0]
     assert dispatch.receive(0) is True
-    dispatch.turn()
+    dispatch.run()
     assert machine.variables[log : log + 2] == [2, 1]
 
 
-def test_a_long_handler_of_the_playground_goes_on_in_the_next_step():
+def test_a_long_handler_of_the_playground_continues_in_the_next_step():
     program = compile("var n\nonevent prox\nwhile n < 300 do\nn++\nend", THYMIO_II)
     machine = VirtualMachine(THYMIO_II)
     machine.load(program)
@@ -95,7 +95,7 @@ def test_a_long_handler_of_the_playground_goes_on_in_the_next_step():
     before = machine.instructions
     steps = 0
     while machine.is_active:
-        dispatch.turn()
+        dispatch.run()
         steps += 1
     assert machine.variables[program.addresses["n"][0]] == 300
     assert steps == 1 + (machine.instructions - before) // 1000 > 1

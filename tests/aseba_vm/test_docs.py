@@ -1,4 +1,4 @@
-"""What the manual shows is what happens."""
+"""The examples and names of the page and the package are correct."""
 
 import contextlib
 import doctest

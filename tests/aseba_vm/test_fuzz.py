@@ -1,4 +1,4 @@
-"""Whatever the text, a program or one located error; whatever the words, a machine that stops and says why."""
+"""Any text compiles or has one error with a position; any words run, or stop the machine with a reason."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PLACELESS = {"stack-overflow", "bytecode-too-large"}
 
 
 def _compiled(source):
-    """Return the program, or None having checked the error."""
+    """Return the program, or None after checking the error."""
     try:
         return compile(source, THYMIO_II, EVENTS, CONSTANTS)
     except CompileError as error:
@@ -47,7 +47,7 @@ def test_a_random_program_compiles_or_is_refused_in_place(seed):
 
 
 def _exercise(words, seed):
-    """Run events in a machine; nothing may come out but messages."""
+    """Run events in a machine, which must never raise."""
     machine = VirtualMachine(THYMIO_II)
     machine.set_bytecode(words)
     source = random.Random(seed)
@@ -109,7 +109,7 @@ def test_damaged_files_are_read_or_refused(seed):
                 assert aesl.dumps(aesl.loads(text)) == text
 
 
-@pytest.mark.parametrize("stage", ["tokens", "tree", "expanded", "optimised", "code"])
+@pytest.mark.parametrize("stage", ["tokens", "tree", "expanded", "optimized", "code"])
 def test_every_stage_of_a_deep_program_can_be_shown(stage):
     source = f"var a\na = {'(' * 3000}a + {'-' * 0}1{')' * 3000}\n{'if a == 1 then ' * 1500}{'end ' * 1500}"
     assert compile_stages(source, THYMIO_II).dump(stage)

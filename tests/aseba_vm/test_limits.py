@@ -1,4 +1,4 @@
-"""Texts that try to exhaust us end in one error with a place, whatever the limit of recursion."""
+"""Texts that try to exhaust memory or stack end in one error with a position, whatever the recursion limit."""
 
 import dataclasses
 

@@ -2,7 +2,7 @@ import string
 
 import pytest
 
-from aseba_vm.messages import LANGUAGES, MESSAGES, wording
+from aseba_vm.messages import LANGUAGES, MESSAGES, format_message
 from tests.aseba_vm.vectors import as_tuple, load
 
 
@@ -13,7 +13,7 @@ def test_every_kind_of_error_has_a_wording():
 
 def test_the_wording_is_that_of_the_specification():
     answers = [vector["expect"] for vector in load("aseba-errors") if vector["expect"]["kind"] != "reference-crash"]
-    spoken = [wording(answer["kind"], as_tuple(answer["args"])) for answer in answers]
+    spoken = [format_message(answer["kind"], as_tuple(answer["args"])) for answer in answers]
     assert spoken == [answer["message"] for answer in answers]
 
 
@@ -24,30 +24,31 @@ def test_templates_name_arguments_by_number():
 
 def test_tokens_are_described_for_people():
     assert (
-        wording("expected-token", ("identifier", "end-of-input")) == "expected a name but found the end of the program"
+        format_message("expected-token", ("identifier", "end-of-input"))
+        == "expected a name but found the end of the program"
     )
-    assert wording("expected-identifier", (("integer", 5),)) == "expected a name but found number 5"
+    assert format_message("expected-identifier", (("integer", 5),)) == "expected a name but found number 5"
 
 
 def test_another_language_is_another_table():
     german = {"lone-exclamation": "nach '!' muss '=' stehen"}
-    assert wording("lone-exclamation", (), german) == "nach '!' muss '=' stehen"
+    assert format_message("lone-exclamation", (), german) == "nach '!' muss '=' stehen"
 
 
 def test_very_long_names_are_cut():
-    assert len(wording("unknown-variable", ("x" * 1_000_000,))) < 120
+    assert len(format_message("unknown-variable", ("x" * 1_000_000,))) < 120
 
 
 def test_an_unknown_kind_is_shown_as_it_is():
-    assert wording("new-kind", (1, "a")) == "new-kind 1 a"
+    assert format_message("new-kind", (1, "a")) == "new-kind 1 a"
 
 
 @pytest.mark.parametrize("language", sorted(LANGUAGES))
-def test_a_language_says_everything_and_of_every_sentence_all_that_english_says(language):
+def test_a_translation_has_every_message_with_the_same_arguments(language):
     table = LANGUAGES[language]
     assert table.keys() == MESSAGES.keys()
-    told = {kind: arguments(text) for kind, text in table.items()}
-    assert told == {kind: arguments(text) for kind, text in MESSAGES.items()}
+    found = {kind: arguments(text) for kind, text in table.items()}
+    assert found == {kind: arguments(text) for kind, text in MESSAGES.items()}
 
 
 @pytest.mark.parametrize("language", sorted(LANGUAGES.keys() - {"en"}))
@@ -55,17 +56,20 @@ def test_nothing_is_left_in_english(language):
     assert [kind for kind, text in LANGUAGES[language].items() if text == MESSAGES[kind]] == []
 
 
-def test_tokens_are_told_in_the_language_of_the_sentence():
+def test_tokens_are_named_in_the_language_of_the_message():
     german = LANGUAGES["de"]
-    assert wording("expected-token", ("identifier", "end-of-input"), german) == (
+    assert format_message("expected-token", ("identifier", "end-of-input"), german) == (
         "erwartet wird ein Name, hier steht das Ende des Programms"
     )
-    assert wording("expected-identifier", (("integer", 5),), german) == "erwartet wird ein Name, hier steht die Zahl 5"
-    assert wording("expected-one-of", (("integer", "("), ")"), german) == (
+    assert (
+        format_message("expected-identifier", (("integer", 5),), german)
+        == "erwartet wird ein Name, hier steht die Zahl 5"
+    )
+    assert format_message("expected-one-of", (("integer", "("), ")"), german) == (
         "erwartet wird eins davon: eine Zahl, '('; hier steht ')'"
     )
 
 
 def arguments(text: str) -> set[str]:
-    """What a template names."""
+    """Return the arguments that a template uses."""
     return {name for _, name, _, _ in string.Formatter().parse(text) if name}

@@ -1,10 +1,10 @@
-"""Programs with their expectation in comments, in every engine; they are meant to be read as examples too."""
+"""Programs with their expected results in comments, in every engine; they also serve as examples."""
 
 import pytest
 
 from aseba_vm.bytecode import BINARY_OPERATORS, UNARY_OPERATORS, Op, instructions
 from aseba_vm.errors import CompileError
-from aseba_vm.frontend.lexer import KEYWORDS, SYMBOLS, tokenise
+from aseba_vm.frontend.lexer import KEYWORDS, SYMBOLS, tokenize
 from aseba_vm.frontend.pipeline import compile
 from aseba_vm.machine.natives import NATIVES
 from aseba_vm.messages import MESSAGES
@@ -24,7 +24,7 @@ def test_a_program_does_what_its_comments_say(name, engine):
     scenario(name).check(engine)
 
 
-# -- together they cover everything
+# -- coverage of all programs
 
 
 def compiled():
@@ -37,7 +37,7 @@ def compiled():
 
 
 def test_every_word_and_symbol_of_the_language_is_used():
-    used = {token.kind for one, _ in compiled() for token in tokenise(one.node.code)}
+    used = {token.kind for one, _ in compiled() for token in tokenize(one.node.code)}
     assert (KEYWORDS | set(SYMBOLS)) - used == set()
 
 
@@ -93,7 +93,7 @@ def test_every_error_and_warning_is_provoked_by_a_program():
     assert {kind for kind in MESSAGES if not kind.startswith(ELSEWHERE + TOKENS)} - UNREACHABLE - provoked == set()
 
 
-# -- the player itself
+# -- the runner of expectations
 
 
 @pytest.mark.parametrize(
@@ -115,7 +115,7 @@ def test_every_error_and_warning_is_provoked_by_a_program():
         ("#! nonsense", "p:1: '#! nonsense' is not one of calls, "),
     ],
 )
-def test_what_differs_is_told_with_its_line(text, complaint):
+def test_a_difference_is_reported_with_its_line(text, complaint):
     with pytest.raises(AssertionError) as caught:
         Scenario("p", text).check("interpreter")
     assert complaint in str(caught.value)

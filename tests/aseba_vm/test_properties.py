@@ -1,4 +1,4 @@
-"""What holds for every program, whatever it says."""
+"""Properties of every program."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from aseba_vm import CompileError, compile
 from aseba_vm.bytecode import Instruction, Op, describe, instructions
-from aseba_vm.frontend.formatter import formatted
+from aseba_vm.frontend.formatter import format_program
 from aseba_vm.frontend.lexer import KEYWORDS, SYMBOLS
 from aseba_vm.targets import THYMIO_II
 from tests.aseba_vm.programs import Writer
@@ -49,7 +49,7 @@ def test_any_text_compiles_or_is_refused_at_a_place_inside_it(source):
 
 
 def check_lines(program):
-    """Rows and addresses lead to each other."""
+    """Check that the mappings between rows and addresses agree."""
     start = 2 * len(program.events) + 1
     places = [pc for pc, _ in instructions(program.words, start)]
     rows = {program.row_of(pc) for pc in places}
@@ -74,16 +74,16 @@ def test_random_programs_keep_their_meaning_in_regular_layout(seed):
         program = compile(source, THYMIO_II, EVENTS, [("N", 4)])
     except CompileError:
         return
-    once = formatted(source)
+    once = format_program(source)
     assert compile(once, THYMIO_II, EVENTS, [("N", 4)]).words == program.words
-    assert formatted(once) == once
+    assert format_program(once) == once
     check_lines(program)
 
 
 @pytest.mark.vectors("aseba-compile")
 def test_programs_of_the_reference_keep_their_meaning_in_regular_layout(vector):
     program = compiled(vector)
-    once = formatted(vector["source"])
+    once = format_program(vector["source"])
     assert compiled(vector | {"source": once}).words == program.words
-    assert formatted(once) == once
+    assert format_program(once) == once
     check_lines(program)

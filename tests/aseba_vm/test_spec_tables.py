@@ -1,4 +1,4 @@
-"""The JSON tables of docs/spec/ say what the compiler and the machine use."""
+"""The JSON tables of docs/spec/ match the compiler and the machine."""
 
 from __future__ import annotations
 

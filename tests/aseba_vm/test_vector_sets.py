@@ -1,4 +1,4 @@
-"""``--vectors DIR`` runs another set in place of ours, in every engine."""
+"""``--vectors DIR`` runs another set instead of the default one, in every engine."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def lines(name, count):
 
 
 def run(folder):
-    """Run the tests of vectors on a folder; return exit code, and how many passed and failed."""
+    """Run the vector tests on a folder; return the exit code and the numbers of passed and failed tests."""
     command = [
         sys.executable,
         "-m",
@@ -65,5 +65,5 @@ def test_a_folder_without_vectors_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["aseba-execution", "aseba-execution-2x"])
-def test_the_fork_has_files_of_its_own(name):
+def test_files_of_the_fork_are_read(name):
     assert {vector["id"] for vector in load(name)} == {json.loads(line)["id"] for line in lines(name, None)}

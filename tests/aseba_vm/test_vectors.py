@@ -1,4 +1,4 @@
-"""Word by word and record by record, as the reference answers."""
+"""The reference vectors, word by word and record by record."""
 
 from __future__ import annotations
 

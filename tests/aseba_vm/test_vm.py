@@ -16,7 +16,7 @@ def machine_with(source, **options):
     machine = VirtualMachine(THYMIO_II, **options)
     machine.load(program)
     machine.run()
-    machine.take_messages()
+    machine.pop_messages()
     return machine, program
 
 
@@ -54,7 +54,7 @@ def test_a_fresh_machine_does_nothing():
     assert not machine.is_active
 
 
-def test_loading_starts_the_initialisation_and_keeps_the_variables():
+def test_loading_starts_the_initialization_and_keeps_the_variables():
     machine = VirtualMachine(THYMIO_II)
     machine.variables[200] = 5
     machine.load(compile("acc[0] = 3", THYMIO_II))
@@ -63,7 +63,7 @@ def test_loading_starts_the_initialisation_and_keeps_the_variables():
     assert machine.variables[200] == 5
 
 
-def test_a_limit_pauses_and_the_next_run_goes_on():
+def test_a_run_at_its_limit_continues_in_the_next_run():
     machine, _ = machine_with("var n onevent tap while n < 100 do n++ end")
     machine.start_local(8)
     machine.run(50)
@@ -78,15 +78,15 @@ def test_a_long_event_may_be_killed_instead():
     machine.start_local(8)
     machine.run(50)
     assert not machine.is_active
-    assert isinstance(machine.take_messages()[-1], machine_messages.EventKilled)
+    assert isinstance(machine.pop_messages()[-1], machine_messages.EventKilled)
 
 
 def test_an_emitted_event_is_left_in_the_outbox():
     machine, _ = machine_with("onevent tap emit ping [3, -4] emit pong")
     machine.start_local(8)
     machine.run()
-    assert machine.take_messages() == (machine_messages.Emitted(0, (3, -4)), machine_messages.Emitted(1, ()))
-    assert machine.take_messages() == ()
+    assert machine.pop_messages() == (machine_messages.Emitted(0, (3, -4)), machine_messages.Emitted(1, ()))
+    assert machine.pop_messages() == ()
 
 
 def test_a_global_event_brings_source_and_arguments():
@@ -101,7 +101,7 @@ def test_a_global_event_kills_the_running_one():
     machine.receive(0, 1, [])
     machine.run(10)
     machine.receive(0, 1, [])
-    assert [type(message) for message in machine.take_messages()] == [machine_messages.EventKilled]
+    assert [type(message) for message in machine.pop_messages()] == [machine_messages.EventKilled]
 
 
 def test_a_local_event_waits_for_the_running_one():
@@ -113,7 +113,7 @@ def test_a_local_event_waits_for_the_running_one():
     assert machine.variables[THYMIO_II.addresses["event.source"][0]] == machine.node_id
 
 
-def test_when_remembers_between_events():
+def test_when_keeps_its_condition_between_events():
     machine, _ = machine_with("var n onevent tap when acc[0] > 0 do n++ end")
     acc = THYMIO_II.addresses["acc"][0]
     counts = []
@@ -135,9 +135,9 @@ def test_when_remembers_between_events():
         ("var a = -1\ncall math.sqrt(a, a)", "square root of a negative number", 1),
     ],
 )
-def test_a_fault_stops_the_machine_and_says_why_and_where(source, reason, row):
+def test_a_fault_stops_the_machine_with_reason_and_address(source, reason, row):
     machine, program = machine_with(source)
-    assert machine.fault.sentence == reason
+    assert machine.fault.message == reason
     assert program.row_of(machine.fault.pc) == row
     assert machine.flags == STEP_BY_STEP
     machine.start_local(8)
@@ -151,12 +151,12 @@ def test_every_fault_has_a_sentence():
         )
     )
     assert "stack-underflow" in reasons
-    assert {machine_messages.BadCode(0, reason).sentence for reason in reasons} & reasons == set()
-    assert machine_messages.NodeSpecific(0, "sqrt-of-negative").sentence == "square root of a negative number"
-    assert machine_messages.NodeSpecific(0, "no card").sentence == "no card"
+    assert {machine_messages.BadCode(0, reason).message for reason in reasons} & reasons == set()
+    assert machine_messages.NodeSpecific(0, "sqrt-of-negative").message == "square root of a negative number"
+    assert machine_messages.NodeSpecific(0, "no card").message == "no card"
 
 
-def test_resuming_forgets_the_fault():
+def test_resuming_clears_the_fault():
     machine, _ = machine_with("var z z = 5 / z")
     machine.resume()
     assert machine.fault is None
@@ -190,7 +190,7 @@ def test_words_that_no_compiler_writes_are_a_fault(words, reason):
     assert (machine.fault and machine.fault.reason) == reason
 
 
-def test_words_outside_the_memories_are_a_mistake_of_the_caller():
+def test_words_outside_the_memories_raise_value_error():
     machine = VirtualMachine(THYMIO_II)
     with pytest.raises(ValueError, match="do not fit"):
         machine.set_bytecode([0] * 2000)
@@ -216,7 +216,7 @@ def test_a_machine_has_room_for_sixteen_breakpoints():
     machine = VirtualMachine(THYMIO_II)
     for pc in range(17):
         machine.set_breakpoint(pc)
-    assert machine.take_messages()[-1] == machine_messages.BreakpointSet(16, is_set=False)
+    assert machine.pop_messages()[-1] == machine_messages.BreakpointSet(16, is_set=False)
     machine.clear_breakpoint(0)
     assert machine.breakpoints == tuple(range(1, 16))
     machine.clear_breakpoints()
@@ -232,7 +232,7 @@ def test_a_tracer_sees_every_instruction():
     assert seen == [3, 4, 5]
 
 
-def test_reset_calls_the_node_before_the_initialisation():
+def test_reset_calls_the_node_before_the_initialization():
     states = []
     machine = VirtualMachine(THYMIO_II, on_reset=lambda machine: states.append(machine.flags))
     machine.load(compile("acc[0] = 1", THYMIO_II))
@@ -246,7 +246,7 @@ def test_the_commands_answer_with_the_state():
     machine.resume()
     machine.stop()
     machine.report_state()
-    flags = [message.flags for message in machine.take_messages()]
+    flags = [message.flags for message in machine.pop_messages()]
     assert flags == [STEP_BY_STEP, 0, STEP_BY_STEP, STEP_BY_STEP]
 
 

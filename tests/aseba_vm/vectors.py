@@ -1,4 +1,4 @@
-"""The golden answers of the reference, and the ways to ask for ours in the same form."""
+"""Golden answers of the reference, and functions that produce the same records with this package."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _paths(folder: Path, name: str) -> list[Path]:
 
 
 def is_set(folder: Path) -> bool:
-    """Tell whether a folder holds vectors."""
+    """Return whether a folder has vectors."""
     return any(_paths(folder, name) for name in FILES)
 
 
@@ -83,7 +83,7 @@ def compiled(vector: Vector) -> Program:
 
 
 def as_answer(program: Program) -> Vector:
-    """A program as the vectors describe it."""
+    """Return a program in the format of the vectors."""
     return {
         "bytecode": list(program.words),
         "lines": list(program.lines),
@@ -104,7 +104,7 @@ def as_tuple(value: object) -> Any:
 
 
 def said(message: Message) -> Vector:
-    """A message of the machine as the vectors describe it."""
+    """Return a message of the machine in the format of the vectors."""
     match message:
         case Emitted(number, arguments):
             return {"emit": number, "args": list(arguments)}
@@ -131,7 +131,7 @@ def said(message: Message) -> Vector:
 
 
 class Replay:
-    """A machine that obeys the script of a vector and records what it did."""
+    """A machine that executes the script of a vector and records the results."""
 
     def __init__(self, vector: Vector, *, kills_long_events: bool, is_traced: bool) -> None:
         target = target_of(vector)
@@ -155,10 +155,10 @@ class Replay:
         return native
 
     def record(self, operation: Vector) -> Vector:
-        """Obey one operation; return its record."""
+        """Execute one operation; return its record."""
         self.trace.clear()
         record = self._obey(operation)
-        record["out"] = [said(message) for message in self.machine.take_messages()]
+        record["out"] = [said(message) for message in self.machine.pop_messages()]
         record["changed"] = _runs(self.memory, self.machine.variables)
         self.memory = list(self.machine.variables)
         record["memory_crc"] = zlib.crc32(struct.pack(f"<{len(self.memory)}h", *self.memory))

@@ -19,7 +19,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import thymio_sim_ros
-from aseba_vm.cli.output import STANDARD_OUTPUT, end_by, standard_output
+from aseba_vm.cli.output import STANDARD_OUTPUT, exit_by_signal, standard_output
 from thymio_sim_ros import resources
 from thymio_sim_ros.banner import banner, qr_code, startup_notice
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
@@ -86,7 +86,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except UsageError as error:
         print(f"thymio-sim: {error}", file=sys.stderr)
     except KeyboardInterrupt:
-        end_by(signal.SIGINT)
+        exit_by_signal(signal.SIGINT)
     return USAGE_ERROR
 
 
@@ -194,12 +194,12 @@ def run_without_ros(argv: Sequence[str]) -> int:
     _report({"seconds": seconds, "real_time_factor": round(factor, 1), "robots": robots})
     if stop.number is not None:
         print(f"thymio-sim: stopped after {seconds:g} of {options.seconds:g} seconds", file=sys.stderr)
-        end_by(stop.number)
+        exit_by_signal(stop.number)
     return FAULTY if faults.first else 0
 
 
 def replay_run(argv: Sequence[str]) -> int:
-    """ReplayResult a run log; 1 when something differs."""
+    """Replay a run log; 1 when something differs."""
     options = _replay_parser().parse_args(argv)
     from thymio_sim_ros.cli.replay import replay
     from thymio_sim_ros.runlog.run_log import RunLogError, made_by

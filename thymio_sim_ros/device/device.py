@@ -435,7 +435,7 @@ class AsebaDevice:
 
     def _process_messages(self) -> bool:
         """Process the messages of the machine; return whether they restarted the robot or switched it off."""
-        for message in self._vm.take_messages():
+        for message in self._vm.pop_messages():
             if isinstance(message, Emitted):
                 if message.number < len(self._names):
                     self._meter.count_event(self._names[message.number], len(message.arguments))
@@ -446,8 +446,8 @@ class AsebaDevice:
             ):
                 line = self._program.line_of(message.pc)
                 self._state = FAULT
-                translations = {language: message.sentence_in(language) for language in LANGUAGES}
-                self._fault = DeviceStatus(FAULT, self._event, line, message.sentence, message.pc, translations)
+                translations = {language: message.message_in(language) for language in LANGUAGES}
+                self._fault = DeviceStatus(FAULT, self._event, line, message.message, message.pc, translations)
                 self._queue.clear()
                 self._stop_motors()
         if self._state == RUNNING and self._vm.is_step_by_step:

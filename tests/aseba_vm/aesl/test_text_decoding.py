@@ -1,6 +1,6 @@
 import pytest
 
-from aseba_vm.aesl.text_decoding import decoded
+from aseba_vm.aesl.text_decoding import decode
 from aseba_vm.errors import TextError
 
 
@@ -14,8 +14,8 @@ from aseba_vm.errors import TextError
         ('<?xml version="1.0" encoding="ISO-8859-1"?>é'.encode("latin-1"), None, "ISO-8859-1"),
     ],
 )
-def test_text_comes_out_as_its_author_sees_it(data, text, encoding):
-    file = decoded(data)
+def test_text_is_decoded_as_its_author_sees_it(data, text, encoding):
+    file = decode(data)
     assert file.encoding == encoding
     assert file.text.endswith("é") if text is None else file.text == text
     assert file.encoded(file.text) == data
@@ -32,5 +32,5 @@ def test_text_comes_out_as_its_author_sees_it(data, text, encoding):
 )
 def test_a_file_that_is_no_text_is_refused_in_place(data, kind, place):
     with pytest.raises(TextError) as caught:
-        decoded(data)
+        decode(data)
     assert (caught.value.kind, (caught.value.line, caught.value.column)) == (kind, place)

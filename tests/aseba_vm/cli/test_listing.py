@@ -35,7 +35,7 @@ def test_a_program_is_listed_with_its_lines_and_names():
         "   14  B000 0080 0001  emit 0 from 128 size 1 (ping) |   17  emit ping n",
         "   17  0000            stop",
         "",
-        "initialisation",
+        "initialization",
         "   18  1001            push 1                        |   11  var n = 1",
         "   19  4080            store 128 (n)",
         "   20  0000            stop",

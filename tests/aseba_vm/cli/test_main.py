@@ -49,7 +49,7 @@ def test_a_good_program_passes_the_check_silently(file, capsys):
     assert capsys.readouterr() == ("", "")
 
 
-def test_an_error_is_told_with_file_line_and_column(file, capsys):
+def test_an_error_is_reported_with_file_line_and_column(file, capsys):
     name = file("var n\nn = m")
     assert main(["check", name]) == 1
     assert capsys.readouterr().err == f"{name}:2:5: no variable is called 'm'; perhaps you meant 'n'\nn = m\n    ^\n"
@@ -67,7 +67,7 @@ def test_a_broken_aesl_file_is_refused(file, capsys):
     assert capsys.readouterr().err.startswith(f"{name}:1:")
 
 
-def test_doubts_are_told_and_do_no_harm(file, capsys):
+def test_warnings_are_reported_and_do_not_fail(file, capsys):
     name = file("sub s")
     assert main(["check", name]) == 0
     assert capsys.readouterr().err == f"{name}:1:1: warning: subroutine 's' is never called\nsub s\n^\n"
@@ -86,7 +86,7 @@ def test_a_program_is_written_as_json(file, tmp_path):
     assert data["variables"] == [["n", 128, 1]]
 
 
-@pytest.mark.parametrize("stage", ["tokens", "tree", "expanded", "optimised", "code", "words"])
+@pytest.mark.parametrize("stage", ["tokens", "tree", "expanded", "optimized", "optimised", "code", "words"])
 def test_every_stage_can_be_shown(stage, file, capsys):
     assert main(["dis", file(GOOD), "--global", "ping=1", "--stage", stage]) == 0
     assert capsys.readouterr().out.strip()
@@ -130,7 +130,7 @@ def test_a_terminal_gets_colour_unless_it_refuses(file, capsys, monkeypatch):
     assert "\x1b[" not in capsys.readouterr().err
 
 
-def test_a_fault_is_told_with_its_line(file, capsys):
+def test_a_fault_is_reported_with_its_line(file, capsys):
     name = file("var n\nn = 1 / n")
     assert main(["run", name]) == 1
     assert capsys.readouterr().err == f"{name}:2: stopped: division by zero\n"
@@ -294,7 +294,7 @@ def test_formatted_text_keeps_its_encoding_on_the_output(tmp_path, encoding):
     assert "\tn = 1 # grün\n" in formatted.decode(encoding)
 
 
-def test_letters_that_the_output_lacks_are_told_as_escapes(file):
+def test_letters_that_the_output_lacks_are_escaped(file):
     command = [*ASEBA, "run", file("var höhe = 3")]
     assert subprocess.run(command, stdout=subprocess.PIPE, check=True, env=ASCII).stdout == b"h\\xf6he 3\n"
 
@@ -325,7 +325,7 @@ def test_a_file_behind_a_link_is_formatted_and_keeps_its_permissions(file, tmp_p
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full here")
-def test_a_full_disk_is_told_with_what_was_written(file, capsys):
+def test_a_full_disk_is_reported_with_the_name_of_the_output(file, capsys):
     name = file(GOOD.replace("ping", "timer0").replace("emit timer0 n\n", ""))
     assert main(["compile", name, "-o", "/dev/full"]) == 2
     assert capsys.readouterr().err == "aseba: /dev/full: No space left on device\n"
@@ -356,12 +356,12 @@ def test_a_folder_without_programs_is_code_2(tmp_path, capsys):
     assert capsys.readouterr().err == f"aseba: {tmp_path}: no program (.aesl, .aseba) in this folder\n"
 
 
-def test_only_check_and_fmt_take_a_folder(tmp_path, capsys):
+def test_only_check_and_fmt_accept_a_folder(tmp_path, capsys):
     assert main(["compile", str(tmp_path)]) == 2
     assert capsys.readouterr().err == f"aseba: {tmp_path}: Is a directory\n"
 
 
-def test_bytes_that_are_no_text_are_told_with_their_place(tmp_path, capsys):
+def test_undecodable_bytes_are_reported_with_their_position(tmp_path, capsys):
     path = tmp_path / "x"
     path.write_bytes(b"var a\na = \xff")
     assert main(["check", str(path)]) == 2
@@ -378,7 +378,7 @@ def test_definitions_of_the_command_line_obey_the_rules_of_files(arguments, file
     assert "expected" in capsys.readouterr().err
 
 
-def test_a_reader_who_goes_away_gets_no_traceback(file):
+def test_a_closed_output_pipe_causes_no_traceback(file):
     name = file("var a\nwhile a < 30000 do a++ end")
     command = f"{sys.executable} -m aseba_vm run {name} --trace | head -1"
     ended = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=120, check=False)
@@ -419,7 +419,7 @@ def test_line_ends_of_a_bare_program_stay(tmp_path):
 @pytest.mark.parametrize(
     "text", ["var a\nwhile a == 0 do\na = 0\nend\nonevent tap\n", "var z\nvar a = 1 / z\nonevent tap\n"]
 )
-def test_a_program_that_has_stopped_is_told_once(file, capsys, text):
+def test_a_program_that_has_stopped_is_reported_once(file, capsys, text):
     main(["run", file(text), "--limit", "1000", "--raise", "tap", "--raise", "tap"])
     assert len(capsys.readouterr().err.splitlines()) == 1
 
@@ -514,7 +514,7 @@ def test_messages_are_in_the_language_of_the_user(environment, word, file, capsy
 
 
 @pytest.mark.parametrize("command", ["check", "compile", "dis", "run", "fmt"])
-def test_every_command_takes_a_language(command, file, capsys):
+def test_every_command_accepts_a_language(command, file, capsys):
     assert main([command, "--lang", "de", file("var a = $")]) == 1
     assert "mit dem Zeichen U+24 kann kein Wort beginnen" in capsys.readouterr().err
 
@@ -548,7 +548,7 @@ def test_many_files_are_formatted_and_a_broken_one_is_left(folder, capsys):
     assert main(["fmt", "--check", str(folder / "a.aseba"), str(folder / "b.aesl")]) == 0
 
 
-def test_a_difference_is_shown_and_nothing_changed(file, capsys):
+def test_diff_shows_the_changes_and_writes_nothing(file, capsys):
     name = file("sub   s\nreturn")
     assert main(["fmt", "--diff", name]) == 1
     out, _ = capsys.readouterr()
@@ -567,7 +567,7 @@ def test_the_standard_input_is_formatted(monkeypatch, capsysbinary):
     ("arguments", "closed", "code"),
     [("run {}", ">&-", 0), ("check {}", "<&- >&- 2>&-", 0), ("check -", "<&-", 0), ("run {}.not", "2>&-", 2)],
 )
-def test_closed_standard_streams_lead_to_nowhere(tmp_path, arguments, closed, code):
+def test_closed_standard_streams_are_opened_to_the_null_device(tmp_path, arguments, closed, code):
     program = tmp_path / "program.aseba"
     program.write_text("var n = 1\n")
     command = f'"{sys.executable}" -m aseba_vm {arguments.format(program)} {closed}'

@@ -1,4 +1,4 @@
-"""Folding and simplification (docs/spec/aseba-language.md section 9), seen in the code that is left."""
+"""Folding and simplification (docs/spec/aseba-language.md section 9), tested by the remaining code."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from aseba_vm.targets import THYMIO_II
 
 
 def code(source):
-    """Instructions of the initialisation without the final stop."""
+    """Return the instructions of the initialization without the final stop."""
     stages = compile_stages(f"var a var b {source}", THYMIO_II, events=[("e", 1)])
     return [str(instruction) for segment in stages.segments for instruction in segment.code][:-1]
 

@@ -1,7 +1,7 @@
 import pytest
 
 from aseba_vm import CompileError
-from aseba_vm.frontend.formatter import formatted
+from aseba_vm.frontend.formatter import format_program
 
 BEFORE = """
 
@@ -50,11 +50,11 @@ sub s
 
 
 def test_lines_are_indented_by_their_depth():
-    assert formatted(BEFORE) == AFTER
+    assert format_program(BEFORE) == AFTER
 
 
 def test_formatted_text_stays():
-    assert formatted(AFTER) == AFTER
+    assert format_program(AFTER) == AFTER
 
 
 @pytest.mark.parametrize(
@@ -86,23 +86,23 @@ def test_formatted_text_stays():
     ],
 )
 def test_spaces_are_regular(line, regular):
-    assert formatted(line) == regular + "\n"
-    assert formatted(regular) == regular + "\n"
+    assert format_program(line) == regular + "\n"
+    assert format_program(regular) == regular + "\n"
 
 
 def test_a_sign_at_the_beginning_of_a_line_knows_the_line_before():
-    assert formatted("a = b\n- c\nd = (\n- c)") == "a = b\n- c\nd = (\n\t-c)\n"
+    assert format_program("a = b\n- c\nd = (\n- c)") == "a = b\n- c\nd = (\n\t-c)\n"
 
 
 def test_another_indent_may_be_chosen():
-    assert formatted("onevent tap\nreturn", "  ") == "onevent tap\n  return\n"
+    assert format_program("onevent tap\nreturn", "  ") == "onevent tap\n  return\n"
 
 
 @pytest.mark.parametrize("source", ["", "\n\n", "   "])
 def test_an_empty_program_stays_empty(source):
-    assert formatted(source) == ""
+    assert format_program(source) == ""
 
 
 def test_text_without_tokens_is_refused():
     with pytest.raises(CompileError):
-        formatted("a = $")
+        format_program("a = $")

@@ -1,4 +1,4 @@
-"""Hints: what beginners write, what they meant, and the edit that repairs it."""
+"""Hints: typical errors of beginners, what was meant, and the edit that corrects them."""
 
 import random
 import re
@@ -156,7 +156,7 @@ FOUND = {
 
 
 def refused(source, events=(), constants=(), target=THYMIO_II):
-    """The error of a program, or None."""
+    """Return the error of a program, or None."""
     try:
         compile(source, target, events, constants)
     except CompileError as error:
@@ -167,7 +167,7 @@ def refused(source, events=(), constants=(), target=THYMIO_II):
 @pytest.mark.parametrize(
     ("kind", "source", "repaired"), [(kind, *case) for kind, cases in FOUND.items() for case in cases]
 )
-def test_a_beginner_s_error_has_a_hint_and_an_edit_that_repairs_it(kind, source, repaired):
+def test_a_beginner_s_error_has_a_hint_and_an_edit_that_corrects_it(kind, source, repaired):
     error = refused(source)
     assert error is not None
     assert error.hint is not None
@@ -212,8 +212,8 @@ def test_an_error_that_is_not_understood_has_no_hint(source):
 def test_a_hint_names_the_line_of_the_open_block_in_the_file():
     hint = refused("var a\nif a == 1 then\n a = 2").hint
     assert str(hint) == "the 'if' of line 2 has no 'end'"
-    assert hint.worded(rows=(10, 11, 12)) == "the 'if' of line 12 has no 'end'"
-    assert hint.worded(LANGUAGES["de"]) == "dem 'if' von Zeile 2 fehlt ein 'end'"
+    assert hint.message(rows=(10, 11, 12)) == "the 'if' of line 12 has no 'end'"
+    assert hint.message(LANGUAGES["de"]) == "dem 'if' von Zeile 2 fehlt ein 'end'"
 
 
 # -- every edit helps --------------------------------------------------------------------------------------------------
@@ -265,7 +265,7 @@ def test_an_edit_removes_the_error_that_it_was_offered_for(mistake):
 
 
 def is_further(before, after, edit):
-    """Whether another error is reported, or the same one behind the place that was repaired."""
+    """Return whether another error is reported, or the same one after the corrected position."""
     moved = before.pos.offset + len(edit.text) - (edit.end - edit.start) * (edit.start <= before.pos.offset)
     same = (after.kind, after.pos and after.pos.offset) == (before.kind, before.pos.offset)
     return not same or (after.pos is not None and after.pos.offset >= min(moved, edit.start + len(edit.text)))

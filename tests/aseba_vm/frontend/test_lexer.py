@@ -1,19 +1,19 @@
 import pytest
 
 from aseba_vm import CompileError
-from aseba_vm.frontend.lexer import MAX_TOKENS, tokenise
+from aseba_vm.frontend.lexer import MAX_TOKENS, tokenize
 
 
 def kinds(text):
-    return [token.kind for token in tokenise(text)]
+    return [token.kind for token in tokenize(text)]
 
 
 def place(text, index=0):
-    pos = tokenise(text)[index].pos
+    pos = tokenize(text)[index].pos
     return (pos.offset, pos.row, pos.col)
 
 
-def test_keywords_symbols_names_and_numbers_are_told_apart():
+def test_keywords_symbols_names_and_numbers_are_distinguished():
     assert kinds("if.x if <<= a. 0x") == ["identifier", "if", "<<=", "identifier", "integer", "end-of-input"]
 
 
@@ -25,7 +25,7 @@ def test_the_longest_symbol_wins():
     ("text", "value"), [("007", 7), ("0x", 0), ("0xFFFF", -1), ("0x7fff", 32767), ("0b101", 5), ("65535", 65535)]
 )
 def test_the_value_of_a_number(text, value):
-    assert tokenise(text)[0].value == value
+    assert tokenize(text)[0].value == value
 
 
 @pytest.mark.parametrize(
@@ -47,7 +47,7 @@ def test_the_value_of_a_number(text, value):
 )
 def test_what_is_no_token_is_refused(text, kind, arguments):
     with pytest.raises(CompileError) as caught:
-        tokenise(text)
+        tokenize(text)
     assert (caught.value.kind, caught.value.arguments) == (kind, arguments)
 
 
@@ -85,6 +85,6 @@ def test_a_lone_carriage_return_resets_the_column_only():
 
 def test_a_program_of_too_many_words_is_refused_in_place():
     with pytest.raises(CompileError) as caught:
-        tokenise("a " * (MAX_TOKENS + 5))
+        tokenize("a " * (MAX_TOKENS + 5))
     assert caught.value.kind == "too-many-tokens"
     assert caught.value.pos.offset == 2 * MAX_TOKENS

@@ -43,11 +43,11 @@ def doubts(source):
         ),
     ],
 )
-def test_doubts_are_told_in_place(source, expected):
+def test_warnings_have_their_position(source, expected):
     assert doubts(source) == expected
 
 
-def test_a_block_too_long_for_a_jump_is_told():
+def test_a_block_too_long_for_a_jump_has_a_warning():
     target = TargetDescription("large", 100, 60000, 100, (Variable("a", 1),))
     program = compile("while a == 1 do\n" + "a = 1\n" * 1100 + "end", target)
     assert [warning.kind for warning in program.warnings] == ["warning-far-jump"]

@@ -1,15 +1,15 @@
 import pytest
 
 from aseba_vm import CompileError
-from aseba_vm.frontend.lexer import tokenise
-from aseba_vm.frontend.lowering import expand
+from aseba_vm.frontend.lexer import tokenize
+from aseba_vm.frontend.lowering import lower
 from aseba_vm.frontend.parser import parse
 from aseba_vm.frontend.syntax_tree import While, Word
 from aseba_vm.targets import THYMIO_II
 
 
 def expanded(source):
-    return expand(parse(tokenise(source), THYMIO_II), THYMIO_II.variables_size)
+    return lower(parse(tokenize(source), THYMIO_II), THYMIO_II.variables_size)
 
 
 def stores(source):
@@ -45,13 +45,13 @@ def test_a_loop_over_one_value_is_its_body():
     assert len(expanded("var i for i in 2:2 do i = 7 end").body.statements) == 2
 
 
-def test_the_right_side_is_looked_at_before_the_left():
+def test_the_right_side_is_checked_before_the_left():
     with pytest.raises(CompileError) as caught:
         expanded("var t[4] t[5] = t[6]")
     assert caught.value.arguments == ("t", 6, 4)
 
 
-def test_elements_are_looked_at_in_order():
+def test_elements_are_checked_in_order():
     with pytest.raises(CompileError) as caught:
         expanded("var t[4] var u[2] u = [t[7], t[9]]")
     assert caught.value.arguments == ("t", 7, 4)
@@ -69,7 +69,7 @@ def test_the_work_of_expanding_is_limited():
     assert caught.value.kind == "too-many-elements"
 
 
-def test_words_remember_the_place_of_their_name():
+def test_words_have_the_position_of_their_name():
     assert expanded("var a\nvar b\nb = a").body.statements[0].right == Word(
         128, expanded("var a\nvar b\nb = a").body.statements[0].right.pos
     )

@@ -1,18 +1,18 @@
 import pytest
 
 from aseba_vm import CompileError
-from aseba_vm.frontend.lexer import tokenise
+from aseba_vm.frontend.lexer import tokenize
 from aseba_vm.frontend.parser import parse
 from aseba_vm.frontend.syntax_tree import For, If, Number
 from aseba_vm.targets import THYMIO_II
 
 
 def tree(source, **definitions):
-    return parse(tokenise(source), THYMIO_II, **definitions)
+    return parse(tokenize(source), THYMIO_II, **definitions)
 
 
 def shape(source):
-    """The dump of the only statement, without positions."""
+    """Return the dump of the only statement, without positions."""
     lines = tree(f"var a var b var t[4] {source}").dump().splitlines()
     return [line.partition("  (")[0].strip() for line in lines[1:]]
 

@@ -1,4 +1,4 @@
-"""The examples of docs/spec/aseba-bytecode-vm.md section 15, and the map between rows and words."""
+"""The examples of docs/spec/aseba-bytecode-vm.md section 15, and the mapping between rows and words."""
 
 import pytest
 
@@ -96,12 +96,12 @@ def test_every_stage_can_be_shown():
     assert stages.dump("tokens").splitlines()[-2:] == ["2:9 integer 2", "2:9 end-of-input"]
     assert "Binary operator=+  (2:7)" in stages.dump("tree")
     assert "Word address=128" in stages.dump("expanded")
-    assert "Number value=3" in stages.dump("optimised")
+    assert "Number value=3" in stages.dump("optimized")
     assert stages.dump("code").splitlines()[0] == "event init (65535), stack 1"
     assert assemble(stages, THYMIO_II).words == (3, 0xFFFF, 3, 0x1003, 0x4080, 0)
 
 
-def test_a_stage_that_does_not_exist_is_a_mistake_of_the_caller():
+def test_an_unknown_stage_raises_value_error():
     with pytest.raises(ValueError, match="nonsense"):
         compile_stages("", THYMIO_II).dump("nonsense")
 

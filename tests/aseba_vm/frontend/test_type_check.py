@@ -33,7 +33,7 @@ def test_sizes_and_types_must_agree(source, kind, arguments):
         "acc[(temperature == 1)] = 3",
     ],
 )
-def test_types_are_not_looked_at_everywhere(source):
+def test_types_are_not_checked_everywhere(source):
     source = source.replace(
         "leds.rc(temperature == 1 and sd.present == 1)", "leds.rc((temperature == 1 and sd.present == 1))"
     )

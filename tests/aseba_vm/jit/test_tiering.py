@@ -1,4 +1,4 @@
-"""Whatever runs an event, the machine is in the same state afterwards."""
+"""Every engine leaves the machine in the same state."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _state(machine):
         machine.instructions,
         machine.random_state,
         machine.fault,
-        machine.take_messages(),
+        machine.pop_messages(),
     )
 
 
@@ -47,12 +47,12 @@ COSTS = Costs(
 
 
 def _light(call):
-    """A native whose cost depends on what it is told."""
+    """A native whose cost depends on its argument."""
     call.charge(call.value(0) % 7 * 10)
 
 
 def _compare(words, seed, engines, costs=(NO_COSTS, COSTS)):
-    """Run the same events in two machines, one of them changing engines, and compare them after each."""
+    """Run the same events in two machines, one of which changes engines, and compare them after each."""
     for each in costs:
         _compare_at(each, words, seed, engines)
 
@@ -130,7 +130,7 @@ def test_random_words_end_in_the_same_state(seed, engines):
 
 
 def _likely_word(source):
-    """A word, most often an instruction that makes sense."""
+    """Return a word, usually a valid instruction."""
     match source.randrange(10):
         case 0 | 1:
             return 0x1000 | source.randrange(16)
@@ -288,7 +288,7 @@ def _run_traced(machine):
 
 @pytest.mark.parametrize("watched", [_step_through, _run_with_a_breakpoint, _run_traced])
 @pytest.mark.parametrize("engine", AVAILABLE)
-def test_what_was_true_while_somebody_watched_is_remembered_afterwards(engine, watched):
+def test_edge_flags_of_a_watched_run_are_kept(engine, watched):
     program = compile("var a\nvar n\nonevent ping\nwhen a == 1 do\nn += 1\nend", THYMIO_II, [("ping", 0)])
     address, counter = program.addresses["a"][0], program.addresses["n"][0]
     machine = VirtualMachine(THYMIO_II, engine=engine)
@@ -305,8 +305,8 @@ def test_what_was_true_while_somebody_watched_is_remembered_afterwards(engine, w
     assert machine.variables[counter] == 1
 
 
-def test_an_unknown_engine_is_refused():
-    with pytest.raises(ValueError, match="not one of"):
+def test_an_unknown_engine_is_rejected():
+    with pytest.raises(ValueError, match="expected one of"):
         VirtualMachine(THYMIO_II, engine="steam")
 
 

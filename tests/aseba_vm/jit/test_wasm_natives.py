@@ -1,4 +1,4 @@
-"""A native does the same whatever runs it: any place, any size, arguments that overlap, words at the limits."""
+"""A native has the same results in every engine: any address, any size, overlapping arguments, extreme words."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ STOP, PUSH, NATIVE = 0, 0x1000, 0xC000
 
 
 def _call(number, source):
-    """Words that call a native with arguments somewhere in a small part of memory."""
+    """Return words that call a native with arguments in a small part of memory."""
     native = THYMIO_II.natives[number]
     sizes = {}
     for index in native.free_sizes:
@@ -58,17 +58,17 @@ def test_a_native_does_the_same_in_every_engine(name, engine):
                 machine.resume()
                 machine.setup(0xFFFF)
                 machine.run()
-            plain, quick = machines
+            plain, translated = machines
             assert not isinstance(plain.fault, BadCode)
-            assert plain.variables == quick.variables
+            assert plain.variables == translated.variables
             assert (plain.pc, plain.flags, plain.fault, plain.instructions, plain.random_state) == (
-                quick.pc,
-                quick.flags,
-                quick.fault,
-                quick.instructions,
-                quick.random_state,
+                translated.pc,
+                translated.flags,
+                translated.fault,
+                translated.instructions,
+                translated.random_state,
             )
-            assert plain.take_messages() == quick.take_messages()
+            assert plain.pop_messages() == translated.pop_messages()
 
 
 @pytest.mark.parametrize("engine", AVAILABLE)

@@ -66,7 +66,7 @@ def poses() -> str:
     params=["raise ImportError('libwasmtime.so: no such file')", "import ctypes; ctypes.CDLL('nowhere.so')"]
 )
 def broken(request, tmp_path) -> Path:
-    """A folder with a package of that name."""
+    """Create a folder with a package of that name."""
     (tmp_path / "wasmtime").mkdir()
     (tmp_path / "wasmtime" / "__init__.py").write_text(request.param)
     return tmp_path
@@ -74,7 +74,7 @@ def broken(request, tmp_path) -> Path:
 
 def check_told_once(stderr: list[str]) -> None:
     reason, usable = stderr
-    assert reason.startswith("wasmtime cannot be used, programs and crowds run slower: ")
+    assert reason.startswith("wasmtime cannot be used, programs and batches of robots run slower: ")
     assert usable == "False"
 
 
@@ -113,6 +113,6 @@ def test_a_version_without_these_options_works_too(monkeypatch):
     class Config:
         pass
 
-    runtime = wasm_runtime.Runtime.get()
+    runtime = wasm_runtime.WasmRuntime.get()
     monkeypatch.setattr(runtime, "wasmtime", type("Old", (), {"Config": Config}))
     assert vars(runtime._config()) == {}

@@ -1,4 +1,4 @@
-"""Our words on the reference's machine: Debian's asebadummynode executes them and ends with our variables."""
+"""Bytecode of this package on the reference's machine: Debian's asebadummynode ends with the same variables."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ PROGRAMS = {
 
 @pytest.fixture
 def node() -> Iterator[tuple[Wire, int]]:
-    """A dummy node of its own on a port that it chose. It is not asked what it is: Debian's dies of the question."""
+    """A new dummy node on a port of its choice. Its description is not requested: Debian's crashes on that message."""
     command = ["asebadummynode", "--port", "0", "0"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, bufsize=1) as process:
         try:
@@ -86,7 +86,7 @@ def test_the_reference_ends_with_our_variables(node, name):
 
 
 def _settled(wire, number, first, count, expected):
-    """Ask for the variables until they are those expected; give up after a fixed number of answers."""
+    """Request the variables until they are as expected, at most a fixed number of times."""
     for _ in range(200):
         wire.send_words(0, GET_VARIABLES, number, first, count)
         payload = wire.wait_for(VARIABLES).payload

@@ -1,4 +1,4 @@
-"""The reference's compiler for our node: what Debian's asebamassloader sends is what our compiler makes."""
+"""The reference's compiler for a node of this package: Debian's asebamassloader sends the same bytecode."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ NODE = 1
 
 
 def _programs():
-    """One program of each of the first families: each costs the loader's own second of waiting."""
+    """Return one program of each of the first families: each takes one second, which the loader waits."""
     chosen = {}
     for vector in load("aseba-compile"):
         if vector["target"] == "thymio2" and "\x00" not in vector["source"] and "\r" not in vector["source"]:
@@ -47,9 +47,9 @@ def _programs():
 
 @pytest.fixture(scope="module")
 def loaded(tmp_path_factory):
-    """What the loader sends for each program; many at once, as it waits a second before it asks."""
+    """Return what the loader sends for each program; many run at once, since it waits a second before it asks."""
     folder = tmp_path_factory.mktemp("programs")
-    locales = folder / "locales"  # it insists on American English, whose letters are those of C.UTF-8
+    locales = folder / "locales"  # the loader requires the locale en_US, which has the same characters as C.UTF-8
     locales.mkdir()
     (locales / "en_US.UTF-8").symlink_to(LOCALE)
     jobs = [(vector, folder / f"{number}.aesl", locales) for number, vector in enumerate(_programs())]
@@ -85,7 +85,7 @@ def _load(job):
 
 
 def _serve(wire):
-    """Answer a client until it lets the program run."""
+    """Answer a client until it starts the program."""
     memory: list[int] = []
     is_described = False
     while True:

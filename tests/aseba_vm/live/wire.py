@@ -1,4 +1,4 @@
-"""Frames of the Aseba network protocol, as much as these tests need.
+"""Frames of the Aseba network protocol, the part that these tests need.
 
 Source: docs/spec/aseba-protocol.md sections 1.1 and 1.3.
 """
@@ -12,7 +12,7 @@ from typing import NamedTuple
 from aseba_vm import TargetDescription
 
 DEADLINE = 30.0
-"""Seconds that any answer may take; a loaded machine is no defect."""
+"""Time-out of any answer in seconds, generous for loaded computers."""
 
 DESCRIPTION, VARIABLE, EVENT, NATIVE = 0x9000, 0x9001, 0x9002, 0x9003
 VARIABLES, STATE, PRESENT = 0x9005, 0x900A, 0x900C
@@ -21,7 +21,7 @@ GET_VARIABLES, GET_NODE_DESCRIPTION, LIST_NODES = 0xA00B, 0xA010, 0xA011
 
 
 class Frame(NamedTuple):
-    """A message: who sent it, its type, its bytes."""
+    """A message: source node, type, payload."""
 
     source: int
     kind: int
@@ -47,12 +47,12 @@ class Wire:
         self.send(source, kind, struct.pack(f"<{len(words)}H", *words))
 
     def receive(self) -> Frame:
-        """The next frame; EOFError when the other side is gone."""
+        """Return the next frame. Raises EOFError when the connection is closed."""
         size, source, kind = struct.unpack("<HHH", self._read(6))
         return Frame(source, kind, self._read(size))
 
     def wait_for(self, *kinds: int) -> Frame:
-        """The next frame of these types; others are passed over."""
+        """Return the next frame of these types; others are skipped."""
         while (frame := self.receive()).kind not in kinds:
             pass
         return frame

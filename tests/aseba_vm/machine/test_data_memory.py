@@ -1,4 +1,4 @@
-"""The variable memory keeps its size and its range wherever it lies."""
+"""The variable memory keeps its size and its value range in any storage."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ def test_the_number_of_words_cannot_change(variables):
     assert variables == [0, 5, -6, 7, 0, 0]
 
 
-def test_words_come_home_from_an_engine():
+def test_words_move_back_from_an_engine():
     memory = Variables(3)
     memory[:] = [1, 2, 3]
     place = (ctypes.c_int16 * 3)()
-    memory.move_to(place, keeper=place)
+    memory.move_to(place, owner=place)
     memory[1] = 9
     assert list(place) == [1, 9, 3]
-    memory.move_home()
+    memory.move_back()
     place[0] = 7
     assert memory == [1, 9, 3]

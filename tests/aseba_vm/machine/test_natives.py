@@ -6,7 +6,7 @@ from aseba_vm.targets import THYMIO_II
 
 
 def after(source, address=128, count=1, **options):
-    """Words of the memory after the initialisation."""
+    """Return the words of the memory after the initialization."""
     machine = VirtualMachine(THYMIO_II, **options)
     machine.load(compile(source, THYMIO_II))
     machine.run()
@@ -81,11 +81,11 @@ def test_a_function_of_the_node_may_refuse():
     assert machine.fault == machine_messages.NodeSpecific(5 + 1, "no card: 5")
 
 
-def test_a_function_that_nobody_has_pops_its_arguments_and_is_told():
+def test_a_function_without_implementation_pops_its_arguments_and_is_reported():
     machine = VirtualMachine(THYMIO_II)
     machine.load(compile("call leds.top(1, 2, 3) acc[0] = 4", THYMIO_II))
     machine.run()
-    call = next(message for message in machine.take_messages() if isinstance(message, machine_messages.NativeCalled))
+    call = next(message for message in machine.pop_messages() if isinstance(message, machine_messages.NativeCalled))
     assert call.name == "leds.top"
     assert [words for _, _, words in call.arguments] == [(1,), (2,), (3,)]
     assert machine.variables[THYMIO_II.addresses["acc"][0]] == 4
@@ -111,11 +111,11 @@ def test_deques_are_rings_in_arrays(calls, words):
     assert after(f"var q[5] var d {calls}", count=5) == words
 
 
-def test_a_failing_pop_tells_two_faults():
+def test_a_failing_pop_reports_two_faults():
     machine = VirtualMachine(THYMIO_II)
     machine.load(compile("var q[5] var d call deque.pop_front(q, d)", THYMIO_II))
     machine.run()
-    assert [type(message) for message in machine.take_messages()][-2:] == [machine_messages.OutOfBounds] * 2
+    assert [type(message) for message in machine.pop_messages()][-2:] == [machine_messages.OutOfBounds] * 2
 
 
 def test_a_deque_that_the_reference_never_finishes_is_a_fault():

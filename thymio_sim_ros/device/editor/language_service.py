@@ -15,7 +15,7 @@ from aseba_vm.aesl.reader import MAX_EVENT_WORDS
 from aseba_vm.errors import Hint
 from aseba_vm.frontend.identifiers import LETTER_OR_DIGIT
 from aseba_vm.frontend.lexer import KEYWORDS
-from aseba_vm.messages import LANGUAGES, MESSAGES, wording
+from aseba_vm.messages import LANGUAGES, MESSAGES, format_message
 from aseba_vm.vm import MAX_BREAKPOINTS
 from thymio_sim_ros.device.editor.help import help_of
 from thymio_sim_ros.device.editor.help_order import rank
@@ -259,7 +259,7 @@ def _hint(node: aesl.Node, hint: Hint | None, language: str) -> dict[str, Any] |
             "end_column": end_column + 1,
             "text": hint.edit.text,
         }
-    sentence = hint.worded(LANGUAGES.get(language, MESSAGES), node.rows_in_file())
+    sentence = hint.message(LANGUAGES.get(language, MESSAGES), node.rows_in_file())
     return {"kind": hint.kind, "message": sentence, "edit": edit}
 
 
@@ -268,4 +268,4 @@ def _finding(kind: str, sentence: str, line: int | None, column: int | None, len
 
 
 def _sentence(kind: str, arguments: Collection[Any], language: str) -> str:
-    return wording(kind, tuple(arguments), LANGUAGES.get(language, MESSAGES))
+    return format_message(kind, tuple(arguments), LANGUAGES.get(language, MESSAGES))

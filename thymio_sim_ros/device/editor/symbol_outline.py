@@ -8,7 +8,7 @@ from functools import lru_cache
 from itertools import pairwise
 
 from aseba_vm import CompileError, aesl
-from aseba_vm.frontend.lexer import Token, tokenise
+from aseba_vm.frontend.lexer import Token, tokenize
 
 __all__ = ["Symbol", "outline"]
 
@@ -35,7 +35,7 @@ def outline(node: aesl.Node) -> Mapping[str, tuple[Symbol, ...]]:
 
 def _tokens(code: str) -> Sequence[Token]:
     try:
-        return tokenise(code)
+        return tokenize(code)
     except CompileError as error:
         if error.pos is None or not 0 < error.pos.offset < len(code):
             return ()

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from aseba_vm import AeslError, CompileError, Program, aesl, compile
 from aseba_vm.aesl.network import Selection, is_other_device, with_vpl_events
 from aseba_vm.aesl.network import select as select_nodes
-from aseba_vm.messages import MESSAGES, wording
+from aseba_vm.messages import MESSAGES, format_message
 from thymio_sim_ros.device.layout import THYMIO, target
 from thymio_sim_ros.errors import ThymioSimError
 
@@ -112,7 +112,7 @@ def load_file(
         except ProgramError as error:
             if not is_skipped(node, selection):
                 raise
-            notes.append(wording("note-left-out-node", (node.name, str(error))))
+            notes.append(format_message("note-left-out-node", (node.name, str(error))))
     others = tuple(dict.fromkeys(node.name for node in selection.others))
     return ThymioFile(tuple(programs), others, tuple(notes))
 
@@ -137,7 +137,7 @@ def is_skipped(node: aesl.Node, selection: Selection) -> bool:
 
 def other_device_note(node: aesl.Node, messages: Mapping[str, str] = MESSAGES) -> str:
     """What is added to the error of a node that is named after another kind of device; else nothing."""
-    return f"; {wording('note-made-for', (node.name,), messages)}" if is_other_device(node) else ""
+    return f"; {format_message('note-made-for', (node.name,), messages)}" if is_other_device(node) else ""
 
 
 def memory_use(program: Program, layout: str = THYMIO) -> dict[str, tuple[int, int]]:
@@ -163,7 +163,7 @@ def _compile(
     except CompileError as error:
         message = (str(error) if is_one else f"{node_label(node)}: {error}") + other_device_note(node)
         if error.hint is not None:
-            message += f" ({error.hint.worded(rows=node.rows_in_file())})"
+            message += f" ({error.hint.message(rows=node.rows_in_file())})"
         if error.pos is None:
             raise ProgramError(name, None, None, message) from error
         row, col = node.place(error.pos.offset)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from aseba_vm.messages import wording
+from aseba_vm.messages import format_message
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.device.programs.program import ThymioFile, ThymioProgram, node_label
 
@@ -35,7 +35,7 @@ def assign_programs(file: ThymioFile, robots: Sequence[RobotId]) -> dict[str, As
     only = file.programs[0]
     if len(file.programs) == 1 and (only.node.name not in names or _is_general(only)):
         if not _is_general(only):
-            common.insert(0, wording("note-only-node", (only.node.name,)))
+            common.insert(0, format_message("note-only-node", (only.node.name,)))
         return {robot.name: Assignment(only, tuple(common)) for robot in robots}
     assigned, left = _match(file.programs, robots)
     common += [f"no robot is left for {node_label(program.node)}" for program in left]
@@ -73,7 +73,7 @@ def _share(robot: RobotId, program: ThymioProgram | None, common: Sequence[str])
         return Assignment(None, (*common, "the file has no program left for this robot: it runs nothing"))
     node = program.node
     if node.name != robot.name and not _is_general(program):
-        return Assignment(program, (wording("note-next-node", (node.name,)), *common))
+        return Assignment(program, (format_message("note-next-node", (node.name,)), *common))
     if node.name != robot.name and node.node_id not in (0, robot.number):
         return Assignment(
             program, (*common, f"{node_label(node)} runs here, on number {robot.number}, as it was next in order")

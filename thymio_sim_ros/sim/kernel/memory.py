@@ -14,8 +14,8 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from aseba_vm.jit.wasm_calls import caller
-from aseba_vm.jit.wasm_runtime import Runtime, is_usable
+from aseba_vm.jit.wasm_calls import make_caller
+from aseba_vm.jit.wasm_runtime import WasmRuntime, is_usable
 from thymio_sim_ros.sim.kernel.compiler import Kernel, KernelError, parameters, translate
 
 __all__ = ["KernelMemory", "is_available"]
@@ -38,7 +38,7 @@ class KernelMemory:
 
     def __init__(self, size: int) -> None:
         """Needs wasmtime."""
-        runtime = Runtime.get()
+        runtime = WasmRuntime.get()
         self._wasmtime = wasmtime = runtime.wasmtime
         self._store = wasmtime.Store(runtime.engine)
         pages = -(-size // _PAGE)
@@ -48,7 +48,7 @@ class KernelMemory:
         self._bytes = np.ctypeslib.as_array(memory.data_ptr(self._store), (pages * _PAGE,))
         self._base = self._bytes.ctypes.data
         self._used = 0
-        runtime.serve(self)
+        runtime.register(self)
 
     @classmethod
     def holding(cls, floats: Sequence[Shape], ints: Sequence[Shape] = ()) -> tuple[KernelMemory, list[Any], list[Any]]:
@@ -85,7 +85,7 @@ class KernelMemory:
         if instance is None:
             instance = self._wasmtime.Instance(self._store, _compiled(module), [self._memory]).exports(self._store)
             self._instances[module] = instance
-        return caller(self._wasmtime, self._store, instance[kernel.__name__], values)
+        return make_caller(self._wasmtime, self._store, instance[kernel.__name__], values)
 
     def close(self) -> None:
         """Free the memory; its arrays and bound kernels must not be used any more."""
@@ -102,4 +102,4 @@ class KernelMemory:
 def _compiled(module: ModuleType) -> Any:
     """All kernels of a module, compiled once."""
     kernels = [module.__dict__[name] for name in module.KERNELS]
-    return Runtime.get().compile(translate(kernels))
+    return WasmRuntime.get().compile(translate(kernels))
