@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from thymio_sim_ros import registry
 from thymio_sim_ros.ros import combined_parameters
-from thymio_sim_ros.ros.aseba.aseba_ros_mapping import migration
+from thymio_sim_ros.ros.aseba.aseba_ros_mapping import mapping_tables
 from thymio_sim_ros.ros.aseba.node import RuntimeParams
 from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.interface import driver_topics, qos, sensor_topics
@@ -42,7 +42,7 @@ class _Line:
 
     topic: str
     type: str
-    often: str
+    rate: str
     frame: str
     profile: str
     about: str
@@ -57,7 +57,7 @@ class _Line:
         """What neighbours share."""
         word = self.topic.rpartition("/")[2]
         frame = self.frame.replace(f"_{word}_", "_…_")
-        return (self.place, self.type, self.often, frame, self.profile, self.about)
+        return (self.place, self.type, self.rate, frame, self.profile, self.about)
 
 
 def text() -> str:
@@ -95,7 +95,7 @@ def text() -> str:
         ALL_IN_ONE,
         table(("parameter", "node", "default"), _of_all_nodes()),
         AFTER,
-        migration(own_sensors()),
+        mapping_tables(own_sensors()),
     ]
     return "\n".join(parts)
 
@@ -120,10 +120,10 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 def _published() -> Iterator[_Line]:
     for sensor in own_sensors():
         for row in sensor_topics.rows_of(sensor):
-            often = sensor_topics.often(sensor, row)
+            rate = sensor_topics.rate(sensor, row)
             profile = qos.kind_of(row.profile)
-            yield _Line(row.topic, type_name(row.type), often, row.frame, profile, row.about)
-    kind, about = robot_endpoints.DESCRIBED
+            yield _Line(row.topic, type_name(row.type), rate, row.frame, profile, row.about)
+    kind, about = robot_endpoints.DESCRIPTION_TOPIC
     yield _Line(robot_endpoints.DESCRIPTION, type_name(kind), "once", "", "latched", about)
 
 
@@ -140,18 +140,18 @@ def _of_driver() -> Iterator[tuple[str, str, str, str]]:
 def _of_world() -> Iterator[_Line]:
     for topic, one in world_endpoints.TOPICS.items():
         yield _Line(
-            _in_no_namespace(topic), type_name(one.type), one.often, one.frame, qos.kind_of(one.profile), one.about
+            _in_no_namespace(topic), type_name(one.type), one.rate, one.frame, qos.kind_of(one.profile), one.about
         )
     moving = "`map -> odom -> base_link` and the wheels; `map -> odom` makes up for the odometry's drift"
     yield _Line("/tf", tf2_messages.TF_TYPE_NAME, "20", "", "transforms", moving)
     yield _Line("/tf_static", tf2_messages.TF_TYPE_NAME, "once", "", "latched", "the frames below that are fixed")
     yield _Line(
-        _in_no_namespace(world_services.PLACE),
+        _in_no_namespace(world_services.PLACE_TOPIC),
         "geometry_msgs/msg/TransformStamped",
         "in",
         "map",
         "command",
-        world_services.PLACED,
+        world_services.PLACE_MEANING,
     )
 
 
@@ -165,7 +165,7 @@ def _topics(lines: Iterable[_Line]) -> str:
     listed = list(lines)
     places = {line.place: None for line in listed}
     ordered = [line for place in places for line in listed if line.place == place]
-    has_rates, has_frames = any(line.often for line in listed), any(line.frame for line in listed)
+    has_rates, has_frames = any(line.rate for line in listed), any(line.frame for line in listed)
     rows = []
     for group in _runs(ordered, lambda line: line.sort):
         first = group[0]
@@ -173,7 +173,7 @@ def _topics(lines: Iterable[_Line]) -> str:
         word = words[0] if len(words) == 1 else f"{{{','.join(words)}}}"
         frame = first.frame if len(words) == 1 else first.frame.replace(f"_{words[0]}_", "_…_")
         name = f"{first.place}/{word}" if first.place or first.topic.startswith("/") else word
-        cells = [f"`{name}`", f"`{first.type}`", first.often, f"`{frame}`" if frame else "", first.profile, first.about]
+        cells = [f"`{name}`", f"`{first.type}`", first.rate, f"`{frame}`" if frame else "", first.profile, first.about]
         wanted = (True, True, has_rates, has_frames, True, True)
         rows.append([cell for cell, is_wanted in zip(cells, wanted, strict=True) if is_wanted])
     heads = [
@@ -242,7 +242,7 @@ def _of_all_nodes() -> Iterator[tuple[str, str, str]]:
     values = combined_parameters.defaults(Suite())
     suite = ["port", "foxglove_port", "address"]
     for name in suite:
-        nodes = combined_parameters.places(name)
+        nodes = combined_parameters.targets(name)
         node, own_name = nodes[-1]
         called = [f"`{one}`" if own == name else f"`{one}` (its `{own}`)" for one, own in nodes]
         yield f"`{name}`", ", ".join(called), _value(parameters.by_name(values[node])[own_name])

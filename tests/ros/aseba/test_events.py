@@ -8,7 +8,7 @@ from std_msgs.msg import Int16MultiArray, MultiArrayDimension
 from std_srvs.srv import Trigger
 
 from tests.ros.aseba_tools import Status, event, get_variables, set_parameters
-from thymio_sim_ros.ros.aseba.bus import MOST_ROUNDS
+from thymio_sim_ros.ros.aseba.bus import MAX_ROUNDS
 from thymio_sim_ros.ros.aseba.network import TOPIC
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
 
@@ -112,14 +112,14 @@ def test_robots_that_answer_each_other_for_ever_let_others_have_their_turn(ros, 
         program("var n = 0\nonevent ball\nn = n + 1\nemit ball\nonevent button.left\nemit ball", ("ball", 0)),
         **TWO,
     )
-    anna, bert = (ports.device for ports in node.robots)
+    anna, bert = (endpoints.device for endpoints in node.robots)
     press_left(ros, "anna")
     ros.until(lambda: bert.get_variable("n")[0] > 0)
-    assert anna.get_variable("n")[0] + bert.get_variable("n")[0] <= MOST_ROUNDS
+    assert anna.get_variable("n")[0] + bert.get_variable("n")[0] <= MAX_ROUNDS
     before = bert.get_variable("n")[0]
-    assert any(ports.is_busy for ports in node.robots)
-    for ports in node.robots:
-        ports.run()
+    assert any(endpoints.is_busy for endpoints in node.robots)
+    for endpoints in node.robots:
+        endpoints.run()
     assert bert.get_variable("n")[0] > before
     assert ros.call(Trigger, "/anna/aseba/stop").success
 

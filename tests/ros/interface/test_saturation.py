@@ -27,8 +27,8 @@ from std_msgs.msg import (
 
 from tests.ros.test_every_topic import SENT
 from thymio_sim_ros.ros.interface.command_checks import CommandError
-from thymio_sim_ros.ros.interface.command_topics import MOST_SAMPLES
-from thymio_sim_ros.ros.simulator.robot_inputs import WORLD, Moment, robot_inputs
+from thymio_sim_ros.ros.interface.command_topics import MAX_SAMPLES
+from thymio_sim_ros.ros.simulator.robot_inputs import WORLD, InputContext, robot_inputs
 from thymio_sim_ros.sim.audio.synthesis import HIGHEST_HZ, LOWEST_HZ
 from thymio_sim_ros.sim.commands import LED_GROUPS
 from thymio_sim_ros.sim.model.robot_constants import MAX_SPEED_M_S, WHEEL_RADIUS_M
@@ -96,11 +96,11 @@ BEYOND = {
 @pytest.mark.parametrize("topic", BEYOND)
 def test_what_is_beyond_the_robot_is_said(topic):
     one, (message, within, said) = INPUTS[topic], BEYOND[topic]
-    assert one.beyond(message).startswith(said)
-    assert one.beyond(within) == ""
+    assert one.limit_check(message).startswith(said)
+    assert one.limit_check(within) == ""
 
 
-NOW = Moment(0, 0, lambda: {"map": WORLD})
+NOW = InputContext(0, 0, lambda: {"map": WORLD})
 NOTHING_TO_REFUSE = {"_sound/samples": "any bytes are a sound", "_sound/wave": "any bytes are a wave"}
 """Topics of which each number that their type holds is meant as it is."""
 ENDLESS = [math.nan, math.inf, -math.inf]
@@ -151,7 +151,7 @@ def bad_messages(one):
             copy.data = [*good.data, *good.data[-1:]][:size]
             yield copy
     if one.topic == "_sound/samples":
-        yield UInt8MultiArray(data=bytes(MOST_SAMPLES + 1))
+        yield UInt8MultiArray(data=bytes(MAX_SAMPLES + 1))
 
 
 EMPTY_MEANS = {topic: {0} for topic in INPUTS if topic.endswith(("press/proximity", "press/ground"))} | {
@@ -169,7 +169,7 @@ def answer(one, message):
     except CommandError as error:
         return str(error)
     assert commands, one.topic
-    return one.beyond(message)
+    return one.limit_check(message)
 
 
 @pytest.mark.parametrize("one", OWN, ids=[one.topic for one in OWN])
@@ -199,12 +199,12 @@ def test_a_light_that_there_is_not_is_refused(number):
 @pytest.mark.parametrize("hertz", [LOWEST_HZ, -LOWEST_HZ, HIGHEST_HZ, -HIGHEST_HZ])
 @pytest.mark.parametrize("seconds", [0.0, 1.0])
 def test_tones_are_limited_to_what_the_wave_can_have_either_sign_and_however_long(hertz, seconds):
-    def beyond(factor):
-        return INPUTS["sound/tone"].beyond(Float32MultiArray(data=[factor * hertz, seconds]))
+    def limit_check(factor):
+        return INPUTS["sound/tone"].limit_check(Float32MultiArray(data=[factor * hertz, seconds]))
 
     outwards = 1.01 if abs(hertz) == HIGHEST_HZ else 0.99
-    assert beyond(1.0) == beyond(1 / outwards) == ""
-    assert beyond(outwards).startswith("frequency")
+    assert limit_check(1.0) == limit_check(1 / outwards) == ""
+    assert limit_check(outwards).startswith("frequency")
 
 
 def test_a_command_beyond_the_robot_is_limited_told_once_and_counted(ros, simulation):
@@ -219,6 +219,6 @@ def test_a_command_beyond_the_robot_is_limited_told_once_and_counted(ros, simula
     ros.until(lambda: len(logs) == 2)
     assert [log.msg.partition(":")[0] for log in logs] == ["/cmd_vel limited", "/led/body/top limited"]
     assert sim.thymio.speed == pytest.approx(MAX_SPEED_M_S, rel=0.1)
-    sim.simulator._beat(0)
+    sim.simulator._publish_heartbeat(0)
     ros.until(lambda: diagnostics)
     assert {pair.key: pair.value for pair in diagnostics[-1].status[0].values}["messages limited"] == "3"

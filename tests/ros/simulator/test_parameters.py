@@ -328,7 +328,7 @@ def test_a_log_on_a_full_disk_ends_and_the_world_goes_on(ros, simulation):
     sim.step(5.0)
     ros.until(lambda: logs)
     sim.step(5.0)
-    sim.simulator.end()
+    sim.simulator.stop()
     ros.settle()
     assert [log.msg for log in logs] == ["the log ends here: /dev/full: No space left on device"]
     assert sim.world.now_ns == 10_000_000_000

@@ -13,14 +13,14 @@ from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.plugin_api.aseba_binding import Native
 from thymio_sim_ros.sim.sensors import Sensor
 
-__all__ = ["migration"]
+__all__ = ["mapping_tables"]
 
 STANDARD = ("math.", "deque.")
 INSIDE = "inside the robot: `aseba/get_variables`, `aseba/set_variables`"
 HEADS = "| {} | | topic |\n| --- | --- | --- |\n"
 
 
-def migration(sensing: Sequence[Sensor]) -> str:
+def mapping_tables(sensing: Sequence[Sensor]) -> str:
     """Three tables: variables, local events, native functions of the robot."""
     described = LAYOUTS[THYMIO].base
     parts = ["### Variables\n", "\n", HEADS.format("Aseba")]

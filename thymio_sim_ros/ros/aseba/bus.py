@@ -16,12 +16,12 @@ from math import inf
 from rclpy.node import Node
 
 from thymio_sim_ros.device.firmware.behavior_host import is_internal
-from thymio_sim_ros.ros.aseba.device_endpoints import DevicePorts
-from thymio_sim_ros.ros.aseba.network import AsebaNetwork, Telegram
+from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
+from thymio_sim_ros.ros.aseba.network import AsebaNetwork, NetworkEvent
 
 __all__ = ["Bus"]
 
-MOST_ROUNDS = 10
+MAX_ROUNDS = 10
 """Times that robots may answer each other's events at once (as in the runner)."""
 
 SLICE_S = 0.005
@@ -35,21 +35,24 @@ class Bus:
     """The Aseba network of one runtime. `reaches_all`: what ROS emits on one robot's topics is for all."""
 
     def __init__(
-        self, node: Node, robots: Callable[[], Sequence[DevicePorts]], told: Callable[[DevicePorts], None]
+        self,
+        node: Node,
+        robots: Callable[[], Sequence[DeviceEndpoints]],
+        status_changed: Callable[[DeviceEndpoints], None],
     ) -> None:
         self.reaches_all = True
         self._robots = robots
-        self._told = told
-        self._woken: dict[DevicePorts, None] = {}
-        self._is_settling = False
+        self._status_changed = status_changed
+        self._ready: dict[DeviceEndpoints, None] = {}
+        self._is_running = False
         self._slice_end_s: float | None = inf
         """When no other robot begins its turn; None: a slice after the next one begins."""
-        self._network = AsebaNetwork(node, self._hear_others)
+        self._network = AsebaNetwork(node, self._on_network_event)
 
     @property
-    def has_waiting(self) -> bool:
+    def has_ready_robots(self) -> bool:
         """Whether robots wait for a turn."""
-        return bool(self._woken)
+        return bool(self._ready)
 
     @contextmanager
     def slice(self) -> Iterator[None]:
@@ -60,84 +63,86 @@ class Bus:
         finally:
             self._slice_end_s = inf
 
-    def settle(self, *robots: DevicePorts) -> None:
+    def run_until_idle(self, *robots: DeviceEndpoints) -> None:
         """Let robots take their turns, then those that they wake, for some rounds and until the slice ends."""
-        self._woken.update(dict.fromkeys(robots))
-        if self._is_settling:
+        self._ready.update(dict.fromkeys(robots))
+        if self._is_running:
             return
         if self._slice_end_s is None:
             self._slice_end_s = time.monotonic() + SLICE_S
-        self._is_settling = True
+        self._is_running = True
         try:
-            for _ in range(MOST_ROUNDS):
-                for robot in list(self._woken):
+            for _ in range(MAX_ROUNDS):
+                for robot in list(self._ready):
                     if time.monotonic() >= self._slice_end_s:
                         return
-                    del self._woken[robot]
-                    robot.turn()
-                if not self._woken:
+                    del self._ready[robot]
+                    robot.run_slice()
+                if not self._ready:
                     return
         finally:
-            self._is_settling = False
+            self._is_running = False
 
-    def forget(self, robot: DevicePorts) -> None:
+    def remove(self, robot: DeviceEndpoints) -> None:
         """A robot goes."""
-        self._woken.pop(robot, None)
+        self._ready.pop(robot, None)
 
-    def pass_on(self, sender: DevicePorts, event: str, args: Sequence[int]) -> None:
+    def forward(self, sender: DeviceEndpoints, event: str, args: Sequence[int]) -> None:
         """Robots of one runtime hear each other directly, others by the network's topic; nobody hears himself."""
         source = sender.device.node_id
-        for ports in self._robots():
-            if ports is not sender and ports.device.hears(sender.device):
-                self._let_hear(ports, event, args, source)
-        self._network.send(Telegram(event, source, sender.device.body.network, tuple(args)))
+        for endpoints in self._robots():
+            if endpoints is not sender and endpoints.device.hears(sender.device):
+                self._enqueue(endpoints, event, args, source)
+        self._network.send(NetworkEvent(event, source, sender.device.body.network, tuple(args)))
 
-    def emit(self, ports: DevicePorts, event: str, args: Sequence[int]) -> None:
+    def emit(self, endpoints: DeviceEndpoints, event: str, args: Sequence[int]) -> None:
         """An event from ROS reaches every robot that declares it, or only this one; too much data is refused."""
         robots = (
-            [robot for robot in self._robots() if robot.device.hears(ports.device)] if self.reaches_all else [ports]
+            [robot for robot in self._robots() if robot.device.hears(endpoints.device)]
+            if self.reaches_all
+            else [endpoints]
         )
         sizes = {robot: _size(robot, event) for robot in robots}
         fits = {robot: size for robot, size in sizes.items() if size is not None and len(args) <= size}
         too_small = [size for size in sizes.values() if size is not None and len(args) > size]
         about = f"event {event}"
         if is_internal(event):
-            ports.warn(about, "refused: it stays inside the robot")
+            endpoints.warn(about, "refused: it stays inside the robot")
         elif too_small:
-            ports.warn(about, f"refused: {len(args)} values found, expected at most {min(too_small)}")
+            endpoints.warn(about, f"refused: {len(args)} values found, expected at most {min(too_small)}")
         elif not fits and not (self.reaches_all and self._network.has_others):
-            ports.warn(about, f"refused: the program declares {_declared(ports)}")
+            endpoints.warn(about, f"refused: the program declares {_declared(endpoints)}")
         else:
             for robot, size in fits.items():
-                robot.hear(event, [*args, *[0] * (size - len(args))], source=COMPUTER)
+                robot.receive_event(event, [*args, *[0] * (size - len(args))], source=COMPUTER)
             for robot in fits:
-                self.settle(robot)
+                self.run_until_idle(robot)
             if self.reaches_all:
-                self._network.send(Telegram(event, COMPUTER, ports.device.body.network, tuple(args)))
+                self._network.send(NetworkEvent(event, COMPUTER, endpoints.device.body.network, tuple(args)))
 
-    def told(self, ports: DevicePorts) -> None:
+    def status_changed(self, endpoints: DeviceEndpoints) -> None:
         """The status of a robot is another."""
-        self._told(ports)
+        self._status_changed(endpoints)
 
-    def _hear_others(self, telegram: Telegram) -> None:
-        for ports in self._robots():
-            size = _size(ports, telegram.event)
-            if size is None or ports.device.body.network != telegram.radio:
+    def _on_network_event(self, event_message: NetworkEvent) -> None:
+        for endpoints in self._robots():
+            size = _size(endpoints, event_message.event)
+            if size is None or endpoints.device.body.network != event_message.radio:
                 continue
-            args = telegram.args[:size] + (0,) * (size - len(telegram.args))
-            self._let_hear(ports, telegram.event, args, telegram.source)
-        if self._woken:
-            self.settle(next(iter(self._woken)))
+            args = event_message.args[:size] + (0,) * (size - len(event_message.args))
+            self._enqueue(endpoints, event_message.event, args, event_message.source)
+        if self._ready:
+            self.run_until_idle(next(iter(self._ready)))
 
-    def _let_hear(self, ports: DevicePorts, event: str, args: Sequence[int], source: int) -> None:
-        if not is_internal(event) and ports.hear(event, args, source=source):
-            self._woken[ports] = None
-
-
-def _size(ports: DevicePorts, event: str) -> int | None:
-    return dict(ports.program.events).get(event)
+    def _enqueue(self, endpoints: DeviceEndpoints, event: str, args: Sequence[int], source: int) -> None:
+        if not is_internal(event) and endpoints.receive_event(event, args, source=source):
+            self._ready[endpoints] = None
 
 
-def _declared(ports: DevicePorts) -> str:
-    events = [event for event, _ in ports.program.events if not is_internal(event)]
+def _size(endpoints: DeviceEndpoints, event: str) -> int | None:
+    return dict(endpoints.program.events).get(event)
+
+
+def _declared(endpoints: DeviceEndpoints) -> str:
+    events = [event for event, _ in endpoints.program.events if not is_internal(event)]
     return ", ".join(events) or "no events"

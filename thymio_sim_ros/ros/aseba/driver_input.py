@@ -35,7 +35,7 @@ COMM_SENSORS = 7
 _REFLECTING, _DARK = (round(units.ground_response(grey)) for grey in (1.0, 0.0))
 
 
-class _Together:
+class _ReadingAssembler:
     """Values that make one reading."""
 
     def __init__(self, size: int, finish: Callable[[Sequence[int]], None]) -> None:
@@ -43,7 +43,7 @@ class _Together:
         self._seen: set[int] = set()
         self._finish = finish
 
-    def take(self, index: int, value: int) -> None:
+    def add(self, index: int, value: int) -> None:
         """One value came; the reading is finished by the last one, or by one that comes before the others did."""
         if index in self._seen:
             self._flush()
@@ -87,31 +87,31 @@ def _is_reflecting(message: Range) -> bool:
 
 
 def _ranges(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
-    ground = _Together(len(SIDES), lambda counts: feed("ground", (0, 0, *counts, *counts)))
-    proximity = _Together(len(PROXIMITY), partial(feed, "proximity"))
+    ground = _ReadingAssembler(len(SIDES), lambda counts: feed("ground", (0, 0, *counts, *counts)))
+    proximity = _ReadingAssembler(len(PROXIMITY), partial(feed, "proximity"))
     for index, side in enumerate(SIDES):
-        yield f"ground/{side}", Range, partial(_take_ground, ground, index)
+        yield f"ground/{side}", Range, partial(_set_ground, ground, index)
     for index, name in enumerate(PROXIMITY):
-        yield f"proximity/{name}", Range, partial(_take_proximity, proximity, index)
+        yield f"proximity/{name}", Range, partial(_set_proximity, proximity, index)
 
 
-def _take_ground(ground: _Together, index: int, message: Range) -> None:
-    ground.take(index, _REFLECTING if _is_reflecting(message) else _DARK)
+def _set_ground(ground: _ReadingAssembler, index: int, message: Range) -> None:
+    ground.add(index, _REFLECTING if _is_reflecting(message) else _DARK)
 
 
-def _take_proximity(proximity: _Together, index: int, message: Range) -> None:
-    proximity.take(index, proximity_count(message))
+def _set_proximity(proximity: _ReadingAssembler, index: int, message: Range) -> None:
+    proximity.add(index, proximity_count(message))
 
 
 def _buttons(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
     pressed = [0] * len(BUTTONS)
 
-    def take(message: Bool, index: int) -> None:
+    def on_button(message: Bool, index: int) -> None:
         pressed[index] = int(message.data)
         feed("buttons", pressed)
 
     for index, name in enumerate(BUTTONS):
-        yield f"buttons/{name}", Bool, partial(take, index=index)
+        yield f"buttons/{name}", Bool, partial(on_button, index=index)
 
 
 def _others(feed: Feed) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:

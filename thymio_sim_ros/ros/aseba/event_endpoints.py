@@ -13,16 +13,16 @@ from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name, topic_word
 
-__all__ = ["Emit", "EventPorts", "unlike"]
+__all__ = ["Emit", "EventEndpoints", "unique_topic_words"]
 
 Emit = Callable[[str, list[int]], None]
 """An event that somebody in ROS emits: name, values."""
 
-_LONGEST_TOPIC = 247
+_MAX_TOPIC_LENGTH = 247
 """Of a full name, in characters; DDS refuses longer ones."""
 
 
-class EventPorts:
+class EventEndpoints:
     """The pair for any event, and a pair for each event of the program. They come and go with it."""
 
     def __init__(self, node: Node, names: RobotNames, emit: Emit, warn: Callable[[str, str], None]) -> None:
@@ -42,7 +42,7 @@ class EventPorts:
         """Have the topics of this program's events, and of these local ones."""
         self._close_program()
         events = [event for event, _ in program.events if not is_internal(event)]
-        self.words, unfit = unlike([*events, *local_events], self._topic)
+        self.words, unfit = unique_topic_words([*events, *local_events], self._topic)
         for event, why in unfit.items():
             self._warn(f"event {event}", f"{why}: use _aseba/events and _aseba/emit")
         for event, word in self.words.items():
@@ -87,7 +87,7 @@ class EventPorts:
         self._emit(message.layout.dim[0].label, list(message.data))
 
 
-def unlike(names: Sequence[str], topic: Callable[[str], str]) -> tuple[dict[str, str], dict[str, str]]:
+def unique_topic_words(names: Sequence[str], topic: Callable[[str], str]) -> tuple[dict[str, str], dict[str, str]]:
     """Name → its word in topics, for those that can have a topic to themselves; for the others why not.
 
     `topic` makes the whole name of a topic from such a word.
@@ -98,6 +98,6 @@ def unlike(names: Sequence[str], topic: Callable[[str], str]) -> tuple[dict[str,
     for name, word in words.items():
         if taken.count(word) > 1:
             unfit[name] = f"shares the topic name {word} with another"
-        elif len(topic(word)) > _LONGEST_TOPIC:
+        elif len(topic(word)) > _MAX_TOPIC_LENGTH:
             unfit[name] = "has a name that is too long for a topic"
     return {name: word for name, word in words.items() if name not in unfit}, unfit

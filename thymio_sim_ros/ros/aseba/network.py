@@ -10,9 +10,9 @@ from rclpy.node import Node
 from std_msgs.msg import Int16MultiArray
 
 from thymio_sim_ros.ros.interface import convert_readings, qos
-from thymio_sim_ros.ros.rclpy_ext.throttled_log import Warner
+from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 
-__all__ = ["TOPIC", "AsebaNetwork", "Telegram"]
+__all__ = ["TOPIC", "AsebaNetwork", "NetworkEvent"]
 
 TOPIC = "_aseba/network"
 """Relative: runtimes in one namespace hear each other."""
@@ -20,7 +20,7 @@ HEAD = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Telegram:
+class NetworkEvent:
     """A global event on its way: sender's number (0 is a computer), its radio's channel and network, values."""
 
     event: str
@@ -32,8 +32,8 @@ class Telegram:
 class AsebaNetwork:
     """Sends what happens here to other runtimes, and tells what comes from them."""
 
-    def __init__(self, node: Node, hear: Callable[[Telegram], None]) -> None:
-        self._hear, self._warn = hear, Warner(node)
+    def __init__(self, node: Node, hear: Callable[[NetworkEvent], None]) -> None:
+        self._set_demand, self._warn = hear, ThrottledLog(node)
         self._own = uuid.uuid4().hex
         self._publisher = node.create_publisher(Int16MultiArray, TOPIC, qos.EVENTS)
         node.create_subscription(Int16MultiArray, TOPIC, self._on_message, qos.EVENTS)
@@ -43,11 +43,11 @@ class AsebaNetwork:
         """Whether somebody else listens."""
         return self._publisher.get_subscription_count() > 1
 
-    def send(self, telegram: Telegram) -> None:
+    def send(self, event_message: NetworkEvent) -> None:
         """Tell the others, if there are any."""
         if self.has_others:
-            data = [telegram.source, *telegram.radio, *telegram.args]
-            labels = [(telegram.event, len(data)), (self._own, 0)]
+            data = [event_message.source, *event_message.radio, *event_message.args]
+            labels = [(event_message.event, len(data)), (self._own, 0)]
             self._publisher.publish(Int16MultiArray(layout=convert_readings.layout(labels), data=data))
 
     def _on_message(self, message: Int16MultiArray) -> None:
@@ -57,4 +57,4 @@ class AsebaNetwork:
             self._warn(self._publisher.topic_name, f"refused: {found}, expected 2 and 3 or more")
         elif labels[1] != self._own:
             source, channel, network, *args = message.data
-            self._hear(Telegram(labels[0], source, (channel, network), tuple(args)))
+            self._set_demand(NetworkEvent(labels[0], source, (channel, network), tuple(args)))

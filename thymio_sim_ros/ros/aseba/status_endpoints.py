@@ -18,7 +18,7 @@ from thymio_sim_ros.device.programs.status import FAULT, RUNNING, DeviceStatus
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.names import RobotNames
 
-__all__ = ["Loaded", "StatusPorts", "place"]
+__all__ = ["Loaded", "StatusEndpoints", "describe_position"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Loaded:
     breakpoints: Breakpoints = field(default_factory=Breakpoints)
 
 
-class StatusPorts:
+class StatusEndpoints:
     """The latched topics `_aseba/status` and `_aseba/target`."""
 
     def __init__(self, node: Node, names: RobotNames, *, number: int) -> None:
@@ -42,10 +42,10 @@ class StatusPorts:
         self._constant: list[KeyValue] = []
         self._program = ""
         self.message = DiagnosticStatus(name=self._name)
-        self._status = node.create_publisher(DiagnosticStatus, names.topic("_aseba/status"), qos.LATCHED)
-        self._target = node.create_publisher(String, names.topic("_aseba/target"), qos.LATCHED)
+        self._status = node.create_publisher(DiagnosticStatus, names.topic("_aseba/status"), qos.TRANSIENT_LOCAL)
+        self._target = node.create_publisher(String, names.topic("_aseba/target"), qos.TRANSIENT_LOCAL)
 
-    def begin(self, loaded: Loaded, spoken: str) -> None:
+    def set_program(self, loaded: Loaded, spoken: str) -> None:
         """Something about the program is new: tell the target, in a language, and the status at the next `tell`."""
         self._last = None
         self._constant = _constant(loaded)
@@ -54,7 +54,7 @@ class StatusPorts:
         fixed = _target_json(loaded.program.layout, spoken)
         self._target.publish(String(data=f'{fixed[:-1]}, "program": {told}}}'))
 
-    def tell(self, status: DeviceStatus, overload: str = "") -> bool:
+    def publish_if_changed(self, status: DeviceStatus, overload: str = "") -> bool:
         """Publish the status if it is news; whether it was. `overload`: what the program does too fast."""
         is_running = status.state == RUNNING
         shown = DeviceStatus(RUNNING) if is_running else status
@@ -90,7 +90,7 @@ class StatusPorts:
         self._node.destroy_publisher(self._target)
 
 
-def place(status: DeviceStatus) -> str:
+def describe_position(status: DeviceStatus) -> str:
     """The state with its place, for people."""
     if status.state == RUNNING or status.line is None:
         return status.state

@@ -87,7 +87,7 @@ ROWS = (
         lambda message: commands.Clap(_level(message)),
         profile=qos.EVENTS,
         about="a clap beside the robot, 0…1; others hear it by their distance",
-        beyond=saturation.loudness,
+        limit_check=saturation.loudness,
     ),
     CommandRow(
         "_press/sound",
@@ -95,7 +95,7 @@ ROWS = (
         lambda message: commands.SetNoiseLevel(_level(message)),
         profile=qos.EVENTS,
         about="steady noise round the robot, 0…1",
-        beyond=saturation.loudness,
+        limit_check=saturation.loudness,
     ),
     CommandRow("_press/remote", Int8, _remote, profile=qos.EVENTS, about="a key of a remote control, 0…127"),
     CommandRow(
@@ -114,7 +114,7 @@ ROWS = (
         _light,
         profile=qos.EVENTS,
         about="light on the ground besides the sensors' own, 0…1",
-        beyond=saturation.light,
+        limit_check=saturation.light,
     ),
     CommandRow(
         "_press/proximity",

@@ -22,7 +22,7 @@ def _reliable(depth: int, durability: DurabilityPolicy = DurabilityPolicy.VOLATI
 SENSOR = _reliable(10)
 """Sensors and state: reliable, since driver code subscribes reliable."""
 
-LATCHED = _reliable(1, DurabilityPolicy.TRANSIENT_LOCAL)
+TRANSIENT_LOCAL = _reliable(1, DurabilityPolicy.TRANSIENT_LOCAL)
 """Latched: a late joiner gets the last message."""
 
 TRANSFORMS = _reliable(100)
@@ -35,7 +35,7 @@ EVENTS = _reliable(100)
 
 KINDS: dict[str, tuple[QoSProfile, str]] = {
     "sensor": (SENSOR, "sensors and state; volatile"),
-    "latched": (LATCHED, "a late joiner gets the last message; transient local"),
+    "latched": (TRANSIENT_LOCAL, "a late joiner gets the last message; transient local"),
     "transforms": (TRANSFORMS, "as tf2 has it; volatile"),
     "clock": (CLOCK, "the newest counts; volatile"),
     "command": (COMMAND, "the newest wins; volatile"),
@@ -55,7 +55,7 @@ _POLICIES: Mapping[str, type[HistoryPolicy] | type[ReliabilityPolicy] | type[Dur
     "reliability": ReliabilityPolicy,
     "durability": DurabilityPolicy,
 }
-_MOST_DEPTH = 2**31 - 1
+_MAX_DEPTH = 2**31 - 1
 
 
 def check_overrides(node: Node) -> None:
@@ -68,8 +68,8 @@ def check_overrides(node: Node) -> None:
         if policy in _POLICIES:
             words = [word for word in map(str.lower, _POLICIES[policy].__members__) if word != "unknown"]
             expected = "" if value in words else ", ".join(words)
-        elif policy == "depth" and (type(value) is not int or not 0 <= value <= _MOST_DEPTH):
-            expected = f"0 to {_MOST_DEPTH}"
+        elif policy == "depth" and (type(value) is not int or not 0 <= value <= _MAX_DEPTH):
+            expected = f"0 to {_MAX_DEPTH}"
         if expected:
             raise StartError(f"parameter {name}: {value!r} found, expected {expected}")
 

@@ -75,7 +75,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
                 partial(convert_readings.ground_range, index=i),
                 "-inf: the floor reflects, +inf: it does not; as the driver has it 0 and 1",
                 f"ground_{side}_link",
-                patch=cdr_fields.below_patch(i),
+                patch=cdr_fields.ground_patch(i),
             )
             for i, side in enumerate(SIDES)
         ),
@@ -83,9 +83,9 @@ ROWS: dict[str, tuple[Row, ...]] = {
             Row(
                 f"ground/{side}/reflectance",
                 Float32,
-                partial(convert_readings.ground_grey, index=i),
+                partial(convert_readings.ground_reflectance, index=i),
                 "grey of the floor as the sensor counts it: 0 black (or no floor), 1 white",
-                patch=cdr_fields.grey_patch(i),
+                patch=cdr_fields.reflectance_patch(i),
             )
             for i, side in enumerate(SIDES)
         ),
@@ -98,7 +98,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
                 partial(convert_readings.proximity_range, index=i),
                 "distance in m of a wall; +inf: nothing, -inf: too close; as the driver has it -1 and the minimum",
                 f"proximity_{name}_link",
-                patch=cdr_fields.seen_patch(i),
+                patch=cdr_fields.proximity_patch(i),
             )
             for i, name in enumerate(PROXIMITY)
         ),
@@ -168,7 +168,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             Float32MultiArray,
             convert_readings.leds,
             "brightness 0…1 of every light, a labelled dimension for each group",
-            profile=qos.LATCHED,
+            profile=qos.TRANSIENT_LOCAL,
             always=True,
             patch=cdr_fields.LEDS,
         ),
@@ -223,7 +223,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             MarkerArray,
             convert_readings.trail,
             "what the pen drew, a line strip for each stroke",
-            profile=qos.LATCHED,
+            profile=qos.TRANSIENT_LOCAL,
             always=True,
         ),
     ),
@@ -231,16 +231,16 @@ ROWS: dict[str, tuple[Row, ...]] = {
         Row(
             "_sound/state/wave",
             Int8MultiArray,
-            convert_readings.heard_wave,
+            convert_readings.played_wave,
             "the period that tones are made of, 142 samples",
-            profile=qos.LATCHED,
+            profile=qos.TRANSIENT_LOCAL,
             always=True,
             on_change=attrgetter("wave"),
         ),
         Row(
             "_sound/state/samples",
             UInt8MultiArray,
-            convert_readings.heard_samples,
+            convert_readings.played_samples,
             "unsigned 8 bit at 7812.5 Hz of a sound that begins",
             profile=qos.EVENTS,
         ),
@@ -249,7 +249,7 @@ ROWS: dict[str, tuple[Row, ...]] = {
             Float32MultiArray,
             convert_readings.sound,
             "Hz, s, volume 0…1 of what plays; zeros for silence",
-            profile=qos.LATCHED,
+            profile=qos.TRANSIENT_LOCAL,
             always=True,
         ),
     ),
@@ -286,7 +286,7 @@ def rows_of(sensor: Sensor) -> tuple[Row, ...]:
     return ROWS.get(sensor.name, ()) + raw
 
 
-RARE: Mapping[str, str] = {
+IRREGULAR: Mapping[str, str] = {
     "collision": "change",
     "comm": "event",
     "current": "change",
@@ -300,13 +300,13 @@ RARE: Mapping[str, str] = {
 """When sensors give readings that look for something now and then."""
 
 
-def is_regular(sensor: Sensor, row: Row) -> bool:
+def is_periodic(sensor: Sensor, row: Row) -> bool:
     """Whether a row of a sensor is sent again and again, and not when something happens."""
-    return not (row.is_event or row.on_change or sensor.name in RARE)
+    return not (row.is_event or row.on_change or sensor.name in IRREGULAR)
 
 
-def often(sensor: Sensor, row: Row) -> str:
+def rate(sensor: Sensor, row: Row) -> str:
     """How often a row of a sensor is sent: in Hz, on a change, or when something happens."""
-    if not is_regular(sensor, row):
-        return "event" if row.is_event else RARE.get(sensor.name, "change")
+    if not is_periodic(sensor, row):
+        return "event" if row.is_event else IRREGULAR.get(sensor.name, "change")
     return f"{SECOND_NS / max(sensor.period_ns, row.every_ns):.3g}"

@@ -51,7 +51,7 @@ class Mailbox(Generic[T]):
         self._lock = threading.Lock()
         self._queue: FairQueue[int, T] = FairQueue()
         self._weights: Counter[int] = Counter()
-        self._is_rung = False
+        self._is_scheduled = False
         """Whether a task is on its way."""
         self._is_closed = False
 
@@ -67,34 +67,34 @@ class Mailbox(Generic[T]):
         with self._lock:
             self._queue.put(sender, value)
             self._weights[sender] += self._weight(value)
-        self._ring()
+        self._schedule()
 
     def drain(self) -> None:
         """Handle what waits, for `slice_s` at most; executor's thread only. A timer may call it for values left before
         `add_node`.
         """
-        self._is_rung = False
+        self._is_scheduled = False
         end_s = time.monotonic() + self._slice_s
         while not self._is_closed:
             with self._lock:
                 if not self._queue:
                     return
-                value = self._queue.take()
+                value = self._queue.pop()
                 sender = self._sender(value)
                 self._weights[sender] -= self._weight(value)
                 if not self._weights[sender]:
                     del self._weights[sender]
             self._handle(value)
             if time.monotonic() >= end_s:
-                self._ring()
+                self._schedule()
                 return
 
     def close(self) -> None:
         """Handle nothing any more."""
         self._is_closed = True
 
-    def _ring(self) -> None:
+    def _schedule(self) -> None:
         executor = self._node.executor
-        if executor is not None and not self._is_rung and not self._is_closed:
-            self._is_rung = True
+        if executor is not None and not self._is_scheduled and not self._is_closed:
+            self._is_scheduled = True
             executor.create_task(self.drain)

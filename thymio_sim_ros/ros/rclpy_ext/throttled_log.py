@@ -7,15 +7,15 @@ import time
 
 from rclpy.node import Node
 
-__all__ = ["WARN_EVERY_S", "Warner"]
+__all__ = ["WARN_EVERY_S", "ThrottledLog"]
 
 WARN_EVERY_S = 5.0
 """Between two warnings about the same thing."""
-_MOST = 1000
+_MAX_KEYS = 1000
 """So many things are remembered; their names may come from strangers."""
 
 
-class Warner:
+class ThrottledLog:
     """Warns in a node's log, about each thing (a topic, an event) at most once in `WARN_EVERY_S`.
 
     rclpy's own throttle goes by the place in the code, so that one topic's warning would hide those of all others.
@@ -30,7 +30,7 @@ class Warner:
         now_s = time.monotonic()
         if now_s - self._told_s.get(about, -math.inf) < WARN_EVERY_S:
             return
-        if len(self._told_s) >= _MOST:
+        if len(self._told_s) >= _MAX_KEYS:
             self._told_s.clear()
         self._told_s[about] = now_s
         self._node.get_logger().warning(f"{about} {text}")

@@ -14,11 +14,11 @@ from typing import Any
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.node import Node, NodeNameNonExistentError
 
-__all__ = ["InputTypes", "Mismatch", "type_name"]
+__all__ = ["Mismatch", "TypeMismatches", "type_name"]
 
 SHARE = 0.002
 """Of one core, at most, that looking takes."""
-LOOK_EVERY_S = 1.0
+POLL_PERIOD_S = 1.0
 """Wall time between two looks, at least."""
 VELOCITY, STAMPED_PARAMETER = "cmd_vel", "stamped_cmd_vel"
 
@@ -40,7 +40,7 @@ class Mismatch:
         )
 
 
-class InputTypes:
+class TypeMismatches:
     """Looks for such publishers on the topics that a node subscribes to, and warns of each once while it is there."""
 
     def __init__(self, node: Node) -> None:
@@ -51,7 +51,7 @@ class InputTypes:
         self.mismatches: tuple[Mismatch, ...] = ()
         """Those of the last look."""
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Look again if it is time, and warn of what is new."""
         began_s = time.monotonic()
         if began_s < self._next_s:
@@ -61,7 +61,7 @@ class InputTypes:
             if mismatch not in before:
                 self._node.get_logger().warning(str(mismatch))
         ended_s = time.monotonic()
-        self._next_s = ended_s + max(LOOK_EVERY_S, (ended_s - began_s) / SHARE)
+        self._next_s = ended_s + max(POLL_PERIOD_S, (ended_s - began_s) / SHARE)
 
     def status(self) -> DiagnosticStatus:
         """For `/diagnostics`: WARN while there is such a publisher."""

@@ -18,7 +18,7 @@ from rosgraph_msgs.msg import Clock
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 
-__all__ = ["ClockRivals"]
+__all__ = ["ClockConflict"]
 
 PROOF = 2
 """Messages of others within `REMEMBERED_S` that prove another simulator."""
@@ -28,7 +28,7 @@ _OWN = 512
 """So many of its own messages are remembered: those of ten seconds."""
 
 
-class ClockRivals:
+class ClockConflict:
     """Finds other publishers of a simulator's clock, and warns once while there is one. Costs nothing without them."""
 
     def __init__(self, node: Node, topic: str, domain: int, now_s: Callable[[], float] = time.monotonic) -> None:
@@ -44,18 +44,18 @@ class ClockRivals:
         self.is_found = False
         """Whether another simulator publishes now."""
 
-    def sent(self, now_ns: int) -> None:
+    def record_published(self, now_ns: int) -> None:
         """This simulator publishes this time."""
         self._order.append(now_ns)
         self._own[now_ns] += 1
         if len(self._order) > _OWN:
             self._forget(self._order.popleft())
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Compare the graph and the messages since the last look; warn of what is new."""
         if self._node.count_publishers(self._topic) > 1:
             if self._subscription is None:
-                self._subscription = self._node.create_subscription(Clock, self._topic, self._take, qos.CLOCK)
+                self._subscription = self._node.create_subscription(Clock, self._topic, self._on_clock, qos.CLOCK)
         elif self._subscription is not None:
             self._node.destroy_subscription(self._subscription)
             self._subscription = None
@@ -77,7 +77,7 @@ class ClockRivals:
     def _is_proven(self) -> bool:
         return len(self._foreign_s) == PROOF and self._now_s() - self._foreign_s[0] < REMEMBERED_S
 
-    def _take(self, message: Clock) -> None:
+    def _on_clock(self, message: Clock) -> None:
         now_ns = message.clock.sec * SECOND_NS + message.clock.nanosec
         if self._own[now_ns] > 0:
             self._forget(now_ns)

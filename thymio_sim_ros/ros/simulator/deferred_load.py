@@ -19,11 +19,11 @@ from rclpy.service import Service
 
 from thymio_sim_ros.ros.rclpy_ext.mailbox import Mailbox
 
-__all__ = ["MOST_WAITING", "DeferredLoad"]
+__all__ = ["MAX_WAITING", "DeferredLoad"]
 
 T = TypeVar("T")
 
-MOST_WAITING = 4
+MAX_WAITING = 4
 """Requests that wait for their value, the one that is being loaded included; each may hold 32 MB of text."""
 _SERVICES = ("/set_parameters", "/set_parameters_atomically")
 
@@ -81,7 +81,7 @@ class DeferredLoad(Generic[T]):
                 return set_now(request, response)
             if len(values) > 1:
                 return _refused(request, response, f"{self._parameter} is set {len(values)} times, expected once")
-            if self._waiting >= MOST_WAITING:
+            if self._waiting >= MAX_WAITING:
                 return _refused(request, response, f"{self._waiting} other values of {self._parameter} are loading")
             self._waiting += 1
             return _Request(values[0], lambda header: send_now(set_now(request, response), header))

@@ -27,11 +27,11 @@ LAYER_M = 0.0002
 """Each paint lies this much above the one before, so that a viewer need not guess which covers which."""
 
 
-MOST_TEXELS = 2048
+MAX_TEXELS = 2048
 """Side of the largest picture that is sent to be looked at; graphics hardware takes at least twice that."""
 
 
-MOST_TILES = 16_000
+MAX_TILES = 16_000
 """Rectangles of the mosaics of all pictures together: each is six points, which take time to make and to send."""
 
 
@@ -48,7 +48,7 @@ def playground_markers(primitives: Iterable[Drawable], frame: str = MAP_FRAME) -
                 markers.append(_solid(primitive, len(markers)))
             elif isinstance(primitive, Print):
                 layer += 1
-                markers.append(_print(primitive, len(markers), layer * LAYER_M, MOST_TILES // prints))
+                markers.append(_print(primitive, len(markers), layer * LAYER_M, MAX_TILES // prints))
             else:
                 outlines.append(primitive.vertices)
         if not outlines:
@@ -108,7 +108,7 @@ def _print(printed: Print, number: int, height_m: float, tiles: int) -> Marker:
             marker.points.append(PointMsg(x=u - 0.5, y=v - 0.5))
             marker.uv_coordinates.append(UVCoordinate(u=u, v=v))
     marker.texture_resource = f"embedded://{printed.name}"
-    marker.texture = CompressedImage(format="png", data=image_io.encode_png(pixels, most=MOST_TEXELS))
+    marker.texture = CompressedImage(format="png", data=image_io.encode_png(pixels, most=MAX_TEXELS))
     return marker
 
 

@@ -17,7 +17,7 @@ from thymio_sim_ros.ros.interface.names import FrameNames, Naming
 from thymio_sim_ros.ros.interface.sensor_topics import JOINTS, TRUTH
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.rclpy_ext.parameters import group, param
-from thymio_sim_ros.ros.simulator.robot_endpoints import DESCRIPTION, PortOptions
+from thymio_sim_ros.ros.simulator.robot_endpoints import DESCRIPTION, EndpointOptions
 from thymio_sim_ros.ros.simulator.transforms import TransformOptions
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model import fields
@@ -173,10 +173,10 @@ class SimulatorParams:
         )
 
     @property
-    def port_options(self) -> PortOptions:
+    def endpoint_options(self) -> EndpointOptions:
         """What these say about the topics of all robots."""
         left_out = {DESCRIPTION: not self.publish_description, TRUTH: not self.publish_ground_truth}
-        return PortOptions(
+        return EndpointOptions(
             stamped_cmd_vel=self.stamped_cmd_vel,
             left_out=frozenset(topic for topic, is_out in left_out.items() if is_out),
             every_ns={JOINTS: _period_ns(self.odom_max_rate)},

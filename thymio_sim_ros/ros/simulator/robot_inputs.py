@@ -29,12 +29,12 @@ from thymio_sim_ros.ros.interface import (
 from thymio_sim_ros.ros.interface.command_checks import CommandError
 from thymio_sim_ros.ros.interface.command_topics import CommandRow
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
-from thymio_sim_ros.ros.interface.saturation import Beyond
+from thymio_sim_ros.ros.interface.saturation import LimitCheck
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
 
-__all__ = ["Moment", "RobotInput", "robot_inputs"]
+__all__ = ["InputContext", "RobotInput", "robot_inputs"]
 
 
 WORLD = Pose(0.0, 0.0, 0.0)
@@ -42,7 +42,7 @@ WORLD = Pose(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class InputContext:
     """When a message arrives: simulated time, and how long velocities hold (0: until the next one), in ns.
 
     `frames` tells where the frames of a robot are in the world then.
@@ -57,15 +57,15 @@ class Moment:
 class RobotInput:
     """One topic: `commands` gives what a message says, or raises CommandError; `about` is for the reference.
 
-    `beyond` says what of a message that was not refused is limited.
+    `limit_check` says what of a message that was not refused is limited.
     """
 
     topic: str
     type: type
-    commands: Callable[[Any, Moment], Sequence[Command]]
+    commands: Callable[[Any, InputContext], Sequence[Command]]
     about: str
     profile: QoSProfile
-    beyond: Beyond = saturation.nothing
+    limit_check: LimitCheck = saturation.nothing
 
 
 def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
@@ -114,38 +114,45 @@ def robot_inputs(*, stamped_cmd_vel: bool = False) -> tuple[RobotInput, ...]:
 
 def _of_row(row: CommandRow) -> RobotInput:
     return RobotInput(
-        row.topic, row.type, lambda message, _moment: (row.decode(message),), row.about, row.profile, row.beyond
+        row.topic,
+        row.type,
+        lambda message, _input_context: (row.decode(message),),
+        row.about,
+        row.profile,
+        row.limit_check,
     )
 
 
-def _twist(message: TwistMsg, moment: Moment) -> Sequence[Command]:
-    return (command_checks.body_twist(message, moment.timeout_ns),)
+def _twist(message: TwistMsg, input_context: InputContext) -> Sequence[Command]:
+    return (command_checks.body_twist(message, input_context.timeout_ns),)
 
 
-def _stamped_twist(message: TwistStamped, moment: Moment) -> Sequence[Command]:
+def _stamped_twist(message: TwistStamped, input_context: InputContext) -> Sequence[Command]:
     sent_ns = message.header.stamp.sec * SECOND_NS + message.header.stamp.nanosec
-    age_ns = moment.now_ns - sent_ns
-    if moment.timeout_ns and sent_ns and age_ns > moment.timeout_ns:
-        raise CommandError(f"stamp is {age_ns / 1e9:.3f} s old, expected at most {moment.timeout_ns / 1e9:.3f} s")
-    return (command_checks.body_twist(message.twist, moment.timeout_ns),)
+    age_ns = input_context.now_ns - sent_ns
+    if input_context.timeout_ns and sent_ns and age_ns > input_context.timeout_ns:
+        raise CommandError(
+            f"stamp is {age_ns / 1e9:.3f} s old, expected at most {input_context.timeout_ns / 1e9:.3f} s"
+        )
+    return (command_checks.body_twist(message.twist, input_context.timeout_ns),)
 
 
-def _wheels(message: Float64MultiArray, moment: Moment) -> Sequence[Command]:
-    return (command_checks.wheel_velocities(message.data, moment.timeout_ns),)
+def _wheels(message: Float64MultiArray, input_context: InputContext) -> Sequence[Command]:
+    return (command_checks.wheel_velocities(message.data, input_context.timeout_ns),)
 
 
-def _leds_off(_message: Empty, _moment: Moment) -> Sequence[Command]:
+def _leds_off(_message: Empty, _input_context: InputContext) -> Sequence[Command]:
     return tuple(commands.SetLeds(group, (0,) * size) for group, size in commands.LED_GROUPS.items())
 
 
-def _shutdown(message: Empty, moment: Moment) -> Sequence[Command]:
+def _shutdown(message: Empty, input_context: InputContext) -> Sequence[Command]:
     quiet = (commands.SetAlarm(False), commands.StopSound())
-    return (commands.MotorTargets(0, 0), *quiet, *_leds_off(message, moment))
+    return (commands.MotorTargets(0, 0), *quiet, *_leds_off(message, input_context))
 
 
-def _pose(message: PoseWithCovarianceStamped, moment: Moment) -> Sequence[Command]:
+def _pose(message: PoseWithCovarianceStamped, input_context: InputContext) -> Sequence[Command]:
     """Tools of viewers send it in the frame that they show or follow."""
-    pose, frame, frames = message.pose.pose, message.header.frame_id, moment.frames()
+    pose, frame, frames = message.pose.pose, message.header.frame_id, input_context.frames()
     if frame and frame not in frames:
         raise CommandError(f"frame '{frame}' found, expected {' or '.join(frames)}")
     origin = frames[frame] if frame else WORLD
@@ -156,5 +163,5 @@ def _pose(message: PoseWithCovarianceStamped, moment: Moment) -> Sequence[Comman
     return (commands.MoveRobot(x, y, wrap_angle(yaw)),)
 
 
-def _press(button: str, message: Bool, _moment: Moment) -> Sequence[Command]:
+def _press(button: str, message: Bool, _input_context: InputContext) -> Sequence[Command]:
     return (commands.PressButton(button, bool(message.data)),)

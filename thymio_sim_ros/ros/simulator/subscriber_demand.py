@@ -12,18 +12,18 @@ from typing import NamedTuple
 from thymio_sim_ros.sim.model.clock import NEVER_NS, TICK_NS, next_due_ns
 from thymio_sim_ros.sim.sensors import all_sensors
 
-__all__ = ["Audience", "Heard"]
+__all__ = ["SubscriberDemand", "TopicDemand"]
 
 
-class Heard(NamedTuple):
+class TopicDemand(NamedTuple):
     """A topic by what makes it: a sensor, not more often than `every_ns`; regular, or when something happens."""
 
     sensor: str
     every_ns: int = 0
-    is_regular: bool = True
+    is_periodic: bool = True
 
 
-class Audience:
+class SubscriberDemand:
     """Counts of the topics that are sent. Invariant: `sensors` are those of at least one of them."""
 
     def __init__(self, periods_ns: Mapping[str, int] | None = None) -> None:
@@ -31,19 +31,19 @@ class Audience:
         periods_ns = periods_ns or {}
         sensors = [sensor.every(periods_ns.get(sensor.name, sensor.period_ns)) for sensor in all_sensors()]
         self._schedule = {sensor.name: (sensor.period_ns, sensor.phase_ns) for sensor in sensors}
-        self._counts: Counter[Heard] = Counter()
+        self._counts: Counter[TopicDemand] = Counter()
         self._since_ns, self._due_ns = 0, 0
         self._is_due_always = False
         """Whether each tick gives a reading that is sent."""
         self.sensors: frozenset[str] = frozenset()
 
-    def join(self, topic: Heard) -> None:
+    def add(self, topic: TopicDemand) -> None:
         """A topic is sent from now on."""
         self._counts[topic] += 1
         if self._counts[topic] == 1:
             self._change()
 
-    def leave(self, topic: Heard) -> None:
+    def remove(self, topic: TopicDemand) -> None:
         """It is not sent any more."""
         self._counts[topic] -= 1
         if not self._counts[topic]:
@@ -59,9 +59,9 @@ class Audience:
             self._due_ns = min((self._next_ns(topic, now_ns) for topic in self._counts), default=NEVER_NS)
         return self._due_ns
 
-    def _next_ns(self, topic: Heard, now_ns: int) -> int:
+    def _next_ns(self, topic: TopicDemand, now_ns: int) -> int:
         period_ns, phase_ns = self._schedule[topic.sensor]
-        if not topic.is_regular or period_ns == NEVER_NS:
+        if not topic.is_periodic or period_ns == NEVER_NS:
             return NEVER_NS
         if topic.every_ns:
             now_ns = (now_ns // topic.every_ns + 1) * topic.every_ns - 1
@@ -70,7 +70,7 @@ class Audience:
     def _change(self) -> None:
         self.sensors = frozenset(topic.sensor for topic in self._counts)
         self._is_due_always = any(
-            topic.is_regular and max(self._schedule[topic.sensor][0], topic.every_ns) <= TICK_NS
+            topic.is_periodic and max(self._schedule[topic.sensor][0], topic.every_ns) <= TICK_NS
             for topic in self._counts
         )
         self._due_ns = 0

@@ -20,12 +20,12 @@ from thymio_sim_ros.ros.compat.tf2_messages import Transform
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.cdr_fields import rotation, wheel_rotation
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, SIDES, RobotNames
-from thymio_sim_ros.ros.simulator.subscriber_demand import Audience, Heard
+from thymio_sim_ros.ros.simulator.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.ros.simulator.urdf import fixed_frames, wheel_position
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.model.readings import PoseReading, Reading
 
-__all__ = ["TRANSFORMING", "TransformOptions", "Transforms", "frames_of", "origin_of"]
+__all__ = ["POSE_SENSOR", "TransformOptions", "Transforms", "frames_of", "origin_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,19 +38,19 @@ class TransformOptions:
     namespaced: bool = False
 
 
-TRANSFORMING = "pose"
+POSE_SENSOR = "pose"
 """The sensor whose readings make transforms."""
 
-MOVING = Heard(TRANSFORMING)
+MOVING_FRAMES = TopicDemand(POSE_SENSOR)
 
 
-class _Channel:
+class _TransformTopic:
     """Publishers of one transform topic, and for each the transforms of this tick."""
 
-    def __init__(self, node: Node, word: str, profile: QoSProfile, audience: Audience | None = None) -> None:
-        """`audience` is told which topics are heard."""
+    def __init__(self, node: Node, word: str, profile: QoSProfile, demand: SubscriberDemand | None = None) -> None:
+        """`demand` is told which topics are heard."""
         self.word = word
-        self._node, self._profile, self._audience = node, profile, audience
+        self._node, self._profile, self._demand = node, profile, demand
         self._publishers: dict[str, Any] = {}
         self._heard: set[str] = set()
         self._waiting: dict[str, list[Transform]] = {}
@@ -59,17 +59,17 @@ class _Channel:
         """Have publishers of these topics, and of no other."""
         self._waiting.clear()
         for topic in self._publishers.keys() - topics:
-            self._hear(topic, 0)
+            self._set_demand(topic, 0)
             self._node.destroy_publisher(self._publishers.pop(topic))
         for topic in topics - self._publishers.keys():
             self._publishers[topic] = self._node.create_publisher(tf2_messages.TFMessage, topic, self._profile)
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Find out which topics somebody hears now."""
         for topic, publisher in self._publishers.items():
-            self._hear(topic, publisher.get_subscription_count())
+            self._set_demand(topic, publisher.get_subscription_count())
 
-    def is_heard(self, topic: str) -> bool:
+    def has_subscribers(self, topic: str) -> bool:
         """Whether anybody listens."""
         return topic in self._heard
 
@@ -83,27 +83,27 @@ class _Channel:
             self._publishers[topic].publish(tf2_messages.encode(transforms))
         self._waiting.clear()
 
-    def _hear(self, topic: str, listeners: int) -> None:
-        if self._audience is None or (listeners > 0) == (topic in self._heard):
+    def _set_demand(self, topic: str, subscribers: int) -> None:
+        if self._demand is None or (subscribers > 0) == (topic in self._heard):
             return
-        if listeners:
+        if subscribers:
             self._heard.add(topic)
-            self._audience.join(MOVING)
+            self._demand.add(MOVING_FRAMES)
         else:
             self._heard.remove(topic)
-            self._audience.leave(MOVING)
+            self._demand.remove(MOVING_FRAMES)
 
 
 class Transforms:
     """Publishes transforms from readings; silent where the type cannot be had (`tf_messages.available`)."""
 
-    def __init__(self, node: Node, audience: Audience, options: TransformOptions | None = None) -> None:
+    def __init__(self, node: Node, demand: SubscriberDemand, options: TransformOptions | None = None) -> None:
         self._options = options or TransformOptions()
         self._is_on = tf2_messages.available()
-        self._moving = _Channel(node, "tf", qos.TRANSFORMS, audience)
-        self._static = _Channel(node, "tf_static", qos.LATCHED)
+        self._moving = _TransformTopic(node, "tf", qos.TRANSFORMS, demand)
+        self._static = _TransformTopic(node, "tf_static", qos.TRANSIENT_LOCAL)
 
-    def begin(self, robots: Sequence[RobotNames]) -> None:
+    def set_robots(self, robots: Sequence[RobotNames]) -> None:
         """Latched frames of these robots, all in one message where the topic is common."""
         if not self._is_on:
             return
@@ -120,21 +120,21 @@ class Transforms:
             self._static.add(self._topic(names, self._static), fixed)
         self._static.flush()
 
-    def take(self, names: RobotNames, reading: Reading, angles_rad: tuple[float, float]) -> None:
+    def add_reading(self, names: RobotNames, reading: Reading, angles_rad: tuple[float, float]) -> None:
         """Send the robot's moving frames at the end of the tick: its pose, its wheels turned by these angles."""
         topic = self._topic(names, self._moving)
-        if isinstance(reading, PoseReading) and self._moving.is_heard(topic):
+        if isinstance(reading, PoseReading) and self._moving.has_subscribers(topic):
             self._moving.add(topic, self._frames(names, reading, angles_rad))
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Find out which moving frames somebody hears now."""
-        self._moving.look()
+        self._moving.poll()
 
     def flush(self) -> None:
         """The tick is over."""
         self._moving.flush()
 
-    def _topic(self, names: RobotNames, channel: _Channel) -> str:
+    def _topic(self, names: RobotNames, channel: _TransformTopic) -> str:
         return names.topic(channel.word) if self._options.namespaced else f"/{channel.word}"
 
     def _frames(self, names: RobotNames, reading: PoseReading, angles_rad: tuple[float, float]) -> list[Transform]:

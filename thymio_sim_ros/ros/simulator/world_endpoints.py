@@ -23,7 +23,7 @@ from thymio_sim_ros.ros.interface.cdr_templates import Patch, Template
 from thymio_sim_ros.ros.interface.headers import SECOND_NS, stamp
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, RobotNames
 from thymio_sim_ros.ros.rclpy_ext import raw_publisher
-from thymio_sim_ros.ros.simulator.clock_conflict import ClockRivals
+from thymio_sim_ros.ros.simulator.clock_conflict import ClockConflict
 from thymio_sim_ros.ros.simulator.markers import playground_markers
 from thymio_sim_ros.ros.simulator.occupancy_grid import occupancy
 from thymio_sim_ros.sim.playground import reader as playgrounds
@@ -46,7 +46,7 @@ class WorldTopic:
     """One topic of the world: how often it is sent, what it holds."""
 
     type: type
-    often: str
+    rate: str
     about: str
     profile: QoSProfile
     frame: str = ""
@@ -59,7 +59,7 @@ TOPICS: Mapping[str, WorldTopic] = {
         "1, change",
         "JSON: playground, paused, factors, seed, ns, robots and which of them fell, things that can be moved, the "
         "topic `~/_raw`",
-        qos.LATCHED,
+        qos.TRANSIENT_LOCAL,
     ),
     "~/_raw": WorldTopic(
         Int16MultiArray,
@@ -67,12 +67,16 @@ TOPICS: Mapping[str, WorldTopic] = {
         "Aseba's integers of all robots: a dimension `robot/sensor` for each reading",
         qos.EVENTS,
     ),
-    "~/_playgrounds": WorldTopic(String, "once", "JSON: shipped playgrounds with titles and descriptions", qos.LATCHED),
-    "_markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.LATCHED, "map"),
-    "_markers/objects": WorldTopic(
-        MarkerArray, "≤ 20, change", "movable things and doors as they stand", qos.LATCHED, "map"
+    "~/_playgrounds": WorldTopic(
+        String, "once", "JSON: shipped playgrounds with titles and descriptions", qos.TRANSIENT_LOCAL
     ),
-    "map": WorldTopic(OccupancyGrid, "change", "only with `publish_map`: walls, 1 cm cells", qos.LATCHED, "map"),
+    "_markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.TRANSIENT_LOCAL, "map"),
+    "_markers/objects": WorldTopic(
+        MarkerArray, "≤ 20, change", "movable things and doors as they stand", qos.TRANSIENT_LOCAL, "map"
+    ),
+    "map": WorldTopic(
+        OccupancyGrid, "change", "only with `publish_map`: walls, 1 cm cells", qos.TRANSIENT_LOCAL, "map"
+    ),
     "/diagnostics": WorldTopic(
         DiagnosticArray,
         "1",
@@ -119,7 +123,7 @@ class WorldState:
 
 
 @dataclass(frozen=True, slots=True)
-class Pace:
+class PaceCounters:
     """Since the start or the last change of pace: ticks that came late, or never.
 
     Since the start: messages that were refused, and those with something beyond the robot's limits.
@@ -146,7 +150,7 @@ class SceneMessages:
         return cls(markers, occupancy(playground.floors, fixed, frame) if with_map else None)
 
 
-class WorldPorts:
+class WorldEndpoints:
     """Publishers of the simulator that belong to no robot."""
 
     def __init__(
@@ -167,14 +171,14 @@ class WorldPorts:
             if not left_out.get(name)
         }
         self._clock_gap_ns = round(CLOCK_GAP * SECOND_NS / clock_rate_hz)
-        self._is_clock_heard = False
+        self._has_clock_subscribers = False
         self._clock = Template(Patch(()), Clock(), None)
         clock = self._publishers.get("/clock")
         self._send_clock = raw_publisher.sender(clock) if clock is not None else None
         self._count_clock = raw_publisher.counter(clock) if clock is not None else None
-        self._rivals = None
+        self._clock_conflict = None
         if clock is not None:
-            self._rivals = ClockRivals(node, clock.topic_name, node.context.get_domain_id())
+            self._clock_conflict = ClockConflict(node, clock.topic_name, node.context.get_domain_id())
         self._map_frame = map_frame
         self._publishers["~/_playgrounds"].publish(String(data=json.dumps(shipped_playgrounds())))
         self._last_clock_ns = self._last_objects_ns = 0
@@ -188,7 +192,7 @@ class WorldPorts:
     @property
     def clock_due_ns(self) -> int | None:
         """The wall time from which the clock may be told again; None when nobody hears it."""
-        return self._last_clock_ns + self._clock_gap_ns if self._is_clock_heard else None
+        return self._last_clock_ns + self._clock_gap_ns if self._has_clock_subscribers else None
 
     def publish_clock(self, now_ns: int, *, last: bool) -> None:
         """Simulated time; limited by its rate of wall time unless it is the `last` one for a while."""
@@ -198,12 +202,12 @@ class WorldPorts:
             return
         self._last_clock_ns = wall_ns
         self._send_clock(self._clock.at(now_ns))
-        if self._rivals is not None:
-            self._rivals.sent(now_ns)
+        if self._clock_conflict is not None:
+            self._clock_conflict.record_published(now_ns)
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Find out whether somebody hears the clock now."""
-        self._is_clock_heard = self._count_clock is not None and self._count_clock() > 0
+        self._has_clock_subscribers = self._count_clock is not None and self._count_clock() > 0
 
     def publish_state(self, state: WorldState) -> None:
         """Latched state as JSON."""
@@ -232,7 +236,7 @@ class WorldPorts:
         placed = [solids[thing.name].at(thing.pose) for thing in world.objects if not thing.is_fallen]
         self._publishers["_markers/objects"].publish(playground_markers(placed, self._map_frame))
 
-    def publish_diagnostics(self, state: WorldState, pace: Pace, inputs: DiagnosticStatus) -> None:
+    def publish_diagnostics(self, state: WorldState, pace: PaceCounters, inputs: DiagnosticStatus) -> None:
         """Pace of the simulation, its inputs, and whether another simulator publishes its clock."""
         slow = not state.paused and 0 < state.achieved < SLOW * state.real_time_factor
         status = DiagnosticStatus(
@@ -252,9 +256,9 @@ class WorldPorts:
             ],
         )
         statuses = [status, inputs]
-        if self._rivals is not None:
-            self._rivals.look()
-            statuses.append(self._rivals.status())
+        if self._clock_conflict is not None:
+            self._clock_conflict.poll()
+            statuses.append(self._clock_conflict.status())
         message = DiagnosticArray(status=statuses)
         message.header.stamp = stamp(state.now_ns)
         self._publishers["/diagnostics"].publish(message)

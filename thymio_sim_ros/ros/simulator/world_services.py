@@ -20,7 +20,7 @@ from std_srvs.srv import SetBool, Trigger
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import RobotNames
-from thymio_sim_ros.ros.rclpy_ext.throttled_log import Warner
+from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.fields import FieldError
@@ -28,7 +28,7 @@ from thymio_sim_ros.sim.playground import writer
 from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
-__all__ = ["PLACE", "PLACED", "SERVICES", "Controlled", "WorldServices", "presently"]
+__all__ = ["PLACE_MEANING", "PLACE_TOPIC", "SERVICES", "SimulatorControl", "WorldServices", "at_current_tick"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,14 +53,14 @@ SERVICES: Mapping[str, Service] = {
 }
 """Every service of the simulator that belongs to no robot."""
 
-PLACE = "~/_place"
+PLACE_TOPIC = "~/_place"
 """The topic that does what `~/set_poses` does, for what a viewer drags."""
 
-STOPPED_BY_ITSELF = "the world stopped by a fault of ours: see the simulator's log"
-PLACED = "put a robot or a movable thing there: its name, or a robot's frame, is `child_frame_id`"
+WORLD_STOPPED = "the world stopped by a fault of ours: see the simulator's log"
+PLACE_MEANING = "put a robot or a movable thing there: its name, or a robot's frame, is `child_frame_id`"
 
 
-class Controlled(Protocol):
+class SimulatorControl(Protocol):
     """What is controlled: the simulator."""
 
     @property
@@ -105,7 +105,7 @@ class Controlled(Protocol):
     def catch_up(self) -> None:
         """Be at the present tick, and tell early what the next one brings."""
 
-    def follow(self) -> None:
+    def update_robots(self) -> None:
         """Robots have come or gone."""
 
     def count_refusal(self) -> None:
@@ -115,7 +115,7 @@ class Controlled(Protocol):
 Handler = Callable[[Any, Any], Any]
 
 
-def presently(simulator: Controlled, handler: Handler) -> Handler:
+def at_current_tick(simulator: SimulatorControl, handler: Handler) -> Handler:
     """The same handler of a service, which finds the world at the present tick."""
 
     def handle(request: Any, response: Any) -> Any:
@@ -128,8 +128,8 @@ def presently(simulator: Controlled, handler: Handler) -> Handler:
 class WorldServices:
     """The services of a simulator, on its node."""
 
-    def __init__(self, node: Node, simulator: Controlled) -> None:
-        self._simulator, self._warn = simulator, Warner(node)
+    def __init__(self, node: Node, simulator: SimulatorControl) -> None:
+        self._simulator, self._warn = simulator, ThrottledLog(node)
         handlers: dict[str, Handler] = {
             "~/pause": self._pause,
             "~/step": self._step,
@@ -141,10 +141,10 @@ class WorldServices:
             "~/get_playground": self._get_playground,
         }
         self._services = [
-            node.create_service(service.type, name, presently(simulator, handlers[name]))
+            node.create_service(service.type, name, at_current_tick(simulator, handlers[name]))
             for name, service in SERVICES.items()
         ]
-        self._subscription = node.create_subscription(TransformStamped, PLACE, self._place, qos.COMMAND)
+        self._subscription = node.create_subscription(TransformStamped, PLACE_TOPIC, self._place, qos.COMMAND)
 
     def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         self._simulator.pause(bool(request.data))
@@ -157,7 +157,7 @@ class WorldServices:
             return response
         response.success = self._simulator.step()
         now = f"now {self._simulator.world.now_ns / SECOND_NS:.3f} s"
-        response.message = now if response.success else f"{now}, where {STOPPED_BY_ITSELF}"
+        response.message = now if response.success else f"{now}, where {WORLD_STOPPED}"
         return response
 
     def _reset(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
@@ -169,13 +169,13 @@ class WorldServices:
         """A service that does one thing for each name, or says why not."""
 
         def answer(request: SetParameters.Request, response: SetParameters.Response) -> SetParameters.Response:
-            response.results = [self._tried(act, one.name, one.value) for one in request.parameters]
-            self._simulator.follow()
+            response.results = [self._attempt(act, one.name, one.value) for one in request.parameters]
+            self._simulator.update_robots()
             return response
 
         return answer
 
-    def _tried(self, act: Callable[[str, ParameterValue], None], name: str, value: Any) -> SetParametersResult:
+    def _attempt(self, act: Callable[[str, ParameterValue], None], name: str, value: Any) -> SetParametersResult:
         try:
             act(name, value)
         except (FieldError, ValueError) as error:
@@ -185,7 +185,7 @@ class WorldServices:
         return SetParametersResult(successful=True)
 
     def _spawn(self, name: str, value: ParameterValue) -> None:
-        x, y, yaw = _place_of(name, value)
+        x, y, yaw = _pose_of(name, value)
         start = fields.read(RobotStart, {"name": name, "x_m": x, "y_m": y, "yaw_rad": yaw}, "")
         self._simulator.spawn(start)
 
@@ -196,7 +196,7 @@ class WorldServices:
         world.remove(name)
 
     def _set_pose(self, name: str, value: ParameterValue) -> None:
-        self._move(name, *_place_of(name, value))
+        self._move(name, *_pose_of(name, value))
 
     def _move(self, name: str, x: float, y: float, yaw: float) -> None:
         world = self._simulator.world
@@ -227,12 +227,12 @@ class WorldServices:
     def _place(self, message: TransformStamped) -> None:
         self._simulator.catch_up()
         try:
-            self._put(message)
+            self._place_frame(message)
         except ValueError as error:
             self._simulator.count_refusal()
-            self._warn(PLACE, f"refused: {error}")
+            self._warn(PLACE_TOPIC, f"refused: {error}")
 
-    def _put(self, message: TransformStamped) -> None:
+    def _place_frame(self, message: TransformStamped) -> None:
         """`child_frame_id` is a thing, a robot, or a robot's frame."""
         of_frame = {names.frame("base_link"): robot for robot, names in self._simulator.names.items()}
         maps = {"", *(names.frame("map") for names in self._simulator.names.values())}
@@ -243,7 +243,7 @@ class WorldServices:
         self._move(of_frame.get(name, name), transform.translation.x, transform.translation.y, yaw)
 
 
-def _place_of(name: str, value: ParameterValue) -> tuple[float, float, float]:
+def _pose_of(name: str, value: ParameterValue) -> tuple[float, float, float]:
     found = parameter_value_to_python(value)
     numbers = [] if found is None or isinstance(found, str | bytes | bool | int | float) else list(found)
     if len(numbers) not in (2, 3) or not all(isinstance(number, int | float) for number in numbers):

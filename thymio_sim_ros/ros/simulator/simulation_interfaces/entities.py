@@ -19,7 +19,7 @@ from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import (
     RefusedError,
     resource,
 )
-from thymio_sim_ros.ros.simulator.world_services import Controlled
+from thymio_sim_ros.ros.simulator.world_services import SimulatorControl
 from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.fields import FieldError
@@ -39,7 +39,7 @@ SPAWN_POSE_INVALID, STATE_POSE_INVALID, SOME_FAILED = 109, 101, 150
 class Entities:
     """What acts on entities; `messages` is the module `simulation_interfaces.msg`."""
 
-    def __init__(self, simulator: Controlled, messages: Any) -> None:
+    def __init__(self, simulator: SimulatorControl, messages: Any) -> None:
         self._simulator, self._messages = simulator, messages
 
     @property
@@ -169,7 +169,7 @@ class Entities:
         except ValueError as error:
             raise RefusedError(NAME_NOT_UNIQUE, str(error)) from error
         response.entity_name = name
-        self._simulator.follow()
+        self._simulator.update_robots()
 
     def _name(self, wanted: str, allow_renaming: bool) -> str:
         """The name wanted, or, where another is allowed, the first with a number behind it that is free."""
@@ -198,4 +198,4 @@ class Entities:
         if self._known(request.entity) != ROBOT:
             raise RefusedError(FAILED, f"'{request.entity}' belongs to the playground: only robots can be deleted")
         self._simulator.world.remove(request.entity)
-        self._simulator.follow()
+        self._simulator.update_robots()

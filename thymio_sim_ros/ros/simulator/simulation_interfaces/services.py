@@ -23,7 +23,7 @@ from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import (
     resource,
 )
 from thymio_sim_ros.ros.simulator.simulation_interfaces.entities import SPAWNABLE, Entities
-from thymio_sim_ros.ros.simulator.world_services import STOPPED_BY_ITSELF, Controlled, presently
+from thymio_sim_ros.ros.simulator.world_services import WORLD_STOPPED, SimulatorControl, at_current_tick
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
 
@@ -78,7 +78,7 @@ STOPPED, PLAYING, PAUSED = range(3)
 """SimulationState (docs/spec/ros-interface.md section 7)."""
 _STATES = ("stopped", "playing", "paused")
 ALREADY, INCORRECT_TRANSITION = 101, 103
-MOST_STEPS = 100_000
+MAX_STEPS = 100_000
 EVERYTHING = (0, 7, 255)
 """Scopes of a reset: none named, each named, all."""
 NO_RESOURCE, PARSE_ERROR = 102, 103
@@ -87,7 +87,7 @@ NO_RESOURCE, PARSE_ERROR = 102, 103
 class SimInterfaces:
     """The services; `interfaces` has the package's modules `msg` and `srv`, and `action` if actions are wanted."""
 
-    def __init__(self, node: Node, simulator: Controlled, interfaces: Any) -> None:
+    def __init__(self, node: Node, simulator: SimulatorControl, interfaces: Any) -> None:
         self._node, self._simulator, self._messages = node, simulator, interfaces.msg
         acts = {**self._acts, **Entities(simulator, interfaces.msg).acts}
         offers = [offer for offer in OFFERS if hasattr(interfaces.srv, offer.type)]
@@ -95,7 +95,7 @@ class SimInterfaces:
         for offer in offers:
             answer = self._get_features if offer.name == "get_simulator_features" else answering(acts[offer.name])
             kind = getattr(interfaces.srv, offer.type)
-            node.create_service(kind, f"~/{offer.name}", presently(simulator, answer))
+            node.create_service(kind, f"~/{offer.name}", at_current_tick(simulator, answer))
         self._close: Callable[[], None] = lambda: None
         actions = getattr(interfaces, "action", None)
         if actions is not None:
@@ -155,12 +155,10 @@ class SimInterfaces:
     def _step(self, request: Any, _response: Any) -> None:
         if not self._simulator.paused:
             raise RefusedError(FAILED, "the world is running: pause it first")
-        if request.steps > MOST_STEPS:
-            raise RefusedError(
-                FAILED, f"{request.steps} steps found, expected at most {MOST_STEPS}; more by the action"
-            )
+        if request.steps > MAX_STEPS:
+            raise RefusedError(FAILED, f"{request.steps} steps found, expected at most {MAX_STEPS}; more by the action")
         if not self._simulator.step(request.steps):
-            raise RefusedError(FAILED, STOPPED_BY_ITSELF)
+            raise RefusedError(FAILED, WORLD_STOPPED)
 
     def _reset(self, request: Any, _response: Any) -> None:
         if request.scope not in EVERYTHING:
@@ -204,7 +202,7 @@ class SimInterfaces:
         response.world = self._world(name, value if is_name else "", "" if is_name else value)
 
 
-def offered(node: Node, simulator: Controlled) -> SimInterfaces | None:
+def offered(node: Node, simulator: SimulatorControl) -> SimInterfaces | None:
     """The services, where the package is installed; one that cannot be loaded is told once."""
     try:
         import simulation_interfaces.action

@@ -9,7 +9,7 @@ from rclpy.action.server import ActionServer, CancelResponse
 from rclpy.node import Node
 
 from thymio_sim_ros.ros.simulator.simulation_interfaces.answers import FAILED, OK
-from thymio_sim_ros.ros.simulator.world_services import STOPPED_BY_ITSELF, Controlled
+from thymio_sim_ros.ros.simulator.world_services import WORLD_STOPPED, SimulatorControl
 
 __all__ = ["StepsAction"]
 
@@ -17,7 +17,7 @@ __all__ = ["StepsAction"]
 class StepsAction:
     """The action on the simulator's node; `kind` is `simulation_interfaces.action.SimulateSteps`."""
 
-    def __init__(self, node: Node, simulator: Controlled, kind: Any) -> None:
+    def __init__(self, node: Node, simulator: SimulatorControl, kind: Any) -> None:
         self._simulator, self._kind = simulator, kind
         self._server = ActionServer(
             node, kind, "~/simulate_steps", self._execute, cancel_callback=lambda _goal: CancelResponse.ACCEPT
@@ -38,9 +38,9 @@ class StepsAction:
                 return self._told(result, f"the world is running after {done} of {steps} steps: pause it first")
             if not self._simulator.step(1):
                 goal.abort()
-                return self._told(result, f"{STOPPED_BY_ITSELF}, after {done} of {steps} steps")
+                return self._told(result, f"{WORLD_STOPPED}, after {done} of {steps} steps")
             goal.publish_feedback(self._kind.Feedback(completed_steps=done + 1, remaining_steps=steps - done - 1))
-            await _Turn()
+            await _YieldToExecutor()
         goal.succeed()
         result.result.result = OK
         return result
@@ -50,7 +50,7 @@ class StepsAction:
         return result
 
 
-class _Turn:
+class _YieldToExecutor:
     """Whoever awaits it lets the executor do everything else that is due."""
 
     def __await__(self) -> Generator[None, None, None]:
