@@ -46,7 +46,7 @@ def test_the_migration_names_all_that_a_program_knows(kind):
         "| `prox.horizontal[7]` | out | `proximity/…`, `_raw/proximity` |",
         "| `motor.left.target` | in | `_motor/target` |",
         "| `leds.top(red, green, blue)` | in | `led/body/top` |",
-        "| `timer0` | | timers of a node of one’s own |",
+        "| `timer0` | | timers of your own node |",
     ],
 )
 def test_what_a_program_knows_is_found_on_topics(line):

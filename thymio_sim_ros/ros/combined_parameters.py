@@ -137,7 +137,9 @@ def _sections(given: Sequence[str]) -> tuple[dict[str, dict[str, str]], list[str
         found = targets(name) if node in ("", SUITE) else ((node, name),)
         if not found:
             known = [one for values in defaults(Suite()).values() for one in parameters.by_name(values)]
-            warnings.append(f"parameter {name} is none of the suite and does nothing{parameters.meant(name, known)}")
+            warnings.append(
+                f"parameter {name} is not a parameter of the suite and has no effect{parameters.meant(name, known)}"
+            )
         for target, own_name in found:
             if target in sections:
                 sections[target][own_name] = value

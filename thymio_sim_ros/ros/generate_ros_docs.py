@@ -64,23 +64,23 @@ def text() -> str:
     """The whole page."""
     parts = [
         BEFORE,
-        "## What a robot publishes\n",
+        "## Published topics of a robot\n",
         _topics(line for line in _published() if not is_hidden(line.topic)),
-        "## What a robot listens to\n",
+        "## Subscribed topics of a robot\n",
         _topics(line for line in _listened() if not is_hidden(line.topic)),
         HIDDEN,
-        "### What a robot publishes besides\n",
+        "### Published hidden topics of a robot\n",
         _topics(line for line in _published() if is_hidden(line.topic)),
-        "### What a robot listens to besides\n",
+        "### Subscribed hidden topics of a robot\n",
         _topics(line for line in _listened() if is_hidden(line.topic)),
         DRIVER,
         table(("topic", "", "type", ""), _of_driver()),
         "## Topics of the world\n",
         _topics(_of_world()),
         "## Services\n",
-        table(("service", "type", "does"), _services()),
+        table(("service", "type", "description"), _services()),
         INTERFACES,
-        table(("service", "type", "does"), _interfaces()),
+        table(("service", "type", "description"), _interfaces()),
         "## Quality of service\n",
         QUALITY,
         table(("kind", "depth", "for"), ((kind, str(one.depth), about) for kind, (one, about) in qos.KINDS.items())),
@@ -90,7 +90,7 @@ def text() -> str:
         "## Parameters of the simulator\n",
         table(("parameter", "default", "values", "at run time", ""), _parameters(SimulatorParams())),
         "## Parameters of the Aseba runtime\n",
-        "What they and its topics do: [aseba_ros.md](aseba_ros.md).\n",
+        "For details see [aseba_ros.md](aseba_ros.md).\n",
         table(("parameter", "default", "values", "at run time", ""), _parameters(RuntimeParams())),
         ALL_IN_ONE,
         table(("parameter", "node", "default"), _of_all_nodes()),
@@ -124,7 +124,7 @@ def _published() -> Iterator[_Line]:
             profile = qos.kind_of(row.profile)
             yield _Line(row.topic, type_name(row.type), rate, row.frame, profile, row.about)
     kind, about = robot_endpoints.DESCRIPTION_TOPIC
-    yield _Line(robot_endpoints.DESCRIPTION, type_name(kind), "once", "", "latched", about)
+    yield _Line(robot_endpoints.DESCRIPTION, type_name(kind), "once", "", "transient local", about)
 
 
 def _listened() -> Iterator[_Line]:
@@ -142,9 +142,9 @@ def _of_world() -> Iterator[_Line]:
         yield _Line(
             _in_no_namespace(topic), type_name(one.type), one.rate, one.frame, qos.kind_of(one.profile), one.about
         )
-    moving = "`map -> odom -> base_link` and the wheels; `map -> odom` makes up for the odometry's drift"
+    moving = "`map -> odom -> base_link` and the wheels; `map -> odom` compensates the drift of the odometry"
     yield _Line("/tf", tf2_messages.TF_TYPE_NAME, "20", "", "transforms", moving)
-    yield _Line("/tf_static", tf2_messages.TF_TYPE_NAME, "once", "", "latched", "the frames below that are fixed")
+    yield _Line("/tf_static", tf2_messages.TF_TYPE_NAME, "once", "", "transient local", "the fixed frames below")
     yield _Line(
         _in_no_namespace(world_services.PLACE_TOPIC),
         "geometry_msgs/msg/TransformStamped",
@@ -202,12 +202,14 @@ def _interfaces() -> Iterator[tuple[str, str, str]]:
 
 def _frames() -> str:
     rows = [("`odom`", "`map`", "origin of the odometry in the world", ""), ("`base_link`", "`odom`", "odometry", "")]
-    rows += [(f"`{side}_wheel_link`", "`base_link`", _vector(wheel_position(side)), "turns about y") for side in SIDES]
+    rows += [
+        (f"`{side}_wheel_link`", "`base_link`", _vector(wheel_position(side)), "rotates about y") for side in SIDES
+    ]
     for frame in fixed_frames():
         degrees = ", ".join(f"{math.degrees(angle):.4g}" for angle in frame.rotation)
         turn = "" if not any(frame.rotation) else f"roll, pitch, yaw {degrees}°"
         rows.append((f"`{frame.name}`", "`base_link`", _vector(frame.position), turn))
-    return table(("frame", "in", "place, m", ""), rows)
+    return table(("frame", "parent", "position, m", ""), rows)
 
 
 def _vector(values: Iterable[float]) -> str:

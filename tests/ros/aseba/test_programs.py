@@ -121,7 +121,7 @@ def test_constants_are_parameters_for_all_and_for_one(ros, runtime):
         ("robots.anna.script.source", 3, "Wrong parameter type, expected 'Type.STRING'"),
         ("robots.absent.script.source", 3, "3 found, expected text"),
         ("robots.absent.script.source", "var 3", "line 1, column 5"),
-        ("scrip.source", "var a", "there is no parameter scrip.source"),
+        ("scrip.source", "var a", "found unknown parameter scrip.source"),
         ("emit_reaches", "all", "expected network or robot"),
         ("script.path", "no_such_program", "no_such_program"),
     ],

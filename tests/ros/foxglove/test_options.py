@@ -109,7 +109,9 @@ def test_parameters_that_the_bridge_does_not_have_are_told(monkeypatch):
     context.init(args=["--ros-args", "-p", "num_threads:=2", "-p", "use_sim_time:=false", "-p", "port:=0"])
     FoxgloveBridge(context=context).close()
     context.shutdown()
-    assert told == ["parameter num_threads is none of foxglove_bridge and does nothing; see docs/foxglove.md"]
+    assert told == [
+        "parameter num_threads is not a parameter of foxglove_bridge and has no effect; see docs/foxglove.md"
+    ]
 
 
 def test_in_the_network_the_bridge_makes_tokens_of_its_own(ros, bridge, monkeypatch):

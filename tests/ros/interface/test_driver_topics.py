@@ -103,7 +103,7 @@ def test_every_group_of_lights_has_a_number(number):
     ("topic", "message", "found"),
     [
         ("led", TYPES.Led(id=7, values=[1.0] * 8), "group 7 found, expected 0 to 6: circle"),
-        ("led", TYPES.Led(id=0, values=[1.0]), "1 values found, expected 8 intensities"),
+        ("led", TYPES.Led(id=0, values=[1.0]), "found 1 values, expected 8 intensities"),
         ("led", TYPES.Led(id=5, values=[math.nan]), "intensity is nan"),
         ("led/gesture", wave(leds=2), "a gesture of the buttons lights found"),
         ("led/gesture", wave(period=math.nan), "period is nan"),
@@ -117,7 +117,7 @@ def test_what_cannot_be_is_refused(topic, message, found):
 
 
 def test_lights_beyond_full_are_told():
-    assert INPUTS["led"].limit_check(TYPES.Led(id=5, values=[32.0])) == "intensity 32 found, expected 0 to 1"
+    assert INPUTS["led"].limit_check(TYPES.Led(id=5, values=[32.0])) == "found intensity 32, expected 0 to 1"
     assert INPUTS["led"].limit_check(TYPES.Led(id=5, values=[1.0, 32.0])) == ""
 
 

@@ -197,7 +197,7 @@ def test_a_misspelt_parameter_is_told_with_the_nearest(ros_domain, logged, node,
     node(context, *([WebParams(port=0)] if node is WebPage else [])).close()
     context.shutdown()
     assert [text for text in logged if text.startswith("parameter")] == [
-        f"parameter playgroud is none of {name} and does nothing{near}; see docs/{page}"
+        f"parameter playgroud is not a parameter of {name} and has no effect{near}; see docs/{page}"
     ]
 
 
@@ -212,8 +212,8 @@ def test_an_argument_that_is_not_of_ros_is_answered_and_nothing_starts(capfd, ar
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["-p", "seed=3"], "ROS does not begin: Couldn't parse parameter override rule: '-p seed=3'"),
-        (["--foo"], "no arguments of ROS: ['--foo']"),
+        (["-p", "seed=3"], "ROS cannot be initialized: Couldn't parse parameter override rule: '-p seed=3'"),
+        (["--foo"], "not ROS arguments: ['--foo']"),
     ],
 )
 def test_an_argument_that_ros_does_not_understand_is_told_in_one_line(capfd, words, told):

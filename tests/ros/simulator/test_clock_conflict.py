@@ -49,7 +49,7 @@ def test_both_warn_once_and_show_an_error_until_one_is_gone(ros, simulator):
     ros.until(lambda: len(logs) == 2)
     for log in logs:
         assert f"/clock: another simulator publishes it in ROS_DOMAIN_ID {ros.domain}" in log.msg
-        assert "ROS_DOMAIN_ID of its own" in log.msg
+        assert "its own ROS_DOMAIN_ID" in log.msg
         assert "-r /clock:=/lab1/clock" in log.msg
     for _ in range(5):
         beat(first, second)

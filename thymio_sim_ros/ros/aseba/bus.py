@@ -1,9 +1,9 @@
-"""How the robots of a runtime share the machine and the air: turns, and events from one to the others.
+"""Schedules the robots of a runtime and passes events between them.
 
-An event waits for its hearer's turn, so that robots that answer each other cannot starve the rest: after some rounds
-what is left waits for the node's next turn. So does, in a process of our own, what is left after a slice of wall time:
-the node serves messages and services every few milliseconds whatever programs do, and robots take their turns in the
-order in which they began to wait. Tests in lock-step have no slices, since their results must not depend on wall time.
+An event waits until its receiver runs, so robots that answer each other cannot starve the rest: after `MAX_ROUNDS`
+rounds the remaining work waits for the node's next iteration. In a process of its own the same happens after a slice of
+wall time: the node serves messages and services every few milliseconds whatever programs do, and robots run in the
+order in which they became ready. Tests in lock-step have no slices, since results must not depend on wall time.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from thymio_sim_ros.ros.aseba.network import AsebaNetwork, NetworkEvent
 __all__ = ["Bus"]
 
 MAX_ROUNDS = 10
-"""Times that robots may answer each other's events at once (as in the runner)."""
+"""Rounds in which robots may answer each other's events at once, as in headless runs."""
 
 SLICE_S = 0.005
-"""Wall time in each turn of the node after which no other robot begins its turn."""
+"""Wall time in each iteration of the node after which no other robot starts to run."""
 
 COMPUTER = 0
-"""Number of the sender of what comes from ROS."""
+"""Sender number of events from ROS."""
 
 
 class Bus:
-    """The Aseba network of one runtime. `reaches_all`: what ROS emits on one robot's topics is for all."""
+    """The Aseba network of one runtime. `reaches_all`: an event emitted on one robot's topics is for all robots."""
 
     def __init__(
         self,
@@ -46,17 +46,17 @@ class Bus:
         self._ready: dict[DeviceEndpoints, None] = {}
         self._is_running = False
         self._slice_end_s: float | None = inf
-        """When no other robot begins its turn; None: a slice after the next one begins."""
+        """Time after which no other robot starts to run; None: one slice after the next robot starts."""
         self._network = AsebaNetwork(node, self._on_network_event)
 
     @property
     def has_ready_robots(self) -> bool:
-        """Whether robots wait for a turn."""
+        """Whether robots are ready to run."""
         return bool(self._ready)
 
     @contextmanager
     def slice(self) -> Iterator[None]:
-        """Meanwhile robots take turns for a slice of wall time, which begins with the first of them."""
+        """Limit robots inside the context to one slice of wall time, which begins with the first robot."""
         self._slice_end_s = None
         try:
             yield
@@ -64,7 +64,7 @@ class Bus:
             self._slice_end_s = inf
 
     def run_until_idle(self, *robots: DeviceEndpoints) -> None:
-        """Let robots take their turns, then those that they wake, for some rounds and until the slice ends."""
+        """Run these robots, then those that receive their events, until idle, `MAX_ROUNDS` or the end of the slice."""
         self._ready.update(dict.fromkeys(robots))
         if self._is_running:
             return
@@ -84,11 +84,11 @@ class Bus:
             self._is_running = False
 
     def remove(self, robot: DeviceEndpoints) -> None:
-        """A robot goes."""
+        """Remove a robot from the schedule."""
         self._ready.pop(robot, None)
 
     def forward(self, sender: DeviceEndpoints, event: str, args: Sequence[int]) -> None:
-        """Robots of one runtime hear each other directly, others by the network's topic; nobody hears himself."""
+        """Send an event to all other robots: directly in this runtime, by the network topic elsewhere."""
         source = sender.device.node_id
         for endpoints in self._robots():
             if endpoints is not sender and endpoints.device.hears(sender.device):
@@ -96,7 +96,7 @@ class Bus:
         self._network.send(NetworkEvent(event, source, sender.device.body.network, tuple(args)))
 
     def emit(self, endpoints: DeviceEndpoints, event: str, args: Sequence[int]) -> None:
-        """An event from ROS reaches every robot that declares it, or only this one; too much data is refused."""
+        """Send an event from ROS to all robots that declare it, or only to this one; too many values are rejected."""
         robots = (
             [robot for robot in self._robots() if robot.device.hears(endpoints.device)]
             if self.reaches_all
@@ -107,11 +107,11 @@ class Bus:
         too_small = [size for size in sizes.values() if size is not None and len(args) > size]
         about = f"event {event}"
         if is_internal(event):
-            endpoints.warn(about, "refused: it stays inside the robot")
+            endpoints.warn(about, "rejected: internal events stay in the robot")
         elif too_small:
-            endpoints.warn(about, f"refused: {len(args)} values found, expected at most {min(too_small)}")
+            endpoints.warn(about, f"rejected: found {len(args)} values, expected at most {min(too_small)}")
         elif not fits and not (self.reaches_all and self._network.has_others):
-            endpoints.warn(about, f"refused: the program declares {_declared(endpoints)}")
+            endpoints.warn(about, f"rejected: the program declares {_declared(endpoints)}")
         else:
             for robot, size in fits.items():
                 robot.receive_event(event, [*args, *[0] * (size - len(args))], source=COMPUTER)
@@ -121,7 +121,7 @@ class Bus:
                 self._network.send(NetworkEvent(event, COMPUTER, endpoints.device.body.network, tuple(args)))
 
     def status_changed(self, endpoints: DeviceEndpoints) -> None:
-        """The status of a robot is another."""
+        """Report that the status of a robot has changed."""
         self._status_changed(endpoints)
 
     def _on_network_event(self, event_message: NetworkEvent) -> None:

@@ -1,7 +1,7 @@
-"""One robot's Aseba device joined to its topics: readings in, commands out, events both ways, run control.
+"""Connects one robot's Aseba device to its topics: readings, commands, events, run control.
 
-Topics: docs/spec/ros-interface.md section 6. The integers of a sensor come on `_raw/<sensor>`, or are made of the
-topics of the ROS driver; commands leave on the topics that any robot listens to.
+Topics: docs/spec/ros-interface.md section 6. The integer readings of a sensor arrive on `_raw/<sensor>`, or are derived
+from topics of the ROS driver; commands are published on the topics that every robot subscribes to.
 """
 
 from __future__ import annotations
@@ -36,11 +36,12 @@ from thymio_sim_ros.ros.rclpy_ext.throttled_log import ThrottledLog
 __all__ = ["DebugOptions", "DeviceEndpoints", "RobotBus"]
 
 RUN_BUDGET = 5000
-"""Instructions per turn; a handler that needs more goes on in the next (a robot does 65535 between polls)."""
+"""Instructions per slice; a longer handler continues in the next one (a robot executes 65535 between polls)."""
 CONTINUE_S = 0.01
-"""Wall time after a turn in which a handler goes on without a message: the simulator measures as often."""
+"""Wall time after which an unfinished handler continues without a message; the shortest sensor period."""
 MAX_COMMANDS = 64
-"""Commands of a turn that are all sent; of more, and of a turn that the budget has cut, the latest of each kind are."""
+"""Largest number of commands of one slice that are all published; beyond it, or if the budget ended the slice, only the
+latest command of each kind is published."""
 
 ALL = "*"
 """In describe_position of the names of local events: all there are."""
@@ -48,7 +49,7 @@ ALL = "*"
 
 @dataclass(frozen=True, slots=True)
 class DebugOptions:
-    """What a user wants to see of a robot: lines to stop at, variables and local events with topics, a language."""
+    """Debug options of one robot: breakpoint lines, variables and local events with topics, language of help texts."""
 
     breakpoints: tuple[int, ...] = ()
     watch: tuple[str, ...] = ()
@@ -57,22 +58,22 @@ class DebugOptions:
 
 
 class RobotBus(Protocol):
-    """What a robot needs of the others."""
+    """The connection of a robot to the others; implemented by `Bus`."""
 
     def run_until_idle(self, *robots: DeviceEndpoints) -> None:
-        """Something happened to these robots: let them take turns, and those that they wake."""
+        """Run these robots, and those that receive their events."""
 
     def forward(self, sender: DeviceEndpoints, event: str, args: Sequence[int], /) -> None:
-        """A robot emitted an event: tell the others."""
+        """Send an event that a robot emitted to the others."""
 
     def emit(self, endpoints: DeviceEndpoints, event: str, args: Sequence[int], /) -> None:
-        """Somebody in ROS emitted an event on this robot's topics."""
+        """Send an event that was emitted on this robot's topics."""
 
     def status_changed(self, endpoints: DeviceEndpoints, /) -> None:
-        """The status of this robot is another."""
+        """Report that the status of this robot has changed."""
 
     def remove(self, robot: DeviceEndpoints, /) -> None:
-        """This robot goes: it takes no more turns."""
+        """Remove a robot from the schedule."""
 
 
 class DeviceEndpoints:
@@ -90,7 +91,7 @@ class DeviceEndpoints:
         has_driver: bool = False,
         is_fed: bool = False,
     ) -> None:
-        """`has_driver`: it has the topics of the ROS driver; `is_fed` as the property."""
+        """`has_driver`: the robot has the topics of the ROS driver; `is_fed`: see the property."""
         self.names = names
         self.number = number
         self.device = AsebaDevice(node_id=number, options=options)
@@ -127,7 +128,7 @@ class DeviceEndpoints:
 
     @property
     def is_fed(self) -> bool:
-        """Whether who has it calls `feed`; else its own topics do."""
+        """Whether the owner feeds readings with `feed`; otherwise subscriptions of this robot do."""
         return self._is_fed
 
     @is_fed.setter
@@ -145,16 +146,16 @@ class DeviceEndpoints:
 
     @property
     def resumes_s(self) -> float:
-        """The time by `time.monotonic` when a busy robot takes its next turn, if nothing else gives it one."""
+        """The `time.monotonic` time at which a busy robot runs again unless it is scheduled earlier."""
         return self._last_slice_s + CONTINUE_S
 
     @property
     def program(self) -> ThymioProgram:
-        """What the robot runs."""
+        """The program that the robot runs."""
         return self._program
 
     def load(self, program: ThymioProgram | None, notes: Sequence[str] = ()) -> None:
-        """Load a program, or nothing, and run its beginning; `notes` are for people."""
+        """Load a program, or none, and run its initialization; `notes` are shown to the user."""
         self.share = Share(program, tuple(notes))
         self._own = program or load_program("", "none", self.device.layout)
         self._host.load(self._own)
@@ -162,7 +163,7 @@ class DeviceEndpoints:
         self.run()
 
     def start(self, behaviour: str, share: Share | None) -> None:
-        """Switch the robot on with a built-in behaviour; a program of one's own waits in its menu."""
+        """Switch the robot on with a built-in behavior; the user's program can be started from its menu."""
         self.share = share
         own = share.program if share is not None else None
         self._own = own or load_program("", "none", self.device.layout)
@@ -171,44 +172,44 @@ class DeviceEndpoints:
         self.run()
 
     def restart(self) -> None:
-        """Time went back: the robot begins anew."""
+        """Restart the robot, after a jump back in time."""
         self._host.restart()
         self._set_program()
         self.run()
 
     def set_debug_options(self, debug_options: DebugOptions) -> None:
-        """Show other things of the program that goes on."""
+        """Change the debug options of the running program."""
         old, self._debug_options = self._debug_options, debug_options
         if debug_options != old:
             self._set_program(with_events=debug_options.local_events != old.local_events)
             self.run()
 
     def receive_event(self, event: str, args: Sequence[int], *, source: int) -> bool:
-        """A global event waits for the robot's next turn; False if its program does not declare it."""
+        """Queue a global event; return False if the program does not declare it."""
         if not self.device.declares(event):
             return False
         self.device.receive_event(event, args, source=source)
         return True
 
     def feed(self, sensor: str, words: Sequence[int]) -> None:
-        """Store what a sensor measured; `run` or `is_due` comes next."""
+        """Store a reading; the caller then calls `run` or `is_due`. An invalid reading is logged."""
         try:
             self.device.feed(sensor, words)
         except ValueError as error:
-            self.warn(full_name(self._node, self.names.topic(raw_topic(sensor))), f"refused: {error}")
+            self.warn(full_name(self._node, self.names.topic(raw_topic(sensor))), f"rejected: {error}")
 
     def is_due(self, now_ns: int) -> bool:
-        """Whether there is anything to do now for a robot that has been fed."""
+        """Advance the device to `now_ns` and return whether it has work to do."""
         self.device.advance(now_ns)
         return self.device.is_due
 
     def run(self) -> None:
-        """Something happened: take turns; nothing once it is closed, as messages may still come."""
+        """Schedule the robot after a change. Does nothing once it is closed, when late messages may still arrive."""
         if not self._is_closed:
             self._bus.run_until_idle(self)
 
     def run_slice(self) -> None:
-        """Run what is pending up to the budget, then send what came of it."""
+        """Run pending work up to the budget, then publish the resulting commands, events and status."""
         if self._is_closed:
             return
         now_ns = self._node.get_clock().now().nanoseconds
@@ -231,7 +232,7 @@ class DeviceEndpoints:
         self._last_slice_s = time.monotonic()
 
     def observe_load(self) -> None:
-        """Tell whether the program has done more than can be served since the last time."""
+        """Report whether the program exceeded the capacity since the last call."""
         load = replace(self.device.take_load(), replaced=self._replaced)
         self._replaced = 0
         overload = load.sentence if self.device.status.state == RUNNING else ""
@@ -249,11 +250,11 @@ class DeviceEndpoints:
         self._variables.publish_changes()
 
     def poll_subscribers(self) -> None:
-        """Tell a robot that has come what the program has said already."""
+        """Publish earlier commands again for new subscribers."""
         self._outputs.resend()
 
     def stop(self) -> None:
-        """The robot does not go on without its program: wheels stop, and nothing runs any more."""
+        """Stop the wheels and the program."""
         if not self._is_closed:
             self._is_closed = True
             self._bus.remove(self)
@@ -261,7 +262,7 @@ class DeviceEndpoints:
             self._outputs.send_all(self.device.take_commands(), latest=True)
 
     def close(self) -> None:
-        """`stop` it; its topics and services go."""
+        """Stop the robot and destroy its topics and services."""
         self.stop()
         for endpoints in (self._events, self._variables, self.status, self._outputs):
             endpoints.close()
@@ -271,7 +272,7 @@ class DeviceEndpoints:
             self._node.destroy_subscription(subscription)
 
     def _set_program(self, *, with_events: bool = True) -> None:
-        """The program is another or begins anew, or other things of it are wanted."""
+        """Set up topics and status for a new or restarted program, or for new debug options."""
         debug_options, program = self._debug_options, self._host.program
         is_own = program is self._own
         local = {event.name for event in target(self.device.layout).local_events}
@@ -315,12 +316,12 @@ class DeviceEndpoints:
     ) -> Callable[[Trigger.Request, Trigger.Response], Trigger.Response]:
         def callback(_request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
             act()
-            self.run_slice()  # at once, whichever robots wait for theirs
+            self.run_slice()  # at once, before robots that are already waiting
             self._bus.run_until_idle()
             status = self.device.status
             response.success = status.state != OFF
             response.message = (
-                describe_position(status) if response.success else f"{word}: the robot is off, aseba/run switches it on"
+                describe_position(status) if response.success else f"{word}: the robot is off; aseba/run switches it on"
             )
             return response
 

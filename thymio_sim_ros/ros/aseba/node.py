@@ -1,8 +1,8 @@
-"""The Aseba runtime as a ROS node: feeds readings to devices, sends their commands, carries their events.
+"""The Aseba runtime as a ROS node: feeds readings to devices, publishes their commands, exchanges their events.
 
-It knows topics, not simulators: any robot that has them will do (docs/spec/ros-interface.md section 6,
-docs/aseba_ros.md). Devices keep simulated time by the node's clock. Programs are parameters; a text that does not
-compile is refused with its place, and the old program goes on. A robot without a program is switched on with its menu.
+It uses topics only and works with every robot that has them (docs/spec/ros-interface.md section 6, docs/aseba_ros.md).
+Devices follow the clock of the node. Programs are parameters; a text that does not compile is rejected with its
+position, and the current program continues. A robot without a program is switched on with its menu.
 """
 
 from __future__ import annotations
@@ -53,10 +53,10 @@ from thymio_sim_ros.ros.rclpy_ext.type_mismatch import TypeMismatches
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
 SIMULATOR_STATE, SIMULATOR_RAW = "simulator/_state", "simulator/_raw"
-"""Relative: of the simulator in the same namespace."""
+"""Relative names: topics of the simulator in the same namespace."""
 DIAGNOSTICS_S = 1.0
 SUBSCRIBERS_S = 0.25
-"""How often robots look whether somebody has come to listen to them."""
+"""Period of polling for new subscribers of commands."""
 
 NO_OVERRIDES: Mapping[str, Any] = MappingProxyType({})
 _SENSORS = frozenset(sensor_names())
@@ -65,7 +65,7 @@ PROGRAM_ERRORS = (ProgramError, resources.ResourceError, OSError)
 
 @dataclass(frozen=True, slots=True)
 class _Accepted:
-    """Parameters that were checked: all values, those that change, and each robot's program."""
+    """Checked parameters: all values, the changes, and the program of each robot."""
 
     values: dict[str, Any]
     changes: dict[str, Any]
@@ -83,7 +83,7 @@ class AsebaRuntime:
         use_sim_time: bool | None = None,
         overrides: Mapping[str, Any] = NO_OVERRIDES,
     ) -> None:
-        """`overrides`: values of parameters by name, as from a command line."""
+        """`overrides`: parameter values by name, like those of a command line."""
         given = dict(overrides) | ({} if use_sim_time is None else {"use_sim_time": use_sim_time})
         self.node = parameter_node(
             "aseba_runtime",
@@ -96,7 +96,7 @@ class AsebaRuntime:
         self._accepted: _Accepted | None = None
         self._is_declaring = False
         self._raw: Any = None
-        """The subscription to the integers of all robots of the simulator."""
+        """The subscription to the integer readings of all robots of the simulator."""
         self._decoder, self._warn = RawDecoder(), ThrottledLog(self.node)
         try:
             self._start(defaults or RuntimeParams())
@@ -106,15 +106,15 @@ class AsebaRuntime:
 
     @property
     def startup_message(self) -> str:
-        """What the robots run, for a person; who they are is not known before the simulator tells."""
+        """The programs, for the user; the robots are unknown until the simulator publishes its state."""
         programs = dict.fromkeys(endpoints.program.name for endpoints in self.robots if endpoints.program.name)
         return f"Program: {', '.join(programs) or 'none'}"
 
     def run_once(self, executor: Executor) -> None:
-        """Handle messages, then let robots take turns that wait for one, for a slice of wall time.
+        """Handle messages, then run ready robots for one slice of wall time.
 
-        Where a slice was not enough for programs without an end, the rest of the process has the interpreter for as
-        long.
+        If endless programs used up the previous slice, other threads of the process get the interpreter for one slice
+        first.
         """
         with self._bus.slice():
             busy = [endpoints for endpoints in self.robots if endpoints.is_busy]
@@ -132,13 +132,13 @@ class AsebaRuntime:
 
     @staticmethod
     def _spin_only(executor: Executor) -> None:
-        """Do no more than handle messages for a while."""
+        """Handle messages for one slice without running robots."""
         end_s = time.monotonic() + SLICE_S
         while (wait_s := end_s - time.monotonic()) > 0.0:
             executor.spin_once(timeout_sec=wait_s)
 
     def stop(self) -> None:
-        """Stop the wheels that programs drive."""
+        """Stop the wheels and programs of all robots."""
         for endpoints in self.robots:
             endpoints.stop()
 
@@ -177,7 +177,7 @@ class AsebaRuntime:
         ):
             self._subscribe_raw(
                 SIMULATOR_RAW
-            )  # it will say so; subscriptions for a hundred robots are not made in vain
+            )  # avoids creating subscriptions per robot, which _on_simulator_state would replace
         self._set_robots(self.params.robots)
         if self.params.follow_simulator:
             node.create_subscription(String, SIMULATOR_STATE, self._on_simulator_state, qos.TRANSIENT_LOCAL)
@@ -199,7 +199,7 @@ class AsebaRuntime:
     # -- robots
 
     def _set_robots(self, names: Sequence[str]) -> None:
-        """One device for each of these namespaces; those that are there already go on, numbers stay."""
+        """Create one device for each of these namespaces; existing devices continue with their numbers."""
         here = {endpoints.names.name: endpoints for endpoints in self.robots}
         for name, endpoints in here.items():
             if name not in names:
@@ -234,7 +234,7 @@ class AsebaRuntime:
         )
 
     def _share_out(self, new: Sequence[str]) -> None:
-        """New robots begin; others only if the file is shared out differently now."""
+        """Start new robots, and those whose program changes because the file is assigned differently."""
         shares = script_parameters.shares(self._values, self._members(), self.params.layout)
         for endpoints in self.robots:
             share = shares[endpoints.names.name]
@@ -242,7 +242,7 @@ class AsebaRuntime:
                 self._start_program(endpoints, share)
 
     def _start_program(self, endpoints: DeviceEndpoints, share: Share | None) -> None:
-        """Let a robot begin with its program, or with the behaviour that it is to be switched on with."""
+        """Start a robot with its program or with a built-in behavior."""
         for note in share.notes if share is not None else ():
             self.node.get_logger().warning(f"{endpoints.names.name or 'robot'}: {note}")
         if share is None and self.params.layout != THYMIO:  # the reference playground has no menu
@@ -256,12 +256,12 @@ class AsebaRuntime:
         return [Member(endpoints.names.name, endpoints.number) for endpoints in self.robots]
 
     def _on_simulator_state(self, message: String) -> None:
-        """Another playground may have other robots; they come and go while it runs."""
+        """Follow the robots of the simulator."""
         try:
             told = json.loads(message.data)
             names, raw = [str(robot["name"]) for robot in told["robots"]], str(told.get("raw", ""))
         except (ValueError, KeyError, TypeError) as error:
-            self._warn(full_name(self.node, SIMULATOR_STATE), f"refused: {error!r}")
+            self._warn(full_name(self.node, SIMULATOR_STATE), f"rejected: {error!r}")
             return
         self._subscribe_raw("" if self.params.robot_topics == "driver" else raw)
         if names != [endpoints.names.name for endpoints in self.robots]:
@@ -271,7 +271,7 @@ class AsebaRuntime:
                 self.node.get_logger().error(f"robots {', '.join(names)}: {error}")
 
     def _subscribe_raw(self, topic: str) -> None:
-        """Hear the integers of all robots at once where a simulator tells them; else each robot has its topics."""
+        """Subscribe to the readings of all robots in one topic; "" selects one topic per robot and sensor."""
         topic = topic and self.node.resolve_topic_name(topic)
         if self._raw is not None and self._raw.topic_name != topic:
             self.node.destroy_subscription(self._raw)
@@ -282,7 +282,7 @@ class AsebaRuntime:
             endpoints.is_fed = self._raw is not None
 
     def _check_raw_publisher(self) -> None:
-        """There may be no simulator any more, and a robot of another kind instead."""
+        """Return to the topics of each robot if the simulator has ended."""
         if self._raw is not None and not self.node.count_publishers(self._raw.topic_name):
             self._subscribe_raw("")
 
@@ -291,7 +291,7 @@ class AsebaRuntime:
             endpoints.poll_subscribers()
 
     def _on_raw(self, data: bytes) -> None:
-        """A tick of the simulator: all that was measured is there before anybody takes a turn, as in the runner."""
+        """Feed all readings of one tick, then run robots with work to do, in the order of headless runs."""
         robots = {endpoints.names.name: endpoints for endpoints in self.robots if endpoints.is_fed}
         fed: dict[DeviceEndpoints, None] = {}
         try:
@@ -300,17 +300,17 @@ class AsebaRuntime:
                     robots[robot].feed(sensor, words)
                     fed[robots[robot]] = None
         except (ValueError, RuntimeError) as error:
-            self._warn(full_name(self.node, SIMULATOR_RAW), f"refused: {error}")
+            self._warn(full_name(self.node, SIMULATOR_RAW), f"rejected: {error}")
         now_ns = self.node.get_clock().now().nanoseconds
         self._bus.run_until_idle(*[endpoints for endpoints in fed if endpoints.is_due(now_ns)])
 
     def _on_jump(self, jump: TimeJump) -> None:
-        """Time went back: the simulator was reset, and so are the robots' machines."""
+        """Restart all robots when time jumps back, as at a reset of the simulator."""
         if jump.clock_change in (ClockChange.ROS_TIME_NO_CHANGE, ClockChange.SYSTEM_TIME_NO_CHANGE):
             for endpoints in self.robots:
                 endpoints.restart()
 
-    # -- what is told
+    # -- status and variables
 
     def _publish_variables(self) -> None:
         for endpoints in self.robots:
@@ -344,7 +344,7 @@ class AsebaRuntime:
         try:
             for name, value in changes.items():
                 if not (self.node.has_parameter(name) or aseba_params.is_free(name)):
-                    raise WrongValueError(f"there is no parameter {name}")
+                    raise WrongValueError(f"found unknown parameter {name}")
                 aseba_params.check_value(name, value)
             if reason := params.refusal(self.params, parameters):
                 raise WrongValueError(reason)
@@ -357,11 +357,11 @@ class AsebaRuntime:
         return SetParametersResult(successful=True)
 
     def _last_set_text(self, name: str) -> str:
-        """A text parameter as it was set last; empty if it never was."""
+        """Return the value of a text parameter as set last, or an empty text."""
         return str(self.node.get_parameter_or(name, Parameter(name, value="")).value)
 
     def _checked_shares(self, values: dict[str, Any], changes: dict[str, Any]) -> dict[str, Share | None]:
-        """Each robot's program by the new values, if a script changes; those of absent robots must compile too."""
+        """Return the program of each robot if a script changes; programs of absent robots must compile too."""
         if not any(".script." in f".{name}" for name in changes):
             return {}
         absent = set(script_parameters.named_robots(changes)) - {endpoints.names.name for endpoints in self.robots}
@@ -403,7 +403,7 @@ class AsebaRuntime:
             self._start_program(endpoints, share)
 
     def _debug_options(self, robot: str) -> DebugOptions:
-        """What is wanted of one robot: breakpoints of its own in place of those for all, watches of its own besides."""
+        """Return the options of one robot: its breakpoints replace those for all, its watches are added to them."""
         values = self._values
         own = f"robots.{robot}."
         return DebugOptions(
@@ -419,5 +419,5 @@ def _program(share: Share | None) -> object:
 
 
 def main(args: Sequence[str] | None = None) -> int:
-    """The executable `aseba_runtime`."""
+    """Run the executable `aseba_runtime`."""
     return run_main(lambda context: announce([AsebaRuntime(context)]), args)

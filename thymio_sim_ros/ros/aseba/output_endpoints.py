@@ -1,7 +1,7 @@
-"""What an Aseba program tells its robot: a publisher for each topic, and what a robot that listens later has to know.
+"""Publishes the commands of an Aseba program, again for late subscribers where needed.
 
-These topics are volatile, and finding each other takes a while: what a program says in its first lines would be lost to
-a robot that is found a moment later, or that was started again meanwhile.
+The topics are volatile and discovery takes time: without re-sending, the first commands of a program would be lost to a
+robot that is discovered later or was restarted.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from thymio_sim_ros.sim.commands import Command, SetLed, ShowOnLeds
 __all__ = ["OutputEndpoints"]
 
 FRESH_S = 10.0
-"""For so long after a program began, whoever comes is sent, even where somebody listened: a robot that was killed is
-taken for one that listens for a while."""
+"""Time after the start of a program during which retained commands are re-sent to every new subscriber, even if there
+was one before: discovery reports a killed robot as a subscriber for a while."""
 
 
 @dataclass(frozen=True, slots=True)
 class _CommandPublisher:
-    """The publisher of a topic, and how many listen."""
+    """The publisher of a command topic with its encoder and its count of subscriptions."""
 
     encode: Callable[[Any], Any]
     publisher: Any
@@ -39,7 +39,7 @@ class _CommandPublisher:
 
 @dataclass(slots=True)
 class _SentCommand:
-    """A message, how many of those who listen now may have heard it, and whether somebody has come who has not."""
+    """A sent message, the number of current subscribers that may have received it, and whether to send it again."""
 
     message: Any
     listeners: int
@@ -47,14 +47,14 @@ class _SentCommand:
 
 
 class OutputEndpoints:
-    """Publishers of one robot's commands."""
+    """Publishers of the commands of one robot."""
 
     def __init__(self, node: Node, names: RobotNames, *, has_driver: bool) -> None:
-        """`has_driver`: wheels are sent by `cmd_vel`, as the ROS driver wants it."""
+        """`has_driver`: drive the wheels by `cmd_vel`, as the ROS driver expects."""
         self._node = node
         self._publishers: dict[str, _CommandPublisher] = {}
         self._sent: dict[tuple[str, Hashable], _SentCommand] = {}
-        """By topic and what of it the message is about, in the order in which it was said."""
+        """By topic and part of the topic (such as one LED), in the order of sending."""
         self._fresh_until_s = 0.0
         for row in (*command_topics.ROWS, *plugin_topics.rows()):
             if row.encode is None:
@@ -71,12 +71,12 @@ class OutputEndpoints:
         self._counts = self._count()
 
     def start_program(self) -> None:
-        """A program begins."""
+        """Note that a program starts."""
         self._fresh_until_s = time.monotonic() + FRESH_S
         self._counts = self._count()
 
     def send(self, command: Command) -> None:
-        """Tell the robot; nothing for a command that has no topic."""
+        """Publish a command; commands without a topic are ignored."""
         topic = _topic(command)
         if topic is None:
             return
@@ -89,7 +89,10 @@ class OutputEndpoints:
             self._sent[key] = sent
 
     def send_all(self, commands: Sequence[Command], *, latest: bool = False) -> int:
-        """Send commands in order; `latest`: of those about the same thing the last only. How many were left out."""
+        """Publish commands in order and return how many were skipped.
+
+        With `latest` only the last command for each topic and part is published.
+        """
         kept = commands
         if latest:
             last: dict[Hashable, Command] = {}
@@ -103,7 +106,10 @@ class OutputEndpoints:
         return len(commands) - len(kept)
 
     def resend(self) -> None:
-        """Tell those who have come what holds, and what nobody has heard: in the order of old, once no more come."""
+        """Send retained and unreceived commands again to new subscribers.
+
+        Waits until discovery is quiet (no change of counts since the last poll), so that the original order is kept.
+        """
         before, self._counts = self._counts, self._count()
         is_fresh = time.monotonic() < self._fresh_until_s
         for (topic, _), sent in self._sent.items():
@@ -125,7 +131,7 @@ class OutputEndpoints:
             self._node.destroy_publisher(publisher.publisher)
 
     def _count(self) -> dict[str, int]:
-        """How many listen to each topic."""
+        """Return the number of subscriptions by topic."""
         return {topic: publisher.count() for topic, publisher in self._publishers.items()}
 
 
@@ -134,7 +140,7 @@ def _topic(command: Command) -> str | None:
 
 
 def _part(command: Command) -> Hashable:
-    """What of its topic a command is about, where one does not replace all that was said before."""
+    """Return the part of a topic that a command sets, if it does not replace all earlier commands of the topic."""
     if isinstance(command, ShowOnLeds):
         return command.group
     return command.number if isinstance(command, SetLed) else None

@@ -1,4 +1,4 @@
-"""What one robot's machine tells: state, place, use of the memories, warnings; and what its program is."""
+"""Publishes the status of one robot's machine and the description of its program."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ __all__ = ["Loaded", "StatusEndpoints", "describe_position"]
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """A program as it was loaded: the words of its events in topics, notes for people, breakpoints."""
+    """A loaded program: topic words of its events, notes for the user, breakpoints."""
 
     program: ThymioProgram
     topics: Mapping[str, str] = field(default_factory=dict)
@@ -32,7 +32,7 @@ class Loaded:
 
 
 class StatusEndpoints:
-    """The latched topics `_aseba/status` and `_aseba/target`."""
+    """The retained topics `_aseba/status` and `_aseba/target`."""
 
     def __init__(self, node: Node, names: RobotNames, *, number: int) -> None:
         self._node = node
@@ -46,7 +46,7 @@ class StatusEndpoints:
         self._target = node.create_publisher(String, names.topic("_aseba/target"), qos.TRANSIENT_LOCAL)
 
     def set_program(self, loaded: Loaded, spoken: str) -> None:
-        """Something about the program is new: tell the target, in a language, and the status at the next `tell`."""
+        """Publish the target of a changed program; help texts are in the language `spoken`. The status follows."""
         self._last = None
         self._constant = _constant(loaded)
         self._program = loaded.program.name
@@ -55,7 +55,7 @@ class StatusEndpoints:
         self._target.publish(String(data=f'{fixed[:-1]}, "program": {told}}}'))
 
     def publish_if_changed(self, status: DeviceStatus, overload: str = "") -> bool:
-        """Publish the status if it is news; whether it was. `overload`: what the program does too fast."""
+        """Publish the status if it has changed, and return whether it has. `overload`: a warning text."""
         is_running = status.state == RUNNING
         shown = DeviceStatus(RUNNING) if is_running else status
         overload = overload if is_running else ""
@@ -91,14 +91,14 @@ class StatusEndpoints:
 
 
 def describe_position(status: DeviceStatus) -> str:
-    """The state with its place, for people."""
+    """Return the state with line and event, for the user."""
     if status.state == RUNNING or status.line is None:
         return status.state
     return f"{status.state} at line {status.line} in {status.event}"
 
 
 def _constant(loaded: Loaded) -> list[KeyValue]:
-    """What does not change while a program runs."""
+    """Return the values that do not change while a program runs."""
     program, points = loaded.program, loaded.breakpoints
     warnings = [
         {key: doubt[key] for key in ("line", "column", "message")} for doubt in language_service.doubts(program)

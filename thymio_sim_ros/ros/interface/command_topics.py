@@ -1,7 +1,7 @@
-"""Commands ↔ messages, one row per topic that a robot listens to and an Aseba program speaks on.
+"""Command topics, one row per topic: conversions between commands and messages.
 
-The simulator decodes what arrives, the Aseba runtime encodes what its programs command: both from these rows
-(docs/spec/ros-interface.md sections 4.2 and 6.3). Topics that only people and nodes speak on are rows without `encode`.
+The simulator decodes messages and the Aseba runtime encodes commands of programs with the same rows
+(docs/spec/ros-interface.md sections 4.2 and 6.3). Topics on which programs do not publish are rows without `encode`.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ from thymio_sim_ros.sim.commands import Command
 __all__ = ["BODY_LEDS", "ROWS", "CommandRow", "led_topic", "topic_of"]
 
 BODY_LEDS = ("top", "bottom_left", "bottom_right")
-"""Groups that are one color: their topics are those of the driver."""
+"""Groups with a single color; their topics are those of the driver."""
 
 ALIVE_S = 4.0
-"""Period of the gesture that shows that the robot lives. Own choice."""
+"""Period of the `alive` gesture. Modeling assumption."""
 MAX_SAMPLES = 10 * 60 * 7813
 """Samples of one sound: ten minutes."""
 
@@ -68,14 +68,14 @@ class CommandRow:
 
 
 def led_topic(group: str) -> str:
-    """The topic of a group of lights; all but the body's and the circle's are hidden."""
+    """Return the topic of a group of lights; all except body and circle are hidden."""
     if group in BODY_LEDS:
         return f"led/body/{group}"
     return "led/circle" if group == "circle" else f"_led/{group}"
 
 
 def topic_of(command: Command) -> str | None:
-    """The topic on which a program's command leaves; None for one that only the runtime's own simulator knows."""
+    """Return the topic on which a program's command is published, or None if it has no topic."""
     if isinstance(command, commands.SetLeds | commands.ReleaseLeds):
         return led_topic(command.group)
     return _TOPICS.get(type(command))
@@ -116,7 +116,7 @@ def _decode_color(message: ColorRGBA, *, group: str) -> Command:
 
 
 def _encode_levels(command: commands.SetLeds | commands.ReleaseLeds) -> Float32MultiArray:
-    """A group that is given back to the robot's own rules is an array of nothing."""
+    """An empty array returns a group to firmware behavior."""
     levels = command.levels if isinstance(command, commands.SetLeds) else ()
     return Float32MultiArray(data=[level / commands.LED_FULL for level in levels])
 
@@ -156,7 +156,7 @@ def _encode_tone(command: commands.PlayTone | commands.StopSound) -> Float32Mult
 
 
 def _decode_tone(message: Float32MultiArray) -> Command:
-    """[Hz, s]; 0 s, or more than anybody waits for, is until stopped; a negative time stops."""
+    """[Hz, s]; 0 s, or more than `MAX_TONE_S`, means until stopped; a negative time stops the sound."""
     hertz, seconds = command_checks.sized(message.data, 2, "[Hz, s]")
     command_checks.finite(hertz, "frequency")
     command_checks.finite(seconds, "duration")
@@ -274,7 +274,7 @@ def _rows() -> Iterator[CommandRow]:
         Int16MultiArray,
         _decode_targets,
         _encode_targets,
-        about="left, right in Thymio units, ±500; they hold until the next ones",
+        about="left, right in Thymio units, ±500; valid until the next command",
         limit_check=saturation.targets,
         is_retained=True,
     )
@@ -299,7 +299,7 @@ def _rows() -> Iterator[CommandRow]:
                 decode,
                 _encode_levels,
                 qos.LEDS,
-                about=f"{commands.LED_GROUPS[group]} intensities 0…1; none: back to the robot's own rules",
+                about=f"{commands.LED_GROUPS[group]} intensities 0…1; empty: firmware behavior",
                 limit_check=saturation.intensities,
                 is_retained=True,
             )
@@ -319,7 +319,7 @@ def _rows() -> Iterator[CommandRow]:
         _decode_own,
         _encode_own,
         qos.LEDS,
-        about="what the robot shows by itself; the group in layout.dim[0].label",
+        about="firmware behavior of a group; its name is layout.dim[0].label",
         limit_check=saturation.intensities,
         is_retained=True,
     )
@@ -332,10 +332,18 @@ def _rows() -> Iterator[CommandRow]:
             about="period in s, its sign the direction",
         )
     yield CommandRow(
-        "_led/gesture/alive", Empty, _decode_alive, profile=qos.LEDS, about="the gesture of a robot that lives"
+        "_led/gesture/alive",
+        Empty,
+        _decode_alive,
+        profile=qos.LEDS,
+        about="the slow gesture that shows that the robot is on",
     )
     yield CommandRow(
-        "_led/gesture/off", Empty, _decode_still, profile=qos.LEDS, about="no gesture; its lights go back to the robot"
+        "_led/gesture/off",
+        Empty,
+        _decode_still,
+        profile=qos.LEDS,
+        about="stop the gesture; lights return to firmware behavior",
     )
     yield CommandRow(
         "sound/tone",
@@ -386,7 +394,7 @@ def _rows() -> Iterator[CommandRow]:
         Float32,
         _decode_threshold,
         _encode_threshold,
-        about="0…1 of 255: louder is told on `_sound`; 0 is off",
+        about="0…1 of 255: louder sounds are published on `_sound`; 0 is off",
         limit_check=saturation.threshold,
         is_retained=True,
     )
@@ -407,7 +415,7 @@ def _rows() -> Iterator[CommandRow]:
         limit_check=saturation.payload,
         is_retained=True,
     )
-    yield CommandRow("_alarm", Bool, _decode_alarm, about="while true the sound of an arrow button every three seconds")
+    yield CommandRow("_alarm", Bool, _decode_alarm, about="true: play the sound of an arrow button every three seconds")
     yield CommandRow("pen/down", Bool, _decode_pen_down, about="true: the pen draws")
     yield CommandRow(
         "_pen/color", ColorRGBA, _decode_pen_color, about="0…1; alpha 0 erases", limit_check=saturation.paint

@@ -1,7 +1,6 @@
-"""What in a message lies beyond what the robot can do: it is limited, and whoever sent it is told once.
+"""Describes values of messages beyond the limits of the robot, which are clamped and logged once per topic.
 
-Each function answers for messages of one type with a sentence, or with nothing (docs/spec/ros-interface.md section
-4.2).
+Each function returns a sentence for messages of one type, or an empty text (docs/spec/ros-interface.md section 4.2).
 """
 
 from __future__ import annotations
@@ -86,7 +85,7 @@ def _speeds(command: commands.BodyTwist | commands.WheelVelocities) -> str:
 def _outside(values: Iterable[float], low: float, high: float, what: str) -> str:
     for value in values:
         if not low - abs(low) * _ROUNDING <= value <= high + abs(high) * _ROUNDING:
-            return f"{what} {value:g} found, expected {low:g} to {high:g}"
+            return f"found {what} {value:g}, expected {low:g} to {high:g}"
     return ""
 
 
@@ -127,7 +126,7 @@ def threshold(message: Float32) -> str:
     """A threshold that no loudness has: every sound is above a negative one, none above one beyond 1."""
     limit_check = _outside((message.data,), 0.0, 1.0, "threshold")
     every = "every" if message.data < 0.0 else "no"
-    return limit_check and f"{limit_check} (0 is off); {every} sound is told with this one"
+    return limit_check and f"{limit_check} (0 is off); {every} sound is published with this value"
 
 
 def tone(message: Float32MultiArray) -> str:

@@ -1,9 +1,9 @@
-"""The simulator as a ROS node: owns the world, steps it, publishes readings, posts commands.
+"""The simulator as a ROS node: owns the world, steps it, publishes readings and posts commands.
 
-One thread does all of it: between ticks the executor delivers messages, whose callbacks only convert and
-post. The world is paced by absolute deadlines, never by a ROS timer (docs/architecture.md, "NodeRunner"). While nobody
-would hear what they give, ticks are put off and done together, at the latest when a message comes in: what it asks for
-takes effect in the tick that follows, as if no tick had been put off. Topics, services and parameters:
+One thread does everything: between ticks the executor delivers messages, whose callbacks only convert and post. The
+world is paced by absolute deadlines, never by a ROS timer (docs/architecture.md, "Threads"). Ticks without a result
+that any subscriber would see are deferred and executed together, at the latest when a message arrives; the command in
+it takes effect in the next tick, as if no tick had been deferred. Topics, services and parameters:
 docs/spec/ros-interface.md sections 4, 5 and 10.
 """
 
@@ -59,27 +59,28 @@ USE_SIM_TIME = "use_sim_time"
 SIM_TIME_REASON = "the simulator is the source of simulated time, it cannot follow /clock"
 
 MAX_NOTES = 20
-"""Remarks about a playground that the state tells; all of them are in the log."""
+"""Number of notes about a playground in the state; the log has all of them."""
 
 HEARTBEAT_NS = SECOND_NS
-"""While paused the clock is repeated at 1 Hz, so that late nodes get it."""
+"""Period of heartbeats. While paused, each repeats the clock for late subscribers."""
 
 
 MAX_DEFERRED_TICKS = 10
-"""Ticks that are put off at most, and tenths of a second of wall time: what happens meanwhile is told so much later."""
+"""Largest number of deferred ticks: changes are published at most this much later (0.1 s of wall time)."""
 
 POLL_PERIOD_NS = SECOND_NS // 20
-"""Wall time after which the simulator looks again who listens, but for this share of the processor at most:"""
+"""Shortest wall time between two polls for subscribers; longer with many topics, so that polling uses at most 1 % of a
+core."""
 POLL_COST_NS = 1_000
-"""what a look at one topic costs (docs/spec/ros-packaging.md section 9), a hundred times."""
+"""Cost of polling one topic (docs/spec/ros-packaging.md section 9)."""
 
 MAX_CATCH_UP_TICKS = 2 * MAX_DEFERRED_TICKS
-"""Ticks done at once at most, when the machine was busy with other things; what is owed beyond is dropped."""
+"""Largest number of ticks executed at once after the machine was busy; further late ticks are dropped."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Prepared:
-    """A playground and what takes long to make from it, ready for a world; robots are named as wanted."""
+    """A playground with renamed robots, and the slow results derived from it, ready for a world."""
 
     name: str
     playground: Playground
@@ -88,7 +89,10 @@ class _Prepared:
 
 
 class Simulator:
-    """The simulator node and its world. Invariant: only `turn`, `advance` and callbacks of `node` touch the world."""
+    """The simulator node and its world.
+
+    Invariant: only `run_once`, `advance` and callbacks of `node` touch the world.
+    """
 
     def __init__(self, context: Context, defaults: SimulatorParams | None = None) -> None:
         self.node = parameter_node("simulator", context=context, names_file=lambda name: name == "playground")
@@ -107,7 +111,7 @@ class Simulator:
         self._is_spinning = False
         self._polled_ns = self._poll_period_ns = 0
         self._prompt_until_ns = 0
-        """No tick is put off until this simulated time: something has come in."""
+        """Simulated time until which no tick is deferred, since a message has arrived."""
         self._set_pace()
         self._refused = self._limited = self._last_heartbeat_ns = 0
         self._published_fallen: frozenset[str] = frozenset()
@@ -135,28 +139,28 @@ class Simulator:
 
     @property
     def names(self) -> Mapping[str, RobotNames]:
-        """The names in ROS of the robots, by those in the world."""
+        """ROS names of the robots by their name in the world."""
         return self._robot_endpoints.by_robot
 
     @property
     def map_frame(self) -> str:
-        """Name of the world's frame."""
+        """Name of the world frame."""
         return self.params.map_frame
 
     @property
     def playground(self) -> str:
-        """The playground as it was given: name, path or text."""
+        """The playground as given: name, path or text."""
         return self.params.playground
 
     @property
     def startup_message(self) -> str:
-        """What there is now, for a person."""
+        """Playground, robots and domain, for the user."""
         robots = ", ".join(full_name(self.node, names.name).rstrip("/") or "/" for names in self.names.values())
         where = described(os.environ, self.node.context.get_domain_id())
         return f"Playground {self.playground_name}, robots in {robots or 'none'}; {where}"
 
     def run_once(self, executor: Executor) -> None:
-        """Ticks that are owed, then messages until the next one is due that anybody hears."""
+        """Execute the ticks that are due, then handle messages until the next tick with a visible result."""
         now = time.monotonic_ns()
         if now - self._polled_ns >= self._poll_period_ns:
             self._poll_subscribers()
@@ -178,50 +182,53 @@ class Simulator:
             deliver(executor)
 
     def advance(self, ticks: int) -> None:
-        """Step the world by ticks of 10 ms at once, also while paused; publish what they give to who listens now."""
+        """Step the world by ticks of 10 ms, also while paused, and publish their results."""
         self._poll_subscribers()
         self._advance(ticks)
 
     def catch_up(self) -> None:
-        """Do the ticks that were put off: somebody asks, or something has come in that the next tick shall see."""
+        """Execute the deferred ticks: a request or a command has arrived, which must see the present world."""
         if self._is_spinning and not self.paused:
             self._run_guarded(self._run_owed)
         self._prompt_until_ns = self.world.now_ns + TICK_NS
 
     def update_robots(self) -> None:
-        """Robots may have come or gone: so do their topics and frames."""
+        """Create or destroy topics and frames if robots were added or removed."""
         if self._robot_endpoints.update(self.world.robots):
             self._transforms.set_robots(self._robot_endpoints.names)
             self._publish_state()
 
     def pause(self, paused: bool) -> None:
-        """Let time stand still or go on."""
+        """Pause or resume the simulation."""
         self.paused = paused
         self._set_pace()
         self._world_endpoints.publish_clock(self.world.now_ns, last=True)
         self._publish_state()
 
     def step(self, ticks: int | None = None) -> bool:
-        """So many ticks, or those of one `~/step`; whether the world could go so far."""
+        """Execute `ticks`, by default those of one `~/step`; False if the world stopped with an internal error."""
         is_done = self._run_guarded(lambda: self.advance(self.params.step_ticks if ticks is None else ticks))
         self._world_endpoints.publish_clock(self.world.now_ns, last=True)
         self._publish_state()
         return is_done
 
     def spawn(self, start: RobotStart) -> None:
-        """Add a robot. ValueError as of the world, and for a name that topics of a robot without a name begin with."""
+        """Add a robot.
+
+        Raises ValueError as `World.spawn` does, and for a name that is the first word of a nameless robot's topics.
+        """
         has_nameless = any(not names.name for names in self.names.values())
         if has_nameless and start.name in robot_endpoints.first_words():
             raise ValueError(f"the name '{start.name}' is taken by topics of the robot that has no name")
         self.world.spawn(start)
 
     def reset(self) -> None:
-        """World, time and noise as at the start."""
+        """Reset world, time and noise to the start."""
         self.world.reset()
         self._publish_start()
 
     def load(self, playground: str) -> str:
-        """Another playground, as the parameter has it, or the present one anew; the reason if it is refused."""
+        """Load a playground (name, path or text) or reload the current one; return the reason if it is rejected."""
         before = self.world
         result = self.node.set_parameters_atomically([Parameter("playground", value=playground)])
         if result.successful and self.world is before:
@@ -229,21 +236,21 @@ class Simulator:
         return "" if result.successful else str(result.reason)
 
     def count_refusal(self) -> None:
-        """A message was refused; the diagnostics tell how many."""
+        """Count a rejected message for the diagnostics."""
         self._refused += 1
 
     def count_limited(self) -> None:
-        """A message wanted more than the robot can do; the diagnostics tell how many."""
+        """Count a clamped message for the diagnostics."""
         self._limited += 1
 
     def stop(self) -> None:
-        """The log ends."""
+        """Close the run log."""
         if self._log is not None:
             self._log.close()
             self._log = None
 
     def close(self) -> None:
-        """Destroy the node; the world goes with it."""
+        """Close the log and destroy the node."""
         self.stop()
         self._loader.close()
         if self._interfaces is not None:
@@ -251,7 +258,7 @@ class Simulator:
         self.node.destroy_node()
 
     def _poll_subscribers(self) -> None:
-        """Find out who listens."""
+        """Find out which topics have subscribers."""
         self._polled_ns = time.monotonic_ns()
         self._poll_period_ns = max(POLL_PERIOD_NS, 100 * POLL_COST_NS * self._robot_endpoints.topics)
         self._robot_endpoints.poll()
@@ -280,7 +287,7 @@ class Simulator:
             self._publish_state()
 
     def _fallen(self) -> frozenset[str]:
-        """Names in the world of the robots that fell off an edge."""
+        """Return the names (in the world) of the robots that fell off an edge."""
         return frozenset(name for name, robot in self.world.robots.items() if robot.is_fallen)
 
     def _run_owed(self) -> None:
@@ -292,7 +299,7 @@ class Simulator:
             self._advance(ticks)
 
     def _wanted_ticks(self) -> int:
-        """Ticks to the next that gives something that is heard, or that was asked for."""
+        """Return the number of ticks until the next one with a result for a subscriber or a command."""
         now_ns = self.world.now_ns
         if now_ns < self._prompt_until_ns:
             return 1
@@ -303,11 +310,12 @@ class Simulator:
         return ticks if clock_ns is None else min(ticks, self._pacer.ticks_until(clock_ns))
 
     def _run_guarded(self, act: Callable[[], None]) -> bool:
-        """Whether it went well. Our own bug in the core: log it, pause, stay alive (docs/architecture.md, "Errors")."""
+        """Call `act`; on an internal error log it, pause and return False (docs/architecture.md, "Errors")."""
         try:
             act()
         except Exception:
-            self.node.get_logger().error(f"the world stopped at {self.world.now_ns} ns:\n{traceback.format_exc()}")
+            where = f"the world stopped at {self.world.now_ns} ns"
+            self.node.get_logger().error(f"internal error (please report): {where}:\n{traceback.format_exc()}")
             self.paused = True
             self._publish_state()
             return False
@@ -321,16 +329,16 @@ class Simulator:
         self._max_deferred_ticks = max(1, min(MAX_DEFERRED_TICKS, int(MAX_DEFERRED_TICKS * factor)))
 
     def _prepare(self, value: str) -> _Prepared:
-        """Load a playground; on any thread. PlaygroundError, ResourceError, StartError, OSError."""
+        """Load a playground, on any thread. Raises PlaygroundError, ResourceError, StartError or OSError."""
         name, loaded = load_playground(value)
         playground = self.params.renamed(loaded)
         scene = SceneMessages.of(playground, self.params.map_frame, with_map=self.params.publish_map)
         return _Prepared(name, playground, Ground(playground.floors, playground.paints), scene)
 
     def _reject_sim_time(self) -> None:
-        """Without `use_sim_time`, which launch files often set for all nodes: time comes from here."""
+        """Reset `use_sim_time`, which launch files often set for all nodes: this node is the source of time."""
         if self.node.get_parameter(USE_SIM_TIME).value is True:
-            self.node.get_logger().warning(f"{USE_SIM_TIME} is left out: {SIM_TIME_REASON}")
+            self.node.get_logger().warning(f"{USE_SIM_TIME} is ignored: {SIM_TIME_REASON}")
             self.node.set_parameters([Parameter(USE_SIM_TIME, value=False)])
 
     def _set_world(self, world: World) -> None:
@@ -347,7 +355,7 @@ class Simulator:
         try:
             return RunLog(open(path, "w", encoding="utf-8", newline="\n"), on_error=self._on_log_error)
         except OSError as error:
-            raise StartError(f"log '{path}': {error.strerror}, expected a file that can be written") from error
+            raise StartError(f"log '{path}': {error.strerror}, expected a writable file") from error
 
     def _on_log_error(self, error: OSError) -> None:
         self.node.get_logger().error(f"the log ends here: {self.params.log}: {error.strerror}")
@@ -381,7 +389,7 @@ class Simulator:
         )
 
     def _publish_start(self) -> None:
-        """Order at a start: latched topics, then the clock at zero; the first readings follow (section 7)."""
+        """Publish the start of a run in order: retained topics, then the clock at zero; the first readings follow."""
         self._set_pace()
         self._prompt_until_ns = 0
         self._robot_endpoints.reset(self.world.robots)
@@ -394,7 +402,7 @@ class Simulator:
     def _command_sender(self, robot: str) -> Callable[[Command], None]:
         def post(command: Command) -> None:
             self.catch_up()
-            # A message may be on its way to a robot that goes with the old playground.
+            # The message may be for a robot of the previous playground.
             if robot in self.world.robots:
                 self.world.post(robot, command)
 
@@ -404,7 +412,7 @@ class Simulator:
         self.catch_up()
 
         def frames() -> Mapping[str, Pose]:
-            there = self.world.robots.get(robot)  # a message may be on its way to one that has gone
+            there = self.world.robots.get(robot)  # the robot may have been removed
             return {} if there is None else frames_of(names, there.pose, there.wheels.odometry)
 
         return InputContext(self.world.now_ns, round(self.params.cmd_vel_timeout * SECOND_NS), frames)
@@ -443,12 +451,12 @@ class Simulator:
         self._world_endpoints.publish_state(state)
 
     def _has_own_parameters(self, parameters: list[Parameter]) -> bool:
-        """Whether any is; those of a topic's quality of service are declared while its robot comes."""
+        """Whether any is a parameter of this class; QoS overrides are declared while a robot's topics are created."""
         return not params.by_name(self.params).keys().isdisjoint(parameter.name for parameter in parameters)
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
         if params.changes(parameters).get(USE_SIM_TIME) is True:
-            return SetParametersResult(successful=False, reason=f"{USE_SIM_TIME} is refused: {SIM_TIME_REASON}")
+            return SetParametersResult(successful=False, reason=f"{USE_SIM_TIME} is rejected: {SIM_TIME_REASON}")
         if not self._has_own_parameters(parameters):
             return SetParametersResult(successful=True)
         self.catch_up()
@@ -466,8 +474,10 @@ class Simulator:
                 )
             except (PlaygroundError, resources.ResourceError, StartError, OSError) as error:
                 return SetParametersResult(successful=False, reason=str(error))
-            except Exception as error:  # our own fault in reading a file: a class goes on without it
-                self.node.get_logger().error(f"the playground cannot be read:\n{traceback.format_exc()}")
+            except Exception as error:  # internal error while reading a file: the node continues
+                self.node.get_logger().error(
+                    f"internal error (please report): the playground cannot be read:\n{traceback.format_exc()}"
+                )
                 return SetParametersResult(successful=False, reason=f"{type(error).__name__}: {error}")
         return SetParametersResult(successful=True)
 
@@ -489,6 +499,6 @@ class Simulator:
 
 
 def main(args: Sequence[str] | None = None) -> int:
-    """The executable `simulator`."""
+    """Run the executable `simulator`."""
     with dds_profile.alone():
         return run_main(lambda context: announce([Simulator(context)]), args)

@@ -1,4 +1,4 @@
-"""The endpoints of all robots of a world, while robots come and go."""
+"""The ROS endpoints of all robots of a world."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["RobotEndpointSet"]
 
 
 class RobotEndpointSet:
-    """Robots' endpoints by their name in the world. Invariant: who stays keeps topics and frames."""
+    """Endpoints by name of the robot in the world. Invariant: a robot that stays keeps its topics and frames."""
 
     def __init__(self, make: Callable[[str, RobotNames], RobotEndpoints], naming: Naming) -> None:
         self._make, self._naming = make, naming
@@ -22,32 +22,32 @@ class RobotEndpointSet:
 
     @property
     def topics(self) -> int:
-        """How many topics of sensors there are."""
+        """Total number of sensor topics."""
         return sum(endpoints.topics for endpoints in self._endpoints.values())
 
     def poll(self) -> None:
-        """Find out which topics somebody hears now."""
+        """Find out which topics have subscribers."""
         for endpoints in self._endpoints.values():
             endpoints.poll()
 
     @property
     def names(self) -> tuple[RobotNames, ...]:
-        """Of all robots, in the order of the world."""
+        """ROS names of all robots, in the order of the world."""
         return tuple(endpoints.names for endpoints in self._endpoints.values())
 
     @property
     def by_robot(self) -> dict[str, RobotNames]:
-        """The same by their names in the world."""
+        """ROS names by name in the world."""
         return {robot: endpoints.names for robot, endpoints in self._endpoints.items()}
 
     def reset(self, robots: Iterable[str]) -> None:
-        """The robots of a playground: one alone has no name, of several each has its own."""
+        """Serve the robots of a new or reset playground: a single robot has an empty ROS name, several keep theirs."""
         self._change(self._naming.all(robots))
         for endpoints in self._endpoints.values():
             endpoints.reset()
 
     def update(self, robots: Iterable[str]) -> bool:
-        """Whether robots have come or gone; who has come has topics and frames of its name."""
+        """Add endpoints of new robots, remove those of others, and return whether there was a change."""
         robots = list(robots)
         if robots == list(self._endpoints):
             return False

@@ -1,7 +1,7 @@
-"""The topics and services of one robot: made with it, destroyed with it.
+"""The topics and services of one robot, created and destroyed with it.
 
-Publishing turns readings into messages by the rows of `sensor_topics`; subscribing turns messages into commands and
-posts them. Topics that nobody hears cost nothing but a look now and then.
+Readings are converted to messages by the rows of `sensor_topics`; messages are converted to commands and posted to the
+world. A topic without subscribers costs no more than being polled for them.
 """
 
 from __future__ import annotations
@@ -42,16 +42,16 @@ DESCRIPTION = "robot_description"
 DESCRIPTION_TOPIC = (String, "the robot as URDF, made of primitives, with turning wheels")
 
 SERVICES: Mapping[str, tuple[type, str]] = {
-    "is_ready": (EmptyService, "answers when the robot is in the world"),
-    "reset_odometry": (Trigger, "the odometry starts again from zero: `odom -> base_link` jumps once"),
+    "is_ready": (EmptyService, "responds once the robot is in the world"),
+    "reset_odometry": (Trigger, "reset the odometry to zero: `odom -> base_link` jumps once"),
 }
-"""Type and meaning of every service of a robot."""
+"""Type and description of every service of a robot."""
 
 
 def first_words() -> frozenset[str]:
-    """First words of a robot's topics, where there is more than one, and of what a program adds.
+    """Return the first words of a robot's topics with several words, including those that a program adds.
 
-    Of hidden ones also without the `_`: the driver's names.
+    For hidden topics the word is included without `_` too, as in the driver's names.
     """
     rows = (row.topic for sensor in all_sensors() for row in sensor_topics.rows_of(sensor))
     topics = (*rows, *(one.topic for one in robot_inputs()), "aseba/")
@@ -61,9 +61,9 @@ def first_words() -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class EndpointOptions:
-    """What a user may choose about the topics of all robots, once; `every_ns`: of topics with a rate of their own.
+    """Options for the topics of all robots, fixed at the start.
 
-    `extra`: what there is besides.
+    `left_out`: topics that are not created; `every_ns`: shortest period by topic; `extra`: additional topics.
     """
 
     stamped_cmd_vel: bool = False
@@ -74,20 +74,20 @@ class EndpointOptions:
 
 @dataclass(slots=True)
 class _SensorPublisher:
-    """The publisher of a row, how the audience counts it, when it may send again; what it told last of what changes."""
+    """The publisher of a row with its demand, the time of the next message, and the last published value."""
 
     row: Row
     heard: TopicDemand
     next_ns: int
     publisher: Any = None
     send: Callable[[bytes], None] = lambda _data: None
-    """Sends a serialised message."""
+    """Publishes a serialized message."""
     count: Callable[[], int] = lambda: 0
-    """Tells how many listen."""
+    """Returns the number of subscriptions."""
     is_sent: bool = False
     last: Any = None
     is_stale: bool = False
-    """Whether it has told what a reset undoes without a word of the sensor."""
+    """Whether the retained message is outdated after a reset, although the sensor reports nothing."""
     template: Template | None = None
 
 
@@ -107,9 +107,18 @@ class RobotEndpoints:
         on_refusal: Callable[[], None] = lambda: None,
         on_limit: Callable[[], None] = lambda: None,
     ) -> None:
-        """`content` and `input_context` are asked with every message; `demand` is told which topics are sent.
+        """Create all endpoints.
 
-        `on_refusal` is called for each that is refused, `on_limit` for each with something beyond the robot's limits.
+        Args:
+            node: The node of the simulator.
+            names: ROS names of the robot.
+            post: Posts a command to the world.
+            content: Returns the current options for the content of messages.
+            input_context: Returns time, time-out and frames; called for each message.
+            options: Which topics to create.
+            demand: Counts the topics that are published.
+            on_refusal: Called for each rejected message.
+            on_limit: Called for each clamped message.
         """
         self.names = names
         self._node = node
@@ -121,7 +130,7 @@ class RobotEndpoints:
         self._demand = demand
         self._publishers: dict[str, list[_SensorPublisher]] = {sensor.name: [] for sensor in all_sensors()}
         self._sent: dict[str, tuple[_SensorPublisher, ...]] = {}
-        """By sensor, what somebody hears or what is always sent."""
+        """Publishers with subscribers, and those that always publish, by sensor."""
         for sensor in all_sensors():
             for row in (*sensor_topics.rows_of(sensor), *options.extra.rows.get(sensor.name, ())):
                 if row.topic not in options.left_out:
@@ -143,7 +152,7 @@ class RobotEndpoints:
         ]
 
     def publish(self, sensor: str, reading: Reading) -> None:
-        """Send one reading on every topic made from it."""
+        """Publish one reading on all of its topics."""
         sent = self._sent.get(sensor)
         if not sent:
             return
@@ -173,14 +182,14 @@ class RobotEndpoints:
 
     @property
     def topics(self) -> int:
-        """How many topics of sensors it has."""
+        """Number of sensor topics."""
         return sum(map(len, self._publishers.values()))
 
     def poll(self) -> None:
-        """Find out which topics somebody hears now.
+        """Find out which topics have subscribers.
 
-        It is asked for, since rclpy's events executor dies of a publisher with callbacks that is destroyed while one of
-        them waits.
+        Matched-event callbacks are not used: rclpy's events executor crashes if a publisher is destroyed while one of
+        its callbacks is queued.
         """
         for publishers in self._publishers.values():
             for target in publishers:
@@ -188,7 +197,7 @@ class RobotEndpoints:
                     self._send(target, wanted=target.count() > 0)
 
     def publish_pose(self, now_ns: int, pose: Pose, tilt: Tilt) -> None:
-        """Say where the robot stands while time does, for those who come late."""
+        """Publish the true pose of a paused robot for late subscribers."""
         still = Twist(0.0, 0.0)
         reading = PoseReading(now_ns, (), pose, still, pose, still, tilt)
         for target in self._publishers["pose"]:
@@ -196,7 +205,7 @@ class RobotEndpoints:
                 target.publisher.publish(target.row.encode(reading, self.names, self._content()))
 
     def reset(self) -> None:
-        """Send the next reading of every kind, also an unchanged one: the world was reset. What is latched ends now."""
+        """Publish the next reading of every sensor even if unchanged, and replace outdated retained messages."""
         for sensor, publishers in self._publishers.items():
             for target in publishers:
                 target.last, target.next_ns = None, target.heard.every_ns
@@ -206,7 +215,7 @@ class RobotEndpoints:
                     target.publisher.publish(message)
 
     def close(self) -> None:
-        """Take all topics and services of this robot out of the graph."""
+        """Destroy all topics and services of this robot."""
         for service in self._services:
             self._node.destroy_service(service)
         for subscription in self._subscriptions:
@@ -244,16 +253,16 @@ class RobotEndpoints:
                     self._report_limit(one, limit_check)
             except (CommandError, PlacementError) as error:
                 self._on_refusal()
-                self._warn(self._full_name(one), f"refused: {error}")
+                self._warn(self._full_name(one), f"rejected: {error}")
 
         return handle
 
     def _report_limit(self, one: RobotInput, limit_check: str) -> None:
-        """Once for each topic: who means full speed by a large number does not want to hear it again and again."""
+        """Log a clamped message once per topic: programs use large numbers for full speed on purpose."""
         self._on_limit()
         if one.topic not in self._limited:
             self._limited.add(one.topic)
-            self._node.get_logger().warning(f"{self._full_name(one)} limited: {limit_check}; told once")
+            self._node.get_logger().warning(f"{self._full_name(one)} clamped: {limit_check} (reported once per topic)")
 
     def _full_name(self, one: RobotInput) -> str:
         return full_name(self._node, self.names.topic(one.topic))
@@ -261,5 +270,5 @@ class RobotEndpoints:
     def _reset_odometry(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._post(commands.ResetOdometry())
         response.success = True
-        response.message = "odometry starts again from zero: odom -> base_link jumps once"
+        response.message = "odometry restarts at zero: odom -> base_link jumps once"
         return response

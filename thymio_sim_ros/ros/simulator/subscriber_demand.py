@@ -1,6 +1,6 @@
-"""Which topics of robots somebody hears, and when the next of their readings is due.
+"""Tracks which robot topics are published, and when the next of their readings is due.
 
-Until then the simulator may sleep: nothing that it would do earlier could be seen.
+Until then the simulator may sleep, since no subscriber could see a difference.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ __all__ = ["SubscriberDemand", "TopicDemand"]
 
 
 class TopicDemand(NamedTuple):
-    """A topic by what makes it: a sensor, not more often than `every_ns`; regular, or when something happens."""
+    """The source of a topic: a sensor, the shortest period `every_ns`, and whether it is periodic or event driven."""
 
     sensor: str
     every_ns: int = 0
@@ -24,34 +24,34 @@ class TopicDemand(NamedTuple):
 
 
 class SubscriberDemand:
-    """Counts of the topics that are sent. Invariant: `sensors` are those of at least one of them."""
+    """Counts published topics by source. Invariant: `sensors` are the sensors of at least one published topic."""
 
     def __init__(self, periods_ns: Mapping[str, int] | None = None) -> None:
-        """`periods_ns`: of sensors that do not measure as often as they say themselves."""
+        """`periods_ns`: periods that override those declared by the sensors."""
         periods_ns = periods_ns or {}
         sensors = [sensor.every(periods_ns.get(sensor.name, sensor.period_ns)) for sensor in all_sensors()]
         self._schedule = {sensor.name: (sensor.period_ns, sensor.phase_ns) for sensor in sensors}
         self._counts: Counter[TopicDemand] = Counter()
         self._since_ns, self._due_ns = 0, 0
         self._is_due_always = False
-        """Whether each tick gives a reading that is sent."""
+        """Whether every tick has a reading that is published."""
         self.sensors: frozenset[str] = frozenset()
 
     def add(self, topic: TopicDemand) -> None:
-        """A topic is sent from now on."""
+        """Count a topic that is published from now on."""
         self._counts[topic] += 1
         if self._counts[topic] == 1:
             self._change()
 
     def remove(self, topic: TopicDemand) -> None:
-        """It is not sent any more."""
+        """Remove a topic that is no longer published."""
         self._counts[topic] -= 1
         if not self._counts[topic]:
             del self._counts[topic]
             self._change()
 
     def due_ns(self, now_ns: int) -> int:
-        """The first tick after now that gives a regular reading that is sent; `NEVER_NS` without any."""
+        """Return the time of the first tick after `now_ns` with a periodic reading to publish; `NEVER_NS` if none."""
         if self._is_due_always:
             return now_ns + TICK_NS
         if not self._since_ns <= now_ns < self._due_ns:

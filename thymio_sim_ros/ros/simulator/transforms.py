@@ -1,7 +1,7 @@
-"""/tf and /tf_static of all robots (docs/spec/ros-interface.md sections 4.1 and 8).
+"""Publishes /tf and /tf_static of all robots (docs/spec/ros-interface.md sections 4.1 and 8).
 
-`odom → base_link` is the wheels' odometry and how the robot leans; `map → odom` makes up for its drift, so that
-`map → base_link` is the truth (perfect localisation); the wheels turn by their angles. What nobody hears costs nothing.
+`odom → base_link` is the wheel odometry and the tilt of the robot; `map → odom` compensates the drift, so that
+`map → base_link` is the true pose (perfect localization). Topics without subscribers cost nothing.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ __all__ = ["POSE_SENSOR", "TransformOptions", "Transforms", "frames_of", "origin
 
 @dataclass(frozen=True, slots=True)
 class TransformOptions:
-    """What is published: `map → odom`, the wheels, the fixed frames; and whether in each robot's namespace."""
+    """Whether to publish `map → odom`, wheel frames and fixed frames, and whether in each robot's namespace."""
 
     publish_map: bool = True
     publish_wheels: bool = True
@@ -39,16 +39,16 @@ class TransformOptions:
 
 
 POSE_SENSOR = "pose"
-"""The sensor whose readings make transforms."""
+"""The sensor whose readings are the source of transforms."""
 
 MOVING_FRAMES = TopicDemand(POSE_SENSOR)
 
 
 class _TransformTopic:
-    """Publishers of one transform topic, and for each the transforms of this tick."""
+    """Publishers of `tf` or `tf_static`, one per namespace, with the transforms collected for the next message."""
 
     def __init__(self, node: Node, word: str, profile: QoSProfile, demand: SubscriberDemand | None = None) -> None:
-        """`demand` is told which topics are heard."""
+        """`demand` counts the topics with subscribers."""
         self.word = word
         self._node, self._profile, self._demand = node, profile, demand
         self._publishers: dict[str, Any] = {}
@@ -56,7 +56,7 @@ class _TransformTopic:
         self._waiting: dict[str, list[Transform]] = {}
 
     def open(self, topics: set[str]) -> None:
-        """Have publishers of these topics, and of no other."""
+        """Create publishers of these topics and destroy all others."""
         self._waiting.clear()
         for topic in self._publishers.keys() - topics:
             self._set_demand(topic, 0)
@@ -65,20 +65,20 @@ class _TransformTopic:
             self._publishers[topic] = self._node.create_publisher(tf2_messages.TFMessage, topic, self._profile)
 
     def poll(self) -> None:
-        """Find out which topics somebody hears now."""
+        """Find out which topics have subscribers."""
         for topic, publisher in self._publishers.items():
             self._set_demand(topic, publisher.get_subscription_count())
 
     def has_subscribers(self, topic: str) -> bool:
-        """Whether anybody listens."""
+        """Whether a topic has subscribers."""
         return topic in self._heard
 
     def add(self, topic: str, transforms: Sequence[Transform]) -> None:
-        """Send these with the next `flush`."""
+        """Add transforms to the next message."""
         self._waiting.setdefault(topic, []).extend(transforms)
 
     def flush(self) -> None:
-        """Send all that waits, one message for each topic."""
+        """Publish the collected transforms, one message per topic."""
         for topic, transforms in self._waiting.items():
             self._publishers[topic].publish(tf2_messages.encode(transforms))
         self._waiting.clear()
@@ -95,7 +95,7 @@ class _TransformTopic:
 
 
 class Transforms:
-    """Publishes transforms from readings; silent where the type cannot be had (`tf_messages.available`)."""
+    """Publishes transforms from readings; does nothing if the type is not available (`tf2_messages.available`)."""
 
     def __init__(self, node: Node, demand: SubscriberDemand, options: TransformOptions | None = None) -> None:
         self._options = options or TransformOptions()
@@ -104,7 +104,7 @@ class Transforms:
         self._static = _TransformTopic(node, "tf_static", qos.TRANSIENT_LOCAL)
 
     def set_robots(self, robots: Sequence[RobotNames]) -> None:
-        """Latched frames of these robots, all in one message where the topic is common."""
+        """Publish the static frames of these robots, in one message per topic."""
         if not self._is_on:
             return
         self._moving.open({self._topic(names, self._moving) for names in robots})
@@ -121,17 +121,17 @@ class Transforms:
         self._static.flush()
 
     def add_reading(self, names: RobotNames, reading: Reading, angles_rad: tuple[float, float]) -> None:
-        """Send the robot's moving frames at the end of the tick: its pose, its wheels turned by these angles."""
+        """Add the moving frames of a robot from a pose reading and its wheel angles; `flush` publishes them."""
         topic = self._topic(names, self._moving)
         if isinstance(reading, PoseReading) and self._moving.has_subscribers(topic):
             self._moving.add(topic, self._frames(names, reading, angles_rad))
 
     def poll(self) -> None:
-        """Find out which moving frames somebody hears now."""
+        """Find out which moving frames have subscribers."""
         self._moving.poll()
 
     def flush(self) -> None:
-        """The tick is over."""
+        """Publish the transforms of this tick."""
         self._moving.flush()
 
     def _topic(self, names: RobotNames, channel: _TransformTopic) -> str:
@@ -154,14 +154,14 @@ _WHEELS = tuple(map(wheel_position, SIDES))
 
 @cache
 def _moving_frames(names: RobotNames) -> tuple[str, ...]:
-    """The map's frame, the odometry's, the robot's and those of its wheels."""
+    """Return the frame names of map, odometry, robot and wheels."""
     return tuple(
         names.frame(usual) for usual in (MAP_FRAME, "odom", "base_link", *(f"{side}_wheel_link" for side in SIDES))
     )
 
 
 def origin_of(truth: Pose, odometry: Pose) -> Pose:
-    """Where odometry's origin lies in the world: truth · odometry⁻¹."""
+    """Return the pose of the odometry origin in the world: truth · odometry⁻¹."""
     yaw = truth.yaw_rad - odometry.yaw_rad
     cos, sin = math.cos(yaw), math.sin(yaw)
     return Pose(
@@ -170,7 +170,7 @@ def origin_of(truth: Pose, odometry: Pose) -> Pose:
 
 
 def frames_of(names: RobotNames, truth: Pose, odometry: Pose) -> dict[str, Pose]:
-    """Where the world's frame, the odometry's and the robot's are in the world."""
+    """Return the poses of the frames of world, odometry and robot in the world, by frame name."""
     places = {MAP_FRAME: Pose(0.0, 0.0, 0.0), "odom": origin_of(truth, odometry), "base_link": truth}
     return {names.frame(usual): place for usual, place in places.items()}
 
